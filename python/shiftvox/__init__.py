@@ -52,7 +52,7 @@ def _kept(path, folder):
 def _run(command, scenes, options, parse):
     words = command.split()
     if not words or words[0].startswith("-"):
-        raise _refused(f"{command!r} is no command, such as \"info\" or \"bench error\"")
+        raise _refused(f"{command!r} is no command, such as \"info\" or \"bench quality\"")
     if words[0] in ("completions", "man"):
         raise _refused(f"{words[0]}: it prints no JSON")
     # Results name their scenes: the file of one that is in memory stays beside them.
@@ -79,7 +79,7 @@ def _run(command, scenes, options, parse):
 def run(command, *scenes, **options):
     """Run a command of the program and return what it prints with --json.
 
-    `run("bench error", "gen:wires,depth=5", size=48, runs=1)`; keywords are the flags that
+    `run("bench quality", "gen:wires,depth=5", size=48, runs=1)`; keywords are the flags that
     `shiftvox COMMAND --help` lists, with underscores for dashes. Scenes are files, generators, or
     `Scene` objects.
 

@@ -282,7 +282,7 @@ def test_exploration_of_a_scene_in_memory_goes_on(tmp_path):
 
 def test_nothing_is_printed(capfd):
     shiftvox.run("info", "gen:menger,depth=1")
-    shiftvox.run("bench error", "gen:menger,depth=1", size=16, runs=1, coverages=["exact"], bits=[64])
+    shiftvox.run("bench quality", "gen:menger,depth=1", size=16, runs=1, methods=["exact:bits=64"])
     assert capfd.readouterr().out == ""
     with pytest.raises(shiftvox.Error) as refused:
         shiftvox.run("model", nonsense=1)

@@ -1,8 +1,8 @@
 //! `--config FILE`: a TOML table of flags by their long names.
 //!
-//! Each entry becomes a flag at the end of the command line, unless the flag is
-//! there already. A camera given one way on the command line displaces one
-//! given the other way in the file. `scene` stands for the positional scenes.
+//! Each entry becomes a flag at the end of the command line, unless the flag is there already. A
+//! camera placed by coordinates on the command line displaces one placed by angles in the file, and
+//! the reverse. `scene` means the positional scenes.
 
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
@@ -16,7 +16,7 @@ use shiftvox::bounded;
 const BY_POINTS: [&str; 3] = ["eye", "target", "up"];
 /// Flags that place it by angles.
 const BY_ANGLES: [&str; 4] = ["view", "azimuth", "elevation", "zoom"];
-/// Flags for which `paper` stands.
+/// Flags that `paper` replaces.
 const PAPER: [&str; 3] = ["cage", "tolerance", "coverage"];
 
 /// A command line with the entries of its configuration file.
@@ -27,7 +27,7 @@ pub(super) struct Expanded {
     file: Option<Settings>,
 }
 
-/// A configuration file that was read.
+/// A configuration file.
 struct Settings {
     place: String,
     text: String,
@@ -35,7 +35,7 @@ struct Settings {
     keys: Vec<String>,
 }
 
-/// Puts the entries of the configuration file on the command line.
+/// Appends the entries of the configuration file to the command line.
 ///
 /// # Errors
 /// A usage error or a bad input that names the file and the entry.
@@ -47,19 +47,18 @@ pub(super) fn expand(mut line: Vec<OsString>) -> Result<Expanded, CliError> {
             file: None,
         });
     };
-    let path = Path::new(&path);
-    let place = path.display().to_string();
-    let text = bounded::read_settings(path)
-        .map_err(|e| CliError::input(format!("cannot read the file: {e}")).at(&place))?;
+    let place = Path::new(&path).display().to_string();
+    let at = |message: String| CliError::input(message).at(&place);
+    let text = bounded::read_settings(Path::new(&path));
+    let text = text.map_err(|e| at(format!("cannot read the file: {e}")))?;
     let table: toml::Table = text
         .parse()
-        .map_err(|e| CliError::input(format!("not a TOML table: {e}")).at(&place))?;
+        .map_err(|e| at(format!("not a TOML table: {e}")))?;
     let (flags, scenes) = flags_of(&line, table).map_err(|e| e.at(&place))?;
-    let keys = flags.iter().filter_map(|flag| key_of(flag.to_str()?));
-    let keys = keys.map(str::to_owned).collect();
+    let keys = flags.iter().map(|(key, _)| key.clone()).collect();
     // Flags after `--` would be scenes.
     let end = line.iter().position(|a| a == "--").unwrap_or(line.len());
-    line.splice(end..end, flags);
+    line.splice(end..end, flags.into_iter().map(|(_, flag)| flag.into()));
     Ok(Expanded {
         line,
         scenes,
@@ -73,7 +72,7 @@ fn key_of(flag: &str) -> Option<&str> {
 }
 
 impl Expanded {
-    /// What is wrong with the file, where a flag that came from it is at fault.
+    /// The error of the file, if a flag that came from it is wrong.
     pub(super) fn blame(&self, error: &clap::Error) -> Option<CliError> {
         let file = self.file.as_ref()?;
         let of = |kind| match error.get(kind) {
@@ -89,53 +88,55 @@ impl Expanded {
             name.trim().trim_matches(['"', '\'']) == key
         };
         let line = file.text.lines().position(is_entry).map_or(0, |at| at + 1);
-        let place = format!("{}, line {line}", file.place);
-        if error.kind() == ErrorKind::UnknownArgument {
-            let refusal = CliError::input(format!("there is no setting `{key}` here")).at(place);
-            return Some(match of(ContextKind::SuggestedArg) {
-                Some(near) => refusal.advise(format!("is `{near}` meant?")),
-                None => refusal.advise(
-                    "`--help` of the command lists its flags: a setting is a flag's long name",
-                ),
-            });
-        }
         let message = error.render().to_string();
         let first = message.lines().next().unwrap_or_default();
-        let reason = first.strip_prefix("error: ").unwrap_or(first);
-        Some(CliError::input(format!("`{key}`: {reason}")).at(place))
+        let reason = first.trim_start_matches("error: ");
+        let (reason, advice) = match (error.kind(), of(ContextKind::SuggestedArg)) {
+            (ErrorKind::UnknownArgument, Some(near)) => {
+                let reason = format!("there is no setting `{key}` here");
+                (reason, Some(format!("is `{near}` meant?")))
+            }
+            (ErrorKind::UnknownArgument, None) => {
+                let advice = "settings are the long names of flags, which --help lists";
+                (
+                    format!("there is no setting `{key}` here"),
+                    Some(advice.to_owned()),
+                )
+            }
+            _ => (format!("`{key}`: {reason}"), None),
+        };
+        let mut error = CliError::input(reason).at(format!("{}, line {line}", file.place));
+        error.advice = advice;
+        Some(error)
     }
 }
 
-fn flags_of(
-    line: &[OsString],
-    table: toml::Table,
-) -> Result<(Vec<OsString>, Vec<String>), CliError> {
+/// The keys of the entries with their flags, and the scenes.
+type Flags = (Vec<(String, String)>, Vec<String>);
+
+fn flags_of(line: &[OsString], table: toml::Table) -> Result<Flags, CliError> {
     let any = |names: &[&str]| names.iter().any(|name| has_flag(line, name));
-    let mut flags = Vec::new();
-    let mut scenes = Vec::new();
+    let (mut flags, mut scenes) = (Vec::new(), Vec::new());
     for (key, value) in table {
-        if key == "scene" {
-            scenes = texts(&key, value)?;
-            continue;
-        }
-        if key == "config" {
-            return Err(CliError::input(
-                "a configuration file cannot name another one",
-            ));
-        }
         let name = key.as_str();
-        let displaced = has_flag(line, name)
+        let is_displaced = has_flag(line, name)
             || (BY_POINTS.contains(&name) && any(&BY_ANGLES))
             || (BY_ANGLES.contains(&name) && any(&BY_POINTS))
             || (PAPER.contains(&name) && has_flag(line, "paper"))
             || (name == "paper" && any(&PAPER));
-        if displaced {
-            continue;
-        }
-        match value {
-            toml::Value::Boolean(true) => flags.push(format!("--{key}").into()),
-            toml::Value::Boolean(false) => {}
-            value => flags.push(format!("--{key}={}", texts(&key, value)?.join(",")).into()),
+        match (name, value) {
+            ("config", _) => {
+                let message = "a configuration file cannot name another one";
+                return Err(CliError::input(message));
+            }
+            ("scene", value) => scenes = texts(&key, value)?,
+            (_, toml::Value::Boolean(false)) => {}
+            _ if is_displaced => {}
+            (_, toml::Value::Boolean(true)) => flags.push((key.clone(), format!("--{key}"))),
+            (_, value) => {
+                let flag = format!("--{key}={}", texts(&key, value)?.join(","));
+                flags.push((key, flag));
+            }
         }
     }
     Ok((flags, scenes))
@@ -157,7 +158,7 @@ fn texts(key: &str, value: toml::Value) -> Result<Vec<String>, CliError> {
     }
 }
 
-/// The arguments that may be flags.
+/// Arguments before `--`.
 fn flags_part(line: &[OsString]) -> impl Iterator<Item = &OsStr> {
     let words = line.iter().map(OsString::as_os_str);
     words.take_while(|word| *word != "--")
@@ -186,54 +187,43 @@ fn find_value(line: &[OsString], name: &str) -> Option<OsString> {
 mod tests {
     use super::*;
 
-    fn flags(line: &[&str], toml: &str) -> Vec<String> {
-        let line: Vec<OsString> = line.iter().map(Into::into).collect();
-        let (flags, _) = flags_of(&line, toml.parse().unwrap()).unwrap();
-        flags
-            .iter()
-            .map(|f| f.to_str().unwrap().to_owned())
-            .collect()
+    #[test]
+    fn entries_become_flags_unless_the_command_line_has_them() {
+        let camera = "size = 64\neye = \"1,2,3\"\ntarget = \"0,0,0\"\nview = \"iso\"";
+        let all = "size = 64\naov = [\"depth\", \"node\"]\nhash = true\nforce = false\nfov = 40.5";
+        let cases = [
+            (
+                "x render a.vox",
+                all,
+                "--aov=depth,node --fov=40.5 --hash --size=64",
+            ),
+            ("x --size=8 --zoom 2", camera, "--view=iso"),
+            ("x --size 8 --eye=0,0,1", camera, "--target=0,0,0"),
+            ("x --paper", "cage = \"frame\"", ""),
+            ("x -- --size=8", "size = 64", "--size=64"),
+        ];
+        for (line, toml, expected) in cases {
+            let line: Vec<OsString> = line.split(' ').map(Into::into).collect();
+            let (flags, _) = flags_of(&line, toml.parse().unwrap()).unwrap();
+            let mut flags: Vec<String> = flags.into_iter().map(|(_, flag)| flag).collect();
+            flags.sort();
+            assert_eq!(flags.join(" "), expected, "{line:?}");
+        }
     }
 
     #[test]
-    fn entries_become_flags() {
-        let toml = "size = 64\naov = [\"depth\", \"node\"]\nhash = true\nforce = false\nfov = 40.5";
-        let found = flags(&["x", "render", "a.vox"], toml);
-        let mut sorted = found.clone();
-        sorted.sort();
-        assert_eq!(
-            sorted,
-            ["--aov=depth,node", "--fov=40.5", "--hash", "--size=64"]
-        );
-    }
-
-    #[test]
-    fn the_command_line_comes_first() {
-        let toml = "size = 64\neye = \"1,2,3\"\ntarget = \"0,0,0\"\nview = \"iso\"";
-        assert_eq!(
-            flags(&["x", "--size=8", "--zoom", "2"], toml),
-            ["--view=iso"]
-        );
-        assert!(
-            flags(&["x", "--size", "8", "--eye=0,0,1"], toml).contains(&"--target=0,0,0".into())
-        );
-        assert_eq!(flags(&["x", "--paper"], "cage = \"frame\""), [""; 0]);
-    }
-
-    #[test]
-    fn the_flag_is_found_either_way() {
-        let line = |words: &[&str]| words.iter().map(Into::into).collect::<Vec<OsString>>();
-        assert_eq!(
-            find_value(&line(&["x", "--config", "a"]), "config"),
-            Some("a".into())
-        );
-        assert_eq!(
-            find_value(&line(&["x", "--config=a"]), "config"),
-            Some("a".into())
-        );
-        assert_eq!(
-            find_value(&line(&["x", "--", "--config=a"]), "config"),
-            None
-        );
+    fn the_file_is_found_either_way() {
+        for (line, found) in [
+            ("x --config a", Some("a")),
+            ("x --config=a", Some("a")),
+            ("x -- --config=a", None),
+        ] {
+            let line: Vec<OsString> = line.split(' ').map(Into::into).collect();
+            assert_eq!(
+                find_value(&line, "config"),
+                found.map(Into::into),
+                "{line:?}"
+            );
+        }
     }
 }

@@ -1,8 +1,7 @@
-//! What is said, and where: data on stdout, notes and progress on stderr.
+//! Output: data on stdout, notes and progress on stderr.
 //!
-//! A JSON document is held back until it is known how the run ends: where it fails, the document
-//! says so. Names of files may hold anything; what could move a terminal's cursor or change its
-//! colours is shown escaped.
+//! A JSON document is printed at the end of the run, with the error if the run fails. Names of files
+//! may hold anything: control characters are escaped.
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
@@ -16,18 +15,18 @@ use super::error::{CliError, Kind};
 use super::{document, names};
 use shiftvox::graph::{Progress, Silent};
 
-/// The two streams, and how much is said on them.
+/// The two streams and their verbosity.
 pub(super) struct Console {
     quiet: bool,
     verbose: u8,
     /// Whether results are printed as JSON.
     pub(super) json: bool,
     progress: Box<dyn Progress>,
-    /// The document that waits for the end of the run.
+    /// The document that is printed at the end of the run.
     held: Mutex<Option<Value>>,
-    /// Whether documents are printed a line each.
+    /// Whether each document is one line.
     in_lines: AtomicBool,
-    /// What is printed, where it is not for stdout.
+    /// The output, if it is not for stdout.
     kept: Option<Mutex<String>>,
 }
 
@@ -49,7 +48,7 @@ impl Console {
         }
     }
 
-    /// Keeps JSON documents for a caller in this process; says nothing.
+    /// Keeps JSON documents for a caller in this process, without notes.
     pub(super) fn keeping() -> Self {
         Self {
             kept: Some(Mutex::default()),
@@ -57,7 +56,7 @@ impl Console {
         }
     }
 
-    /// What was printed on a console that keeps it.
+    /// The output of a console that keeps it.
     pub(super) fn kept(self) -> String {
         let kept = self.kept.unwrap_or_default();
         kept.into_inner().unwrap_or_else(PoisonError::into_inner)
@@ -78,12 +77,12 @@ impl Console {
         &*self.progress
     }
 
-    /// Prints data, with a line's end.
+    /// Prints data and a newline.
     pub(super) fn data(&self, text: impl AsRef<str>) -> Result<(), CliError> {
         self.print(&harmless(text.as_ref()))
     }
 
-    /// Prints a line of JSON at once, where results are JSON: of what comes bit by bit.
+    /// Prints a line of JSON at once if results are JSON, for results that come one by one.
     pub(super) fn line(&self, text: &str) -> Result<(), CliError> {
         if !self.json {
             return Ok(());
@@ -106,8 +105,7 @@ impl Console {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always
-    /// is one.
+    /// Ends a run: prints the last document, with the error. With `--json` there always is one.
     pub(super) fn end(&self, result: Result<(), CliError>) -> Result<(), CliError> {
         let held = self.held().take();
         let printed = match (&result, held) {
@@ -139,7 +137,7 @@ impl Console {
         }
     }
 
-    /// Reports an error after which the work goes on.
+    /// Reports an error that does not stop the work.
     pub(super) fn error(&self, error: &CliError) {
         report_error(error);
     }
@@ -163,8 +161,8 @@ fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
 }
 
-/// A text with what could do harm to a terminal escaped: control characters but lines' ends and
-/// tabs, and bytes of names that are not UTF-8.
+/// A text for a terminal: control characters other than newlines and tabs are escaped, and bytes of
+/// names that are not UTF-8.
 fn harmless(text: &str) -> Cow<'_, str> {
     let is_plain = |letter| letter == '\n' || letter == '\t';
     escaped(text, |letter| match names::byte_of(letter) {
@@ -176,12 +174,12 @@ fn harmless(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A document, with the same escaped as JSON has it.
+/// The text of a document with JSON escapes in place of these.
 pub(super) fn as_json(document: &Value) -> String {
     json_text(&format!("{document:#}")).into_owned()
 }
 
-/// The text of a document, with the same escaped.
+/// JSON text with the same escapes.
 fn json_text(text: &str) -> Cow<'_, str> {
     // Those below 32 are escaped already, or lines' ends between values.
     escaped(text, |letter| match names::byte_of(letter) {
@@ -193,7 +191,7 @@ fn json_text(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A text with some letters written in another way.
+/// A text with some letters replaced.
 fn escaped(text: &str, other_way: impl Fn(char) -> Option<String>) -> Cow<'_, str> {
     if !text.contains(|letter| other_way(letter).is_some()) {
         return text.into();
@@ -202,14 +200,13 @@ fn escaped(text: &str, other_way: impl Fn(char) -> Option<String>) -> Cow<'_, st
     text.chars().map(shown).collect()
 }
 
-/// Whether stderr is a terminal that bars can be drawn on: one that has a name, and can go back in
-/// its line.
+/// Whether stderr is a terminal that can rewrite its line.
 fn is_drawn_on() -> bool {
     let has_name = |name: std::ffi::OsString| !name.is_empty() && name != "dumb";
     io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)
 }
 
-/// The work that is under way, one at a time: a line that is rewritten, and removed at the end.
+/// Progress of the current work: a line that is rewritten, and removed at the end.
 #[derive(Default)]
 struct Bars {
     bar: Mutex<Option<Bar>>,
@@ -232,7 +229,7 @@ const REFRESH: Duration = Duration::from_millis(100);
 const MOST_LETTERS: usize = 56;
 
 impl Bar {
-    /// What is done, and the remaining time at the present rate.
+    /// The finished share, and the remaining time at the present rate.
     fn line(&self, elapsed: Duration) -> String {
         let what: String = self.what.chars().take(MOST_LETTERS).collect();
         let share = self.done.min(self.steps) as f64 / self.steps.max(1) as f64;
@@ -254,7 +251,7 @@ impl Bar {
             return;
         }
         self.written = Some(now);
-        // Back to the beginning of the line; what stood behind the text is cleared.
+        // Back to the beginning of the line; the rest of the line is cleared.
         let _ = write!(
             io::stderr().lock(),
             "\r{}\x1b[K",
@@ -307,23 +304,26 @@ mod tests {
 
     #[test]
     fn progress_is_one_line_with_the_time_that_is_left() {
-        let bar = |what: &str, steps, done| Bar {
-            what: what.to_owned(),
-            steps,
-            done,
-            started: Instant::now(),
-            written: None,
+        let line = |what: &str, steps, done, seconds| {
+            let bar = Bar {
+                what: what.to_owned(),
+                steps,
+                done,
+                started: Instant::now(),
+                written: None,
+            };
+            bar.line(Duration::from_secs(seconds))
         };
-        let after = |bar: Bar, seconds| bar.line(Duration::from_secs(seconds));
-        assert_eq!(after(bar("reading a", 0, 9), 5), "reading a ...");
-        assert_eq!(
-            after(bar("building", 200, 50), 10),
-            "building  25 % (30 s left)"
-        );
-        assert_eq!(after(bar("b", 4, 1), 100), "b  25 % (5 min left)");
-        assert_eq!(after(bar("b", 4, 1), 12_000), "b  25 % (10.0 h left)");
-        assert_eq!(after(bar("b", 4, 5), 3), "b 100 % (0 s left)");
-        assert!(after(bar(&"x".repeat(500), 4, 1), 9).chars().count() < 80);
+        for (what, steps, done, seconds, expected) in [
+            ("reading a", 0, 9, 5, "reading a ..."),
+            ("building", 200, 50, 10, "building  25 % (30 s left)"),
+            ("b", 4, 1, 100, "b  25 % (5 min left)"),
+            ("b", 4, 1, 12_000, "b  25 % (10.0 h left)"),
+            ("b", 4, 5, 3, "b 100 % (0 s left)"),
+        ] {
+            assert_eq!(line(what, steps, done, seconds), expected);
+        }
+        assert!(line(&"x".repeat(500), 4, 1, 9).chars().count() < 80);
     }
 
     #[test]

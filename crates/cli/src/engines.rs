@@ -1,5 +1,7 @@
 //! The only place of the command line that makes engines.
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
+
 use super::args::{EngineArgs, EngineName};
 use super::error::{CliError, Kind};
 use shiftvox::fast::{Fast, FastOptions, Switches};
@@ -100,7 +102,7 @@ fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     Box::new(Fast::new(options, Box::new(Machine::default())))
 }
 
-/// What the experiments take for the truth.
+/// The exact engine, with which others are compared.
 pub(super) const REFERENCE: Candidate = Candidate {
     name: "rays",
     about: "the exact reference, in wide integers",
@@ -118,23 +120,70 @@ const FLOAT_RAYS: Candidate = Candidate {
     make: |_| Box::new(FloatRays),
 };
 
-/// All engines that the experiments can measure.
-pub(super) const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
+/// All engines that `bench time` can measure.
+const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
+/// Their names.
+pub(super) const MEASURED: [&str; 4] = ["fast", "machine", "rays", "float-rays"];
 
-/// Those whose growth is measured where none is named.
-pub(super) const SCALED: &[&str] = &["fast", "machine"];
+/// The engines that `bench time` can measure, for `--engines`.
+pub(super) fn names() -> PossibleValuesParser {
+    let name = |c: &Candidate| PossibleValue::new(c.name).help(c.about);
+    CANDIDATES.iter().map(name).collect::<Vec<_>>().into()
+}
 
-/// What can be switched off, by engine.
-pub(super) const FAMILIES: &[Family] = &[
-    Family {
-        whole: FAST,
-        variants: FAST_VARIANTS,
-    },
-    Family {
-        whole: MACHINE,
-        variants: MACHINE_VARIANTS,
-    },
-];
+/// The variants of an engine.
+fn variants_of(engine: &str) -> &'static [Variant] {
+    match engine {
+        "fast" => FAST_VARIANTS,
+        "machine" => MACHINE_VARIANTS,
+        _ => &[],
+    }
+}
+
+/// A variant's name as a value of a flag.
+fn slug(name: &str) -> String {
+    name.replace(' ', "-")
+}
+
+/// Reads a value of `--variants`: `all`, or a variant's name with hyphens.
+pub(super) fn variant_name(text: &str) -> Result<String, String> {
+    let variants = || FAST_VARIANTS.iter().chain(MACHINE_VARIANTS);
+    if text == "all" || variants().any(|variant| slug(variant.name) == text) {
+        return Ok(text.to_owned());
+    }
+    let lines = variants().map(|variant| format!("\n  {}: {}", slug(variant.name), variant.about));
+    Err(format!(
+        "expected all, or one of{}",
+        lines.collect::<String>()
+    ))
+}
+
+/// Engines by name with those of some variants that they have, by name or as values of flags.
+pub(super) fn families(engines: &[String], variants: &[String]) -> Result<Vec<Family>, CliError> {
+    let is_asked = |variant: &&Variant| {
+        let asked =
+            |name: &String| name == "all" || *name == slug(variant.name) || name == variant.name;
+        variants.iter().any(asked)
+    };
+    let family = |engine: &String| {
+        let whole = CANDIDATES.iter().find(|candidate| candidate.name == engine);
+        let whole =
+            *whole.ok_or_else(|| CliError::usage(format!("there is no engine `{engine}`")))?;
+        let of = variants_of(whole.name).iter().filter(is_asked);
+        Ok(Family {
+            whole,
+            variants: of.copied().collect(),
+        })
+    };
+    let families: Vec<Family> = engines
+        .iter()
+        .map(family)
+        .collect::<Result<_, CliError>>()?;
+    if !variants.is_empty() && families.iter().all(|family| family.variants.is_empty()) {
+        return Err(CliError::usage("none of these engines has such a variant"));
+    }
+    Ok(families)
+}
 
 /// The fast engine with everything on.
 const WHOLE_FAST: Variant = Variant {
@@ -149,15 +198,6 @@ const WHOLE_MACHINE: Variant = Variant {
     make: MACHINE.make,
     ..WHOLE_FAST
 };
-
-/// The machine without occlusion order, and without the rejection that it
-/// allows: so many of these two.
-pub(super) fn order_family(variants: usize) -> Family {
-    Family {
-        whole: MACHINE,
-        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
-    }
-}
 
 const FAST_VARIANTS: &[Variant] = &[
     Variant {

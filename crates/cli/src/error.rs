@@ -1,4 +1,4 @@
-//! What can go wrong, and which exit code says so.
+//! Errors and their exit codes.
 
 use std::fmt;
 use std::io;
@@ -17,7 +17,7 @@ use shiftvox_lab::bench::BenchError;
 use shiftvox_mesh::drawing::MethodError;
 use shiftvox_mesh::{far, textured};
 
-/// The kinds of failure that a script can tell apart.
+/// Kinds of failure, by exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Something failed while the program ran: exit code 1.
@@ -49,14 +49,14 @@ impl Kind {
     }
 }
 
-/// A failure: its kind, what happened and where, and what to do about it.
+/// A failure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CliError {
-    /// The kind, hence the exit code.
+    /// The kind, which decides on the exit code.
     pub kind: Kind,
-    /// What happened, and where.
+    /// The error and its place.
     pub message: String,
-    /// What the user can do, where there is something.
+    /// Advice for the user.
     pub advice: Option<String>,
 }
 
@@ -80,7 +80,7 @@ impl CliError {
         Self::new(Kind::Input, message)
     }
 
-    /// An input that cannot be read: for want of memory, or because of what it is.
+    /// An input that cannot be read: for lack of memory, or because of its contents.
     pub fn of_reading(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::OutOfMemory => Self::new(Kind::Limit, error)
@@ -89,7 +89,7 @@ impl CliError {
         }
     }
 
-    /// Flags that a program put together wrongly.
+    /// Flags that a program composed wrongly.
     #[cfg(feature = "view")]
     pub(super) fn of_words(error: clap::Error) -> Self {
         let message = error.render().to_string();
@@ -104,7 +104,8 @@ impl CliError {
         self
     }
 
-    /// The same failure, said of a place: a file or a scene; once, where it is said already.
+    /// The same failure with its place, a file or a scene, in front. A place that is there already is
+    /// not repeated.
     #[must_use]
     pub fn at(mut self, place: impl fmt::Display) -> Self {
         let place = format!("{place}: ");
@@ -144,18 +145,37 @@ impl From<WholeError> for CliError {
     }
 }
 
-impl From<SetupError> for CliError {
-    fn from(error: SetupError) -> Self {
-        let kind = match error {
-            SetupError::Camera(_)
-            | SetupError::Format(_)
-            | SetupError::Tolerance(_)
-            | SetupError::Setting { .. } => Kind::Usage,
-            SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => {
-                Kind::Limit
+/// `From` of errors whose variant decides on the exit code.
+macro_rules! exit_codes {
+    ($($error:ty { $($variants:pat => $kind:ident),+ $(,)? })+) => {$(
+        impl From<$error> for CliError {
+            fn from(error: $error) -> Self {
+                let kind = match &error {
+                    $($variants => Kind::$kind),+
+                };
+                Self::new(kind, error)
             }
-        };
-        Self::new(kind, error)
+        }
+    )+};
+}
+
+exit_codes! {
+    SetupError {
+        SetupError::Camera(_) | SetupError::Format(_) | SetupError::Tolerance(_) => Usage,
+        SetupError::Setting { .. } => Usage,
+        SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => Limit,
+    }
+    far::BuildError {
+        far::BuildError::Empty | far::BuildError::Range | far::BuildError::FarAway { .. } => Input,
+        far::BuildError::TooMany(_) | far::BuildError::Surface(_) => Limit,
+        far::BuildError::Memory { .. } => Limit,
+        far::BuildError::Option(_) => Usage,
+        far::BuildError::File { .. } => Run,
+    }
+    textured::BuildError {
+        textured::BuildError::Empty | textured::BuildError::Range => Input,
+        textured::BuildError::TooMany(_) => Limit,
+        textured::BuildError::Grid { .. } | textured::BuildError::Grids => Usage,
     }
 }
 
@@ -179,7 +199,7 @@ impl From<ResolveError> for CliError {
     }
 }
 
-/// For what is written to stdout.
+/// For writing to stdout.
 impl From<io::Error> for CliError {
     fn from(error: io::Error) -> Self {
         let kind = match error.kind() {
@@ -192,47 +212,44 @@ impl From<io::Error> for CliError {
 
 impl From<OpenError> for CliError {
     fn from(error: OpenError) -> Self {
-        let written = matches!(
-            error,
+        let kind = match &error {
+            error if error.is_limit() => Kind::Limit,
             OpenError::External {
                 error: ExternalError::Temporary { .. } | ExternalError::Write(_),
                 ..
-            }
-        );
-        let kind = if error.is_limit() {
-            Kind::Limit
-        } else if written {
-            Kind::Run
-        } else {
-            Kind::Input
+            } => Kind::Run,
+            _ => Kind::Input,
         };
         let failure = Self::new(kind, &error);
-        match error {
-            OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => Self::input(format!(
-                "{file}: this is a {kind} file: render and turntable draw it, info describes it"
-            ))
-            .advise("for anything else take the mesh that it was made of"),
+        let advice = match error {
+            OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => {
+                let message = format!(
+                    "{file}: this is a {kind} file: render and turntable draw it, info describes it"
+                );
+                return Self::input(message)
+                    .advise("for anything else take the mesh that it was made of");
+            }
             OpenError::Mesh(MeshFailure { is_io: true, .. })
             | OpenError::Scene(SceneError::Io { .. }) => {
-                failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
+                "scenes are files or generators such as gen:terrain,depth=10,seed=1"
             }
             OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {
-                failure.advise("ask for fewer levels: a graph has less than 2^32 nodes")
+                "ask for fewer levels: a graph has less than 2^32 nodes"
             }
-            OpenError::TooMany { .. } => failure.advise(
-                "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw \
-                 OUT.vxg",
-            ),
+            OpenError::TooMany { .. } => {
+                "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg"
+            }
             OpenError::External {
                 error: ExternalError::Temporary { .. } | ExternalError::Disk(_),
                 ..
-            } => failure.advise("choose a folder with more room with --temp"),
+            } => "choose a folder with more room with --temp",
             OpenError::External {
                 error: ExternalError::Write(VxgError::Exists(_)),
                 ..
-            } => failure.advise("give another name, or --force to replace it"),
-            _ => failure,
-        }
+            } => "give another name, or --force to replace it",
+            _ => return failure,
+        };
+        failure.advise(advice)
     }
 }
 
@@ -252,22 +269,6 @@ impl From<FileError> for CliError {
     }
 }
 
-impl From<far::BuildError> for CliError {
-    fn from(error: far::BuildError) -> Self {
-        let kind = match error {
-            far::BuildError::Empty | far::BuildError::Range | far::BuildError::FarAway { .. } => {
-                Kind::Input
-            }
-            far::BuildError::TooMany(_)
-            | far::BuildError::Surface(_)
-            | far::BuildError::Memory { .. } => Kind::Limit,
-            far::BuildError::Option(_) => Kind::Usage,
-            far::BuildError::File { .. } => Kind::Run,
-        };
-        Self::new(kind, error)
-    }
-}
-
 impl From<far::view::ViewError> for CliError {
     fn from(error: far::view::ViewError) -> Self {
         match error {
@@ -276,17 +277,6 @@ impl From<far::view::ViewError> for CliError {
             | far::view::ViewError::VoxelSize(_)
             | far::view::ViewError::Samples(_) => Self::usage(error),
         }
-    }
-}
-
-impl From<textured::BuildError> for CliError {
-    fn from(error: textured::BuildError) -> Self {
-        let kind = match error {
-            textured::BuildError::Empty | textured::BuildError::Range => Kind::Input,
-            textured::BuildError::TooMany(_) => Kind::Limit,
-            textured::BuildError::Grid { .. } | textured::BuildError::Grids => Kind::Usage,
-        };
-        Self::new(kind, error)
     }
 }
 

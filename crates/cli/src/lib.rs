@@ -93,7 +93,7 @@ struct CommonArgs {
     #[arg(long, global = true)]
     json: bool,
     /// Threads, 0 for all; never changes a bit of output [default: 0; of measurements: 1].
-    /// `bench engines` and `bench scaling` take a list, such as 1,2
+    /// `bench time` takes a list, such as 1,2
     #[arg(long, global = true, value_name = "N")]
     threads: Option<args::ThreadCounts>,
     /// TOML file with flags by their long names; flags on the command line come first
@@ -136,10 +136,10 @@ enum Command {
     /// Every frame is held against the exact ray caster, the specification and bounds on its
     /// vertices' error. What fails is shrunk to one command line; exit code 3.
     Stress(Box<stress::StressArgs>),
-    /// The image-order paper's Table I, claims and figures, beside its numbers
+    /// Reproduce the image-order paper's Table I, claims and figures, beside its numbers
     ///
-    /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is
-    /// drawn again and compared: exit code 3 if a picture's hash or a count differs.
+    /// Runs a list of measurements (TOML). Hashes of pictures, records and operations are the same
+    /// on every computer.
     Reproduce(reproduce::ReproduceArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
@@ -157,7 +157,7 @@ impl Cli {
             // Experiments make a pool for each number and use this one to prepare.
             (_, Some(Command::Bench(args))) if args.takes_thread_list() => Ok(0),
             _ => Err(CliError::usage(
-                "--threads takes one number here; lists are for bench engines and bench scaling",
+                "--threads takes one number here; lists are for bench time",
             )),
         }
     }

@@ -58,7 +58,7 @@ pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     )
 }
 
-/// Writes a picture's colours, and the buffers that are asked for: all of them or none.
+/// Writes a picture's colours and the requested buffers: all of them or none.
 pub(super) fn write(
     shown: &Shown<'_>,
     path: &Path,

@@ -1,7 +1,5 @@
 //! Results as JSON and as tables.
 
-use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, Table};
 use hwmodel::count::Counter;
 use hwmodel::{Memory, OpClass, Stage};
 use serde_json::{Value, json};
@@ -24,7 +22,7 @@ pub(super) fn camera(camera: &Camera) -> Value {
     })
 }
 
-/// What drawing one scene took.
+/// The cost of drawing one scene.
 pub(super) fn drawn(
     name: &str,
     load_ms: f64,
@@ -64,18 +62,20 @@ pub(super) fn figure(value: &Value) -> String {
 
 /// A table in plain text, first column left, the others right.
 pub(super) fn table(head: Vec<String>, rows: Vec<Vec<String>>) -> String {
-    let mut table = Table::new();
-    let columns = head.len();
-    table.load_style(NOTHING).set_header(head);
-    for row in rows {
-        table.add_row(row);
-    }
-    for column in 1..columns {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table.trim_fmt()
+    let width = |column: usize| {
+        let cells = rows.iter().chain([&head]).filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let line = |row: &Vec<String>| {
+        let cell = |(column, cell): (usize, &String)| match (column, width(column)) {
+            (0, width) => format!("{cell:<width$}"),
+            (_, width) => format!("  {cell:>width$}"),
+        };
+        let line: String = row.iter().enumerate().map(cell).collect();
+        line.trim_end().to_owned()
+    };
+    let lines: Vec<String> = [&head].into_iter().chain(&rows).map(line).collect();
+    lines.join("\n")
 }
 
 /// Operations by stage and class, then accesses by memory.

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{
-    CameraArgs, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
+    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
 };
 use super::console::Console;
 use super::error::{CliError, Kind};
@@ -32,6 +32,9 @@ pub struct TurntableArgs {
     /// Print each picture's hash
     #[arg(long)]
     pub hash: bool,
+    /// Keep at most this much of the data of a .far file in memory: 512M, 2G
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<DataBudget>,
     /// Camera.
     #[command(flatten)]
     pub camera: CameraArgs,
@@ -132,7 +135,7 @@ fn draw(
         engine: &args.engine,
         picture: &args.picture,
         scene: &args.scene,
-        memory: None,
+        memory: args.memory,
         is_hashed: args.hash || console.json,
     };
     let opened = methods::open(name, &draw_args, console)?;

@@ -56,7 +56,7 @@ pub enum Space {
 pub struct Parts {
     /// The host's rounding of edges and origin.
     pub host: [f64; 2],
-    /// What the screen's straight lines deviate from perspective.
+    /// The deviation of the screen's straight lines from perspective.
     pub deviation: [f64; 2],
     /// Rounding of quotients, midpoints and edges.
     pub rounding: [f64; 2],
@@ -140,9 +140,9 @@ impl Bounds {
         self.clip(u).z
     }
 
-    /// Most, in voxels of depth, by which rounding moves a coordinate of a
-    /// point's clip vector: each component of an edge by half a unit, and the
-    /// origin, which is made from the rounded edges, by half a unit too.
+    /// Most, in voxels of depth, by which rounding moves a coordinate of a point's clip vector. Each
+    /// component of an edge moves by half a unit. So does the origin, which is made from the rounded
+    /// edges.
     fn shift(&self, u: DVec3) -> f64 {
         let steps = (u - self.eye).abs().element_sum();
         let eye = self.eye.abs().element_sum();
@@ -157,8 +157,8 @@ impl Bounds {
         libm::ldexp(1.0, -(self.widths.clip_frac as i32))
     }
 
-    /// What the host's rounding does to a point before the eye, samples;
-    /// infinite where the rounded point need not be before it.
+    /// The host's rounding error of a point before the eye, samples. It is infinite if the rounded
+    /// point may be behind the eye.
     #[must_use]
     pub fn host(&self, u: DVec3) -> [f64; 2] {
         let (clip, shift) = (self.clip(u), self.shift(u));
@@ -251,10 +251,9 @@ impl Bounds {
     }
 }
 
-/// The worst that the host's rounding does anywhere in a picture, pixels:
-/// of clip vectors with `clip_frac` fraction bits, a picture whose root has
-/// `root_px` pixels a side, at depths of `near` voxels or more, with a
-/// diagonal half field of view of `half_angle` (radians).
+/// The worst rounding error of the host anywhere in a picture, pixels. Clip vectors have `clip_frac`
+/// fraction bits, the picture's root has `root_px` pixels per side, depths are at least `near`
+/// voxels, and half of the diagonal field of view is `half_angle` radians.
 #[must_use]
 pub fn worst_host_px(clip_frac: u32, root_px: f64, near: f64, half_angle: f64) -> f64 {
     let unit = libm::ldexp(1.0, -(clip_frac as i32));

@@ -41,7 +41,7 @@ impl ViewName {
     }
 }
 
-/// The camera. With nothing said it looks at the whole object from a corner.
+/// The camera. By default the whole object is seen from a corner.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Camera")]
 pub struct CameraArgs {
@@ -84,8 +84,7 @@ pub struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// The camera for an object, turned by `turn` degrees around the up axis
-    /// through the point that it looks at.
+    /// The camera for an object, turned by `turn` degrees around the up axis through its target.
     #[must_use]
     pub fn camera(
         &self,
@@ -123,7 +122,7 @@ impl CameraArgs {
     /// Whether the numbers make sense, in words if they do not.
     ///
     /// # Errors
-    /// Says which flag is wrong and what it may be.
+    /// Names the wrong flag and its valid values.
     pub fn check(&self) -> Result<(), String> {
         if self.fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
             return Err("--fov must lie between 0 and 180 degrees".to_owned());
@@ -143,7 +142,7 @@ impl CameraArgs {
         Ok(())
     }
 
-    /// What was said, for a configuration file.
+    /// The given settings, for a configuration file.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = Vec::new();

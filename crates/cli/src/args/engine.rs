@@ -1,4 +1,4 @@
-//! The engine and what it computes with.
+//! The engine, its rules and its words.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,7 +13,7 @@ use shiftvox::fast::Instructions;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_mesh::far::view::Opacity;
 
-/// Which engine draws.
+/// An engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum EngineName {
     /// The same bits as the machine, as fast as the processor goes.
@@ -72,7 +72,7 @@ pub struct RuleArgs {
     /// picture is defined without approximation, it is 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     pub tolerance: Option<Tolerance>,
-    /// Which pixels a voxel draws [default: exact]
+    /// Coverage rule: the pixels that a voxel covers [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub coverage: Option<Coverage>,
     /// As the image-order paper has it: --cage corners --tolerance inf --coverage any
@@ -89,12 +89,12 @@ pub struct RuleArgs {
     /// Fraction bits of a word [default: as many as the frame leaves room for]
     #[arg(long, value_name = "BITS")]
     pub frac: Option<u32>,
-    /// What a result that does not fit a word becomes [default: trap]
+    /// Result of an operation that overflows a word [default: trap]
     #[arg(long, value_enum)]
     pub overflow: Option<Overflow>,
 }
 
-/// The engine and what it computes with.
+/// The engine, its rules and its words.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
 pub struct EngineArgs {
@@ -107,7 +107,7 @@ pub struct EngineArgs {
     /// Instructions of the fast engine; never changes a bit of output
     #[arg(long, value_enum, default_value_t)]
     pub isa: Instructions,
-    /// What --engine far uses opacities for [default: six]
+    /// Opacities of --engine far [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     pub far_opacity: Option<Opacity>,
     /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all
@@ -162,7 +162,7 @@ impl RuleArgs {
         }
     }
 
-    /// What the datapath does with a result that does not fit.
+    /// The datapath's reaction to an overflow.
     #[must_use]
     pub fn overflow(&self) -> Overflow {
         self.overflow.unwrap_or_default()
@@ -208,7 +208,7 @@ impl EngineArgs {
     /// Refuses flags that the engine of voxels does not follow.
     ///
     /// # Errors
-    /// What the first such flag is for.
+    /// The purpose of the first such flag.
     pub fn check_of_voxels(&self) -> Result<(), String> {
         if self.far_opacity.is_some() {
             return Err("--far-opacity is for .far files".to_owned());
@@ -224,8 +224,8 @@ impl EngineArgs {
         Ok(())
     }
 
-    /// Every setting that an engine follows, for a configuration file; `None` where scenes
-    /// have engines of different kinds: then what all of them follow.
+    /// Every setting of an engine, for a configuration file. `None` means engines of different kinds,
+    /// and the settings that all of them have.
     #[must_use]
     pub fn settings(&self, engine: Option<EngineName>) -> Vec<Setting> {
         let mut settings = vec![("isa", word(&self.isa))];

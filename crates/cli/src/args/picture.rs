@@ -21,7 +21,7 @@ pub struct PictureArgs {
     /// Shading
     #[arg(long, value_enum, default_value_t)]
     pub shade: Shading,
-    /// What is behind the object: sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
+    /// Background: sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
     #[arg(long, value_name = "R,G,B|none")]
     pub background: Option<Background>,
     /// Buffers to write beside the picture, as {out stem}.{aov}.npy

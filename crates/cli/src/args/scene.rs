@@ -23,8 +23,8 @@ pub struct SceneArgs {
     /// that they are found anyway
     #[arg(long)]
     pub opacities: bool,
-    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and
-    /// what was made of them, else z]
+    /// Up axis, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and
+    /// of files made of them, else z]
     #[arg(long, value_enum)]
     pub mesh_up: Option<Up>,
     /// How the colours of an .obj mesh's .mtl are meant; the format does not say
@@ -39,7 +39,7 @@ impl SceneArgs {
         self.depth.unwrap_or(DEFAULT_DEPTH)
     }
 
-    /// Which axis is up, where the file's own axis is `up`.
+    /// The up axis of a file whose own axis is `up`.
     #[must_use]
     pub fn up_or(&self, up: Up) -> Up {
         self.mesh_up.unwrap_or(up)

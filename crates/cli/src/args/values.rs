@@ -97,7 +97,7 @@ impl fmt::Display for Tolerance {
     }
 }
 
-/// Numbers of threads: `2`, or `1,2,4`; 0 stands for all that the machine has.
+/// Numbers of threads: `2`, or `1,2,4`. 0 means all processors.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ThreadCounts(pub Vec<u16>);
 
@@ -106,14 +106,8 @@ impl ThreadCounts {
     #[must_use]
     pub fn resolved(&self) -> Vec<usize> {
         let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let mut counts: Vec<usize> = self
-            .0
-            .iter()
-            .map(|&count| match count {
-                0 => all(),
-                count => usize::from(count),
-            })
-            .collect();
+        let count = |&count: &u16| if count == 0 { all() } else { count.into() };
+        let mut counts: Vec<usize> = self.0.iter().map(count).collect();
         counts.sort_unstable();
         counts.dedup();
         counts
@@ -124,14 +118,16 @@ impl FromStr for ThreadCounts {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let count = |part: &str| {
+            let count = part
+                .trim()
+                .parse()
+                .ok()
+                .filter(|&count: &u16| count <= 1024);
+            count.ok_or_else(|| "expected a number of threads, 0 to 1024".to_owned())
+        };
         text.split(',')
-            .map(|part| {
-                part.trim()
-                    .parse::<u16>()
-                    .ok()
-                    .filter(|&count| count <= 1024)
-                    .ok_or_else(|| "expected a number of threads, 0 to 1024".to_owned())
-            })
+            .map(count)
             .collect::<Result<_, _>>()
             .map(Self)
     }
@@ -180,18 +176,9 @@ fn bytes_of(text: &str) -> Result<u64, String> {
     let upper = text.to_ascii_uppercase();
     let amount = upper.strip_suffix("IB").or(upper.strip_suffix('B'));
     let amount = amount.unwrap_or(&upper);
-    let (digits, shift) = match amount.char_indices().next_back() {
-        Some((end, unit @ ('K' | 'M' | 'G' | 'T'))) => {
-            let shift = match unit {
-                'K' => 10,
-                'M' => 20,
-                'G' => 30,
-                _ => 40,
-            };
-            (&amount[..end], shift)
-        }
-        _ => (amount, 0),
-    };
+    let units = [('K', 10), ('M', 20), ('G', 30), ('T', 40)].into_iter();
+    let mut found = units.filter_map(|(unit, shift)| Some((amount.strip_suffix(unit)?, shift)));
+    let (digits, shift) = found.next().unwrap_or((amount, 0));
     let wrong = || format!("expected an amount of memory such as 512M or 2G, not `{text}`");
     let number: f64 = digits.parse().map_err(|_| wrong())?;
     let bytes = number * (1u64 << shift) as f64;
@@ -206,46 +193,30 @@ fn bytes_of(text: &str) -> Result<u64, String> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn sizes() {
-        let size = |width, height| Ok(Size { width, height });
-        assert_eq!("512".parse::<Size>(), size(512, 512));
-        assert_eq!("640x360".parse::<Size>(), size(640, 360));
-        for bad in ["0", "640x", "x3", "-4", "99999", "3x4x5", "1.5"] {
-            assert!(bad.parse::<Size>().is_err(), "{bad}");
+    /// Wrong values, with bars between them.
+    fn rejects<T: FromStr>(wrong: &str) {
+        for wrong in wrong.split('|') {
+            assert!(wrong.parse::<T>().is_err(), "{wrong}");
         }
     }
 
     #[test]
-    fn points_come_back() {
+    fn values_are_read_and_wrong_ones_rejected() {
+        let size = |width, height| Ok(Size { width, height });
+        assert_eq!("512".parse::<Size>(), size(512, 512));
+        assert_eq!("640x360".parse::<Size>(), size(640, 360));
+        rejects::<Size>("0|640x|x3|-4|99999|3x4x5|1.5");
         for text in ["1,2,3", "-0.5,1e-9,1638.4"] {
             let point: Point = text.parse().unwrap();
             assert_eq!(point.to_string().parse::<Point>(), Ok(point));
         }
-        for bad in ["1,2", "1,2,3,4", "a,b,c", "nan,0,0", "inf,0,0", ""] {
-            assert!(bad.parse::<Point>().is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn numbers_of_threads() {
+        rejects::<Point>("1,2|1,2,3,4|a,b,c|nan,0,0|inf,0,0|");
         assert_eq!("4".parse(), Ok(ThreadCounts(vec![4])));
         assert_eq!("1, 2,0".parse(), Ok(ThreadCounts(vec![1, 2, 0])));
-        for bad in ["", "1,", "-1", "1025", "two"] {
-            assert!(bad.parse::<ThreadCounts>().is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn tolerances() {
+        rejects::<ThreadCounts>("|1,|-1|1025|two");
         assert_eq!("inf".parse(), Ok(Tolerance(f64::INFINITY)));
         assert_eq!("0.0625".parse(), Ok(Tolerance(0.0625)));
-        for bad in ["-1", "nan", "x"] {
-            assert!(bad.parse::<Tolerance>().is_err(), "{bad}");
-        }
-    }
-    #[test]
-    fn amounts_of_memory() {
+        rejects::<Tolerance>("-1|nan|x");
         for (text, bytes) in [
             ("1G", 1 << 30),
             ("512M", 512 << 20),
@@ -258,10 +229,6 @@ mod tests {
         ] {
             assert_eq!(text.parse(), Ok(Memory { bytes }), "{text}");
         }
-        for bad in [
-            "", "G", "-1G", "nan", "inf", "1e30", "1X", "63M", "0", "9999999T", "1 0G",
-        ] {
-            assert!(bad.parse::<Memory>().is_err(), "{bad}");
-        }
+        rejects::<Memory>("|G|-1G|nan|inf|1e30|1X|63M|0|9999999T|1 0G");
     }
 }

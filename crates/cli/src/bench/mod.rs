@@ -1,23 +1,17 @@
-//! `bench`: the experiments, one file each.
+//! `bench`: experiments with pictures and their times.
 
-mod ablation;
-mod args;
-mod engines;
-mod error;
-mod flicker;
-mod meshes;
+mod made;
 mod methods;
-mod picture_export;
-mod scaling;
-mod select;
-mod vertex_error;
-mod walk;
+mod quality;
+mod time;
 
 use clap::{Args, Subcommand};
 
-use super::args::ThreadCounts;
+use super::args::{Size, ThreadCounts};
 use super::console::Console;
-use super::error::CliError;
+use super::error::{CliError, Kind};
+use shiftvox::budget;
+use shiftvox::project::camera::MAX_SIDE;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -26,77 +20,89 @@ pub(super) struct BenchArgs {
     experiment: Experiment,
 }
 
-/// What is measured.
+/// The experiments.
 #[derive(Debug, Subcommand)]
 enum Experiment {
-    /// How fast each engine is, and how far its picture is from the exact one
+    /// Measure how long engines take per frame, and how their pictures differ from the exact one
     ///
-    /// A frame is: clear, traverse, the colour of each sample written. Engines take turns. With
-    /// --threads 1,2 those that use threads are measured with each number.
-    Engines(Box<args::SceneBenchArgs>),
-    /// How time grows with the pixels of the picture and the voxels of the scene
+    /// A frame is: clear, traverse, write the colour of each sample. Runs are interleaved. With
+    /// --variants techniques are switched off one at a time. With --scan the picture or the scene
+    /// grows, and exponents of power laws are fitted. With --threads 1,2 engines that use threads
+    /// are measured with each number.
+    Time(Box<time::TimeArgs>),
+    /// Measure error and cost of pictures: methods x cameras x samples
     ///
-    /// First the picture grows from 64 to 4096 a side (with --size: up to that), for each scene;
-    /// then terrain and sponge grow, in pictures of 1024 x 1024 (or --size). Power laws are fitted
-    /// to time and work.
-    Scaling(Box<scaling::ScalingArgs>),
-    /// What each technique is worth, by switching it off
-    ///
-    /// One at a time, on one thread; says what that costs and whether it changes the picture.
-    Ablation(Box<args::SceneBenchArgs>),
-    /// How far pictures are from the truth, and what they take: by drawing rule, tolerance, cage,
-    /// word format, level of detail and samples a pixel
-    ///
-    /// Each is compared with exact rays through the same points, and with a reference of 16 x 16
-    /// exact rays a pixel. A second reference gives the noise floor. All draw in turn, on one
-    /// thread; beside each time stand the operations of the machine, which are the same in every
-    /// run.
-    Error(Box<error::ErrorArgs>),
-    /// How restless pictures are when the camera moves a little
-    ///
-    /// Films of a turntable, a dolly and a pan of less than a pixel, against films of references.
-    /// Flicker is what changes from frame to frame other than in the reference; pop, what level of
-    /// detail alone changes. Nothing is timed.
-    Flicker(Box<flicker::FlickerArgs>),
-    /// All ways to draw a mesh side by side: triangles, the image-order engine on its voxels, far
-    /// voxels, textured voxels
-    ///
-    /// From where the mesh fills the picture to where it is 8 pixels high: time, error against
-    /// triangles with 256 samples a pixel, flicker, bytes, build time, counters.
-    Methods(Box<methods::MethodsArgs>),
-    /// Frame times of far voxels along a walk, with and without opacities (.far files; see convert)
-    Walk(Box<walk::WalkArgs>),
-    /// How far the image-order paper's screen-space midpoints are from exact projection
-    VertexError,
+    /// The truth is exact rays, of a mesh its triangles with 256 samples per pixel. A second
+    /// reference gives the noise floor. Methods draw in turn, on one thread. Beside each time are
+    /// the operations of the machine, which are the same in every run. With --motions films of a
+    /// moving camera give flicker, and pop: the part of it that changes of level of detail cause.
+    Quality(Box<quality::QualityArgs>),
 }
 
 impl BenchArgs {
     /// Whether `--threads` may list several numbers.
     pub(super) fn takes_thread_list(&self) -> bool {
-        matches!(
-            self.experiment,
-            Experiment::Engines(_) | Experiment::Scaling(_)
-        )
+        matches!(self.experiment, Experiment::Time(_))
     }
 }
 
-/// Runs an experiment; `threads` is what `--threads` said.
+/// Runs an experiment; `threads` is the value of `--threads`.
 pub(super) fn run(
     args: &BenchArgs,
     scenes: Vec<String>,
     threads: Option<&ThreadCounts>,
     console: &Console,
 ) -> Result<(), CliError> {
-    // One where nothing was said.
-    let counts = threads.map_or_else(|| vec![1], ThreadCounts::resolved);
     match &args.experiment {
-        Experiment::Engines(args) => engines::run(args, scenes, &counts, console),
-        Experiment::Scaling(args) => scaling::run(args, scenes, &counts, console),
-        Experiment::Ablation(args) => ablation::run(args, scenes, &counts, console),
-        Experiment::Error(args) => error::run(args, scenes, console),
-        Experiment::Flicker(args) => flicker::run(args, scenes, console),
-        Experiment::Methods(args) => methods::run(args, console),
-        Experiment::Walk(args) => walk::run(args, console),
-        Experiment::VertexError => vertex_error::run(console),
+        Experiment::Time(args) => {
+            let counts = threads.map_or_else(|| vec![1], ThreadCounts::resolved);
+            time::run(args, scenes, &counts, console)
+        }
+        Experiment::Quality(args) => quality::run(args, scenes, console),
     }
+}
+
+/// How often contenders draw.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Measurement")]
+struct ScheduleArgs {
+    /// Frames per contender before those that count
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u32).range(0..=1000))]
+    warmup: u32,
+    /// Frames per contender that count; runs are interleaved
+    #[arg(long, value_name = "N", default_value_t = 5,
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: u32,
+}
+
+impl ScheduleArgs {
+    fn schedule(&self) -> shiftvox_lab::bench::Schedule {
+        shiftvox_lab::bench::Schedule {
+            warmup: self.warmup,
+            runs: self.runs,
+        }
+    }
+}
+
+/// Most pixels of a measured picture: two gigabytes of samples.
+const MAX_PIXELS: u64 = 1 << 26;
+/// Least bytes per pixel of a measured picture and its reference.
+const PIXEL_BYTES: u64 = 40;
+
+/// Rejects pictures that are too large before any work: with a side above `most_side`, or too many
+/// pixels.
+fn check_sizes(sizes: &[Size], most_side: u32) -> Result<(), CliError> {
+    let most_side = most_side.min(MAX_SIDE);
+    for size in sizes {
+        let pixels = u64::from(size.width) * u64::from(size.height);
+        if size.width.max(size.height) > most_side || pixels > MAX_PIXELS {
+            let message = format!("a picture of {size} pixels is too large to be measured");
+            return Err(CliError::new(Kind::Limit, message).advise(format!(
+                "the most is {MAX_PIXELS} pixels, {most_side} a side"
+            )));
+        }
+        budget::check("pictures of this size", pixels * PIXEL_BYTES)?;
+    }
+    Ok(())
 }

@@ -19,7 +19,7 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    /// What the system reports of itself.
+    /// Properties that the system reports.
     pub(crate) fn now() -> Self {
         let command: Vec<String> = std::env::args_os()
             .skip(1)
@@ -37,7 +37,7 @@ impl Context {
         }
     }
 
-    /// What was typed.
+    /// The command line.
     pub(crate) fn command_line(&self) -> String {
         self.command.clone()
     }

@@ -1,5 +1,4 @@
-//! What experiments share: their scenes, the machine that they run on, and the files of their
-//! results.
+//! Shared parts of experiments: scenes, the description of the computer, files of results.
 
 pub(crate) mod context;
 pub(crate) mod export;

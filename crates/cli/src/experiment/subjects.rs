@@ -10,45 +10,20 @@ use crate::scenes::Scene;
 use shiftvox::project::{Bounds, Camera};
 use shiftvox_lab::bench::Subject;
 
-/// What stands for the bundled scene.
+/// The name of the bundled scene.
 pub(crate) const BUNDLED: &str = "bundled";
 /// Scenes where none is named.
 const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
 
-/// A camera in sides of a cube, from the cube's lowest corner; 60 degrees, z up.
-struct Standpoint {
-    eye: [f64; 3],
-    target: [f64; 3],
-}
+/// A camera in sides of a cube, from the cube's lowest corner: eye and target. 60 degrees, z up.
+type Standpoint = [[f64; 3]; 2];
 
 /// The benchmark's view of the terrain from outside.
-const OUTSIDE: Standpoint = Standpoint {
-    eye: [1.6, -0.7, 1.25],
-    target: [0.5, 0.5, 0.3],
-};
+const OUTSIDE: Standpoint = [[1.6, -0.7, 1.25], [0.5, 0.5, 0.3]];
 /// The benchmark's view of the sponge from the front.
-const FRONT: Standpoint = Standpoint {
-    eye: [0.47, -0.95, 0.53],
-    target: [0.475, 0.5, 0.475],
-};
+const FRONT: Standpoint = [[0.47, -0.95, 0.53], [0.475, 0.5, 0.475]];
 /// The bundled tree, as in `benches/`.
-const TREE: Standpoint = Standpoint {
-    eye: [1.1, -0.5, 0.8],
-    target: [0.5, 0.5, 0.4],
-};
-
-impl Standpoint {
-    fn camera(&self, low: DVec3, side: f64) -> Camera {
-        Camera {
-            eye: low + DVec3::from_array(self.eye) * side,
-            target: low + DVec3::from_array(self.target) * side,
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: 1,
-            height: 1,
-        }
-    }
-}
+const TREE: Standpoint = [[1.1, -0.5, 0.8], [0.5, 0.5, 0.4]];
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
 pub(crate) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
@@ -108,22 +83,27 @@ pub(crate) fn open(
 fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
     let placement = &scene.graph.placement;
     let side = (1u64 << scene.graph.depth) as f64 * placement.voxel_size;
-    let world = DVec3::from_array(placement.world_origin);
-    let lowest = DVec3::from_array(placement.origin_index.map(|c| c as f64));
+    let mut low = DVec3::from_array(placement.world_origin);
     // Generators fill a cube from index 0, whether or not its lowest layers are empty.
-    let generated = |name_of: &str| {
-        let spec = name.strip_prefix("gen:")?;
-        (spec.split(',').next() == Some(name_of)).then_some(world)
+    let standpoint = match name.split(',').next() {
+        Some("gen:terrain") => OUTSIDE,
+        Some("gen:menger") => FRONT,
+        Some(BUNDLED) => {
+            let lowest = DVec3::from_array(placement.origin_index.map(|c| c as f64));
+            low += lowest * placement.voxel_size;
+            TREE
+        }
+        _ => return None,
     };
-    if let Some(low) = generated("terrain") {
-        Some(OUTSIDE.camera(low, side))
-    } else if let Some(low) = generated("menger") {
-        Some(FRONT.camera(low, side))
-    } else if name == BUNDLED {
-        Some(TREE.camera(world + lowest * placement.voxel_size, side))
-    } else {
-        None
-    }
+    let [eye, target] = standpoint.map(|at| low + DVec3::from_array(at) * side);
+    Some(Camera {
+        eye,
+        target,
+        up: DVec3::Z,
+        fov_degrees: 60.0,
+        width: 1,
+        height: 1,
+    })
 }
 
 #[cfg(test)]

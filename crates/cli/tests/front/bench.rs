@@ -1,283 +1,305 @@
-//! The timed experiments as a script meets them: tables, exports, exit codes.
+//! The experiments as a script meets them: rows, exports, exit codes.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{bench, folder, json_of, shiftvox, stderr_of, stdout_of};
-
-use crate::common::Run;
+use crate::program::{bench, folder, json_of, stderr_of, stdout_of};
 
 const SCENE: &str = "gen:menger,depth=2";
 
-#[test]
-fn engines_agree_and_are_told_in_every_form() {
-    let folder = folder();
-    let line = "engines gen:menger,depth=2 --size 48x32 --lod 0 --tolerance 0 --warmup 0 --runs 3 \
-        --threads 1,2 --json --export-json a/r.json --export-svg a/r.svg";
-    let line: Vec<&str> = line.split(' ').collect();
-    let document = json_of(&bench(folder.path(), &line).success());
-    assert_eq!(document["schema"], "shiftvox.bench engines");
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
+/// The rows of an experiment's document.
+fn rows(folder: &Path, line: &str) -> Vec<Value> {
+    let line = [&words(line)[..], &["--json"]].concat();
+    let document = json_of(&bench(folder, &line).success());
     assert_eq!(document["schema_version"], 1);
-    assert_eq!(document["schedule"]["runs"], 3);
-    let results = document["results"].as_array().unwrap();
-    // The oracle uses threads, the others are measured on one.
-    let who = |r: &Value| {
-        (
-            r["engine"].as_str().unwrap().to_owned(),
-            r["threads"].as_u64().unwrap(),
-        )
+    document["rows"].as_array().unwrap().clone()
+}
+
+/// The only row with some values.
+fn row<'r>(rows: &'r [Value], with: &[(&str, &str)]) -> &'r Value {
+    let mut same = rows
+        .iter()
+        .filter(|row| with.iter().all(|(k, v)| row[k] == *v));
+    let found = same.next().unwrap_or_else(|| panic!("{with:?}: {rows:?}"));
+    assert!(same.next().is_none(), "{with:?} is not one row");
+    found
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("{name}: {row}"))
+}
+
+fn count(row: &Value, name: &str) -> u64 {
+    row[name]
+        .as_u64()
+        .unwrap_or_else(|| panic!("{name}: {row}"))
+}
+
+#[test]
+fn engines_agree_in_every_form() {
+    let folder = folder();
+    let line = "time gen:menger,depth=2 --size 48x32 --lod 0 --warmup 0 --runs 3 --threads 1,2 \
+        --export-json a/r.json --export-svg a/r.svg --export-csv a/r.csv --export-markdown a/r.md";
+    let rows = rows(folder.path(), line);
+    // The oracle and the fast engine use threads, the others are measured on one.
+    let threads = |engine: &str| {
+        let of = rows.iter().filter(|row| row["engine"] == engine);
+        of.map(|row| count(row, "threads")).collect::<Vec<_>>()
     };
-    let all: Vec<_> = results.iter().map(who).collect();
-    assert!(
-        all.contains(&("rays".to_owned(), 1)) && all.contains(&("rays".to_owned(), 2)),
-        "{all:?}"
-    );
-    assert_eq!(all.iter().filter(|(name, _)| name == "machine").count(), 1);
-    for result in results {
-        let error = |name: &str| result["coverage"][name].as_u64().unwrap();
-        assert_eq!(error("pixels"), 48 * 32);
-        assert!(error("covered") > 100);
-        // Exact coverage, no level of detail, clip space: the machine is exact.
-        let allowed = if result["engine"] == "float-rays" {
-            3
-        } else {
-            0
-        };
+    assert_eq!(["fast", "rays"].map(threads), [vec![1, 2], vec![1, 2]]);
+    assert_eq!(["machine", "float-rays"].map(threads), [vec![1], vec![1]]);
+    for row in &rows {
+        assert_eq!(count(row, "pixels"), 48 * 32);
+        assert!(count(row, "covered") > 100 && count(row, "work") > 10);
+        // Without level of detail every engine is exact, but for rounding.
+        let wrong: u64 = ["extra", "missing", "wrong_voxel"]
+            .map(|kind| count(row, kind))
+            .iter()
+            .sum();
+        let allowed = if row["engine"] == "float-rays" { 3 } else { 0 };
+        assert!(wrong <= allowed, "{row}");
+        let ms = ["wall_min_ms", "wall_ms", "wall_max_ms"].map(|name| number(row, name));
         assert!(
-            error("extra") + error("missing") + error("wrong_voxel") <= allowed,
-            "{result}"
+            0.0 < ms[0] && ms.is_sorted() && count(row, "runs") == 3,
+            "{row}"
         );
-        assert!(result["work"].as_u64().unwrap() > 10);
-        let wall = &result["wall"];
-        let ms = |name: &str| wall[name].as_f64().unwrap();
-        assert_eq!(wall["runs"], 3);
-        assert!(
-            0.0 < ms("min_ms")
-                && ms("min_ms") <= ms("median_ms")
-                && ms("median_ms") <= ms("max_ms")
-        );
-        assert_eq!(
-            result["thread"].is_null(),
-            result["threads"] != 1 || !cfg!(unix)
-        );
+        let has_cpu = count(row, "threads") == 1 && cfg!(unix);
+        assert_eq!(row["cpu_ms"].is_number(), has_cpu, "{row}");
     }
     let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let written: Value = serde_json::from_str(&file("a/r.json")).unwrap();
-    assert_eq!(written, document);
-    assert!(file("a/r.svg").starts_with("<svg") && file("a/r.svg").contains("float-rays"));
+    assert_eq!(
+        (written["rows"].as_array(), &written["schema"]),
+        (Some(&rows), &"shiftvox.bench time".into())
+    );
+    let svg = file("a/r.svg");
+    assert!(svg.starts_with("<svg") && svg.contains("float-rays"));
+    assert!(
+        file("a/r.csv").starts_with("scene,") && file("a/r.csv").lines().count() == 1 + rows.len()
+    );
+    assert!(file("a/r.md").contains("|---"));
 
-    // What is there is not replaced, and no time is spent before that is said.
-    let line = ["engines", SCENE, "--export-json", "a/r.json"];
+    // Existing files are kept, which is reported before any work.
+    let line = ["time", SCENE, "--export-json", "a/r.json"];
     assert!(stderr_of(&bench(folder.path(), &line).code(1)).contains("--force"));
 }
 
 #[test]
-fn counters_do_not_depend_on_the_run() {
+fn pictures_and_scenes_grow() {
     let folder = folder();
-    let line = ["engines", SCENE, "--size", "32", "--runs", "1", "--json"];
-    let work = || {
-        let document = json_of(&bench(folder.path(), &line).success());
-        let results = document["results"].as_array().unwrap().clone();
-        let of = |r: &Value| {
-            (
-                r["engine"].clone(),
-                r["counters"].clone(),
-                r["coverage"].clone(),
-            )
-        };
-        results.iter().map(of).collect::<Vec<_>>()
-    };
-    assert_eq!(work(), work());
-}
-
-#[test]
-fn scaling_scans_and_fits() {
-    let folder = folder();
-    let line = "scaling gen:menger,depth=2 --scan size=16..64*2 --size 32 --max-voxels 2e4 --runs 1 \
-        --engines machine,float-rays --export-svg r.svg --export-json r.json";
-    let line: Vec<&str> = line.split(' ').collect();
-    let assert = bench(folder.path(), &line).success();
-    let told = stdout_of(&assert);
-    assert!(told.contains("paper table 1 ms") && told.contains("<1"));
-    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    let document: Value = serde_json::from_str(&file("r.json")).unwrap();
-    let growths = document["growths"].as_array().unwrap();
-    assert_eq!(growths.len(), 2 + 4);
-    let pick = |growing: &str, engine: &str, name: &str| -> Vec<u64> {
-        let of = growths.iter();
-        of.filter(|g| g["growing"] == growing && g["engine"] == engine)
-            .flat_map(|g| g["points"].as_array().unwrap())
-            .map(|point| point[name].as_u64().unwrap())
-            .collect()
-    };
-    assert_eq!(pick("pixels", "machine", "height"), [16, 32, 64]);
-    // Terrain of depth 5 and 6, sponges of depth 2 and 3.
-    let voxels = pick("voxels", "float-rays", "voxels");
-    assert_eq!(voxels, [2637, 11998, 400, 8000]);
-    assert_eq!(pick("voxels", "machine", "width"), [32; 4]);
-    let law = &growths[0]["work_law"];
-    assert_eq!(law["points"], 3);
-    let exponent = law["exponent"].as_f64().unwrap();
-    assert!((0.1..1.5).contains(&exponent), "{law}");
-    assert!(law["r_squared"].as_f64().unwrap() <= 1.0);
-    let svg = file("r.svg");
-    for part in ["Time by pixels", "Time by voxels", "Table I"] {
-        assert!(svg.contains(part), "{part}");
-    }
-}
-
-#[test]
-fn ablation_tells_what_a_technique_changes() {
-    let folder = folder();
-    let line = [
-        "ablation", SCENE, "--size", "48", "--lod", "0", "--runs", "1", "--json",
-    ];
-    let document = json_of(&bench(folder.path(), &line).success());
-    let results = document["results"].as_array().unwrap();
-    let row = |engine: &str, variant: &str| {
-        let same = |r: &&Value| r["engine"] == engine && r["variant"] == variant;
-        results
-            .iter()
-            .find(same)
-            .unwrap_or_else(|| panic!("{variant}"))
-    };
-    let of = |variant: &str, name: &str| row("machine", variant)[name].as_u64().unwrap();
-    assert_eq!(of("everything on", "changed"), 0);
-    assert_eq!(of("fill-vector rejection off", "changed"), 0);
-    assert!(of("fill-vector rejection off", "work") > of("everything on", "work"));
-    assert!(of("occlusion order off", "changed") > 50);
-    // It is off already.
-    assert_eq!(
-        of("level of detail off", "work"),
-        of("everything on", "work")
-    );
-    let screen = &row("machine", "everything on")["coverage"];
-    assert_eq!(
-        (&screen["extra"], &screen["missing"], &screen["wrong_voxel"]),
-        (&0.into(), &0.into(), &0.into())
-    );
-    let text = stdout_of(&bench(folder.path(), &line[..line.len() - 1]).success());
+    let line = "time gen:menger,depth=2 --scan size=16..64*2 --runs 1 --engines machine,float-rays \
+        --export-svg {scene}.svg";
+    let of_size = rows(folder.path(), line);
+    let heights = of_size.iter().filter(|row| row["engine"] == "machine");
+    let heights: Vec<u64> = heights.map(|row| count(row, "height")).collect();
+    assert_eq!(heights, [16, 32, 64]);
+    assert_eq!(of_size[0]["growing"], "pixels");
+    let exponent = number(&of_size[0], "work_exponent");
+    assert!((0.1..1.5).contains(&exponent), "{exponent}");
+    assert!(number(&of_size[0], "work_r_squared") <= 1.0);
+    let svg = fs::read_to_string(folder.path().join("menger-depth-2.svg")).unwrap();
+    assert!(svg.contains("pixels") && svg.contains("polyline"));
+    let line = "time gen:terrain,depth=9 --scan depth=5..6+1 --size 16 --runs 1 --engines fast";
+    let of_depth = rows(folder.path(), line);
+    let voxels: Vec<u64> = of_depth.iter().map(|row| count(row, "voxels")).collect();
+    assert_eq!(voxels, [2637, 11998]);
+    assert_eq!(of_depth[0]["growing"], "voxels");
+    let text = stdout_of(&bench(folder.path(), &words(line)).success());
     assert!(
-        text.contains("WRONG") && text.contains("time ratio"),
+        text.contains("exponent") && text.lines().all(|line| line.chars().count() <= 100),
         "{text}"
     );
 }
 
 #[test]
-fn ablation_of_the_fast_engine_changes_no_picture() {
+fn variants_change_what_they_should() {
     let folder = folder();
-    let write = |line: &[&str]| {
-        shiftvox(folder.path()).args(line).assert().success();
-    };
-    write(&["generate", "gen:terrain,depth=8", "-o", "t.vxg"]);
-    let line = "ablation t.vxg --engines fast --size 64 --runs 1 --json";
-    let line: Vec<&str> = line.split(' ').collect();
-    let document = json_of(&bench(folder.path(), &line).success());
-    let results = document["results"].as_array().unwrap();
-    let row = |variant: &str| {
-        let of_name = results.iter().find(|r| r["variant"] == variant);
-        of_name.unwrap_or_else(|| panic!("{variant}"))
-    };
-    let count = |variant: &str, name: &str| {
-        let counters = &row(variant)["counters"];
-        counters[name]
-            .as_u64()
-            .unwrap_or_else(|| panic!("{variant}, {name}: {counters}"))
-    };
-    for result in results {
-        let may_change = ["level of detail off", "screen space off"];
-        let variant = result["variant"].as_str().unwrap();
+    let machine = rows(
+        folder.path(),
+        "time gen:menger,depth=2 --size 48 --lod 0 --runs 1 --engines machine --variants all",
+    );
+    let of = |variant: &str, name: &str| count(row(&machine, &[("variant", variant)]), name);
+    for (variant, changes) in [
+        ("everything on", false),
+        ("fill-vector rejection off", false),
+        ("occlusion order off", true),
+    ] {
+        assert_eq!(of(variant, "changed") > 50, changes, "{variant}");
+        assert_eq!(of(variant, "wrong_voxel") > 50, changes, "{variant}");
+    }
+    let work = |variant| of(variant, "work");
+    assert!(work("fill-vector rejection off") > work("everything on"));
+    // It is off already.
+    assert_eq!(work("level of detail off"), work("everything on"));
+    let wrong = row(&machine, &[("variant", "occlusion order off")]);
+    assert!(wrong["about"].as_str().unwrap().contains("WRONG"));
+
+    let fast = rows(
+        folder.path(),
+        "time gen:terrain,depth=8 --engines fast --variants all --size 64 --runs 1",
+    );
+    for row in &fast {
         assert!(
-            result["changed"] == 0 || may_change.contains(&variant),
-            "{result}"
+            row["changed"] == 0 || row["variant"] == "level of detail off",
+            "{row}"
         );
     }
-    let whole = "everything on";
-    assert!(count(whole, "samples_drawn") > 500);
-    assert!(count(whole, "skipped_absent_children") > 0);
-    let looked_at = "absent children looked at";
-    assert_eq!(count(looked_at, "skipped_absent_children"), 0);
-    let left = |variant| count(variant, "skipped_hidden") + count(variant, "skipped_off_screen");
+    let of = |variant: &str, name: &str| count(row(&fast, &[("variant", variant)]), name);
+    let (whole, looked_at) = ("everything on", "absent children looked at");
+    assert!(of(whole, "samples_drawn") > 500 && of(whole, "skipped_absent_children") > 0);
+    assert_eq!(of(looked_at, "skipped_absent_children"), 0);
+    let left = |variant| of(variant, "skipped_hidden") + of(variant, "skipped_off_screen");
     assert!(left(looked_at) > left(whole));
-    let kept = "unchanged frame kept";
-    assert_eq!(count(kept, "frames_unchanged"), 1);
-    assert_eq!(count(kept, "records"), 0);
-    let all = "attributes of all read";
-    assert!(count(all, "attributes_read") > count(whole, "samples_drawn"));
+    assert_eq!(of("unchanged frame kept", "frames_unchanged"), 1);
+    assert_eq!(of("unchanged frame kept", "work"), 0);
+    assert!(of("attributes of all read", "attributes_read") > of(whole, "samples_drawn"));
+}
+
+const SMALL: &str = "--size 24 --reference-samples 4 --runs 1 --warmup 0";
+
+#[test]
+fn quality_in_every_form() {
+    let folder = folder();
+    let line = format!(
+        "quality {SCENE} {SMALL} --methods exact:lod=0:aa=1+2:cage=frame+corners,\
+         any:lod=0:tolerance=0+inf:cage=frame+corners --export-json r.json --export-svg r-{{scene}}.svg"
+    );
+    let all = rows(folder.path(), &line);
+    // Two cages with two numbers of samples or two tolerances, and the noise floor.
+    assert_eq!(all.len(), 2 * 2 + 2 * 2 + 1);
+    let of = |method: &str| row(&all, &[("method", method)]);
+    // In clip space, down to the leaves, the exact rule is the oracle.
+    let exact = of("exact frame lod 0");
+    for name in ["extra", "missing", "coarser", "elsewhere", "depth_worst"] {
+        assert_eq!(number(exact, name), 0.0, "{name}");
+    }
+    assert!(number(exact, "vertex_worst") < 0.01);
+    let any = of("any 0 frame lod 0");
+    assert!(number(any, "extra") > 0.0 && number(any, "bias_percent") > 0.0);
+    assert!(number(any, "flip") > number(exact, "flip"));
+    // More samples are nearer to the reference; noise is nearest.
+    let rms = |row| number(row, "rms_linear");
+    assert!(rms(of("exact frame lod 0 aa 2")) < rms(exact));
+    assert!(rms(of("noise floor")) < rms(exact));
+    assert!(number(exact, "operations") > 1000.0 && number(exact, "ms") > 0.0);
+    let paper = of("any inf corners lod 0");
+    assert_eq!(paper["remark"], "the paper's; drawn by the machine");
+    assert!(paper["beaten_by"].is_string() && exact["beaten_by"].is_null());
+
+    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let written: Value = serde_json::from_str(&file("r.json")).unwrap();
+    assert_eq!(written["rows"].as_array(), Some(&all));
+    let svg = file("r-menger-depth-2.svg");
+    assert!(svg.contains("dominated") && svg.contains("operations of the machine"));
+    for export in ["--export-json=r.json", "--export-svg=r-{scene}.svg"] {
+        bench(folder.path(), &["quality", SCENE, export]).code(1);
+    }
 }
 
 #[test]
-fn wrong_experiments_exit_with_2() {
+fn a_format_too_narrow_is_a_row_and_not_the_end() {
     let folder = folder();
-    let lines: [&[&str]; 14] = [
-        &[],
-        &["speed"],
-        &["engines", SCENE, "--scan", "size=64"],
-        &["engines", SCENE, "--scan", "depth=1..2+1"],
-        &["engines", SCENE, "--scan", "size=64..128*2", "--size", "64"],
-        &["engines", SCENE, "--runs", "0"],
-        &["engines", SCENE, "--engines", "slow"],
-        &["engines", SCENE, "--threads", "1,two"],
-        &["engines", SCENE, "--export-svg", "a", "--export-json", "a"],
-        &["scaling", SCENE, "--max-voxels", "0.5"],
-        &["ablation", SCENE, "--scan", "size=16..32*2"],
-        &["ablation", SCENE, "--threads", "2"],
-        &["ablation", SCENE, "--engines", "rays"],
-        &["vertex-error", "--threads", "1,2"],
+    let line = format!("quality gen:sphere,depth=6 {SMALL} --methods exact:bits=64+16");
+    let rows = rows(folder.path(), &line);
+    assert!(number(&rows[0], "vertex_worst") < 0.01);
+    // Sixteen bits are rejected, or far off.
+    let worst = rows[1]["vertex_worst"].as_f64();
+    assert!(
+        rows[1]["refused"].is_string() || worst.unwrap() > 0.5,
+        "{}",
+        rows[1]
+    );
+}
+
+#[test]
+fn films_flicker_and_more_samples_calm_them() {
+    let folder = folder();
+    let line = "quality gen:sphere,depth=5 --size 20 --frames 3 --motions turntable,dolly --runs 1 \
+        --reference-samples 4 --methods exact:aa=1+4,exact:lod=0 --export-svg f.svg";
+    let rows = rows(folder.path(), line);
+    let [one, four, leaves] = ["exact frame", "exact frame aa 4", "exact frame lod 0"]
+        .map(|method| row(&rows, &[("method", method)]));
+    for motion in ["turntable", "dolly"] {
+        let flicker = format!("flicker_{motion}");
+        assert!(
+            number(four, &flicker) < number(one, &flicker),
+            "{one} {four}"
+        );
+        let worst = number(one, &format!("{flicker}_worst"));
+        assert!(worst >= number(one, &flicker));
+        assert!(number(row(&rows, &[("method", "noise floor")]), &flicker) > 0.0);
+        // Without level of detail there is no cut.
+        assert!(leaves[format!("pop_{motion}")].is_null());
+        assert!(number(one, &format!("pop_{motion}")) >= 0.0);
+    }
+    let svg = fs::read_to_string(folder.path().join("f.svg")).unwrap();
+    assert!(svg.contains("flicker of a dolly") && !svg.contains("flicker of a pan"));
+}
+
+#[test]
+fn everything_but_times_is_the_same_in_every_run() {
+    let folder = folder();
+    let lines = [
+        format!("time {SCENE} --size 32 --runs 1"),
+        format!(
+            "quality gen:wires,depth=4 {SMALL} --methods exact,center --motions pan --frames 2"
+        ),
     ];
     for line in lines {
-        let assert = bench(folder.path(), line).code(2);
-        assert!(!stderr_of(&assert).is_empty(), "{line:?} says nothing");
-        assert_eq!(stdout_of(&assert), "", "{line:?}");
+        let lasting = || {
+            let mut rows = rows(folder.path(), &line);
+            for row in rows.iter_mut().filter_map(Value::as_object_mut) {
+                row.retain(|name, _| !name.ends_with("ms") && name != "time_ratio");
+            }
+            rows
+        };
+        assert_eq!(lasting(), lasting(), "{line}");
     }
-    bench(folder.path(), &["engines", SCENE, "--size", "32768"]).code(5);
-    bench(folder.path(), &["engines", "missing.vox"]).code(4);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// A row and a table for everything that is measured, in the same order.
 #[test]
-fn tables_go_to_files_too() {
+fn wrong_experiments_exit_with_2_or_5() {
     let folder = folder();
-    for (what, line, head, rows) in [
-        (
-            "engines",
-            "engines gen:menger,depth=2 --size 16 --runs 1",
-            "scene,size,engine",
-            4,
-        ),
-        (
-            "error",
-            "error gen:menger,depth=2 --size 16 --families voxels --runs 1",
-            "scene,size,method",
-            4,
-        ),
-        (
-            "flicker",
-            "flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan",
-            "scene",
-            4,
-        ),
-        (
-            "scaling",
-            "scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3",
-            "growing",
-            1,
-        ),
+    for (line, code) in [
+        ("", 2),
+        ("speed", 2),
+        ("time S --scan size=64", 2),
+        ("time S --scan lod=1..2+1", 2),
+        ("time assets.vox --scan depth=1..2+1", 4),
+        ("time bundled --scan depth=1..2+1", 2),
+        ("time S --scan size=64..128*2 --size 64", 2),
+        ("time S --runs 0", 2),
+        ("time S --engines slow", 2),
+        ("time S --variants slow", 2),
+        ("time S --engines rays --variants all", 2),
+        ("time S --overflow wrap", 2),
+        ("time S --threads 1,two", 2),
+        ("time S --export-svg a --export-json a", 2),
+        ("time S --export-csv a --export-json a", 2),
+        ("time S --size 32768", 5),
+        ("time missing.vox", 4),
+        ("quality S --methods exact:aa=3", 2),
+        ("quality S --methods far", 2),
+        ("quality S --reference-samples 5", 2),
+        ("quality S --export-svg a --export-json a", 2),
+        ("quality S --motions dolly --frames 1", 2),
+        ("quality S --motions fly", 2),
+        ("quality S --threads 1,2", 2),
+        ("quality S --size 8192", 5),
     ] {
-        let (csv, markdown) = (format!("{what}.csv"), format!("{what}.md"));
-        let exports = ["--export-csv", &csv, "--export-markdown", &markdown];
-        let line: Vec<&str> = line.split(' ').chain(exports).collect();
-        bench(folder.path(), &line).success();
-        let text = fs::read_to_string(folder.path().join(&csv)).unwrap();
-        assert!(
-            text.lines().next().unwrap().contains(head) && text.lines().count() > rows,
-            "{text}"
-        );
-        let text = fs::read_to_string(folder.path().join(&markdown)).unwrap();
-        assert!(text.contains("|---"), "{text}");
+        let line = line.replace('S', SCENE);
+        let line: Vec<&str> = line.split_whitespace().collect();
+        let assert = bench(folder.path(), &line).code(code);
+        assert!(!stderr_of(&assert).is_empty(), "{line:?}");
+        assert_eq!(stdout_of(&assert), "", "{line:?}");
     }
-    let same = ["engines", SCENE, "--export-csv", "a", "--export-json", "a"];
-    bench(folder.path(), &same).code(2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

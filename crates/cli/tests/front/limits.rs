@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 const BENCH: [&str; 6] = [
     "bench",
-    "engines",
+    "time",
     "gen:menger,depth=2",
     "--runs",
     "1",

@@ -14,7 +14,6 @@ mod limits;
 mod manners;
 mod model;
 mod one_camera;
-mod pictures;
 mod printed;
 mod program;
 mod refusals;

@@ -76,7 +76,7 @@ fn every_failure_has_a_document() {
         (
             &[
                 "bench",
-                "engines",
+                "time",
                 SCENE,
                 "missing.vox",
                 "--size",
@@ -159,13 +159,10 @@ fn verbs_agree_about_scenes_that_do_not_exist() {
 #[test]
 fn a_wrong_name_is_told_before_other_scenes_are_made() {
     let folder = folder();
-    let line = [
-        "reproduce",
-        "--growing",
-        "gen:terrain,depth=3",
-        "--outdir",
-        "r",
-    ];
+    let list = "[[run]]\ntable = \"t\"\nsettings = \"default\"\nengines = [\"fast\"]\nsizes = [16]\n\
+        scenes = [\"gen:terrain,depth=12\", \"gen:terrain,depth=3\"]\n";
+    fs::write(folder.path().join("list.toml"), list).unwrap();
+    let line = ["reproduce", "list.toml", "--outdir", "r"];
     let started = Instant::now();
     let assert = run(folder.path(), &line).code(4);
     assert!(stderr_of(&assert).contains("from 5 to 16"));
@@ -179,7 +176,7 @@ fn a_wrong_name_is_told_before_other_scenes_are_made() {
 #[test]
 fn experiments_have_manual_pages() {
     let folder = folder();
-    let page = run(folder.path(), &["man", "bench", "error"]).success();
+    let page = run(folder.path(), &["man", "bench", "quality"]).success();
     let page = String::from_utf8_lossy(&page.get_output().stdout).into_owned();
     assert!(page.contains(".TH") && page.contains("reference"), "{page}");
     run(folder.path(), &["man", "bench", "nothing"]).code(2);

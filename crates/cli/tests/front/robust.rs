@@ -19,7 +19,7 @@ use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::TexturedFile;
 
 /// What is run: every command, on inputs from `../in`.
-const LINES: [&str; 33] = [
+const LINES: [&str; 30] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
     "render ../in/knot.obj --depth 6 --size 200 -o k.png --outdir run --force",
@@ -41,17 +41,14 @@ const LINES: [&str; 33] = [
     "model gen:menger,depth=2 --size 48 --json",
     "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
     "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-json s.json --force",
-    "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
-    "bench engines gen:menger,depth=2 --size 64 --runs 1 --export-json engines.json --force",
-    "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-csv e.csv --force",
-    "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",
-    "bench vertex-error",
-    "bench error gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --lods 0 --aas 1 --bits 32 --json",
-    "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-svg f.svg --force",
-    "bench methods ../in/knot.obj --size 16 --runs 1 --warmup 0 --frames 0 --depth 4 --only triangles,voxels --json",
-    "bench walk ../in/knot.far --size 32 --frames 2 --export-json walk.json --force",
+    "reproduce ../in/list.toml --runs 1 --outdir r --force",
+    "bench time gen:menger,depth=2 --size 64 --runs 1 --export-json time.json --force",
+    "bench time gen:menger,depth=2 --scan size=16..32*2 --runs 1 --variants all --export-csv e.csv --export-svg e.svg --force",
+    "bench quality gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --methods exact:bits=32 --json",
+    "bench quality gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --runs 1 --methods exact --export-svg f.svg --force",
+    "bench quality ../in/knot.obj --size 16 --runs 1 --warmup 0 --depth 4 --methods triangles,exact --json",
     "completions bash",
-    "man bench error",
+    "man bench quality",
     "render --help",
 ];
 /// Makes the inputs.
@@ -263,6 +260,9 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
     for name in ["knot.obj", "knot.mtl"] {
         fs::copy(assets.join(name), at("in").join(name)).unwrap();
     }
+    let list = "[[run]]\ntable = \"t\"\nsettings = \"default\"\nengines = [\"fast\", \"machine\"]\n\
+        scenes = [\"gen:menger,depth=2\"]\nsizes = [16, 32]\n";
+    fs::write(at("in").join("list.toml"), list).unwrap();
     for line in INPUTS {
         let made = wait(&mut start(&at("in"), "exec \"$0\" \"$@\"", line), None);
         assert!(
@@ -376,8 +376,9 @@ fn every_command_is_run() {
             .map(|rest| rest.split_whitespace().next().unwrap().to_owned())
             .collect()
     };
-    for (before, known) in [("", commands(&[])), ("bench ", commands(&["bench"]))] {
-        assert!(known.len() >= 8, "{known:?}");
+    let known = [("", commands(&[]), 12), ("bench ", commands(&["bench"]), 2)];
+    for (before, known, least) in known {
+        assert!(known.len() >= least, "{known:?}");
         // A page is served until it is stopped (`crates/cli/tests/view`).
         let others = ["help", "view"];
         for name in { known.iter() }.filter(|name| !others.contains(&name.as_str())) {

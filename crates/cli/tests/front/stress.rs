@@ -51,33 +51,59 @@ fn one_case_is_told_and_a_wrong_one_refused() {
 }
 
 #[test]
-fn the_papers_results_are_counted_the_same_in_every_run() {
+fn reproduced_results_are_counted_the_same_in_every_run() {
     let folder = tempfile::tempdir().unwrap();
-    let line = [
-        "reproduce",
-        "--sides",
-        "16,32",
-        "--object-side",
-        "32",
-        "--runs",
-        "1",
-        "--growing",
-        "gen:terrain,depth=5;gen:terrain,depth=6",
-        "--outdir",
-    ];
+    // The paper's list with smaller pictures and scenes.
+    let list = include_str!("../../../lab/src/reproduce.toml");
+    let list = list
+        .replace("512", "32")
+        .replace("[64, 128, 256, 32, 1024]", "[16, 64]");
+    let list = list
+        .replace("menger,depth=5", "menger,depth=2")
+        .replace("truss,depth=8", "truss,depth=4");
+    let list = (6..=10).fold(list, |list, depth| {
+        list.replace(&format!("terrain,depth={depth}"), "terrain,depth=5")
+    });
+    fs::write(folder.path().join("list.toml"), list).unwrap();
     let reproduced = |outdir: &str| {
-        let assert = run(folder.path(), &[&line[..], &[outdir]].concat()).success();
-        assert!(stdout_of(&assert).contains("Table I"));
+        let line = ["reproduce", "list.toml", "--runs", "1", "--outdir", outdir];
+        let told = stdout_of(&run(folder.path(), &line).success());
+        assert!(told.contains("Table I") && told.contains("<1"), "{told}");
         let text = fs::read_to_string(folder.path().join(outdir).join("results.json")).unwrap();
-        serde_json::from_str::<Value>(&text).unwrap()
+        let document: Value = serde_json::from_str(&text).unwrap();
+        let rows = document["rows"].as_array().unwrap().clone();
+        let lasting = [
+            "table",
+            "scene",
+            "size",
+            "settings",
+            "hash",
+            "work",
+            "operations",
+            "changed",
+        ];
+        rows.iter()
+            .map(|row| lasting.map(|name| row[name].clone()))
+            .collect::<Vec<_>>()
     };
     let (one, two) = (reproduced("one"), reproduced("two"));
+    assert_eq!(one, two);
+    // Of the machine with everything on: two sizes, five scenes, five terrains, four scenes; twice.
+    assert_eq!(
+        one.iter().filter(|row| row[4].is_string()).count(),
+        2 * (2 + 5 + 5 + 4)
+    );
     assert!(folder.path().join("two/figures.svg").exists());
-    // A simple scene at two sizes, and six more at one of them; the paper's settings and the default ones.
-    assert_eq!(one["evidence"].as_array().unwrap().len(), 2 * (2 + 6));
-    assert_eq!(one["evidence"], two["evidence"]);
     let page = fs::read_to_string(folder.path().join("one/report.md")).unwrap();
-    for part in ["Table I", "occlusion order", "Objects at one size"] {
+    for part in [
+        "Table I",
+        "occlusion order",
+        "Objects of all kinds",
+        "exponent",
+    ] {
         assert!(page.contains(part), "{part}");
     }
+    fs::write(folder.path().join("wrong.toml"), "[[run]]\nscenes = []\n").unwrap();
+    let told = stderr_of(&run(folder.path(), &["reproduce", "wrong.toml"]).code(4));
+    assert!(told.contains("wrong.toml: "), "{told}");
 }

@@ -1,4 +1,4 @@
-//! `bench methods`: all ways to draw a mesh, side by side.
+//! `bench quality` of meshes: all methods side by side.
 
 use std::fs;
 use std::path::Path;
@@ -35,104 +35,91 @@ fn blades() -> String {
     text
 }
 
-#[test]
-fn all_methods_in_all_forms() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    fs::write(at.join("blades.obj"), blades()).unwrap();
-    let command = "bench methods blades.obj --size 64 --least 16 --depth 6 --runs 1 --frames 2 \
-        --budgets 4 --json --export-csv m.csv --export-svg m.svg --export-html m.html"
-        .split(' ');
-    let output = shiftvox(at).args(command).assert().success();
-    let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
-    let mesh = &document["meshes"][0];
-    assert_eq!(mesh["triangles"], 40);
-    let labels: Vec<&str> = mesh["facts"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|f| f["label"].as_str().unwrap())
-        .collect();
-    assert_eq!(labels.len(), 26);
-    let blended = labels.iter().filter(|label| label.contains("alpha"));
-    assert_eq!(blended.count(), 3, "{labels:?}");
-    let distances = mesh["distances"].as_array().unwrap();
-    let sizes: Vec<u64> = distances
-        .iter()
-        .map(|d| d["size"][1].as_u64().unwrap())
-        .collect();
-    assert_eq!(sizes, [64, 32, 16]);
-    let near = distances[0]["distance_world"].as_f64().unwrap();
-    assert!((distances[2]["distance_world"].as_f64().unwrap() / near - 4.0).abs() < 1e-9);
-    for distance in distances {
-        let rows = distance["rows"].as_array().unwrap();
-        assert_eq!(rows.len(), labels.len());
-        let outcome = |label: &str| {
-            let place = labels.iter().position(|l| *l == label).unwrap();
-            &rows[place]["outcome"]
-        };
-        let error = |label: &str| outcome(label)["picture"]["rms_linear"].as_f64().unwrap();
-        let floor = distance["noise_floor"]["rms_linear"].as_f64().unwrap();
-        // More samples, less error; nothing below the noise.
-        assert!(error("triangles, 16") < error("triangles, 4"));
-        assert!(error("triangles, 4") < error("triangles, 1"));
-        for label in &labels {
-            assert!(error(label) > floor, "{label}");
-            assert!(outcome(label)["flicker"].as_f64().unwrap() > 0.0, "{label}");
-            assert!(!outcome(label)["counters"].as_object().unwrap().is_empty());
-        }
-        assert!(error("decimated 1/4, 16") > error("triangles, 16"));
-        assert!((error("hybrid, 16") / error("triangles, 16") - 1.0).abs() < 0.1);
-        assert!((error("far six aa 4") / error("triangles, 16") - 1.0).abs() < 0.1);
-        let rivals = &distance["rivals"];
-        assert_eq!(rivals[2]["method"], "hybrid, 16");
-        assert!(rivals[2]["ahead"].as_f64().unwrap() > -0.5);
-        assert!(distance["answers"].as_array().unwrap().len() > 30);
-        // So few triangles are one leaf, which far voxels draw as they are.
-        assert!((error("far six") / error("triangles, 1") - 1.0).abs() < 0.01);
-        assert_eq!(
-            outcome("textured 16, eroded 0")["counters"]["primitives"],
-            0
-        );
-    }
-    let csv = fs::read_to_string(at.join("m.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + 3 * labels.len());
-    let svg = fs::read_to_string(at.join("m.svg")).unwrap();
-    assert!(svg.contains("noise floor") && svg.contains("textured"));
-    let html = fs::read_to_string(at.join("m.html")).unwrap();
-    assert_eq!(html.matches("<img").count(), 3 * (1 + labels.len()));
-    assert_eq!(html.matches("<svg").count(), 3 + 3);
-    // A distance's plot stands before its pictures, its answers between.
-    let first = |what: &str| html.find(what).unwrap();
-    assert!(first("<svg") < first("<img") && first("at equal ms") < first("<img"));
-    assert!(!html.contains("http://") || !html.contains("src=\"http"));
+fn document(at: &Path, line: &str) -> Value {
+    let output = shiftvox(at)
+        .args(line.split(' '))
+        .arg("--json")
+        .assert()
+        .success();
+    serde_json::from_slice(&output.get_output().stdout).unwrap()
 }
 
 #[test]
-fn heights_are_those_asked_for_on_a_generated_mesh() {
+fn all_methods_at_all_distances() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let make = ["generate", "mesh:wheel,seed=3", "-o", "wheel.ply", "--json"];
-    let made = shiftvox(at).args(make).assert().success();
-    let made: Value = serde_json::from_slice(&made.get_output().stdout).unwrap();
-    let command = "bench methods wheel.ply --heights 40,22 --frames 0 --runs 1 --warmup 0 --json \
-        --only triangles,decimated,hybrid"
-        .split(' ');
-    let output = shiftvox(at).args(command).assert().success();
-    let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
-    let mesh = &document["meshes"][0];
-    assert_eq!(mesh["triangles"], made["triangles"]);
-    for (distance, height) in mesh["distances"].as_array().unwrap().iter().zip([40, 22]) {
-        assert_eq!(distance["size"], serde_json::json!([height, height]));
-        let bytes = |of: &str| {
-            let mut rows = distance["rows"].as_array().unwrap().iter();
-            let row = rows.find(|row| row["method"] == of).unwrap();
-            row["outcome"]["read_bytes"].as_u64().unwrap()
+    fs::write(at.join("blades.obj"), blades()).unwrap();
+    let line = "bench quality blades.obj --heights 64,32,16 --depth 6 --runs 1 --frames 2 \
+        --motions pan --export-csv m.csv --export-svg m.svg";
+    let document = document(at, line);
+    let rows = document["rows"].as_array().unwrap();
+    let of_height = |height: u64| {
+        let of = rows.iter().filter(move |row| row["height"] == height);
+        of.collect::<Vec<_>>()
+    };
+    // Of 40 triangles none are left of 64 or more.
+    assert_eq!(of_height(64).len(), 3 + 6 + 4 + 6 + 6 + 4 + 1);
+    let distance = |height| of_height(height)[0]["distance"].as_f64().unwrap();
+    assert!((distance(16) / distance(64) - 4.0).abs() < 1e-9);
+    for height in [64, 32, 16] {
+        let rows = of_height(height);
+        let row = |method: &str| {
+            let mut rows = rows.iter();
+            rows.find(|row| row["method"] == method)
+                .unwrap_or_else(|| panic!("{method}"))
         };
+        let number = |row: &Value, name: &str| row[name].as_f64().unwrap();
+        let error = |method: &str| number(row(method), "rms_linear");
+        // More samples, less error; nothing below the noise.
+        assert!(error("triangles 16") < error("triangles 4"));
+        assert!(error("triangles 4") < error("triangles 1"));
+        for row in &rows[..rows.len() - 1] {
+            assert!(number(row, "rms_linear") > error("noise floor"), "{row}");
+            assert!(
+                number(row, "flicker_pan") > 0.0 && number(row, "work") > 0.0,
+                "{row}"
+            );
+        }
+        assert!(error("decimated 1/4, 16") > error("triangles 16"));
+        assert!((error("hybrid 16") / error("triangles 16") - 1.0).abs() < 0.1);
+        assert!((error("far six aa 4") / error("triangles 16") - 1.0).abs() < 0.1);
+        assert!(number(row("hybrid 16"), "ahead") > -0.5);
+        // So few triangles are one leaf, which far voxels draw as they are.
+        assert!((error("far six") / error("triangles 1") - 1.0).abs() < 0.01);
+        assert_eq!(row("textured 16 eroded 0")["primitives"], 0);
+        assert_eq!(row("exact frame")["scene_triangles"], 40);
+    }
+    let answers = document["answers"].as_array().unwrap();
+    for criterion in ["ms per frame", "kB per frame", "s to build"] {
+        let of = answers.iter().filter(|row| row["criterion"] == criterion);
+        assert!(of.count() > 10, "{criterion}");
+    }
+    let csv = fs::read_to_string(at.join("m.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + rows.len());
+    let svg = fs::read_to_string(at.join("m.svg")).unwrap();
+    assert!(svg.contains("noise floor") && svg.contains("textured") && svg.contains("64x64"));
+}
+
+#[test]
+fn bytes_and_rivals_of_a_generated_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let made = document(at, "generate mesh:wheel,seed=3 -o wheel.ply");
+    let line = "bench quality wheel.ply --heights 40,22 --runs 1 --warmup 0 --methods \
+        triangles,decimated,hybrid";
+    let document = document(at, line);
+    let rows = document["rows"].as_array().unwrap();
+    assert_eq!(rows[0]["scene_triangles"], made["triangles"]);
+    for height in [40, 22] {
+        let row = |method: &str| {
+            let same = |row: &&Value| row["method"] == method && row["height"] == height;
+            rows.iter().find(same).unwrap()
+        };
+        let bytes = |method: &str| row(method)["read_bytes"].as_u64().unwrap();
         assert!(bytes("decimated 1/4, 4") * 2 < bytes("triangles 4"));
         assert!(bytes("hybrid 16") < bytes("triangles 16"));
         // At 22 pixels nothing else is so small.
-        let ahead = distance["rivals"][2]["ahead"].as_f64();
+        let ahead = row("hybrid 16")["ahead"].as_f64();
         assert_eq!(ahead.is_some(), height == 40);
         assert!(ahead.is_none_or(|ahead| ahead > -0.5), "{ahead:?}");
     }
@@ -145,38 +132,8 @@ fn heights_are_those_asked_for_on_a_generated_mesh() {
         let refused = shiftvox(at).args(["generate", spec, "-o", output]).assert();
         refused.code(code);
     }
-}
-
-#[test]
-fn what_is_refused_and_what_is_left_out() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    fs::write(at.join("blades.obj"), blades()).unwrap();
-    let small = "bench methods blades.obj --size 16 --runs 1 --frames 0".split(' ');
-    let some = ["--least", "16", "--only", "triangles,textured", "--json"];
-    let output = shiftvox(at).args(small).args(some).assert().success();
-    let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
-    assert_eq!(document["meshes"][0]["facts"].as_array().unwrap().len(), 7);
-    let outcome = &document["meshes"][0]["distances"][0]["rows"][0]["outcome"];
-    assert!(outcome["flicker"].is_null());
-    let cases: [(&[&str], i32); 4] = [
-        (&["bench", "methods"], 2),
-        (&["bench", "methods", "none.obj"], 4),
-        (
-            &[
-                "bench",
-                "methods",
-                "blades.obj",
-                "--size",
-                "16",
-                "--least",
-                "32",
-            ],
-            2,
-        ),
-        (&["bench", "methods", "blades.obj", "--only", "nothing"], 2),
-    ];
-    for (arguments, code) in cases {
-        shiftvox(at).args(arguments).assert().code(code);
-    }
+    shiftvox(at)
+        .args(["bench", "quality", "none.obj"])
+        .assert()
+        .code(4);
 }

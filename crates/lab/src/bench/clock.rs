@@ -9,7 +9,7 @@ pub struct Clock {
     thread: Option<Duration>,
 }
 
-/// What went by, milliseconds.
+/// Elapsed times, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elapsed {
     /// On the wall.
@@ -29,7 +29,7 @@ impl Clock {
         }
     }
 
-    /// What went by since the start.
+    /// Times since the start.
     #[must_use]
     pub fn elapsed(&self) -> Elapsed {
         let wall = self.wall.elapsed();

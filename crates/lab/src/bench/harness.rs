@@ -1,10 +1,9 @@
-//! Interleaved runs: every contender draws a frame, then every one the next.
+//! Interleaved runs: each round draws one frame per contender.
 //!
-//! What drifts while a measurement goes on (other work, clock rates) then
-//! hits all alike, and a contender does not find the caches as its own last
-//! frame left them. A frame is: clear, traverse, colour of each sample
-//! written. Buffers are made before the first frame and reused. One frame
-//! before those is for the counters and the picture.
+//! Drift during a measurement (other work, clock rates) then affects all contenders, and none finds
+//! the caches as its own last frame left them. A frame is: clear, traverse, write the colour of each
+//! sample. Buffers are made before the first frame and reused. One frame before those gives the
+//! counters and the picture.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -13,6 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::clock::{Clock, Elapsed};
 use super::statistics::Summary;
+use crate::report::{Cell, Row};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
@@ -28,60 +28,117 @@ pub struct Schedule {
 
 /// An engine and the frame that it draws.
 pub struct Contender<'c> {
-    /// What an error calls it.
+    /// Its name in errors.
     pub name: String,
-    /// What it draws.
+    /// The scene.
     pub graph: &'c Graph,
     /// The frame.
     pub setup: FrameSetup,
-    /// Threads of the pool that it draws in, 1 or more.
+    /// Threads of its pool, 1 or more.
     pub threads: usize,
-    /// What draws it.
+    /// Its source of frames.
     pub drawer: Drawer<'c>,
-    /// Nodes whose attributes are read besides those that are seen.
+    /// Nodes whose attributes are read besides those of visible voxels.
     pub attributes: Vec<u32>,
 }
 
-/// What draws the frames of a contender.
+/// The source of a contender's frames.
 pub enum Drawer<'c> {
-    /// An engine, every one.
+    /// An engine, which draws every frame.
     Engine(Box<dyn Engine + Send>),
-    /// A viewer, those that change: the first.
+    /// A viewer, which draws only frames that change.
     Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
-impl<'c> Contender<'c> {
-    /// A contender that draws every frame, on one thread.
-    pub(super) fn alone(
-        name: String,
-        graph: &'c Graph,
-        setup: FrameSetup,
-        engine: Box<dyn Engine + Send>,
-    ) -> Self {
-        Self {
-            name,
-            graph,
-            setup,
-            threads: 1,
-            drawer: Drawer::Engine(engine),
-            attributes: Vec::new(),
+impl Contender<'_> {
+    fn failed(&self, source: EngineError) -> BenchError {
+        BenchError::Engine {
+            who: self.name.clone(),
+            source,
         }
     }
 }
 
-/// What a contender took.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+/// Times of a contender's frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
     /// Wall time of a frame.
     pub wall: Summary,
-    /// Processor time of the drawing thread; only for contenders on one
-    /// thread, and where the system measures it.
+    /// Processor time of the drawing thread: of contenders on one thread, where the system measures
+    /// it.
     pub thread: Option<Summary>,
-    /// Counters of one frame.
-    pub counters: Stats,
 }
 
-/// Why there is no measurement.
+impl Times {
+    fn of(elapsed: &[Elapsed]) -> Self {
+        let wall: Vec<f64> = elapsed.iter().map(|t| t.wall_ms).collect();
+        let thread: Option<Vec<f64>> = elapsed.iter().map(|t| t.thread_ms).collect();
+        Self {
+            wall: Summary::of(&wall),
+            thread: thread.map(|thread| Summary::of(&thread)),
+        }
+    }
+
+    /// The times that other work disturbs least: processor time, or else wall time.
+    #[must_use]
+    pub fn best(&self) -> Summary {
+        self.thread.unwrap_or(self.wall)
+    }
+
+    /// Sets the columns of times.
+    pub fn put(&self, row: &mut Row) {
+        let best = self.best();
+        row.put("cpu_ms", self.thread.map(|cpu| Cell::ms(cpu.median_ms)));
+        row.put("wall_ms", Cell::ms(self.wall.median_ms));
+        row.put("wall_min_ms", Cell::ms(self.wall.min_ms));
+        row.put("wall_max_ms", Cell::ms(self.wall.max_ms));
+        row.put("wall_deviation_ms", Cell::ms(self.wall.deviation_ms));
+        row.put("runs", self.wall.runs as u64);
+        row.put("ms", Cell::ms(best.median_ms));
+        row.put("deviation_ms", Cell::ms(best.deviation_ms));
+        row.put("min_ms", Cell::ms(best.min_ms));
+    }
+}
+
+/// Draws one frame per contender and round, by the contenders' places.
+///
+/// # Errors
+/// When a frame cannot be drawn.
+pub fn interleave<E>(
+    contenders: usize,
+    schedule: Schedule,
+    progress: &dyn Progress,
+    draw: &mut dyn FnMut(usize) -> Result<Elapsed, E>,
+) -> Result<Vec<Times>, E> {
+    let rounds = schedule.warmup + schedule.runs.max(1);
+    let mut elapsed = vec![Vec::with_capacity(rounds as usize); contenders];
+    progress.begin("measuring", u64::from(rounds));
+    for round in 0..rounds {
+        for (place, elapsed) in elapsed.iter_mut().enumerate() {
+            let frame = draw(place)?;
+            if round >= schedule.warmup {
+                elapsed.push(frame);
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    Ok(elapsed.iter().map(|elapsed| Times::of(elapsed)).collect())
+}
+
+/// A pool of threads.
+///
+/// # Errors
+/// When the system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| BenchError::Threads {
+        threads,
+        reason: e.to_string(),
+    })
+}
+
+/// An error of a measurement.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BenchError {
     /// An engine did not finish its frame.
@@ -95,7 +152,7 @@ pub enum BenchError {
     /// A frame cannot be set up.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// Samples make no picture, or none that can be compared.
+    /// Samples make no picture, or one that cannot be compared.
     #[error("{0}")]
     Picture(String),
     /// The system gave no threads.
@@ -108,7 +165,7 @@ pub enum BenchError {
     },
 }
 
-/// A picture whose memory is there before the first frame.
+/// A picture whose memory is touched before the first frame.
 fn colors(width: u32, height: u32) -> Colors {
     let mut colors = Colors::new(width, height);
     colors.words.fill(1);
@@ -135,8 +192,8 @@ impl<'p> Harness<'p> {
         }
     }
 
-    /// Measures all contenders in turn. `look` is shown each contender's first
-    /// frame, voxels and all, by the contender's place in the list, outside of the times.
+    /// Measures all contenders. `look` gets each contender's place in the list and its first frame,
+    /// with voxels, outside of the times.
     ///
     /// # Errors
     /// When an engine fails, or there are no threads.
@@ -144,148 +201,88 @@ impl<'p> Harness<'p> {
         &mut self,
         contenders: &mut [Contender<'_>],
         look: &mut dyn FnMut(usize, &Frame),
-    ) -> Result<Vec<Measured>, BenchError> {
-        for contender in &*contenders {
-            self.make_pool(contender.threads)?;
-            let (width, height) = (contender.setup.width, contender.setup.height);
-            self.buffers
-                .entry((width, height))
-                .or_insert_with(|| colors(width, height));
-        }
-        let rounds = self.schedule.warmup + self.schedule.runs.max(1);
-        let mut times: Vec<Vec<Elapsed>> = contenders
-            .iter()
-            .map(|_| Vec::with_capacity(rounds as usize))
-            .collect();
-        let mut counters = vec![Stats::new(); contenders.len()];
-        let frames = u64::from(rounds + 1) * contenders.len() as u64;
-        self.progress.begin("measuring", frames);
+    ) -> Result<Vec<(Times, Stats)>, BenchError> {
+        let mut counters = Vec::new();
+        self.progress.begin("drawing", contenders.len() as u64);
         for (place, contender) in contenders.iter_mut().enumerate() {
+            if !self.pools.contains_key(&contender.threads) {
+                self.pools
+                    .insert(contender.threads, pool(contender.threads)?);
+            }
+            let (width, height) = (contender.setup.width, contender.setup.height);
+            let buffer = self.buffers.entry((width, height));
+            buffer.or_insert_with(|| colors(width, height));
             let (frame, stats) = self.whole_frame(contender)?;
             look(place, &frame);
-            counters[place] = stats;
+            counters.push(stats);
             self.progress.advance(1);
         }
-        for round in 0..rounds {
-            for (place, contender) in contenders.iter_mut().enumerate() {
-                let elapsed = self.frame(contender)?;
-                if round >= self.schedule.warmup {
-                    times[place].push(elapsed);
-                }
-                self.progress.advance(1);
-            }
-        }
         self.progress.end();
-        let of = |(contender, (times, counters)): (&Contender<'_>, (Vec<Elapsed>, Stats))| {
-            let wall: Vec<f64> = times.iter().map(|t| t.wall_ms).collect();
-            let thread: Option<Vec<f64>> = times.iter().map(|t| t.thread_ms).collect();
-            Measured {
-                wall: Summary::of(&wall),
-                thread: thread
-                    .filter(|_| contender.threads == 1)
-                    .map(|thread| Summary::of(&thread)),
-                counters,
-            }
-        };
-        Ok(contenders
-            .iter()
-            .zip(times.into_iter().zip(counters))
-            .map(of)
-            .collect())
-    }
-
-    /// How often each contender draws.
-    #[must_use]
-    pub fn schedule(&self) -> Schedule {
-        self.schedule
-    }
-
-    /// Forgets the buffers, which the next race makes anew.
-    pub fn release_buffers(&mut self) {
-        self.buffers.clear();
-    }
-
-    fn make_pool(&mut self, threads: usize) -> Result<(), BenchError> {
-        if self.pools.contains_key(&threads) {
-            return Ok(());
-        }
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|e| BenchError::Threads {
-            threads,
-            reason: e.to_string(),
+        let (schedule, progress) = (self.schedule, self.progress);
+        let mut times = interleave(contenders.len(), schedule, progress, &mut |place| {
+            self.frame(&mut contenders[place])
         })?;
-        self.pools.insert(threads, pool);
-        Ok(())
+        for (times, contender) in times.iter_mut().zip(contenders) {
+            times.thread = times.thread.filter(|_| contender.threads == 1);
+        }
+        Ok(times.into_iter().zip(counters).collect())
     }
 
-    /// A frame with its voxels and counters, which is not timed.
-    fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
-        let setup = &contender.setup;
+    /// Does work in the pool of a contender.
+    fn in_pool<T: Send>(&self, threads: usize, work: impl FnOnce() -> T + Send) -> T {
+        match self.pools.get(&threads) {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// A frame with voxels and counters, not timed.
+    fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
+        let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let (graph, drawer) = (contender.graph.view(), &mut contender.drawer);
-        let mut draw = || match drawer {
+        let drawer = &mut contender.drawer;
+        let stats = self.in_pool(contender.threads, || match drawer {
             Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
             Drawer::Viewer(viewer) => {
                 viewer.render(setup)?;
-                // What is timed is a frame after that.
+                // Later frames are timed, so their counters are those of a second one.
                 let stats = viewer.render(setup)?;
                 if let Some(shown) = viewer.frame() {
                     frame.clone_from(shown);
                 }
                 Ok(stats)
             }
-        };
-        let stats = match self.pools.get(&contender.threads) {
-            Some(pool) => pool.install(draw),
-            None => draw(),
-        };
-        let stats = stats.map_err(|source| BenchError::Engine {
-            who: contender.name.clone(),
-            source,
-        })?;
+        });
+        let stats = stats.map_err(|source| contender.failed(source))?;
         Ok((frame, stats))
     }
 
     /// One frame; the clocks run inside the pool, around the work alone.
     fn frame(&mut self, contender: &mut Contender<'_>) -> Result<Elapsed, BenchError> {
-        let Contender {
-            name,
-            graph,
-            setup,
-            threads,
-            drawer,
-            attributes,
-        } = contender;
+        let (setup, graph) = (&contender.setup, contender.graph);
         let size = (setup.width, setup.height);
-        let colors = self
-            .buffers
-            .entry(size)
-            .or_insert_with(|| Colors::new(size.0, size.1));
-        let mut draw = || {
+        let mut colors = self.buffers.remove(&size);
+        let colors_of = colors.get_or_insert_with(|| Colors::new(size.0, size.1));
+        let (drawer, attributes) = (&mut contender.drawer, &contender.attributes);
+        let (elapsed, drawn) = self.in_pool(contender.threads, || {
             let clock = Clock::start();
             let drawn = match drawer {
                 Drawer::Engine(engine) => {
-                    engine.draw_colors(&graph.view(), &graph.color, setup, colors)
+                    engine.draw_colors(&graph.view(), &graph.color, setup, colors_of)
                 }
                 Drawer::Viewer(viewer) => viewer.draw(setup).map(drop),
             };
             if let Drawer::Viewer(viewer) = drawer
                 && let Some(frame) = viewer.frame()
             {
-                colors.take(&graph.color, frame);
+                colors_of.take(&graph.color, frame);
             }
-            black_box(colors.words.as_slice());
+            black_box(colors_of.words.as_slice());
             black_box(sum_of_attributes(graph, attributes));
             (clock.elapsed(), drawn)
-        };
-        let (elapsed, drawn) = match self.pools.get(threads) {
-            Some(pool) => pool.install(draw),
-            None => draw(),
-        };
-        drawn.map_err(|source| BenchError::Engine {
-            who: name.clone(),
-            source,
-        })?;
+        });
+        self.buffers.extend(colors.map(|colors| (size, colors)));
+        drawn.map_err(|source| contender.failed(source))?;
         Ok(elapsed)
     }
 }
@@ -304,7 +301,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     use super::*;
-    use shiftvox::graph::{GraphView, Placement, Silent, Store};
+    use shiftvox::graph::{GraphView, Silent};
     use shiftvox::project::{Camera, SetupOptions};
 
     /// Notes its name for each frame and how many threads it finds.
@@ -327,19 +324,7 @@ mod tests {
 
     #[test]
     fn contenders_take_turns_in_pools_of_their_own() {
-        let graph = Graph {
-            depth: 0,
-            root: 0,
-            mask: Store::from(vec![]),
-            first: Store::from(vec![]),
-            links: Store::from(vec![]),
-            color: Store::from(vec![[1, 2, 3]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 1,
-            placement: Placement::default(),
-        };
+        let graph = crate::test_graphs::one_node(0, 0, [1, 2, 3]);
         let camera = Camera {
             eye: glam::DVec3::new(0.5, -3.0, 0.5),
             target: glam::DVec3::splat(0.5),
@@ -370,11 +355,14 @@ mod tests {
         let round = [("a", 1), ("b", 2)];
         assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
         assert_eq!(seen, [(0, 1), (1, 1)]);
-        assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
+        let [one, two] = &measured[..] else {
+            panic!("two contenders");
+        };
+        assert_eq!((one.0.wall.runs, two.0.wall.runs), (2, 2));
         // Counters are those of the first frame, which is not timed; one
         // thread's time is measured for one thread alone.
-        assert_eq!(measured[1].counters, [("frames", 2)]);
-        assert_eq!(measured[1].thread, None);
-        assert_eq!(measured[0].thread.is_some(), cfg!(unix));
+        assert_eq!(two.1, [("frames", 2)]);
+        assert_eq!(two.0.thread, None);
+        assert_eq!(one.0.thread.is_some(), cfg!(unix));
     }
 }

@@ -11,8 +11,8 @@ pub type Colors<'p> = (u32, u32, &'p [[u8; 4]]);
 
 /// How far the colours of two pictures are apart.
 ///
-/// `differing` and `max_abs` look at all four channels as stored. The others
-/// look at what is seen on black: red, green and blue, each times alpha.
+/// `differing` and `max_abs` compare all four stored channels. The others compare the colours on a
+/// black background: red, green and blue, each times alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ColorError {
     /// Pixels of a picture.

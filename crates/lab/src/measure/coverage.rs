@@ -1,4 +1,4 @@
-//! Which pixels show something, and which voxel: the `voxel` buffers of two pictures.
+//! Coverage error: differences between the `voxel` buffers of two pictures.
 
 use serde::Serialize;
 

@@ -2,15 +2,13 @@
 //! that are shown in turn at one place (Andersson, Nilsson, Akenine-Möller,
 //! Oskarsson, Åström, Fairchild 2020).
 //!
-//! Two pipelines. *Colour*: both pictures in the opponent space `Y Cx Cz`,
-//! each channel blurred by what the eye cannot resolve, compared in CIE L*a*b*
-//! with Hunt's adjustment by a distance that suits large differences (HyAB),
-//! the distances spread over 0 to 1. *Features*: edges and points of `Y`. The
-//! error of a pixel is `colour^(1 - feature)`: a difference in features makes
-//! one in colour count for more.
+//! There are two pipelines. *Colour*: each channel of both pictures in the opponent space `Y Cx Cz`
+//! is blurred by the eye's contrast sensitivity. The pictures are then compared in CIE L*a*b* with
+//! Hunt's adjustment, by a distance for large differences (HyAB) that is scaled to 0 to 1.
+//! *Features*: edges and points of `Y`. The error of a pixel is `colour^(1 - feature)`, so a
+//! difference in features increases one in colour.
 //!
-//! All filters here are sums of products of two one-dimensional ones and are
-//! computed so; beyond the border a picture goes on as its outermost pixels.
+//! All filters are separable. Beyond the border a picture has the values of its outermost pixels.
 //! Numbers are `f64`; on the pictures of the tests they differ from the
 //! authors' program, which has `f32`, by less than 0.0001.
 

@@ -1,7 +1,7 @@
 //! How far two pictures are apart: colours, coverage, depths, and films of them.
 //!
-//! What each number is, is written where it is computed; none of them is
-//! rounded. Pictures of different sizes are not compared.
+//! Each number is defined where it is computed. No number is rounded. Pictures of different sizes
+//! are not compared.
 
 mod color;
 mod coverage;

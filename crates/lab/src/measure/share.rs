@@ -23,13 +23,13 @@ pub struct ShareError {
 }
 
 impl ShareError {
-    /// Bloat as a part of the area: 0.1 where a tenth too much is seen; 0 where there is no area.
+    /// Bloat as a part of the area: 0.1 if a tenth too much is covered, 0 without any area.
     #[must_use]
     pub fn bias(&self) -> f64 {
         self.of_area(self.signed)
     }
 
-    /// What is too much and what is too little together, as a part of the area.
+    /// Excess plus lack, as a part of the area.
     #[must_use]
     pub fn relative(&self) -> f64 {
         self.of_area(self.absolute)
@@ -82,11 +82,10 @@ impl CoverageBias {
 /// Whether a pixel shows a thing that is thinner than a pixel: it is covered
 /// in part, and none of its eight neighbours is covered in full.
 ///
-/// A pixel on a straight outline, at any angle, has a neighbour on the inner
-/// side that is covered in full, and so has one at a corner of a right angle
-/// or more. A wire thinner than a pixel has none, wherever it lies between the
-/// pixels: that its neighbours on both sides be empty would miss all wires
-/// that touch two rows. What is porous below a pixel counts as thin too.
+/// A pixel on a straight outline has a fully covered neighbour on the inner side. So has a pixel at a
+/// corner of a right angle or more. A wire thinner than a pixel has none, wherever it lies. (Empty
+/// neighbours on both sides would be too strict: a wire can touch two rows.) Structures that are
+/// porous below a pixel count as thin, too.
 #[must_use]
 pub fn is_thin((width, height, shares): Shares<'_>, at: usize) -> bool {
     let here = shares[at];

@@ -2,21 +2,21 @@
 
 use serde::Serialize;
 
-/// What many errors come to. Units are those of the errors.
+/// Statistics of errors, in the errors' units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Spread {
     /// How many errors there are.
     pub count: u64,
     /// Their mean; 0 for none.
     pub mean: f64,
-    /// What 99.9 % of them do not exceed (nearest rank).
+    /// Their 99.9th percentile (nearest rank).
     pub percentile_99_9: f64,
     /// The greatest.
     pub worst: f64,
 }
 
 impl Spread {
-    /// What some errors, none of them below 0, come to.
+    /// Statistics of errors, none of them below 0.
     #[must_use]
     pub fn of(mut errors: Vec<f64>) -> Self {
         errors.sort_unstable_by(f64::total_cmp);

@@ -1,8 +1,7 @@
 //! Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004).
 //!
-//! Gaussian windows of 11 x 11 pixels with a standard deviation of 1.5, only
-//! where they lie inside the picture; `K1 = 0.01`, `K2 = 0.03`, range 255;
-//! the mean over all windows. A picture with a side below 11 pixels is one
+//! The mean over all Gaussian windows of 11 x 11 pixels inside the picture, with a standard deviation
+//! of 1.5, `K1 = 0.01`, `K2 = 0.03` and range 255. A picture with a side below 11 pixels is one
 //! window with equal weights.
 
 const RADIUS: usize = 5;

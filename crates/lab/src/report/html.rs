@@ -52,7 +52,7 @@ figcaption{color:var(--soft);font-size:.88rem;margin-top:.3rem}
 .key span{color:var(--soft);font-size:.84rem}
 ";
 
-/// Bytes of text that stand in one line of a cell; more are broken into several.
+/// Most bytes of text in one line of a cell.
 const LONG: usize = 60;
 
 /// Text as HTML shows it.
@@ -113,7 +113,7 @@ impl Page {
         self.push(format_args!("<pre>{}</pre>", escaped(text)));
     }
 
-    /// A few figures that matter most: value, and what it is.
+    /// Key figures: value and meaning.
     pub fn key_figures(&mut self, figures: &[(String, String)]) {
         let mut html = String::from("<div class=\"key\">");
         for (value, what) in figures {
@@ -164,7 +164,7 @@ impl Page {
         ));
     }
 
-    /// Pictures side by side: PNG files and what they show.
+    /// Pictures side by side: PNG files and captions.
     pub fn pictures(&mut self, pictures: &[(&[u8], &str)]) {
         let mut html = String::from("<div class=\"row\">");
         for (png, caption) in pictures {

@@ -1,8 +1,7 @@
-//! Results for people and programs: tables, plots, pages. Knows nothing of
-//! what is measured.
+//! Results for people and programs: rows, tables, plots, pages. Independent of the experiments.
 
 pub mod html;
 pub mod plot;
 pub mod table;
 
-pub use table::{Cell, Table, grouped};
+pub use table::{Cell, Row, Table, grouped};

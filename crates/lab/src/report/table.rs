@@ -1,25 +1,24 @@
-//! Results as rows and columns, for people and for programs.
+//! Results as named cells in rows, written as text, Markdown, CSV and JSON.
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde_json::Value;
 
 /// One entry.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// Words.
     Text(String),
     /// A whole number.
     Count(u64),
-    /// A number, and the digits after the point that people see.
-    Number(f64, #[serde(skip)] usize),
+    /// A number, and how many digits after the point people see.
+    Number(f64, usize),
     /// Empty.
     None,
 }
 
 impl Cell {
-    /// A time in milliseconds: three significant digits or more.
+    /// A time in milliseconds with three significant digits.
     #[must_use]
     pub fn ms(time: f64) -> Self {
         let digits = match time {
@@ -37,7 +36,17 @@ impl Cell {
         Self::Number(value, 3)
     }
 
-    /// As people read it; digits of whole numbers in groups of three.
+    /// The value as a number, if it is one.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Count(count) => Some(*count as f64),
+            Self::Number(value, _) => Some(*value),
+            Self::Text(_) | Self::None => None,
+        }
+    }
+
+    /// The cell for people: whole numbers have their digits in groups of three.
     #[must_use]
     pub fn for_people(&self) -> String {
         match self {
@@ -48,7 +57,7 @@ impl Cell {
         }
     }
 
-    /// As programs read it: all digits, nothing for nothing.
+    /// The cell for programs: all digits, and an empty string for no value.
     fn for_programs(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -57,11 +66,34 @@ impl Cell {
             Self::None => String::new(),
         }
     }
+
+    fn json(&self) -> Value {
+        match self {
+            Self::Text(text) => text.as_str().into(),
+            Self::Count(count) => (*count).into(),
+            // JSON has no infinity.
+            Self::Number(value, _) if value.is_infinite() => value.to_string().into(),
+            Self::Number(value, _) => (*value).into(),
+            Self::None => Value::Null,
+        }
+    }
+}
+
+impl serde::Serialize for Cell {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        self.json().serialize(to)
+    }
 }
 
 impl From<&str> for Cell {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
     }
 }
 
@@ -77,16 +109,69 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
     }
 }
 
+/// One measurement: cells by the names of their columns, most important first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Row(Vec<(&'static str, Cell)>);
+
+impl Row {
+    /// Sets a cell.
+    pub fn put(&mut self, name: &'static str, cell: impl Into<Cell>) {
+        let cell = cell.into();
+        match self.0.iter_mut().find(|(found, _)| *found == name) {
+            Some((_, old)) => *old = cell,
+            None => self.0.push((name, cell)),
+        }
+    }
+
+    /// A cell; [`Cell::None`] if it was never set.
+    #[must_use]
+    pub fn get(&self, name: &str) -> &Cell {
+        let found = self.0.iter().find(|(found, _)| *found == name);
+        found.map_or(&Cell::None, |(_, cell)| cell)
+    }
+
+    /// A cell as a number; not a number if it is none.
+    #[must_use]
+    pub fn number(&self, name: &str) -> f64 {
+        self.get(name).number().unwrap_or(f64::NAN)
+    }
+
+    /// A cell as text; empty if it was never set.
+    #[must_use]
+    pub fn text(&self, name: &str) -> String {
+        match self.get(name) {
+            Cell::None => String::new(),
+            cell => cell.for_people(),
+        }
+    }
+
+    /// The cells that are set, as a JSON object.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let set = self.0.iter().filter(|(_, cell)| *cell != Cell::None);
+        set.map(|(name, cell)| ((*name).to_owned(), cell.json()))
+            .collect()
+    }
+}
+
+/// Most letters of columns that blocks repeat.
+const MOST_KEY_WIDTH: usize = 60;
+
 /// A table. Every row is as long as `columns`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// What it shows.
+    /// Its title.
     pub title: String,
-    /// What the columns hold; in words that CSV readers take as names too.
+    /// The columns' names.
     pub columns: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<Cell>>,
 }
+
+/// Most letters of a line of text.
+const TEXT_WIDTH: usize = 100;
+/// Most letters of a line of a cell; longer cells have several lines.
+const CELL_WIDTH: usize = 40;
 
 impl Table {
     /// A table without rows.
@@ -99,11 +184,33 @@ impl Table {
         }
     }
 
-    /// A table without rows whose columns are named in a line, with blanks between them.
+    /// A table without rows. `columns` has the names with blanks between them.
     #[must_use]
     pub fn of(title: impl Into<String>, columns: &'static str) -> Self {
         let columns: Vec<&'static str> = columns.split_whitespace().collect();
         Self::new(title, &columns)
+    }
+
+    /// A table of measurements, with every column that any of them has.
+    #[must_use]
+    pub fn collect(title: impl Into<String>, rows: &[Row]) -> Self {
+        let mut columns: Vec<&'static str> = Vec::new();
+        for (name, _) in rows.iter().flat_map(|row| &row.0) {
+            if !columns.contains(name) {
+                columns.push(name);
+            }
+        }
+        Self::select(title, rows, &columns)
+    }
+
+    /// A table of some columns of measurements.
+    #[must_use]
+    pub fn select(title: impl Into<String>, rows: &[Row], columns: &[&'static str]) -> Self {
+        let cells = |row: &Row| columns.iter().map(|name| row.get(name).clone()).collect();
+        Self {
+            rows: rows.iter().map(cells).collect(),
+            ..Self::new(title, columns)
+        }
     }
 
     /// Whether a column has an entry in words, which are set to the left.
@@ -116,9 +223,11 @@ impl Table {
     /// The table without some columns.
     #[must_use]
     pub fn without(&self, names: &[&str]) -> Self {
-        let kept: Vec<usize> = (0..self.columns.len())
-            .filter(|&column| !names.contains(&self.columns[column]))
-            .collect();
+        self.keep(|column| !names.contains(&self.columns[column]))
+    }
+
+    fn keep(&self, is_kept: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.columns.len()).filter(|&c| is_kept(c)).collect();
         let rows = self.rows.iter();
         Self {
             title: self.title.clone(),
@@ -127,6 +236,100 @@ impl Table {
                 .map(|row| kept.iter().map(|&column| row[column].clone()).collect())
                 .collect(),
         }
+    }
+
+    /// The table without columns that are empty or the same in every row. Their values are in the
+    /// title.
+    #[must_use]
+    pub fn condensed(&self) -> Self {
+        let is_constant = |column: usize| {
+            let mut rows = self.rows.iter().map(|row| &row[column]);
+            let first = rows.next();
+            self.rows.len() > 1 && rows.all(|cell| Some(cell) == first)
+        };
+        let constants = (0..self.columns.len()).filter(|&c| is_constant(c));
+        let told: Vec<String> = constants
+            .filter(|&column| self.rows[0][column] != Cell::None)
+            .map(|column| {
+                let name = self.columns[column].replace('_', " ");
+                format!("{name} {}", self.rows[0][column].for_people())
+            })
+            .collect();
+        let mut kept = self.keep(|column| !is_constant(column));
+        if !told.is_empty() {
+            kept.title = format!("{}: {}", kept.title, told.join(", "));
+        }
+        kept
+    }
+
+    /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
+    /// Columns without room go to a second block, which begins with the first columns of words again.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut columns: Vec<Vec<Vec<String>>> = Vec::new();
+        for (column, name) in self.columns.iter().enumerate() {
+            let head = name.split('_').map(str::to_owned).collect();
+            let cells = self.rows.iter().map(|row| &row[column]);
+            let cells = cells.map(|cell| wrapped(&cell.for_people(), CELL_WIDTH));
+            columns.push(std::iter::once(head).chain(cells).collect());
+        }
+        let width = |column: usize| {
+            let lines = columns[column].iter().flatten();
+            lines.map(|line| line.chars().count()).max().unwrap_or(0)
+        };
+        let mut text = wrapped(&self.title, TEXT_WIDTH).join("\n");
+        let mut keys: Vec<usize> = vec![0];
+        let mut key_width = width(0);
+        for column in (1..columns.len()).take_while(|&column| self.is_of_words(column)) {
+            key_width += width(column) + 2;
+            if key_width < MOST_KEY_WIDTH {
+                keys.push(column);
+            }
+        }
+        let taken = |block: &[usize]| block.iter().map(|&c| width(c) + 2).sum::<usize>();
+        let mut block: Vec<usize> = Vec::new();
+        for column in 0..columns.len() {
+            if taken(&block) + width(column) > TEXT_WIDTH && block.len() > keys.len() {
+                text += &self.block(&columns, &block, width);
+                text.push('\n');
+                block.clone_from(&keys);
+            }
+            block.push(column);
+        }
+        text + &self.block(&columns, &block, width)
+    }
+
+    fn block(
+        &self,
+        columns: &[Vec<Vec<String>>],
+        block: &[usize],
+        width: impl Fn(usize) -> usize,
+    ) -> String {
+        let mut text = String::from("\n");
+        for row in 0..=self.rows.len() {
+            let lines = block.iter().map(|&column| columns[column][row].len()).max();
+            let lines = lines.unwrap_or(0);
+            for at in 0..lines {
+                let mut line = String::new();
+                for &column in block {
+                    let cell = &columns[column][row];
+                    // Heads stand on the table, cells hang from their line.
+                    let at = match row {
+                        0 => (at + cell.len()).checked_sub(lines),
+                        _ => Some(at),
+                    };
+                    let cell = at.and_then(|at| cell.get(at)).map_or("", String::as_str);
+                    let width = width(column);
+                    // Writing to a string does not fail.
+                    let _ = match self.is_of_words(column) {
+                        true => write!(line, "{cell:<width$}  "),
+                        false => write!(line, "{cell:>width$}  "),
+                    };
+                }
+                text = text + "\n" + line.trim_end();
+            }
+        }
+        text
     }
 
     /// The table in CSV (RFC 4180): a line of names, then the rows.
@@ -162,6 +365,23 @@ impl Table {
     }
 }
 
+/// A text in lines of at most so many letters, broken at blanks; longer words stay whole.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines.len() - 1;
+        let letters = lines[line].chars().count() + 1 + word.chars().count();
+        if lines[line].is_empty() {
+            lines[line] += word;
+        } else if letters <= width {
+            lines[line] = format!("{} {word}", lines[line]);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
 /// A CSV field, in quotes where it must be.
 fn quoted(field: &str) -> String {
     if field.contains(['"', ',', '\n', '\r']) {
@@ -189,50 +409,76 @@ pub fn grouped(number: impl Into<u128>) -> String {
 mod tests {
     use super::*;
 
-    fn table() -> Table {
-        let mut table = Table::new("Two scenes", &["scene", "ms", "records"]);
+    fn rows() -> [Row; 2] {
         let row = |scene: &str, ms, records: Option<u64>| {
-            vec![Cell::from(scene), Cell::ms(ms), Cell::from(records)]
+            let mut row = Row::default();
+            row.put("scene", scene);
+            row.put("frame_ms", Cell::ms(ms));
+            row.put("size", 64u64);
+            if records.is_some() {
+                row.put("records", records);
+            }
+            row
         };
-        table
-            .rows
-            .push(row("gen:menger,depth=2", 12.345, Some(1_234_567)));
-        table.rows.push(row("a \"b\" | c", 0.5, None));
-        table
+        [
+            row("gen:menger,depth=2", 12.345, Some(1_234_567)),
+            row("a \"b\" | c", 0.5, None),
+        ]
+    }
+
+    #[test]
+    fn rows_in_every_form() {
+        let table = Table::collect("Two", &rows());
+        assert_eq!(
+            table.csv(),
+            "scene,frame_ms,size,records\r\n\"gen:menger,depth=2\",12.345,64,1234567\r\n\
+             \"a \"\"b\"\" | c\",0.5,64,\r\n"
+        );
+        let less = table.without(&["size", "nothing"]);
+        assert_eq!(
+            less.markdown(),
+            "**Two**\n\n| scene | frame_ms | records |\n|---|--:|--:|\n\
+             | gen:menger,depth=2 | 12.3 | 1,234,567 |\n| a \"b\" \\| c | 0.500 | - |\n"
+        );
+        assert_eq!(
+            table.condensed().text(),
+            "Two: size 64\n\n\
+             \x20                   frame\n\
+             scene                  ms    records\n\
+             gen:menger,depth=2   12.3  1,234,567\n\
+             a \"b\" | c           0.500          -"
+        );
+        assert_eq!(
+            rows()[1].json(),
+            serde_json::json!({ "scene": "a \"b\" | c", "frame_ms": 0.5, "size": 64 })
+        );
+        assert_eq!(Cell::Number(f64::INFINITY, 1).json(), "inf");
+    }
+
+    #[test]
+    fn wide_tables_fit_a_terminal() {
+        let names = ["a_first", "b", "c", "d"];
+        let mut table = Table::new("word ".repeat(40), &names);
+        let long = "letters ".repeat(5);
+        table.rows.push(vec![Cell::from(long.as_str()); 4]);
+        let text = table.text();
+        assert!(text.lines().all(|line| line.len() <= TEXT_WIDTH), "{text}");
+        assert_eq!(text.matches("first").count(), 3, "{text}");
+        let keyed = Table {
+            rows: vec![vec![
+                "k".into(),
+                long.as_str().into(),
+                Cell::None,
+                long.as_str().into(),
+            ]],
+            ..Table::of("t", "key a b c")
+        };
+        assert_eq!(keyed.text().matches("key").count(), 1, "{}", keyed.text());
     }
 
     #[test]
     fn groups_of_digits() {
-        for (number, text) in [
-            (0u64, "0"),
-            (999, "999"),
-            (1000, "1,000"),
-            (1_234_567, "1,234,567"),
-        ] {
-            assert_eq!(grouped(number), text);
-        }
-    }
-
-    #[test]
-    fn csv_keeps_digits_and_quotes() {
-        let expected = "scene,ms,records\r\n\
-                        \"gen:menger,depth=2\",12.345,1234567\r\n\
-                        \"a \"\"b\"\" | c\",0.5,\r\n";
-        assert_eq!(table().csv(), expected);
-    }
-
-    #[test]
-    fn columns_can_be_left_out() {
-        let less = table().without(&["ms", "nothing"]);
-        assert_eq!(less.columns, ["scene", "records"]);
-        assert_eq!(less.rows[1], [Cell::from("a \"b\" | c"), Cell::None]);
-    }
-
-    #[test]
-    fn markdown_is_for_people() {
-        let expected = "**Two scenes**\n\n| scene | ms | records |\n|---|--:|--:|\n\
-                        | gen:menger,depth=2 | 12.3 | 1,234,567 |\n\
-                        | a \"b\" \\| c | 0.500 | - |\n";
-        assert_eq!(table().markdown(), expected);
+        let texts = [0u64, 999, 1000, 1_234_567].map(grouped);
+        assert_eq!(texts, ["0", "999", "1,000", "1,234,567"]);
     }
 }

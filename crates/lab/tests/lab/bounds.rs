@@ -1,5 +1,5 @@
-//! The bounds on a vertex's error hold on random frames and formats, and are
-//! not much larger than what is seen.
+//! The bounds on a vertex's error hold on random frames and formats, and are not much larger than
+//! the errors.
 
 use glam::DVec3;
 use proptest::prelude::*;

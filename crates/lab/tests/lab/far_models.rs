@@ -1,102 +1,96 @@
-//! Models of the shared data: what holds of the city holds of what people made.
+//! Far voxels along a walk: neither threads, occlusion, latency nor a memory budget changes a pixel.
 
-use std::path::PathBuf;
-
+use glam::{DAffine3, DQuat, DVec3};
 use shiftvox::graph::Silent;
-use shiftvox_lab::far_path::{FarPathPlan, camera};
-use shiftvox_mesh::LoadOptions;
+use shiftvox::project::Camera;
 use shiftvox_mesh::drawing::mesh_view::view_of;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
+use shiftvox_mesh::{Instances, generate};
 
-/// Where a model of the shared data is, or a note on stderr that it is skipped.
-fn model(name: &str) -> Option<PathBuf> {
-    let beside =
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
-    let path = folder.join("mesh").join(name);
-    if path.exists() {
-        return Some(path);
+/// Frames of the walk.
+const FRAMES: u32 = 5;
+
+/// The camera of a frame of Wagner et al. 2007, Fig. 5: once around, from two and a half sizes away
+/// to a third of one and back, from a little above.
+fn camera(file: &FarFile, frame: u32) -> Camera {
+    let (low, high) = file.bounds();
+    let target = (low + high) / 2.0;
+    let size = (high - low).length();
+    let way = f64::from(frame) / f64::from(FRAMES);
+    let near = 0.5 - 0.5 * (std::f64::consts::TAU * way).cos();
+    let distance = size * (2.5 + (0.33 - 2.5) * near);
+    let up = if file.y_up() { DVec3::Y } else { DVec3::Z };
+    let side = if file.y_up() { DVec3::Z } else { DVec3::X };
+    let turned = DQuat::from_axis_angle(up, std::f64::consts::TAU * way) * side;
+    Camera {
+        eye: target + (turned + up * 0.3).normalize() * distance,
+        target,
+        up,
+        fov_degrees: 50.0,
+        width: 160,
+        height: 90,
     }
-    eprintln!("skipped: mesh/{name} is not among the shared data");
-    None
 }
 
-/// Does `work` on so many threads.
-fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().unwrap().install(work)
-}
-
-/// One and two threads build the same bytes; along a walk up to the model and away, what is left out
-/// because it is hidden, answers that come late, and a budget of a quarter of the file change no pixel.
 #[test]
-#[ignore = "takes long"]
-fn nothing_but_time_changes_on_a_walk() {
+fn only_times_change_on_a_walk() {
+    // Blocks of houses behind, beside and above each other.
+    let (kind, seed) = generate::parse("mesh:village,seed=1").unwrap();
+    let village = generate::generate(kind, seed);
+    let (low, high) = village.bounds();
+    let places = (0..27).map(|at| {
+        let steps = DVec3::new(f64::from(at % 3), f64::from(at / 3 % 3), f64::from(at / 9));
+        DAffine3::from_translation(steps * (high - low))
+    });
+    let mesh = Instances::new(village, places.collect());
+    let options = BuildOptions {
+        rays: Some(80_000),
+        leaf_triangles: 500,
+        ..BuildOptions::default()
+    };
+    let bytes = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let built = || build(&mesh, &options, &Silent).unwrap();
+        encode(&pool.build().unwrap().install(built)).unwrap()
+    });
+    assert!(bytes[0] == bytes[1], "two threads build other bytes");
     let folder = tempfile::tempdir().unwrap();
-    for name in ["as_AC14-FZK-Haus.obj"] {
-        let Some(path) = model(name) else { continue };
-        let (mesh, _) =
-            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
-        let options = BuildOptions {
-            rays: Some(150_000),
-            leaf_triangles: 500,
-            ..BuildOptions::default()
-        };
-        let bytes = |threads| {
-            let built = || build(&mesh, &options, &Silent).unwrap();
-            encode(&on_threads(threads, built)).unwrap()
-        };
-        let bytes = [bytes(1), bytes(2)];
-        assert!(bytes[0] == bytes[1], "{name}");
-        let path = folder.path().join(name).with_extension("far");
-        std::fs::write(&path, &bytes[0]).unwrap();
-        let file = FarFile::open(&path).unwrap();
-        let budget = bytes[0].len() as u64 / 4;
-        let within = FarFile::open_within(&path, budget);
-        let plan = FarPathPlan {
-            frames: 10,
-            size: (160, 90),
-            voxel_px: 1.0,
-            opacities: Vec::new(),
-            culling: true,
-            runs: 1,
-        };
-        let mut hidden = 0;
-        for opacity in [Opacity::None, Opacity::Six] {
-            let mut viewers: Vec<(usize, FarViewer<'_>)> =
-                [0, 1, 4].map(|late| (late, FarViewer::new(&file))).into();
-            viewers.extend(within.iter().map(|file| (0, FarViewer::new(file))));
-            for frame in 0..plan.frames {
-                let view = view_of(&camera(&file, frame, &plan), file.bounds()).unwrap();
-                let all = ViewOptions {
-                    opacity,
-                    culling: false,
-                    ..ViewOptions::default()
+    let path = folder.path().join("village.far");
+    std::fs::write(&path, &bytes[0]).unwrap();
+    let file = FarFile::open(&path).unwrap();
+    let budget = bytes[0].len() as u64 / 4;
+    let within = FarFile::open_within(&path, budget);
+    let mut hidden = 0;
+    for opacity in [Opacity::None, Opacity::Six] {
+        let mut viewers: Vec<(usize, FarViewer<'_>)> =
+            [0, 1, 4].map(|late| (late, FarViewer::new(&file))).into();
+        viewers.extend(within.iter().map(|file| (0, FarViewer::new(file))));
+        for frame in 0..FRAMES {
+            let view = view_of(&camera(&file, frame), file.bounds()).unwrap();
+            let all = ViewOptions {
+                opacity,
+                culling: false,
+                ..ViewOptions::default()
+            };
+            let (expected, _) = FarViewer::new(&file).draw(&view, &all).unwrap();
+            for (number, (late, viewer)) in viewers.iter_mut().enumerate() {
+                let culled = ViewOptions {
+                    culling: true,
+                    late: *late,
+                    ..all
                 };
-                let (expected, _) = FarViewer::new(&file).draw(&view, &all).unwrap();
-                for (number, (late, viewer)) in viewers.iter_mut().enumerate() {
-                    let culled = ViewOptions {
-                        culling: true,
-                        late: *late,
-                        ..all
-                    };
-                    let (picture, counts) = viewer.draw(&view, &culled).unwrap();
-                    assert!(
-                        picture == expected,
-                        "{name}, {opacity:?}, frame {frame}, {number}"
-                    );
-                    hidden += counts.hidden;
-                }
+                let (picture, counts) = viewer.draw(&view, &culled).unwrap();
+                assert!(picture == expected, "{opacity:?}, {frame}, {number}");
+                hidden += counts.hidden;
             }
         }
-        assert!(hidden > 40, "{name}: {hidden} nodes were hidden");
-        if let Ok(within) = &within {
-            let resident = within.resident().unwrap();
-            assert!(resident.most_bytes <= budget, "{name}: {resident:?}");
-            assert!(resident.released > 0, "{name}: {resident:?}");
-        }
-        eprintln!("{name}: {} bytes, {hidden} nodes hidden", bytes[0].len());
+    }
+    assert!(hidden > 0, "no node was hidden");
+    if let Ok(within) = &within {
+        let resident = within.resident().unwrap();
+        assert!(resident.most_bytes <= budget, "{resident:?}");
+        assert!(resident.released > 0, "{resident:?}");
     }
 }

@@ -1,5 +1,5 @@
-//! Figures of the hardware model, computed again with nothing of the model's: the tables are read as plain TOML, what
-//! the machine does is watched by a probe of this file, and the rest is arithmetic.
+//! Figures of the hardware model, computed again without the model. The tables are read as plain
+//! TOML, a probe of this file counts the machine's events, and the rest is arithmetic.
 
 use hwmodel::cost::{CostTable, Costing, Goal};
 use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
@@ -15,7 +15,7 @@ use shiftvox_lab::model::{clock, frame};
 
 use crate::scenes::*;
 
-/// What a frame does, event by event.
+/// The events of a frame.
 #[derive(Default)]
 struct Log {
     /// Class, bits, times.
@@ -60,8 +60,8 @@ fn logged(graph: &Graph, setup: &FrameSetup) -> Log {
     drawn.unwrap().1
 }
 
-/// One voxel, and a picture of `side` samples a side that looks at the middle of its face, so that no line through an
-/// edge crosses it.
+/// One voxel, and a picture of `side` samples per side of the middle of its face, which no line
+/// through an edge crosses.
 fn one_voxel(side: u32) -> (Graph, FrameSetup) {
     let mut builder = Builder::new(BuildOptions::default());
     builder.push(Voxel::default());

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::PointFigures;
 use super::lines::PointLine;
-use crate::error::dominated;
+use crate::report::plot::dominated;
 
 /// What points are compared by; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

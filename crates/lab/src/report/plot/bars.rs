@@ -1,25 +1,27 @@
-//! Bars, whole and in parts.
+//! Bars, whole and in parts, with an error bar at their end.
 
-use super::canvas::{Anchor, Canvas, Color};
+use super::canvas::{Anchor, Canvas};
 use super::{COLORS, TITLE_HEIGHT, WIDTH};
 use crate::report::table::Cell;
-
-/// A bar with its name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bar {
-    /// What stands beside it.
-    pub name: String,
-    /// Its length, 0 or more.
-    pub value: f64,
-}
 
 /// A bar made of parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
-    /// What stands beside it.
+    /// Its label.
     pub name: String,
     /// The lengths of its parts, 0 or more.
     pub values: Vec<f64>,
+}
+
+/// A bar of one part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bar {
+    /// Its label.
+    pub name: String,
+    /// Its length, 0 or more.
+    pub value: f64,
+    /// Half the length of its error bar, or 0.
+    pub deviation: f64,
 }
 
 /// Height of a bar with its gap.
@@ -42,9 +44,13 @@ pub(super) fn draw(canvas: &mut Canvas, title: &str, bars: &[Bar]) {
     canvas.text(title, (14.0, 22.0), 20, Anchor::Start);
     let longest = bars.iter().map(|bar| bar.value).fold(0.0, f64::max);
     for (place, bar) in bars.iter().enumerate() {
-        let color = COLORS[place % COLORS.len()];
-        let top = row(canvas, place, &bar.name, bar.value, longest);
-        part(canvas, top, [0.0, length(bar.value, longest)], color);
+        one(canvas, place, &bar.name, &[bar.value], longest, place);
+        if bar.deviation > 0.0 {
+            let middle = TITLE_HEIGHT + BAR_HEIGHT * (place as f64 + 0.5) - 3.0;
+            let at = |value| (BAR_LEFT + length(value, longest), middle);
+            let ends = [bar.value - bar.deviation, bar.value + bar.deviation].map(at);
+            canvas.line(&ends, 0, 2, "");
+        }
     }
 }
 
@@ -53,16 +59,7 @@ pub(super) fn draw_stacked(canvas: &mut Canvas, title: &str, parts: &[String], s
     let sums = stacks.iter().map(|stack| stack.values.iter().sum());
     let longest = sums.fold(0.0, f64::max);
     for (place, stack) in stacks.iter().enumerate() {
-        let sum = stack.values.iter().sum();
-        let top = row(canvas, place, &stack.name, sum, longest);
-        let mut before = 0.0;
-        for (number, value) in stack.values.iter().enumerate() {
-            let ends = [before, before + value].map(|end| length(end, longest));
-            before += value;
-            if ends[1] > ends[0] {
-                part(canvas, top, ends, COLORS[number % COLORS.len()]);
-            }
-        }
+        one(canvas, place, &stack.name, &stack.values, longest, 0);
     }
     let (mut left, mut top) = (14.0, TITLE_HEIGHT + BAR_HEIGHT * stacks.len() as f64 + 8.0);
     for (number, name) in parts.iter().enumerate() {
@@ -78,26 +75,31 @@ pub(super) fn draw_stacked(canvas: &mut Canvas, title: &str, parts: &[String], s
     }
 }
 
-/// Names of a bar and its value; returns its top.
-fn row(canvas: &mut Canvas, place: usize, name: &str, value: f64, longest: f64) -> f64 {
+/// A bar with its name and the sum of its parts; colours begin at a number.
+fn one(
+    canvas: &mut Canvas,
+    place: usize,
+    name: &str,
+    values: &[f64],
+    longest: f64,
+    first_color: usize,
+) {
     let top = TITLE_HEIGHT + BAR_HEIGHT * place as f64;
     let middle = top + BAR_HEIGHT / 2.0 - 3.0;
     canvas.text(name, (14.0, middle), 14, Anchor::Start);
-    let right = BAR_LEFT + length(value, longest) + 6.0;
-    canvas.text(
-        &Cell::ms(value).for_people(),
-        (right, middle),
-        14,
-        Anchor::Start,
-    );
-    top
-}
-
-fn part(canvas: &mut Canvas, top: f64, [left, right]: [f64; 2], color: Color) {
-    canvas.rectangle(
-        [BAR_LEFT + left, top, right - left, BAR_HEIGHT - 6.0],
-        color,
-    );
+    let mut before = 0.0;
+    for (number, value) in values.iter().enumerate() {
+        let (left, right) = (length(before, longest), length(before + value, longest));
+        before += value;
+        if right > left {
+            let color = COLORS[(first_color + number) % COLORS.len()];
+            let place = [BAR_LEFT + left, top, right - left, BAR_HEIGHT - 6.0];
+            canvas.rectangle(place, color);
+        }
+    }
+    let right = BAR_LEFT + length(before, longest) + 6.0;
+    let value = Cell::ms(before).for_people();
+    canvas.text(&value, (right, middle), 14, Anchor::Start);
 }
 
 fn length(value: f64, longest: f64) -> f64 {

@@ -20,7 +20,7 @@ pub enum Scale {
 /// An axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What it measures.
+    /// Its label.
     pub label: String,
     /// How values lie along it.
     pub scale: Scale,
@@ -33,7 +33,7 @@ pub struct Point {
     pub x: f64,
     /// Along the axis up.
     pub y: f64,
-    /// What stands beside it.
+    /// Its label.
     pub label: Option<String>,
 }
 
@@ -46,7 +46,7 @@ impl From<(f64, f64)> for Point {
 /// Points of one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What the legend calls it.
+    /// Its name in the legend.
     pub name: String,
     /// The points, in the order in which they are joined.
     pub points: Vec<Point>,
@@ -56,6 +56,8 @@ pub struct Series {
     pub dots: bool,
     /// Whether it is grey: there for comparison.
     pub grey: bool,
+    /// Half the lengths of the points' error bars, in their order, or empty.
+    pub deviations: Vec<f64>,
 }
 
 impl Series {
@@ -63,11 +65,8 @@ impl Series {
     #[must_use]
     pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
-            name: name.into(),
-            points: points.into_iter().map(Point::from).collect(),
             line: true,
-            dots: true,
-            grey: false,
+            ..Self::dots(name, points.into_iter().map(Point::from).collect())
         }
     }
 
@@ -80,6 +79,7 @@ impl Series {
             line: false,
             dots: true,
             grey: false,
+            deviations: Vec::new(),
         }
     }
 
@@ -99,13 +99,13 @@ impl Series {
 /// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// What stands above it.
+    /// Its title.
     pub title: String,
     /// The axis across.
     pub x: Axis,
     /// The axis up.
     pub y: Axis,
-    /// What is drawn.
+    /// Its series.
     pub series: Vec<Series>,
     /// A level to compare with, such as a noise floor: a broken line, and its name.
     pub level: Option<(f64, String)>,
@@ -185,8 +185,9 @@ impl Scaled {
         (along(value) - from) / (to - from)
     }
 
-    /// Values with a line and a number: powers of ten, of few decades also twice and five times these; else about
-    /// eight multiples of one, two or five times a power of ten.
+    /// Values with a grid line and a number. A logarithmic axis has powers of ten, and twice and five
+    /// times these if it has few decades. A linear axis has about eight multiples of one, two or
+    /// five times a power of ten.
     fn ticks(&self) -> Vec<f64> {
         let Range { start, end } = self.ends;
         if self.scale == Scale::Log {
@@ -299,6 +300,13 @@ pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
         if series.dots {
             places.iter().for_each(|&at| canvas.dot(at, color));
         }
+        for (point, deviation) in series.points.iter().zip(&series.deviations) {
+            let ends = [point.y - deviation, point.y + deviation];
+            if has_place(chart, point) && (chart.y.scale == Scale::Linear || ends[0] > 0.0) {
+                let across = right_of(point.x);
+                canvas.line(&ends.map(|end| (across, below(end))), color, 1, "");
+            }
+        }
         for point in points {
             let Some(label) = &point.label else { continue };
             let (at, letters) = (pixel(point), label.chars().count());
@@ -357,15 +365,15 @@ fn has_place(chart: &Chart, point: &Point) -> bool {
     on(&chart.x, point.x) && on(&chart.y, point.y)
 }
 
-/// What a label takes, pixels: left, right, top, bottom.
+/// The rectangle of a label, pixels: left, right, top, bottom.
 type Room = [i32; 4];
 
 /// Height of a label, and width of one of its letters, pixels.
 const LETTER: (i32, i32) = (13, 7);
 
-/// Where a label of so many letters stands beside its point, from the point: the first place that
-/// no other label takes and no dot is in, or at least no other label; `None` where there is none
-/// between the ends of the plot.
+/// The offset of a label of so many letters from its point: the first free place. A place without
+/// labels and dots is best, a place without labels is second. `None` if there is no place within
+/// the plot.
 fn free_place(
     at: (i32, i32),
     letters: usize,
@@ -407,31 +415,23 @@ fn free_place(
     Some(chosen)
 }
 
-/// The corner of the plotting area with the fewest points in it, as whether it is right and whether it is lower; of
-/// equal ones the upper left comes first. Everything in pixels of the picture.
+/// The corner of the plotting area with the fewest points in it, as whether it is right and whether
+/// it is lower; of equal ones the upper left comes first. Everything in pixels of the picture.
 fn legend_corner((across, down): (Range<i32>, Range<i32>), places: &[(i32, i32)]) -> (bool, bool) {
-    // The room of a legend of seven lines.
+    // The size of a legend of seven lines.
     const ROOM: (i32, i32) = (240, 180);
-    let left = across.start..across.start + ROOM.0;
-    let right = across.end - ROOM.0..across.end;
-    let upper = down.start..down.start + ROOM.1;
-    let lower = down.end - ROOM.1..down.end;
-    let corners = [
-        (&left, &upper, (false, false)),
-        (&right, &upper, (true, false)),
-        (&left, &lower, (false, true)),
-        (&right, &lower, (true, true)),
-    ];
-    let within = |x: &Range<i32>, y: &Range<i32>| {
-        let inside = places
-            .iter()
-            .filter(|p| x.contains(&p.0) && y.contains(&p.1));
-        inside.count()
+    let is_near = |at: i32, ends: &Range<i32>, is_end: bool, room: i32| match is_end {
+        true => (ends.end - room..ends.end).contains(&at),
+        false => (ends.start..ends.start + room).contains(&at),
     };
-    corners
-        .into_iter()
-        .min_by_key(|(x, y, _)| within(x, y))
-        .map_or((false, false), |corner| corner.2)
+    let points = |&(is_right, is_lower): &(bool, bool)| {
+        let near = places.iter().filter(|(x, y)| {
+            is_near(*x, &across, is_right, ROOM.0) && is_near(*y, &down, is_lower, ROOM.1)
+        });
+        near.count()
+    };
+    let corners = [(false, false), (true, false), (false, true), (true, true)];
+    corners.into_iter().min_by_key(points).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -500,30 +500,20 @@ mod tests {
 
     #[test]
     fn points_without_a_place_are_left_out() {
+        let point = |x, y, label: &str| Point {
+            x,
+            y,
+            label: Some(label.to_owned()),
+        };
+        let points = vec![
+            (1.0, 2.0).into(),
+            (0.0, 2.0).into(),
+            point(2.0, f64::INFINITY, "gone"),
+            point(3.0, 4.0, "here"),
+        ];
         let chart = Chart {
             level: Some((0.5, "noise".to_owned())),
-            ..Chart::growth(
-                "t",
-                "x",
-                "y",
-                vec![Series::dots(
-                    "s",
-                    vec![
-                        (1.0, 2.0).into(),
-                        (0.0, 2.0).into(),
-                        Point {
-                            x: 2.0,
-                            y: f64::INFINITY,
-                            label: Some("gone".to_owned()),
-                        },
-                        Point {
-                            x: 3.0,
-                            y: 4.0,
-                            label: Some("here".to_owned()),
-                        },
-                    ],
-                )],
-            )
+            ..Chart::growth("t", "x", "y", vec![Series::dots("s", points)])
         };
         let text = super::super::svg(&[super::super::Panel::Chart(chart)]);
         assert_eq!(text.matches("<circle").count(), 2);

@@ -3,11 +3,13 @@
 mod bars;
 mod canvas;
 mod chart;
+mod of_rows;
 
 use canvas::{Canvas, Color};
 
 pub use bars::{Bar, Stack};
 pub use chart::{Axis, Chart, Point, Scale, Series};
+pub use of_rows::{ColumnAxis, RowPlot, dominated, dominates};
 
 /// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,16 +18,16 @@ pub enum Panel {
     Chart(Chart),
     /// Bars from zero.
     Bars {
-        /// What stands above it.
+        /// Its title.
         title: String,
         /// The bars, from the top.
         bars: Vec<Bar>,
     },
     /// Bars made of parts.
     Stacked {
-        /// What stands above it.
+        /// Its title.
         title: String,
-        /// What the parts are called, in their order.
+        /// The names of the parts, in their order.
         parts: Vec<String>,
         /// The bars, from the top.
         stacks: Vec<Stack>,
@@ -41,7 +43,7 @@ const COLORS: [Color; 9] = [
     0x00_72b2, 0xd5_5e00, 0x00_9e73, 0xcc_79a7, 0xe6_9f00, 0x56_b4e9, 0x00_0000, 0x96_6e3c,
     0x78_78be,
 ];
-/// What is there for comparison only.
+/// The colour of series for comparison.
 const GREY: Color = 0xa8_a8a8;
 
 impl Panel {
@@ -84,7 +86,7 @@ fn in_short(number: f64) -> String {
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
-        // Three digits, or the ticks of an axis of few would be alike.
+        // Fewer than three digits could make neighbouring ticks equal.
         let text = format!("{number:.2e}");
         let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
         let digits = digits.trim_end_matches('0').trim_end_matches('.');
@@ -112,6 +114,7 @@ mod tests {
                 bars: vec![Bar {
                     name: "a & b".to_owned(),
                     value: 12.5,
+                    deviation: 1.0,
                 }],
             },
             Panel::Stacked {

@@ -1,5 +1,4 @@
-//! The picture that others are measured against: many exact rays a pixel, or
-//! many samples of a mesh's triangles.
+//! References: pictures of many exact rays per pixel, or of many samples of a mesh's triangles.
 
 use rayon::prelude::*;
 
@@ -19,7 +18,7 @@ use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
 pub struct Sampling {
     /// Strata of a pixel along each axis, as a power of two, 0..=4; one sample each.
     pub strata_log2: u32,
-    /// Which places in the strata are taken: another seed, another picture.
+    /// Seed of the places in the strata.
     pub seed: u64,
 }
 
@@ -32,26 +31,23 @@ pub struct Reference {
     pub height: u32,
     /// sRGB, opaque, rounded once after the filter.
     pub rgba: Vec<[u8; 4]>,
-    /// Share of each pixel's samples that see something, 0 to 1.
+    /// Covered share of each pixel, 0 to 1.
     pub shares: Vec<f32>,
 }
 
 /// Most levels by which places in a stratum are distinguished.
 const MOST_JITTER_LEVELS: u32 = 4;
 
-/// What a reference takes of its picture's levels: a picture whose image root
-/// has more than this many is too large for one.
+/// Most levels of the image root of a picture that has a reference.
 pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
 
-/// Casts a reference of a frame (one sample a pixel: `setup.options.aa_log2`
-/// is 0) whose image root has at most [`MAX_REFERENCE_LEVELS`] levels.
+/// Casts a reference of a frame with one sample per pixel (`setup.options.aa_log2` is 0) whose image
+/// root has at most [`MAX_REFERENCE_LEVELS`] levels.
 ///
-/// The samples are those of a grid that is up to 256 times as fine as the
-/// pixels, so that the exact rays, which go down to the finest voxels whatever
-/// the frame's level of detail, start from the same integers as the frame:
-/// a pixel's strata are squares of that grid, and each has one of its grid
-/// points drawn by lot. The result depends on frame and sampling alone.
-/// `progress` advances by rows.
+/// Samples are points of a grid up to 256 times as fine as the pixels, so that the exact rays start
+/// from the same integers as the frame. Rays go down to the finest voxels whatever the frame's
+/// level of detail. A pixel's strata are squares of that grid, and one random grid point of each is
+/// taken. The result depends on frame and sampling alone. `progress` advances by rows.
 #[must_use]
 pub fn cast(
     graph: &Graph,
@@ -94,15 +90,15 @@ pub fn cast(
     }
 }
 
-/// Samples a pixel of the reference of a mesh.
+/// Samples per pixel of the reference of a mesh.
 pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 
-/// A reference of a mesh: its triangles at 256 samples a pixel, one drawn by
-/// lot in each of equal squares: another seed, another picture.
+/// A reference of a mesh: its triangles at 256 samples per pixel, one random sample in each of equal
+/// squares.
 ///
 /// # Errors
 /// When the camera cannot see, or the picture is too large.
-pub(crate) fn of_triangles(
+pub(super) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
     style: PixelStyle,
@@ -165,7 +161,7 @@ impl Pixels<'_> {
         ([r, g, b, 255], share)
     }
 
-    /// The grid point that is taken in a stratum.
+    /// The grid point that represents a stratum.
     fn place_in(&self, (x, y): (u32, u32)) -> (u32, u32) {
         let lot = mix(self.seed ^ mix(u64::from(x) << 32 | u64::from(y)));
         let mask = (1u32 << self.jitter_log2) - 1;
@@ -180,26 +176,14 @@ mod tests {
 
     use super::*;
     use shiftvox::frame::Frame;
-    use shiftvox::graph::{Placement, Silent, Store};
+    use shiftvox::graph::Silent;
     use shiftvox::picture::resolve;
     use shiftvox::project::{Engine, SetupOptions};
     use shiftvox::rays::Rays;
 
     /// One voxel, `[0, 1]^3`.
     fn cube() -> Graph {
-        Graph {
-            depth: 0,
-            root: 0,
-            mask: Store::from(vec![]),
-            first: Store::from(vec![]),
-            links: Store::from(vec![]),
-            color: Store::from(vec![[200, 40, 90]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 1,
-            placement: Placement::default(),
-        }
+        crate::test_graphs::one_node(0, 0, [200, 40, 90])
     }
 
     /// A camera that looks along y at the cube `[0, 1]^3`, whose near face is

@@ -1,4 +1,4 @@
-//! The project's own engines as a method.
+//! The image-order engines as methods.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::Organisation;
@@ -6,9 +6,10 @@ use hwmodel::{Memory, Stage};
 
 use super::cut::cut_at;
 use super::method::{Examined, Method, Refused, Samples, drawn};
-use super::vertices::vertex_levels;
+use super::vertices::vertex_errors;
 use crate::bench::MakeEngine;
 use crate::model::record::{record_bits, record_fields};
+use crate::report::Cell;
 use shiftvox::drawing::{Buffers, Drawable, GraphDrawing, GraphStyle, Shown};
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
@@ -17,12 +18,12 @@ use shiftvox::picture::npy::Values;
 use shiftvox::picture::{Background, Buffer, Rows, Shading};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
 
-/// How samples become colours.
+/// Shading and background.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PixelStyle {
     /// Shading.
     pub shading: Shading,
-    /// What is behind the object; a colour, so that pictures are opaque.
+    /// Colour behind the object.
     pub background: [u8; 3],
 }
 
@@ -39,17 +40,16 @@ impl Default for PixelStyle {
     }
 }
 
-/// Bytes that an access moves: child mask and list of a node, its colour
-/// and normal, a fill vector (four bits, a byte here), a pixel's node.
+/// Bytes per access: child mask and list of a node, its colour and normal, a fill vector (four bits,
+/// a byte here), a pixel's node.
 const NODE_BYTES: u64 = 5;
 const ATTRIBUTE_BYTES: u64 = 5;
 const FILL_VECTOR_BYTES: u64 = 1;
 const PIXEL_BYTES: u64 = 4;
 const ACCUMULATOR_BYTES: u64 = (hwmodel::memory::ACCUMULATOR_BITS as u64).div_ceil(8);
 
-/// An engine of this project with settings, on one thread. Times are the engine's; counters
-/// are those of the machine, which draws the same bits, so that methods can be
-/// compared by what the hardware would do.
+/// An engine with settings, on one thread. Times are the engine's. Counters are the machine's, which
+/// draws the same bits, so that methods can be compared by hardware work.
 #[must_use]
 pub fn voxel_method<'g>(
     graph: &'g Graph,
@@ -68,11 +68,26 @@ pub fn voxel_method<'g>(
         let mut on_cut = of_voxels(&cut, make, options, style);
         Ok(drawn(&mut on_cut, camera)?.pixels.rgba())
     };
+    let samples = 1 << options.aa_log2;
     Method {
         family: "voxels",
         name: name(engine, &options),
-        settings: settings(engine, &options),
-        kind: kind(&options),
+        settings: vec![
+            ("coverage", options.coverage.name().into()),
+            ("tolerance", tolerance_in_words(options.tolerance_px).into()),
+            ("cage", options.cage.name().into()),
+            ("bits", u64::from(options.bits).into()),
+            ("lod", options.lod_px.to_string().into()),
+            ("aa", Cell::Count(samples)),
+            ("engine", engine.into()),
+        ],
+        kind: match samples {
+            1 => options.coverage.name().to_owned(),
+            _ => format!("{}, aa {samples}", options.coverage.name()),
+        },
+        graph: Some(graph),
+        bytes: Some(graph.bytes()),
+        build_ms: None,
         drawing: Box::new(move || Box::new(drawing(graph)) as Box<dyn Drawable>),
         examine: Box::new(move |shown, camera| examine(graph, &options, shown, camera)),
         with_cut_of: (options.lod_px != 0.0).then(|| Box::new(with_cut_of) as _),
@@ -92,7 +107,7 @@ fn of_voxels(
         buffers: vec![Buffer::Voxel],
         is_hashed: false,
     };
-    // Which axis is up matters to fitted cameras alone.
+    // Only fitted cameras use the up axis.
     GraphDrawing::new(graph, Up::Z, style, move || make(1))
 }
 
@@ -119,7 +134,7 @@ fn examine(
     let handed = |(name, _): &(&str, _)| *name == "handed_to_machine";
     Ok(Examined {
         shares: shares(frame, aa_log2),
-        vertices: vertex_levels(camera, &setup, &frame.voxel),
+        vertices: vertex_errors(camera, &setup, &frame.voxel),
         counters: counters(graph, &setup)?,
         samples: Some(Samples {
             aa_log2,
@@ -130,7 +145,7 @@ fn examine(
     })
 }
 
-/// `handed`: whether the fast engine left the frame to the machine.
+/// `handed`: whether the fast engine passed the frame to the machine.
 fn remark(o: &SetupOptions, handed: bool) -> Option<String> {
     let is_paper =
         (o.cage, o.coverage) == (CageKind::Corners, Coverage::Any) && o.tolerance_px.is_infinite();
@@ -212,27 +227,7 @@ fn name(engine: &str, o: &SetupOptions) -> String {
     name
 }
 
-fn settings(engine: &str, o: &SetupOptions) -> Vec<(&'static str, String)> {
-    vec![
-        ("coverage", o.coverage.name().to_owned()),
-        ("tolerance", tolerance_in_words(o.tolerance_px)),
-        ("cage", o.cage.name().to_owned()),
-        ("bits", o.bits.to_string()),
-        ("lod", o.lod_px.to_string()),
-        ("aa", (1 << o.aa_log2).to_string()),
-        ("engine", engine.to_owned()),
-    ]
-}
-
-fn kind(o: &SetupOptions) -> String {
-    let aa = match o.aa_log2 {
-        0 => String::new(),
-        aa => format!(", aa {}", 1 << aa),
-    };
-    format!("{}{aa}", o.coverage.name())
-}
-
-/// The share of each pixel's samples that see something.
+/// The covered share of each pixel.
 fn shares(frame: &Frame, aa_log2: u32) -> Vec<f32> {
     let (side, across) = (1usize << aa_log2, frame.width as usize);
     let (width, height) = (across >> aa_log2, frame.height as usize >> aa_log2);

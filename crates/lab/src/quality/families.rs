@@ -1,7 +1,8 @@
-//! The methods of meshes: triangles, which the others have to beat, and decimated; far voxels,
-//! textured voxels, the hybrid.
+//! The methods of meshes: triangles, decimated or not, far voxels, textured voxels, and hybrids.
 
-use crate::error::{Examined, Method, PixelStyle, Refused, Sum, drawn, sums};
+use super::method::{Examined, Method, Refused, Sum, drawn, sums};
+use super::voxels::PixelStyle;
+use crate::report::Cell;
 use shiftvox::drawing::Shown;
 use shiftvox::graph::Silent;
 use shiftvox::picture::Background;
@@ -17,7 +18,7 @@ use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox_mesh::textured::TexturedFile;
 use shiftvox_mesh::textured::view::choose;
 
-/// What was counted. `solid`: parts in whose place there are triangles where there is none of them.
+/// Share and counters of a frame. `solid`: parts without which triangles are drawn alone.
 fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str]) -> Examined {
     let of_solids = sums(&shown.counters, &[("", solid)])[0].1;
     Examined {
@@ -28,76 +29,64 @@ fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str])
     }
 }
 
-/// Triangles at 1, 4, 16 or 256 samples a pixel, in the middles of equal squares.
-///
-/// # Errors
-/// With another number.
-pub fn triangles(mesh: &Mesh, per_pixel: u32, style: PixelStyle) -> Result<Method<'_>, Refused> {
-    of_triangles(
-        ("triangles", "triangles".to_owned()),
-        mesh,
-        per_pixel,
-        style,
-    )
+/// A mesh, whole or decimated, as a method draws it.
+#[derive(Debug, Clone, Copy)]
+pub struct Triangles<'m> {
+    /// The triangles.
+    pub mesh: &'m Mesh,
+    /// Original triangles per triangle: 1 if the mesh is whole.
+    pub one_of: u32,
+    /// Bytes of the mesh in compact form.
+    pub bytes: u64,
+    /// Time to decimate it, milliseconds.
+    pub build_ms: f64,
 }
 
-/// Triangles of a decimated mesh, of which one was left of so many.
+/// Triangles with `4^aa_log2` samples per pixel, in the middles of equal squares.
 ///
 /// # Errors
-/// As [`triangles`].
-pub fn decimated(
-    mesh: &Mesh,
-    one_of: u32,
-    per_pixel: u32,
+/// Without that many samples: `aa_log2` is 0, 1, 2 or 4.
+pub fn triangles(
+    of: Triangles<'_>,
+    aa_log2: u32,
     style: PixelStyle,
 ) -> Result<Method<'_>, Refused> {
-    of_triangles(
-        ("decimated", format!("decimated 1/{one_of},")),
-        mesh,
-        per_pixel,
-        style,
-    )
-}
-
-fn of_triangles<'m>(
-    (family, name): (&'static str, String),
-    mesh: &'m Mesh,
-    per_pixel: u32,
-    style: PixelStyle,
-) -> Result<Method<'m>, Refused> {
+    let per_pixel = 1u32 << (2 * aa_log2);
     let style = TrianglesStyle {
         samples: Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?,
         shading: style.shading,
         background: Background::Color(style.background),
     };
+    let (family, name) = match of.one_of {
+        1 => ("triangles", "triangles".to_owned()),
+        one_of => ("decimated", format!("decimated 1/{one_of},")),
+    };
     let counters: &[Sum] = &[("triangles", &["triangles"]), ("samples", &["samples"])];
     Ok(Method {
         family,
         name: format!("{name} {per_pixel}"),
-        settings: vec![("samples", per_pixel.to_string())],
+        settings: vec![("aa", Cell::Count(1 << aa_log2))],
         kind: family.to_owned(),
-        // Which axis is up matters to fitted cameras alone.
-        drawing: Box::new(move || Box::new(TrianglesDrawing::new(mesh, Up::Z, style, &Silent))),
+        graph: None,
+        bytes: Some(of.bytes),
+        build_ms: Some(of.build_ms),
+        // Only fitted cameras use the up axis.
+        drawing: Box::new(move || Box::new(TrianglesDrawing::new(of.mesh, Up::Z, style, &Silent))),
         examine: Box::new(|shown, _| Ok(examined(shown, counters, &[]))),
         with_cut_of: None,
     })
 }
 
-/// The name of an opacity, as the command line has it.
+/// A hybrid with voxels of at most so many pixels and `4^aa_log2` samples per pixel, made in so many
+/// milliseconds.
 #[must_use]
-pub fn opacity_in_words(opacity: Opacity) -> &'static str {
-    match opacity {
-        Opacity::None => "none",
-        Opacity::Scalar => "scalar",
-        Opacity::Six => "six",
-    }
-}
-
-/// A hybrid of voxels of at most so many pixels, with `4^aa_log2` samples a pixel.
-#[must_use]
-pub fn hybrid(file: &FarFile, voxel_px: f64, aa_log2: u32, style: PixelStyle) -> Method<'_> {
-    let samples = 1 << (2 * aa_log2);
-    let mut name = format!("hybrid {samples}");
+pub fn hybrid(
+    (file, build_ms): (&FarFile, f64),
+    voxel_px: f64,
+    aa_log2: u32,
+    style: PixelStyle,
+) -> Method<'_> {
+    let mut name = format!("hybrid {}", 1 << (2 * aa_log2));
     if voxel_px != 1.0 {
         name += &format!(" lod {voxel_px}");
     }
@@ -105,20 +94,25 @@ pub fn hybrid(file: &FarFile, voxel_px: f64, aa_log2: u32, style: PixelStyle) ->
         family: "hybrid",
         name,
         kind: "hybrid".to_owned(),
-        ..far(file, Opacity::Six, voxel_px, aa_log2, style)
+        ..far((file, build_ms), Opacity::Six, voxel_px, aa_log2, style)
     }
 }
 
-/// Far voxels of at most so many pixels, with `4^aa_log2` samples a pixel.
+/// Far voxels of at most so many pixels with `4^aa_log2` samples per pixel, made in so many
+/// milliseconds.
 #[must_use]
 pub fn far(
-    file: &FarFile,
+    (file, build_ms): (&FarFile, f64),
     opacity: Opacity,
     voxel_px: f64,
     aa_log2: u32,
     style: PixelStyle,
 ) -> Method<'_> {
-    let words = opacity_in_words(opacity);
+    let words = match opacity {
+        Opacity::None => "none",
+        Opacity::Scalar => "scalar",
+        Opacity::Six => "six",
+    };
     let kind = format!("far {words}");
     let mut name = kind.clone();
     if voxel_px != 1.0 {
@@ -151,11 +145,14 @@ pub fn far(
         family: "far voxels",
         name,
         settings: vec![
-            ("opacity", words.to_owned()),
-            ("lod", voxel_px.to_string()),
-            ("aa", (1 << aa_log2).to_string()),
+            ("opacity", words.into()),
+            ("lod", voxel_px.to_string().into()),
+            ("aa", Cell::Count(1 << aa_log2)),
         ],
         kind,
+        graph: None,
+        bytes: Some(file.len()),
+        build_ms: Some(build_ms),
         drawing: Box::new(move || Box::new(FarDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, solid))),
         with_cut_of: Some(Box::new(move |camera, other| {
@@ -167,10 +164,11 @@ pub fn far(
     }
 }
 
-/// Textured voxels at a level of detail, with `4^aa_log2` samples a pixel.
+/// Textured voxels at a level of detail with `4^aa_log2` samples per pixel, made in so many
+/// milliseconds.
 #[must_use]
 pub fn textured(
-    file: &TexturedFile,
+    (file, build_ms): (&TexturedFile, f64),
     erosion: Erosion,
     aa_log2: u32,
     style: PixelStyle,
@@ -218,8 +216,11 @@ pub fn textured(
     Method {
         family: "textured voxels",
         name,
-        settings: vec![("detail", detail), ("samples", samples.to_string())],
+        settings: vec![("detail", detail.into()), ("aa", Cell::Count(1 << aa_log2))],
         kind: "textured voxels".to_owned(),
+        graph: None,
+        bytes: Some(file.len()),
+        build_ms: Some(build_ms),
         drawing: Box::new(move || Box::new(TexturedDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, &["surfels"]))),
         with_cut_of: match erosion {

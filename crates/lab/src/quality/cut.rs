@@ -1,18 +1,16 @@
-//! The cut of a frame: what its level of detail takes for solids.
+//! The cut of a frame: the nodes that its level of detail draws as solids.
 
 use shiftvox::graph::{Graph, Store};
 use shiftvox::project::FrameSetup;
 
-/// The graph as level of detail sees it from a camera: nodes that a frame
-/// with this set-up takes for solids have no children.
+/// The graph at the level of detail of a camera: nodes that a frame with this set-up draws as solids
+/// have no children.
 ///
-/// The decision is that of clip space: a node with children is a solid where
-/// its least depth is at least the set-up's depth for its level
-/// (`FrameSetup::lod_depth`). It depends on camera, level and place of the
-/// node alone, not on the drawing rule. (In screen space `any` and `center`
-/// decide by a record's box; these decisions lie around this one.) Nodes
-/// wholly behind the eye are solids too: they are never visible. Shared and
-/// cyclic nodes are written out, once for each place.
+/// The decision is that of clip space: a node with children is a solid if its least depth is at
+/// least the set-up's depth for its level (`FrameSetup::lod_depth`). It depends on the camera and on
+/// the level and place of the node, not on the coverage rule. (In screen space `any` and `center`
+/// decide by a record's box, with results around this one.) Nodes entirely behind the eye are
+/// solids, too: they are never visible. Shared and cyclic nodes are written once per place.
 #[must_use]
 pub fn cut_at(graph: &Graph, setup: &FrameSetup) -> Graph {
     /// A node at a place.
@@ -114,19 +112,7 @@ mod tests {
 
     /// Sierpinski's tetrahedron of so many levels: one node.
     fn sierpinski(depth: u32) -> Graph {
-        Graph {
-            depth,
-            root: 0,
-            mask: Store::from(vec![0b0110_1001]),
-            first: Store::from(vec![0]),
-            links: Store::from(vec![0; 4]),
-            color: Store::from(vec![[9, 8, 7]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 4u64.pow(depth),
-            placement: Placement::default(),
-        }
+        crate::test_graphs::one_node(depth, 0b0110_1001, [9, 8, 7])
     }
 
     fn set_up(away: f64, lod_px: f64) -> FrameSetup {

@@ -1,0 +1,211 @@
+//! `bench quality`: what pictures cost and how far they are from the truth.
+
+use clap::{Args, ValueEnum};
+
+use super::made::Made;
+use super::methods::{self, Choice, Choices};
+use super::{ScheduleArgs, check_sizes};
+use crate::args::{CameraArgs, SceneArgs, Size};
+use crate::console::Console;
+use crate::error::CliError;
+use crate::experiment::context::Context;
+use crate::experiment::export::{self, ExportArgs, Results};
+use crate::experiment::subjects;
+use crate::scenes;
+use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
+use shiftvox_lab::quality::{
+    Motion, PixelStyle, QualityPlan, Scene, answers, at_distance, measure, panels, table,
+};
+use shiftvox_lab::report::Row;
+use shiftvox_mesh::{Surface, mesh_box};
+
+/// Scenes by default: a model, a landscape, a sponge, thin things.
+const SCENES: [&str; 5] = [
+    subjects::BUNDLED,
+    "gen:terrain,depth=9",
+    "gen:menger,depth=5",
+    "gen:wires,depth=8",
+    "gen:truss,depth=8",
+];
+/// Pixels a side by default.
+const DEFAULT_SIDE: u32 = 256;
+/// Most pixels a side: references take 512 times the work of a picture.
+const MOST_SIDE: u32 = 4096;
+
+/// A camera motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MotionName {
+    /// Half a degree around the target per frame.
+    Turntable,
+    /// A hundredth of the way towards the target per frame.
+    Dolly,
+    /// An eighth of a pixel to the right per frame.
+    Pan,
+}
+
+/// Arguments of `bench quality`.
+#[derive(Debug, Args)]
+pub(super) struct QualityArgs {
+    /// Scenes: files, generators, or `bundled` [default: bundled gen:terrain,depth=9
+    /// gen:menger,depth=5 gen:wires,depth=8 gen:truss,depth=8]
+    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    scenes: Vec<String>,
+    /// Methods to measure [default: some thirty of each kind]
+    ///
+    /// NAME[=VALUE][:KEY=VALUE]... with `+` between alternatives, all of whose combinations are
+    /// measured. Coverage rules of the image-order engine: exact, alpha, any, center, and paper,
+    /// with the keys cage, tolerance, bits, lod, aa (samples per pixel and axis: 1, 2, 4) and engine
+    /// (fast, machine). Methods of meshes: triangles, decimated=N (one triangle of N is left),
+    /// far=none|scalar|six, hybrid, textured=auto|EROSIONS, with the key aa, and lod of far and
+    /// hybrid. Example: exact:bits=64+24:lod=0+1,far=six:aa=1+2
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    methods: Vec<Choices>,
+    /// Pixels: 512 for a square, or 640x360 [default: 256]
+    #[arg(long, value_name = "N|WxH")]
+    size: Option<Size>,
+    /// Cameras farther and farther off, by the pixels down their pictures: 190,58,22
+    #[arg(long, value_name = "PX,...", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(4..=i64::from(MOST_SIDE)))]
+    heights: Vec<u32>,
+    /// Camera motions to film, for flicker [default: none]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    motions: Vec<MotionName>,
+    /// Frames of a film
+    #[arg(long, value_name = "N", default_value_t = 5,
+          value_parser = clap::value_parser!(u32).range(2..=1000))]
+    frames: u32,
+    #[command(flatten)]
+    schedule: ScheduleArgs,
+    /// Exact rays of the reference along each axis of a pixel
+    #[arg(long, value_name = "N", default_value = "16",
+          value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
+    reference_samples: String,
+    /// Rays that far voxels are built with [default: as of convert]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    far_rays: Option<u64>,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    export: ExportArgs,
+}
+
+impl QualityArgs {
+    fn motions(&self) -> Vec<Motion> {
+        let motion = |name: &MotionName| Motion::ALL[*name as usize];
+        self.motions.iter().map(motion).collect()
+    }
+
+    /// The data of a scene's methods, the methods, and the scene's camera.
+    fn open(
+        &self,
+        name: &str,
+        size: (u32, u32),
+        console: &Console,
+    ) -> Result<(Made, Vec<Choice>, Camera), CliError> {
+        let mut choices = methods::of_list(&self.methods);
+        let is_mesh = name != subjects::BUNDLED && scenes::is_mesh(name)?;
+        if choices.is_empty() {
+            choices = methods::default(is_mesh);
+        }
+        if is_mesh {
+            let (mesh, up) = scenes::read_mesh(name, &self.scene, console.progress())?;
+            let bounds = Bounds::of_mesh(&mesh_box(&mesh, up == Up::Y));
+            let camera = self.camera.camera(&bounds, up, size, 0.0);
+            let made = Made::of_mesh(name, mesh, &choices, &self.scene, self.far_rays, console)?;
+            return Ok((made, choices, camera));
+        }
+        if !choices
+            .iter()
+            .all(|choice| matches!(choice, Choice::Voxels(..)))
+        {
+            let message = format!("{name}: only meshes have methods other than coverage rules");
+            return Err(CliError::usage(message));
+        }
+        let subject = subjects::open(name, &self.camera, &self.scene, size, console)?;
+        let camera = Camera {
+            width: size.0,
+            height: size.1,
+            ..subject.camera
+        };
+        Ok((Made::of_graph(Some(subject.graph)), choices, camera))
+    }
+}
+
+pub(super) fn run(
+    args: &QualityArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    let names = subjects::names_or(&args.scenes, from_config, &SCENES);
+    export::check_plots(&args.export, &names)?;
+    args.camera.check().map_err(CliError::usage)?;
+    let side = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
+    let size = args.size.unwrap_or(Size {
+        width: side,
+        height: side,
+    });
+    check_sizes(&[size], MOST_SIDE)?;
+    let context = Context::now();
+    context.warn(console);
+    let samples: u32 = args.reference_samples.parse().unwrap_or(16);
+    let plan = QualityPlan {
+        schedule: args.schedule.schedule(),
+        motions: args.motions(),
+        frames: args.frames,
+        strata_log2: samples.ilog2(),
+        style: PixelStyle::default(),
+    };
+    let mut rows: Vec<Row> = Vec::new();
+    for name in &names {
+        let (made, choices, camera) = args.open(name, (size.width, size.height), console)?;
+        let methods = made.methods(&choices, plan.style)?;
+        let mut cameras = vec![camera];
+        if !args.heights.is_empty() {
+            cameras = args
+                .heights
+                .iter()
+                .map(|&height| at_distance(&camera, height))
+                .collect();
+        }
+        let graph = made.graphs.iter().flatten().next();
+        let scene = Scene {
+            name,
+            graph: graph.map(|(graph, _)| graph),
+            mesh: made.mesh.as_ref().map(|mesh| mesh as &dyn Surface),
+        };
+        rows.extend(measure(
+            scene,
+            &cameras,
+            &methods,
+            &plan,
+            console.progress(),
+        )?);
+    }
+    let mut fields = context.json(plan.schedule, &SetupOptions::default());
+    fields["answers"] = answers(&rows).iter().map(Row::json).collect();
+    let by_picture = |a: &Row, b: &Row| {
+        let same = |name: &str| a.get(name) == b.get(name);
+        same("scene") && same("size")
+    };
+    let title = |rows: &[Row]| format!("{}, {}", rows[0].text("scene"), rows[0].text("size"));
+    let tables = rows
+        .chunk_by(by_picture)
+        .map(|rows| table(&title(rows), rows));
+    let preface = context.markdown(plan.schedule);
+    let results = Results::of_rows("bench quality", fields, preface, &rows, tables.collect());
+    let plots_of = |name: &String| {
+        let of_scene: Vec<Row> = rows
+            .iter()
+            .filter(|row| row.text("scene") == *name)
+            .cloned()
+            .collect();
+        (
+            name.clone(),
+            of_scene.chunk_by(by_picture).flat_map(panels).collect(),
+        )
+    };
+    let plots: Vec<_> = names.iter().map(plots_of).collect();
+    export::write_with_plots(&results, &plots, &args.export, console)
+}

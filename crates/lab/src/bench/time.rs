@@ -1,0 +1,352 @@
+//! `bench time`: engines and their variants, scenes, sizes and numbers of threads become rows.
+
+use super::candidate::{Candidate, Family, Frames, MakeEngine};
+use super::harness::{BenchError, Contender, Drawer, Harness};
+use super::power_law::PowerLaw;
+use crate::measure::{CoverageError, count_differing};
+use crate::report::plot::{Panel, RowPlot};
+use crate::report::{Cell, Row, Table};
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::project::{Camera, Contents, FrameSetup, SetupOptions, Viewer};
+
+/// The variant of an engine with all of its techniques.
+pub const EVERYTHING_ON: &str = "everything on";
+
+/// A scene and its camera.
+#[derive(Debug)]
+pub struct Subject {
+    /// Its name in tables.
+    pub name: String,
+    /// The scene.
+    pub graph: Graph,
+    /// The camera; its size in pixels is replaced.
+    pub camera: Camera,
+}
+
+impl Subject {
+    /// The frame of a size.
+    ///
+    /// # Errors
+    /// When it cannot be set up.
+    pub fn setup(
+        &self,
+        size: (u32, u32),
+        options: &SetupOptions,
+    ) -> Result<FrameSetup, BenchError> {
+        let camera = Camera {
+            width: size.0,
+            height: size.1,
+            ..self.camera
+        };
+        let graph = &self.graph;
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, options)?;
+        Ok(setup)
+    }
+}
+
+/// The contenders of each scene.
+#[derive(Debug, Clone, Copy)]
+pub struct TimePlan<'p> {
+    /// Sizes of the picture, pixels across and down.
+    pub sizes: &'p [(u32, u32)],
+    /// Thread counts, each 1 or more. Engines that use one thread are measured on one.
+    pub threads: &'p [usize],
+    /// Settings of the frames.
+    pub options: SetupOptions,
+    /// The engines and their variants.
+    pub families: &'p [Family],
+    /// The engine whose picture is exact.
+    pub reference: &'p Candidate,
+}
+
+/// Measures all contenders on all subjects in one race: a row for each, in the order of subjects,
+/// sizes, engines, variants and threads.
+///
+/// If sizes or subjects vary, the rows have the exponents of power laws: of time and of work, in
+/// pixels or voxels.
+///
+/// # Errors
+/// When a frame cannot be set up or drawn, or there are no threads.
+pub fn measure(
+    subjects: &[Subject],
+    plan: &TimePlan<'_>,
+    harness: &mut Harness<'_>,
+) -> Result<Vec<Row>, BenchError> {
+    let mut contenders: Vec<Contender<'_>> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    // Of each contender the place of its exact picture.
+    let mut exact_of = Vec::new();
+    let mut exact: Vec<Vec<[i32; 4]>> = Vec::new();
+    for subject in subjects {
+        for &size in plan.sizes {
+            let setup = subject.setup(size, &plan.options)?;
+            exact.push(picture_of(plan.reference, &subject.graph, &setup)?);
+            for family in plan.families {
+                let one = [1];
+                let threads = match family.whole.parallel {
+                    true => plan.threads,
+                    false => &one,
+                };
+                let whole = std::iter::once(None);
+                for variant in whole.chain(family.variants.iter().map(Some)) {
+                    let mut options = plan.options;
+                    let whole = &family.whole;
+                    let (name, about, make, frames) = match variant {
+                        None => (EVERYTHING_ON, whole.about, whole.make, Frames::Drawn),
+                        Some(variant) => {
+                            (variant.adjust)(&mut options);
+                            (variant.name, variant.about, variant.make, variant.frames)
+                        }
+                    };
+                    let setup = subject.setup(size, &options)?;
+                    for &threads in threads {
+                        let who = format!("{}, {}, {name}", subject.name, family.whole.name);
+                        let setup = setup.clone();
+                        contenders.push(contender(who, subject, setup, threads, make, frames)?);
+                        let mut row = head(subject, size, whole, name, threads);
+                        row.put("about", about);
+                        rows.push(row);
+                        exact_of.push(exact.len() - 1);
+                    }
+                }
+            }
+        }
+    }
+    // Engines with everything on come before their variants.
+    let mut whole = Vec::new();
+    let measured = harness.race(&mut contenders, &mut |place, frame| {
+        let row = &mut rows[place];
+        if row.text("variant") == EVERYTHING_ON {
+            whole.clone_from(&frame.voxel);
+        }
+        row.put("changed", count_differing(&frame.voxel, &whole));
+        let error = CoverageError::between(&frame.voxel, &exact[exact_of[place]]);
+        row.put("extra", error.extra);
+        row.put("missing", error.missing);
+        row.put("wrong_voxel", error.wrong_voxel);
+        row.put("covered", error.covered);
+    })?;
+    let mut whole_ms = f64::NAN;
+    for ((row, (times, counters)), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
+        times.put(row);
+        let ms = times.best().median_ms;
+        if row.text("variant") == EVERYTHING_ON {
+            whole_ms = ms;
+        }
+        row.put(
+            "time_ratio",
+            Cell::Number(ms / whole_ms.max(f64::MIN_POSITIVE), 2),
+        );
+        let work_unit = row.text("work_unit");
+        for (name, count) in counters {
+            if name == work_unit {
+                row.put("work", count);
+            }
+            if *row.get(name) == Cell::None {
+                row.put(name, count);
+            }
+        }
+        if !contender.attributes.is_empty() {
+            row.put("attributes_read", contender.attributes.len() as u64);
+        }
+    }
+    if plan.sizes.len() > 1 {
+        rows.chunk_by_mut(|a, b| a.get("scene") == b.get("scene"))
+            .for_each(|rows| add_exponents(rows, "pixels"));
+    } else if subjects.len() > 1 {
+        add_exponents(&mut rows, "voxels");
+    }
+    Ok(rows)
+}
+
+/// The columns that identify a contender.
+fn head(
+    subject: &Subject,
+    (width, height): (u32, u32),
+    whole: &Candidate,
+    variant: &'static str,
+    threads: usize,
+) -> Row {
+    let mut row = Row::default();
+    row.put("scene", subject.name.as_str());
+    row.put("voxels", subject.graph.voxels);
+    row.put("size", format!("{width}x{height}"));
+    row.put("width", u64::from(width));
+    row.put("height", u64::from(height));
+    row.put("pixels", u64::from(width) * u64::from(height));
+    row.put("engine", whole.name);
+    row.put("variant", variant);
+    row.put("threads", threads as u64);
+    let mut contender = whole.name.to_owned();
+    if variant != EVERYTHING_ON {
+        contender += &format!(", {variant}");
+    }
+    if threads > 1 {
+        contender += &format!(", {threads} threads");
+    }
+    row.put("contender", contender);
+    row.put("work_unit", whole.work);
+    row
+}
+
+fn contender(
+    name: String,
+    subject: &Subject,
+    setup: FrameSetup,
+    threads: usize,
+    make: MakeEngine,
+    frames: Frames,
+) -> Result<Contender<'_>, BenchError> {
+    let (graph, engine) = (&subject.graph, make(threads));
+    let mut attributes = Vec::new();
+    let drawer = match frames {
+        Frames::Kept => {
+            let viewer = Viewer::new(graph.view(), engine, Contents::Voxels);
+            Drawer::Viewer(Box::new(viewer))
+        }
+        Frames::Drawn => Drawer::Engine(engine),
+        Frames::WithAttributesOf(fetched) => {
+            attributes = fetched(&graph.view(), &setup).map_err(|source| BenchError::Engine {
+                who: name.clone(),
+                source,
+            })?;
+            Drawer::Engine(engine)
+        }
+    };
+    Ok(Contender {
+        name,
+        graph,
+        setup,
+        threads,
+        drawer,
+        attributes,
+    })
+}
+
+/// The voxels that a candidate sees, drawn on all threads.
+fn picture_of(
+    candidate: &Candidate,
+    graph: &Graph,
+    setup: &FrameSetup,
+) -> Result<Vec<[i32; 4]>, BenchError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut engine = (candidate.make)(rayon::current_num_threads());
+    let drawn = engine.render(&graph.view(), setup, &mut frame);
+    drawn.map_err(|source| BenchError::Engine {
+        who: candidate.name.to_owned(),
+        source,
+    })?;
+    Ok(frame.voxel)
+}
+
+/// Fits time and work of each contender to powers of `growing`.
+fn add_exponents(rows: &mut [Row], growing: &'static str) {
+    let contenders: Vec<String> = rows.iter().map(|row| row.text("contender")).collect();
+    for (place, contender) in contenders.iter().enumerate() {
+        let law = |y: &str| {
+            let of = rows
+                .iter()
+                .zip(&contenders)
+                .filter(|(_, c)| *c == contender);
+            let points: Vec<(f64, f64)> = of
+                .map(|(row, _)| (row.number(growing), row.number(y)))
+                .collect();
+            PowerLaw::fit(&points)
+        };
+        let (time, work) = (law("ms"), law("work"));
+        let row = &mut rows[place];
+        row.put("growing", growing);
+        row.put("exponent", time.map(|law| Cell::ratio(law.exponent)));
+        row.put("work_exponent", work.map(|law| Cell::ratio(law.exponent)));
+        if let Some(law) = work {
+            row.put("work_r_squared", law.r_squared.map(|r| Cell::Number(r, 4)));
+            row.put("work_worst_ratio", Cell::ratio(law.worst_ratio));
+        }
+    }
+}
+
+/// The most important columns, for people.
+#[must_use]
+pub fn table(title: &str, rows: &[Row]) -> Table {
+    const COLUMNS: [&str; 18] = [
+        "scene",
+        "size",
+        "engine",
+        "variant",
+        "threads",
+        "cpu_ms",
+        "wall_ms",
+        "wall_deviation_ms",
+        "time_ratio",
+        "exponent",
+        "voxels",
+        "work",
+        "work_unit",
+        "work_exponent",
+        "changed",
+        "extra",
+        "missing",
+        "wrong_voxel",
+    ];
+    Table::select(title, rows, &COLUMNS).condensed()
+}
+
+/// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;
+/// other measurements are bars.
+#[must_use]
+pub fn panels(rows: &[Row]) -> Vec<Panel> {
+    let is_one_plot = |a: &Row, b: &Row| {
+        a.get("scene") == b.get("scene") || *a.get("growing") == Cell::from("voxels")
+    };
+    let panel = |rows: &[Row]| {
+        let growing = rows.first()?.text("growing");
+        let title = match growing.as_str() {
+            "voxels" => rows[0].text("size"),
+            _ => rows[0].text("scene"),
+        };
+        let plot = RowPlot {
+            title: &title,
+            x: (&growing, &growing),
+            y: ("ms", "ms per frame"),
+            series: "contender",
+            deviation: Some("deviation_ms"),
+            ..RowPlot::default()
+        };
+        match growing.is_empty() {
+            true => Some(plot.bars(rows)),
+            false => plot.chart(rows),
+        }
+    };
+    rows.chunk_by(is_one_plot).filter_map(panel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_are_those_of_each_contender() {
+        let row = |(contender, side): (&str, u64)| {
+            let mut row = Row::default();
+            let pixels = side * side;
+            row.put("contender", contender);
+            row.put("pixels", pixels);
+            row.put("ms", if contender == "a" { pixels } else { 7 });
+            row.put("work", side);
+            row
+        };
+        let all = [("a", 64), ("b", 64), ("a", 128), ("b", 128), ("a", 256)];
+        let mut rows = all.map(row);
+        add_exponents(&mut rows, "pixels");
+        let exponents = |name: &str| rows.each_ref().map(|row| row.text(name));
+        assert_eq!(
+            exponents("exponent"),
+            ["1.000", "0.000", "1.000", "0.000", "1.000"]
+        );
+        assert_eq!(exponents("work_exponent"), ["0.500"; 5]);
+        // Two points are on any law.
+        let squares = exponents("work_r_squared");
+        assert_eq!((squares[0].as_str(), squares[1].as_str()), ("1.0000", ""));
+    }
+}

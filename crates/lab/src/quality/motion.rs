@@ -1,0 +1,178 @@
+//! Cameras that move, and cameras farther off.
+
+use glam::DVec3;
+
+use shiftvox::project::{Camera, CameraError};
+
+/// How a camera moves from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// Around its target, about its up direction, by so many degrees per frame.
+    Turntable(f64),
+    /// Towards its target, by this part of the distance per frame.
+    Dolly(f64),
+    /// To the right without turning, by so many pixels per frame at the target's distance.
+    Pan(f64),
+}
+
+impl Motion {
+    /// Half a degree, a hundredth, an eighth of a pixel.
+    pub const ALL: [Self; 3] = [Self::Turntable(0.5), Self::Dolly(0.01), Self::Pan(0.125)];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Turntable(_) => "turntable",
+            Self::Dolly(_) => "dolly",
+            Self::Pan(_) => "pan",
+        }
+    }
+
+    /// Columns of its film: flicker, the greatest of a step, pop, the greatest of a step, and steps
+    /// that popped.
+    pub(super) fn columns(&self) -> [&'static str; 5] {
+        match self {
+            Self::Turntable(_) => [
+                "flicker_turntable",
+                "flicker_turntable_worst",
+                "pop_turntable",
+                "pop_turntable_worst",
+                "popped_turntable",
+            ],
+            Self::Dolly(_) => [
+                "flicker_dolly",
+                "flicker_dolly_worst",
+                "pop_dolly",
+                "pop_dolly_worst",
+                "popped_dolly",
+            ],
+            Self::Pan(_) => [
+                "flicker_pan",
+                "flicker_pan_worst",
+                "pop_pan",
+                "pop_pan_worst",
+                "popped_pan",
+            ],
+        }
+    }
+
+    /// The camera after so many frames.
+    ///
+    /// # Errors
+    /// When the camera cannot see.
+    pub fn after(&self, camera: &Camera, frames: u32) -> Result<Camera, CameraError> {
+        let axes = camera.axes()?;
+        let frames = f64::from(frames);
+        let to_eye = camera.eye - camera.target;
+        let mut moved = *camera;
+        match self {
+            Self::Turntable(degrees) => {
+                moved = turned(camera, degrees * frames);
+            }
+            Self::Dolly(share) => {
+                moved.eye = camera.target + to_eye * libm::pow(1.0 - share, frames);
+            }
+            Self::Pan(pixels) => {
+                let pixel = to_eye.length() / axes.focal_px;
+                let by = axes.right * (pixel * pixels * frames);
+                moved.eye += by;
+                moved.target += by;
+            }
+        }
+        Ok(moved)
+    }
+}
+
+/// A camera turned around its target, about its up direction.
+fn turned(camera: &Camera, degrees: f64) -> Camera {
+    let axis = camera.up.normalize_or_zero();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let offset = camera.eye - camera.target;
+    let along = axis * axis.dot(offset);
+    let around: DVec3 = (offset - along) * cos + axis.cross(offset) * sin;
+    Camera {
+        eye: camera.target + along + around,
+        ..*camera
+    }
+}
+
+/// The camera so much farther from its target that its picture is so many pixels high: what is
+/// around the target, at the same pixels per unit of slope.
+#[must_use]
+pub fn at_distance(camera: &Camera, height: u32) -> Camera {
+    let share = f64::from(height) / f64::from(camera.height);
+    let tangent = libm::tan(camera.fov_degrees.to_radians() / 2.0);
+    let width = libm::round(f64::from(camera.width) * share).max(1.0);
+    Camera {
+        eye: camera.target + (camera.eye - camera.target) / share,
+        fov_degrees: 2.0 * libm::atan(tangent * share).to_degrees(),
+        width: width as u32,
+        height,
+        ..*camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera {
+            eye: DVec3::new(0.0, -10.0, 0.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            fov_degrees: 90.0,
+            width: 100,
+            height: 100,
+        }
+    }
+
+    #[test]
+    fn motions_end_where_they_should() {
+        // 90 degrees over 100 pixels from 10 away: a pixel is a fifth.
+        let cases = [
+            (Motion::Turntable(45.0), 2, [10.0, 0.0, 0.0], [0.0; 3]),
+            (Motion::Dolly(0.5), 2, [0.0, -2.5, 0.0], [0.0; 3]),
+            (Motion::Pan(0.5), 3, [0.3, -10.0, 0.0], [0.3, 0.0, 0.0]),
+        ];
+        for (motion, frames, eye, target) in cases {
+            let still = motion.after(&camera(), 0).unwrap();
+            assert!((still.eye - camera().eye).length() < 1e-12, "{motion:?}");
+            let moved = motion.after(&camera(), frames).unwrap();
+            let off = (moved.eye - DVec3::from(eye)).length()
+                + (moved.target - DVec3::from(target)).length();
+            assert!(off < 1e-12, "{motion:?}: {moved:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_keeps_height_and_distance() {
+        let camera = Camera {
+            eye: DVec3::new(5.0, 1.0, 7.0),
+            target: DVec3::new(2.0, 1.0, 3.0),
+            up: DVec3::Z * 4.0,
+            ..camera()
+        };
+        let quarter = turned(&camera, 90.0).eye;
+        assert!((quarter - DVec3::new(2.0, 4.0, 7.0)).length() < 1e-12);
+        assert_eq!(turned(&camera, 0.0), camera);
+    }
+
+    #[test]
+    fn a_pixel_stays_a_pixel_farther_off() {
+        let camera = Camera {
+            fov_degrees: 60.0,
+            width: 256,
+            height: 250,
+            ..camera()
+        };
+        let far = at_distance(&camera, 31);
+        assert_eq!((far.width, far.height), (32, 31));
+        assert!((far.eye.y + 10.0 * 250.0 / 31.0).abs() < 1e-9);
+        let focal = |camera: &Camera| camera.axes().unwrap().focal_px;
+        assert!((focal(&far) - focal(&camera)).abs() < 1e-9);
+        let same = at_distance(&camera, 250);
+        assert_eq!((same.width, same.eye), (256, camera.eye));
+    }
+}

@@ -1,0 +1,173 @@
+//! Charts and bars made of the columns of measurements.
+
+use super::{Axis, Bar, Chart, Panel, Point, Scale, Series};
+use crate::report::Row;
+
+/// An axis: its column and its label.
+pub type ColumnAxis<'a> = (&'a str, &'a str);
+
+/// The columns of a plot.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RowPlot<'a> {
+    /// Above the plot.
+    pub title: &'a str,
+    /// Across.
+    pub x: ColumnAxis<'a>,
+    /// Up.
+    pub y: ColumnAxis<'a>,
+    /// The column by which points make series.
+    pub series: &'a str,
+    /// The column with half the length of error bars.
+    pub deviation: Option<&'a str>,
+    /// The column that names points. Points that others dominate are then grey and without name,
+    /// and a line joins the Pareto front.
+    pub front: Option<&'a str>,
+    /// A level to compare with.
+    pub level: Option<(f64, &'a str)>,
+}
+
+/// Points nearer to each other than this part of their values would have overlapping names.
+const CLOSE: f64 = 0.12;
+
+/// For each point, whether another is at most as far along every axis and nearer along one.
+/// Points with a coordinate that is not a number neither dominate nor are dominated.
+#[must_use]
+pub fn dominated<const N: usize>(points: &[[f64; N]]) -> Vec<bool> {
+    points
+        .iter()
+        .map(|p| points.iter().any(|q| dominates(q, p)))
+        .collect()
+}
+
+/// Whether `q` is nowhere worse than `p`, and somewhere better.
+#[must_use]
+pub fn dominates<const N: usize>(q: &[f64; N], p: &[f64; N]) -> bool {
+    let pairs = || q.iter().zip(p);
+    pairs().all(|(q, p)| q <= p) && pairs().any(|(q, p)| q < p)
+}
+
+impl RowPlot<'_> {
+    /// A chart over two logarithmic axes; `None` if no row has a place on it.
+    #[must_use]
+    pub fn chart<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Option<Panel> {
+        let place = |row: &Row| [row.number(self.x.0), row.number(self.y.0)];
+        let rows: Vec<&Row> = rows
+            .into_iter()
+            .filter(|row| place(row).iter().all(|at| at.is_finite() && *at > 0.0))
+            .collect();
+        if rows.is_empty() {
+            return None;
+        }
+        let places: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
+        let is_dominated = dominated(&places);
+        let mut grey = Series::dots("dominated", Vec::new());
+        grey.grey = true;
+        let mut front: Vec<(f64, f64)> = Vec::new();
+        let mut all: Vec<Series> = Vec::new();
+        for ((row, [x, y]), is_dominated) in rows.iter().zip(places).zip(is_dominated) {
+            if self.front.is_some() && is_dominated {
+                grey.points.push((x, y).into());
+                continue;
+            }
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < CLOSE;
+            let has_twin = front.iter().any(|&(u, v)| near(u, x) && near(v, y));
+            front.push((x, y));
+            // Of points beside each other the first is named.
+            let label = self.front.filter(|_| !has_twin).map(|name| row.text(name));
+            let name = row.text(self.series);
+            let found = all.iter().position(|series| series.name == name);
+            let at = found.unwrap_or_else(|| {
+                all.push(Series {
+                    line: self.front.is_none(),
+                    ..Series::dots(name, Vec::new())
+                });
+                all.len() - 1
+            });
+            all[at].points.push(Point { x, y, label });
+            let deviation = self.deviation.map(|name| row.number(name));
+            all[at].deviations.extend(deviation);
+        }
+        if self.front.is_some() {
+            front.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut line = Series::curve("", front);
+            (line.dots, line.grey) = (false, true);
+            all.splice(0..0, [grey, line]);
+        }
+        let axis = |label: &str| Axis {
+            label: label.to_owned(),
+            scale: Scale::Log,
+        };
+        Some(Panel::Chart(Chart {
+            title: self.title.to_owned(),
+            x: axis(self.x.1),
+            y: axis(self.y.1),
+            series: all,
+            level: self.level.map(|(at, name)| (at, name.to_owned())),
+        }))
+    }
+
+    /// A bar for each row.
+    #[must_use]
+    pub fn bars<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Panel {
+        let bar = |row: &Row| Bar {
+            name: row.text(self.series),
+            value: row.number(self.y.0),
+            deviation: self.deviation.map_or(0.0, |name| row.number(name)),
+        };
+        Panel::Bars {
+            title: format!("{}, {}", self.title, self.y.1),
+            bars: rows.into_iter().map(bar).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn domination() {
+        let points = [[1., 5.], [2., 2.], [2., 3.], [5., 1.], [6., 1.], [2., 2.]];
+        let expected = [false, false, true, false, true, false];
+        assert_eq!(dominated(&points), expected);
+        assert_eq!(dominated(&[[f64::NAN, 0.0], [1.0, 1.0]]), [false, false]);
+    }
+
+    #[test]
+    fn rows_become_series_with_error_bars_and_a_front() {
+        let row = |(name, x, y): &(&'static str, u64, u64)| {
+            let mut row = Row::default();
+            row.put("name", *name);
+            row.put("x", *x);
+            row.put("y", *y);
+            row.put("d", 1);
+            row
+        };
+        let points = [("a", 1, 8), ("b", 2, 4), ("a", 4, 8), ("b", 8, 0)];
+        let rows: Vec<Row> = points.iter().map(row).collect();
+        let mut plot = RowPlot {
+            title: "T",
+            x: ("x", "across"),
+            y: ("y", "up"),
+            series: "name",
+            deviation: Some("d"),
+            ..RowPlot::default()
+        };
+        let chart = |plot: &RowPlot<'_>| match plot.chart(&rows) {
+            Some(Panel::Chart(chart)) => chart,
+            other => panic!("{other:?}"),
+        };
+        let curves = chart(&plot).series;
+        // The point at 0 has no place on a logarithmic axis.
+        assert_eq!(curves.len(), 2);
+        assert_eq!((curves[0].points.len(), curves[1].points.len()), (2, 1));
+        assert_eq!(curves[0].deviations, [1.0, 1.0]);
+        plot.front = Some("name");
+        let [grey, line, ..] = &chart(&plot).series[..] else {
+            panic!("a front");
+        };
+        assert_eq!((grey.points.len(), line.points.len()), (1, 2));
+        plot.x.0 = "nothing";
+        assert_eq!(plot.chart(&rows), None);
+    }
+}
