@@ -1,21 +1,20 @@
-//! What a logic analyser sees: the values on the wires into and out of a block.
+//! Values on the wires of a block, for test benches.
 //!
-//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap); a
-//! [`Probe`](crate::Probe) whose `TAPS` is set takes rows of [`Signal`]s from there. Nothing
-//! comes back, and without such a probe the call compiles to nothing.
+//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap). A [`Probe`](crate::Probe) whose
+//! `TAPS` is set receives rows of [`Signal`]s. Without such a probe the call compiles to nothing.
 
 use crate::{Format, Narrow, WideWord, Word};
 
-/// How wide a signal is, and how it is to be read.
+/// Width and sign of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SignalKind {
     /// A word: two's complement, the format's bits.
     Word,
     /// A wide word: two's complement, the wide format's bits.
     Wide,
-    /// A number of so many bits (1 to 64), never negative.
+    /// A number of 1 to 64 bits that is never negative.
     Unsigned(u32),
-    /// A two's complement number of so many bits (1 to 64).
+    /// A two's complement number of 1 to 64 bits.
     Signed(u32),
 }
 
@@ -40,13 +39,13 @@ impl SignalKind {
 /// A value on the wires of a block's border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Signal {
-    /// Its width and sign.
+    /// Width and sign.
     pub kind: SignalKind,
-    /// Its value, in units of its last place.
+    /// Value, in units of the last place.
     pub value: i64,
 }
 
-/// A short number that is no word: a level, a quadrant, a vector of bits.
+/// A short number that is not a word: a level, a quadrant, a vector of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Short(Signal);
 
@@ -79,9 +78,9 @@ impl Short {
     }
 }
 
-/// What can be shown at a block's border.
+/// A value that can be shown at a block's border.
 pub trait Wires {
-    /// Adds its signals, the most significant first.
+    /// Adds the signals, the most significant first.
     fn show(&self, to: &mut Vec<Signal>);
 }
 
