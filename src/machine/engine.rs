@@ -18,7 +18,7 @@ pub struct Machine {
     fill: Option<SizedFill>,
 }
 
-/// Fill vectors, kept from frame to frame, and the size that they are for.
+/// Fill vectors, kept from frame to frame, and their size.
 #[derive(Debug)]
 struct SizedFill {
     /// Level of the samples, samples across and down.
@@ -36,7 +36,7 @@ impl Machine {
         }
     }
 
-    /// Draws a frame while `probe` watches; see [`Engine::render`].
+    /// Draws a frame with a probe; see [`Engine::render`].
     ///
     /// # Errors
     /// When a word overflows under the trap policy.
@@ -51,9 +51,8 @@ impl Machine {
         Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
     }
 
-    /// Draws a frame of at most `most_records` records; if it has more, returns
-    /// `None`, and the frame's contents are of no use. Every frame ends
-    /// (`SPEC.md`, "Termination"): this is for checks of that.
+    /// Draws a frame of at most `most_records` records; if it has more, returns `None`, and the frame's contents have no
+    /// meaning. For checks that every frame ends (`SPEC.md`, "Termination").
     ///
     /// # Errors
     /// When a word overflows under the trap policy.
@@ -108,7 +107,7 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
-    /// Clears a frame, and makes fill vectors of its size with nothing drawn.
+    /// Clears a frame, and returns empty fill vectors of its size.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
         frame.set_blending(setup.options.coverage.blends());

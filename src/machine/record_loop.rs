@@ -11,8 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack, in at most `most_records`
-    /// turns. Returns whether that was enough.
+    /// Draws the object in a tile, with children on the stack, in at most `most_records` turns. Returns whether that was
+    /// enough.
     ///
     /// # Errors
     /// When a word overflows under the trap policy.
@@ -35,7 +35,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// Takes the top record off the stack and draws or drops it, or pushes its children.
+    /// Pops the top record and draws or drops it, or pushes its children.
     pub(super) fn turn(&mut self) {
         let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
         let Traversal {
@@ -43,7 +43,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             counts,
             watch,
         } = &mut self.traversal;
-        // A record is worked on where it lies: most have no children to push, and only the others are copied.
+        // The record is processed in place: most have no children to push, and only the others are copied.
         let address = stack.len().wrapping_sub(1) as u64;
         let Some(record) = stack.last_mut() else {
             unreachable!("a turn is a record's, and the stack is empty");

@@ -1,7 +1,6 @@
 //! The colours of a finished picture.
 
-/// Colours of a picture as files have them: without an alpha channel where
-/// all pixels are opaque.
+/// Colours of a picture in the form of a file: without an alpha channel if all pixels are opaque.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pixels {
     pub(super) width: u32,
@@ -23,13 +22,13 @@ impl Pixels {
         }
     }
 
-    /// Pixels that may be opaque.
+    /// Pixels that may be transparent.
     #[must_use]
     pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
         let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
         let mut bytes = rgba.into_flattened();
         if !has_alpha {
-            // In place: a second buffer would be as large as the picture.
+            // In place, because a second buffer would be as large as the picture.
             let pixels = bytes.len() / 4;
             for pixel in 1..pixels {
                 bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
@@ -55,7 +54,7 @@ impl Pixels {
         }
     }
 
-    /// Puts red, green, blue and alpha of each pixel at the end of some bytes.
+    /// Appends red, green, blue and alpha of each pixel to some bytes.
     pub fn append_rgba(&self, to: &mut Vec<u8>) {
         if self.has_alpha {
             return to.extend_from_slice(&self.bytes);

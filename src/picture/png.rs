@@ -22,7 +22,7 @@ pub struct Image {
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {
-    /// Writes a PNG file's bytes.
+    /// Writes a PNG file.
     ///
     /// # Errors
     /// If the picture is empty or its size does not fit its pixels, and those of `to`.
@@ -51,7 +51,7 @@ pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, Enco
     Ok(bytes)
 }
 
-/// Pixels across and down, from a PNG file's header; `None` if the bytes are no PNG.
+/// Pixels across and down, from a PNG file's header; `None` if the bytes are not a PNG.
 #[must_use]
 pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?;
@@ -63,7 +63,7 @@ pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 /// Reads a PNG file's bytes.
 ///
 /// # Errors
-/// If they are no PNG, or one of more than 32768 pixels per side.
+/// If they are not a PNG, or have more than 32768 pixels per side.
 pub fn decode(bytes: &[u8]) -> Result<Image, DecodingError> {
     decode_from(Cursor::new(bytes))
 }
