@@ -28,10 +28,8 @@ impl fmt::Display for Shortage {
     }
 }
 
-/// Fails if an object needs more memory than is free.
-///
-/// # Errors
-/// [`Shortage`]; never if the system does not report the free memory.
+/// Fails if an object needs more memory than is free. Errors: [`Shortage`]; never if the system does not report the
+/// free memory.
 pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     match available() {
         Some(free) if needed > free => Err(Shortage {
@@ -53,10 +51,8 @@ pub struct DiskShortage {
     pub free: u64,
 }
 
-/// Fails if files in a folder, which need not exist, need more than is free on its disk.
-///
-/// # Errors
-/// [`DiskShortage`]; never if the system does not report the free space.
+/// Fails if files in a folder, which need not exist, need more than is free on its disk. Errors: [`DiskShortage`];
+/// never if the system does not report the free space.
 pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
     match free_disk(folder) {
         Some(free) if needed > free => Err(DiskShortage {
@@ -69,7 +65,6 @@ pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
 }
 
 /// Bytes that can be written in a folder. `None` if the system does not report them.
-#[must_use]
 pub fn free_disk(folder: &Path) -> Option<u64> {
     #[cfg(unix)]
     {
@@ -89,10 +84,7 @@ pub fn free_disk(folder: &Path) -> Option<u64> {
     }
 }
 
-/// An empty list with capacity for so many items.
-///
-/// # Errors
-/// [`Shortage`] if the system refuses it.
+/// An empty list with capacity for so many items. Errors: [`Shortage`] if the system refuses it.
 pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     let mut list = Vec::new();
     list.try_reserve_exact(items).map_err(|_| Shortage {
@@ -103,10 +95,7 @@ pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     Ok(list)
 }
 
-/// A list of equal items.
-///
-/// # Errors
-/// [`Shortage`] if the system refuses it.
+/// A list of equal items. Errors: [`Shortage`] if the system refuses it.
 pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec<T>, Shortage> {
     let mut list = room(what, items)?;
     list.resize(items, item);
@@ -117,7 +106,6 @@ pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec
 ///
 /// The least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
 /// a limited address space (`ulimit -v`).
-#[must_use]
 pub fn available() -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(name).ok();
     let free = kibibytes_of(&read("/proc/meminfo")?, "MemAvailable:")?;
@@ -135,7 +123,6 @@ pub fn available() -> Option<u64> {
 }
 
 /// Resident memory of this process, bytes. `None` if the system does not report it.
-#[must_use]
 pub fn resident() -> Option<u64> {
     kibibytes_of(
         &std::fs::read_to_string("/proc/self/status").ok()?,

@@ -5,12 +5,10 @@
 pub struct SplitMix(u64);
 
 impl SplitMix {
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -31,7 +29,6 @@ impl SplitMix {
 }
 
 /// 64 bits that look random: the first of the seed `value`.
-#[must_use]
 pub fn mix(value: u64) -> u64 {
     SplitMix(value).bits()
 }

@@ -45,20 +45,17 @@ impl<P: Probe> Datapath<P> {
     }
 
     /// The format of its words.
-    #[must_use]
     pub fn format(&self) -> Format {
         self.format
     }
 
     /// The first overflow so far, if the policy is to trap.
     #[inline]
-    #[must_use]
     pub fn trap(&self) -> Option<Trap> {
         self.trap
     }
 
     /// Number of results that did not fit, under any policy.
-    #[must_use]
     pub fn overflows(&self) -> u64 {
         self.overflows
     }
@@ -357,14 +354,12 @@ impl<P: Probe> Datapath<P> {
 
     /// Bit `place` of a word, from the right: a wire.
     #[inline(always)]
-    #[must_use]
     pub fn bit<T: Number>(&self, a: T, place: u32) -> bool {
         (a.raw() >> place.min(63)) & 1 != 0
     }
 
     /// A word with bit `place` zero: a wire to ground.
     #[inline(always)]
-    #[must_use]
     pub fn without_bit(&self, a: Word, place: u32) -> Word {
         Word(a.0 & !(1 << place.min(63)))
     }

@@ -72,13 +72,11 @@ impl Format {
     }
 
     /// Width in bits, 16..=64.
-    #[must_use]
     pub const fn bits(self) -> u32 {
         self.bits
     }
 
     /// Fraction bits, 0..=bits-2.
-    #[must_use]
     pub const fn frac(self) -> u32 {
         self.frac
     }
@@ -107,19 +105,16 @@ impl Format {
     }
 
     /// Largest value, in units of the last place.
-    #[must_use]
     pub const fn max(self) -> i64 {
         i64::MAX >> (64 - self.bits)
     }
 
     /// Smallest value, in units of the last place.
-    #[must_use]
     pub const fn min(self) -> i64 {
         i64::MIN >> (64 - self.bits)
     }
 
     /// Whether `value` (units of the last place) fits.
-    #[must_use]
     pub const fn holds(self, value: i64) -> bool {
         let spare = 64 - self.bits;
         (value << spare) >> spare == value

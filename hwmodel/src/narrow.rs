@@ -6,14 +6,12 @@ use crate::{Datapath, OpClass, Probe, Word};
 impl<P: Probe> Datapath<P> {
     /// The lowest bits of a word that is not negative: wires.
     #[inline(always)]
-    #[must_use]
     pub fn narrowed(&self, a: Word, bits: u32) -> Narrow {
         Narrow(a.0 as u32 & ((1 << bits) - 1))
     }
 
     /// A narrow number as a word: wires.
     #[inline(always)]
-    #[must_use]
     pub fn widened(&self, a: Narrow) -> Word {
         Word(i64::from(a.0))
     }
@@ -64,7 +62,6 @@ impl<P: Probe> Datapath<P> {
 
     /// Bit `place`, from the right: a wire.
     #[inline(always)]
-    #[must_use]
     pub fn bit_narrow(&self, a: Narrow, place: u32) -> bool {
         a.0 >> place & 1 != 0
     }

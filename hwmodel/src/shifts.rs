@@ -137,13 +137,11 @@ impl Hasher for SiteHasher {
 
 impl ShiftProbe {
     /// A probe without records.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Every line that shifted, by file, line, stage and width; halvings last.
-    #[must_use]
     pub fn sites(&self) -> Vec<ShiftSite> {
         #[derive(Default)]
         struct Levels {
@@ -203,7 +201,6 @@ impl ShiftProbe {
     }
 
     /// Shifts that need a shifter, by stage and width.
-    #[must_use]
     pub fn variable(&self) -> BTreeMap<(Stage, u32), u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {
@@ -215,7 +212,6 @@ impl ShiftProbe {
     }
 
     /// As [`variable`](Self::variable), by the stage in whose steps hardware does it.
-    #[must_use]
     pub fn variable_in_steps(&self) -> BTreeMap<(Stage, u32), u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {
@@ -229,7 +225,6 @@ impl ShiftProbe {
     }
 
     /// Shifts by kind.
-    #[must_use]
     pub fn by_kind(&self) -> BTreeMap<ShiftKind, u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {

@@ -80,7 +80,6 @@ impl Default for Statistics {
 
 impl Statistics {
     /// An empty list.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
@@ -101,13 +100,11 @@ impl Statistics {
     }
 
     /// The first statistic of a name.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<&Statistic> {
         self.iter().find(|statistic| statistic.name == name)
     }
 
     /// Text in the format of gem5: name, value, `#` description and `(unit)`, between lines of dashes.
-    #[must_use]
     pub fn to_stats_txt(&self) -> String {
         let mut text = String::from("\n---------- Begin Simulation Statistics ----------\n");
         for statistic in self.iter() {

@@ -20,7 +20,6 @@ pub enum SignalKind {
 
 impl SignalKind {
     /// Width in bits, for a datapath of words of `format`.
-    #[must_use]
     pub const fn bits(self, format: Format) -> u32 {
         match self {
             Self::Word => format.bits(),
@@ -30,7 +29,6 @@ impl SignalKind {
     }
 
     /// Whether the highest bit is a sign.
-    #[must_use]
     pub const fn is_signed(self) -> bool {
         !matches!(self, Self::Unsigned(_))
     }
@@ -52,7 +50,6 @@ pub struct Short(Signal);
 impl Short {
     /// A number that is never negative, on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn unsigned(value: impl Into<u32>, bits: u32) -> Self {
         Self(Signal {
             kind: SignalKind::Unsigned(bits),
@@ -62,7 +59,6 @@ impl Short {
 
     /// A two's complement number on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn signed(value: i32, bits: u32) -> Self {
         Self(Signal {
             kind: SignalKind::Signed(bits),
@@ -72,7 +68,6 @@ impl Short {
 
     /// A narrow number, on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn narrow(value: Narrow, bits: u32) -> Self {
         Self::unsigned(value.to_host(), bits)
     }

@@ -79,13 +79,11 @@ macro_rules! of_host {
             pub const ZERO: Self = Self(0);
 
             /// A number that the host prepared before the frame, or that comes from a memory.
-            #[must_use]
             pub const fn from_host(value: $number) -> Self {
                 Self(value)
             }
 
             /// The value, for the host or for a memory.
-            #[must_use]
             pub const fn to_host(self) -> $number {
                 self.0
             }

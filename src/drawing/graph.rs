@@ -50,7 +50,6 @@ pub struct Canvas {
 
 impl Canvas {
     /// A canvas without a frame.
-    #[must_use]
     pub fn new(engine: Box<dyn Engine + Send>) -> Self {
         Self {
             engine,
@@ -83,7 +82,6 @@ struct Drawn {
 
 impl<'g> GraphDrawing<'g> {
     /// Draws nothing. `engine` makes equal new engines.
-    #[must_use]
     pub fn new(
         graph: &'g Graph,
         up: Up,
@@ -94,7 +92,6 @@ impl<'g> GraphDrawing<'g> {
     }
 
     /// [`GraphDrawing::new`] on another drawing's canvas, whose engine must be of the kind that `engine` makes.
-    #[must_use]
     pub fn on(
         canvas: Canvas,
         graph: &'g Graph,
@@ -125,7 +122,6 @@ impl<'g> GraphDrawing<'g> {
         }
     }
 
-    #[must_use]
     pub fn into_canvas(self) -> Canvas {
         let (engine, frame) = self.viewer.into_parts();
         Canvas { engine, frame }
@@ -136,10 +132,7 @@ impl<'g> GraphDrawing<'g> {
         self.pixel_bytes = bytes;
     }
 
-    /// The integers of a frame.
-    ///
-    /// # Errors
-    /// When the picture is too large, or the frame cannot be set up.
+    /// The integers of a frame. Fails when the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
         check_samples(
             camera,
@@ -159,7 +152,6 @@ impl<'g> GraphDrawing<'g> {
         )?)
     }
 
-    /// Bytes per sample of a frame.
     fn sample_bytes(&self) -> u64 {
         let (node, voxel, records, blend) = (4, 16, 4, 16);
         let voxels = match self.contents {
@@ -171,10 +163,7 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
-    /// Draws a frame, unless the viewer shows it already.
-    ///
-    /// # Errors
-    /// See [`DrawError`]; nothing is shown then.
+    /// Draws a frame, unless the viewer shows it already. Errors: see [`DrawError`]; nothing is shown then.
     pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
         let setup = self.setup(camera)?;
         let was_shown = self.viewer.shows(&setup);
@@ -195,9 +184,6 @@ impl<'g> GraphDrawing<'g> {
 
     /// Makes something from a drawn frame. If colours depend on voxels that a frame of nodes does not determine, the frame
     /// is drawn again with voxels.
-    ///
-    /// # Errors
-    /// See [`DrawError`].
     pub fn resolve<T>(
         &mut self,
         drawn: &mut DrawnFrame,

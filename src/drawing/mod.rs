@@ -27,22 +27,15 @@ pub trait Drawable {
     /// The vertical axis of the file.
     fn up(&self) -> Up;
 
-    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work.
-    ///
-    /// # Errors
-    /// See [`DrawError`]; nothing is shown then.
+    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work. Errors: see
+    /// [`DrawError`]; nothing is shown then.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError>;
 
-    /// The last picture.
-    ///
-    /// # Errors
-    /// When its buffers cannot be made.
+    /// The last picture. Fails when its buffers cannot be made.
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
 
-    /// A function that draws the frame of a camera again and again, on its own engine, to measure times.
-    ///
-    /// # Errors
-    /// When the frame cannot be set up.
+    /// A function that draws the frame of a camera again and again, on its own engine, to measure times. Fails when the
+    /// frame cannot be set up.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
 
@@ -121,11 +114,9 @@ pub enum DrawError {
     Method(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Checks that a picture fits in memory: `sample_bytes` per sample and `pixel_bytes` per pixel. `aa_log2`: logarithm of the
-/// samples per pixel and axis. `held`: memory that will be freed or reused, bytes.
-///
-/// # Errors
-/// [`DrawError::TooLarge`] for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
+/// Checks that a picture fits in memory: `sample_bytes` per sample and `pixel_bytes` per pixel. `aa_log2`: logarithm of
+/// the samples per pixel and axis. `held`: memory that will be freed or reused, bytes. Errors: [`DrawError::TooLarge`]
+/// for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
 pub fn check_samples(
     camera: &Camera,
     aa_log2: u32,
@@ -162,7 +153,6 @@ pub fn timed<T>(
     }
 }
 
-#[must_use]
 pub fn milliseconds_since(started: Instant) -> f64 {
     started.elapsed().as_secs_f64() * 1e3
 }

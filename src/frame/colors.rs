@@ -25,14 +25,12 @@ pub struct Colors {
 
 /// A colour as `0xffRRGGBB`.
 #[inline(always)]
-#[must_use]
 pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0xff, r, g, b])
 }
 
 impl Colors {
     /// An empty picture.
-    #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,

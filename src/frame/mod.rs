@@ -13,9 +13,7 @@ const MAX_SAMPLES: u64 = 1 << 27;
 #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
 pub struct TooManySamples(u64);
 
-/// The number of samples of a picture. `aa_log2`: logarithm of the samples per pixel and axis.
-///
-/// # Errors
+/// The number of samples of a picture. `aa_log2`: logarithm of the samples per pixel and axis. Errors:
 /// [`TooManySamples`] where they are more than 2^27.
 pub fn count_samples(width: u32, height: u32, aa_log2: u32) -> Result<u64, TooManySamples> {
     let pixels = u64::from(width) * u64::from(height);
@@ -70,7 +68,6 @@ impl Default for Blend {
 
 impl Frame {
     /// An empty frame; `with_records`: with the records per sample.
-    #[must_use]
     pub fn new(width: u32, height: u32, with_records: bool) -> Self {
         let samples = width as usize * height as usize;
         Self {
@@ -84,7 +81,6 @@ impl Frame {
     }
 
     /// An empty frame whose `voxel` stays empty, a fifth of the memory. Engines then store no voxels.
-    #[must_use]
     pub fn nodes_only(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -115,7 +111,6 @@ impl Frame {
     }
 
     /// Samples that show a voxel.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node != NO_NODE).count()
     }

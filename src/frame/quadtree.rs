@@ -48,14 +48,11 @@ impl QuadNode {
 
     /// Address of the node's fill vector: level by level, row by row.
     #[inline]
-    #[must_use]
     pub const fn address(self) -> usize {
         level_start(self.level) + ((self.y as usize) << self.level) + self.x as usize
     }
 
-    /// Its quadrant in its parent.
     #[inline]
-    #[must_use]
     pub const fn in_parent(self) -> u8 {
         ((self.y & 1) << 1 | self.x & 1) as u8
     }
@@ -92,14 +89,12 @@ const fn level_start(level: u32) -> usize {
 }
 
 /// Nodes of the image quadtree from its root to the samples, at level `levels`.
-#[must_use]
 pub const fn nodes_to(levels: u32) -> usize {
     level_start(levels + 1)
 }
 
 impl FillVectors {
     /// An empty picture of `width` x `height` samples in a root of `2^levels` a side.
-    #[must_use]
     pub fn new(levels: u32, width: u32, height: u32) -> Self {
         let mut fill = Self {
             levels,
@@ -133,15 +128,11 @@ impl FillVectors {
         self.vectors.copy_from_slice(&self.empty_picture);
     }
 
-    /// Level of the samples.
-    #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// The fill vector of a node.
     #[inline]
-    #[must_use]
     pub fn vector(&self, node: QuadNode) -> u8 {
         self.vectors[node.address()]
     }
@@ -155,7 +146,6 @@ impl FillVectors {
     }
 
     /// Replaces a node's vector, and returns the previous one.
-    #[must_use]
     pub fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         std::mem::replace(&mut self.vectors[node.address()], vector)
     }

@@ -12,7 +12,6 @@ use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
 use crate::budget::{self, Shortage};
 
-/// The source of normals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Normals {
     /// A voxel's own normal, otherwise that of the surface around it.
@@ -45,7 +44,6 @@ pub struct Builder {
 }
 
 impl Builder {
-    #[must_use]
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
@@ -63,13 +61,11 @@ impl Builder {
     }
 
     /// Voxels pushed so far, including repeated ones.
-    #[must_use]
     pub fn len(&self) -> u64 {
         self.pushed
     }
 
     /// Whether no voxel was pushed.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
@@ -96,9 +92,7 @@ impl Builder {
 
     /// Builds the graph. `placement_world` is the world position of file index (0, 0, 0) and the length of a voxel's
     /// side. The result does not depend on the number of threads, nor on the order of voxels at different indices.
-    ///
-    /// # Errors
-    /// When there are no voxels, too many, or too far apart.
+    /// Fails when there are no voxels, too many, or too far apart.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),

@@ -54,7 +54,6 @@ impl Iterator for Voxels<'_> {
 impl Graph {
     /// Finest voxels and solid leaves in Morton order. A cyclic graph may have too many to list: see
     /// [`Graph::voxels`](field@Graph::voxels).
-    #[must_use]
     pub fn voxels(&self) -> Voxels<'_> {
         let root = Cell {
             corner: [0; 3],
@@ -72,7 +71,6 @@ impl Graph {
     ///
     /// Searches upwards by the node's number, one binary search per level. None in graphs whose nodes may be in several
     /// places or are not stored level by level, and for leaves above the finest level.
-    #[must_use]
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -105,14 +103,12 @@ impl Graph {
     }
 
     /// File index of a cell's lowest corner.
-    #[must_use]
     pub fn file_index(&self, cell: &Cell) -> [i64; 3] {
         let origin = self.placement.origin_index;
         [0, 1, 2].map(|k| origin[k].saturating_add(i64::from(cell.corner[k])))
     }
 
     /// Distinct nodes per level, root first: `depth + 1` numbers.
-    #[must_use]
     pub fn nodes_per_level(&self) -> Vec<u64> {
         if self.is_level_ordered() {
             let pairs = self.level_start.windows(2);
@@ -136,14 +132,12 @@ impl Graph {
     }
 
     /// Whether nodes are stored level by level.
-    #[must_use]
     pub fn is_level_ordered(&self) -> bool {
         !self.level_start.is_empty()
     }
 
     /// Counts the finest voxels, including those inside solid leaves, and repeated parts as often as they occur;
     /// saturates. Takes time in proportion to the nodes (times the levels, if they are not stored level by level).
-    #[must_use]
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {

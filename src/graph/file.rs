@@ -71,7 +71,6 @@ impl FileError {
     }
 
     /// Whether the file is sound and only too large for the available memory.
-    #[must_use]
     pub fn is_limit(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
@@ -95,7 +94,6 @@ pub struct Refused {
 /// An open file, of which only the header was read.
 pub struct Opened {
     pub file: File,
-    /// Length, bytes.
     pub bytes: u64,
     /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
@@ -119,7 +117,6 @@ pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
 }
 
 impl Opened {
-    /// Maps the whole file.
     pub fn map(&self) -> Result<Arc<Mmap>, Refused> {
         let doing = "map it into memory";
         map(&self.file).map_err(|source| Refused { doing, source })
@@ -358,10 +355,8 @@ pub(super) fn padding_after(
     Ok(())
 }
 
-/// Writes header and sections, in the order of the file, with zeros between.
-///
-/// # Errors
-/// The writer's error; a computer that stores the highest byte first.
+/// Writes header and sections, in the order of the file, with zeros between. Errors: the writer's error; a computer
+/// that stores the highest byte first.
 pub fn write<'s>(
     format: &Format,
     header: &[u8],

@@ -27,7 +27,6 @@ const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
     /// The layout of a graph. Only trees stored level by level have bricks.
-    #[must_use]
     pub fn new(graph: &GraphView<'_>, leaf_masks: bool, bricks: bool) -> Self {
         let level = graph.depth.checked_sub(2).filter(|_| bricks);
         let found = level.filter(|_| is_by_level(graph)).and_then(|level| {
@@ -43,14 +42,12 @@ impl NodeLayout {
     }
 
     /// The nodes that are bricks; may be empty.
-    #[must_use]
     pub fn bricks(&self) -> Range<u32> {
         self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
     }
 
     /// The words of a brick: its voxels, a byte per child (all ones for a leaf); then
     /// `leaves << 56 | where children begin << 28 | where voxels begin`. `None`: a number does not fit.
-    #[must_use]
     pub fn brick_words(graph: &GraphView<'_>, brick: u32) -> Option<[u64; 2]> {
         let (mut voxels, mut leaves, mut first_voxel) = (0, 0, None);
         for octant in 0..8 {
@@ -75,9 +72,7 @@ impl NodeLayout {
         fit.then_some([voxels, second])
     }
 
-    /// The words to read for a node at a level.
     #[inline]
-    #[must_use]
     pub fn words(&self, node: u32, level: u32) -> Range<u64> {
         let at = u64::from(node);
         match self.bricks {

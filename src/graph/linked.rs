@@ -57,7 +57,6 @@ const MAX_NODES: usize = (u32::MAX / 8) as usize;
 
 impl LinkedGraph {
     /// A graph without nodes of `2^depth` finest voxels a side. Its root is the first added node.
-    #[must_use]
     pub fn new(depth: u32) -> Self {
         Self {
             depth,
@@ -73,7 +72,6 @@ impl LinkedGraph {
         self.add_node_with_normal(color, PackedNormal::NONE, children)
     }
 
-    /// Adds a node that has a normal.
     pub fn add_node_with_normal(
         &mut self,
         color: [u8; 3],
@@ -89,10 +87,8 @@ impl LinkedGraph {
         number
     }
 
-    /// Builds the graph. Colours and normals are not averaged.
-    ///
-    /// # Errors
-    /// When it is too deep, or the root or a child was not added.
+    /// Builds the graph. Colours and normals are not averaged. Fails when it is too deep, or the root or a child was
+    /// not added.
     pub fn build(&self) -> Result<Graph, LinkedError> {
         let nodes = self.nodes.len();
         if self.depth > MAX_DEPTH {

@@ -37,7 +37,6 @@ pub struct MergeReport {
 
 impl MergeReport {
     /// Nodes before per node after, at least 1.
-    #[must_use]
     pub fn gain(&self) -> f64 {
         self.nodes_before as f64 / self.nodes_after.max(1) as f64
     }
@@ -66,7 +65,6 @@ const ABSENT: u32 = u32::MAX;
 
 /// Merges equal nodes. The cells of the result are those of `graph` one for one, with the same colours and normals
 /// under [`MergeBy::ShapeAndAttributes`].
-#[must_use]
 pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, MergeReport) {
     progress.begin("merge equal subtrees", 0);
     let class = if graph.is_level_ordered() {

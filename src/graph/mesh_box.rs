@@ -25,7 +25,6 @@ pub struct MeshBox {
 
 impl MeshBox {
     /// Rounds to single precision as all files store it.
-    #[must_use]
     pub fn new((low, high): ([f64; 3], [f64; 3]), bevels: [u8; 8], y_up: bool) -> Self {
         let centre = place::centre(low, high);
         let kept =
@@ -39,7 +38,6 @@ impl MeshBox {
     }
 
     /// The box around points, bevelled as far as they allow.
-    #[must_use]
     pub fn around(
         span: ([f64; 3], [f64; 3]),
         points: impl Iterator<Item = [f64; 3]>,

@@ -106,33 +106,28 @@ pub struct Graph {
 
 impl Graph {
     /// Number of nodes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.color.len()
     }
 
     /// Whether it has no nodes.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.color.is_empty()
     }
 
     /// Colour of a node; black for a node that does not exist.
     #[inline]
-    #[must_use]
     pub fn color_of(&self, node: u32) -> [u8; 3] {
         self.color.get(node as usize).copied().unwrap_or_default()
     }
 
     /// Normal of a node; none for a node that does not exist.
     #[inline]
-    #[must_use]
     pub fn normal_of(&self, node: u32) -> PackedNormal {
         self.normal.get(node as usize).copied().unwrap_or_default()
     }
 
     /// The children of a node by octant. Children that are not nodes are left out.
-    #[must_use]
     pub fn children(&self, node: u32) -> [Option<u32>; 8] {
         let view = self.view();
         let nodes = self.len() as u64;
@@ -143,7 +138,6 @@ impl Graph {
     }
 
     /// Bytes of the arrays, in memory or in the mapped file.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let sizes = [
             size_of_val::<[u8]>(&self.mask),
@@ -158,7 +152,6 @@ impl Graph {
     }
 
     /// The graph's arrays as slices.
-    #[must_use]
     pub fn view(&self) -> GraphView<'_> {
         GraphView {
             depth: self.depth,
@@ -189,26 +182,22 @@ pub struct GraphView<'g> {
 impl GraphView<'_> {
     /// The mask of a node's children; 0 for a leaf.
     #[inline]
-    #[must_use]
     pub fn mask(&self, node: u32) -> u8 {
         self.mask.get(node as usize).copied().unwrap_or(0)
     }
 
     /// The node's entry of `first`; 0 for a leaf.
     #[inline]
-    #[must_use]
     pub fn first(&self, node: u32) -> u32 {
         self.first.get(node as usize).copied().unwrap_or(0)
     }
 
     #[inline]
-    #[must_use]
     pub fn opacity_of(&self, node: u32) -> Opacity {
         self.opacity.get(node as usize).copied().unwrap_or_default()
     }
 
     #[inline]
-    #[must_use]
     pub fn light_of(&self, node: u32) -> [u16; 3] {
         let light = self.light.get(node as usize);
         light.copied().unwrap_or([u16::MAX; 3])
@@ -219,7 +208,6 @@ impl GraphView<'_> {
     /// Never panics, whatever a damaged file holds: a child list that leaves the file reads as no child, and a child
     /// without a node as a leaf.
     #[inline]
-    #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
         let mask = self.mask(node);
         if mask >> octant & 1 == 0 {

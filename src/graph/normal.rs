@@ -19,13 +19,11 @@ impl PackedNormal {
     pub const NONE: Self = Self(0);
 
     /// [`Self::encode`] of coordinates x, y, z.
-    #[must_use]
     pub fn from_array(direction: [f64; 3]) -> Self {
         Self::encode(direction.into())
     }
 
     /// The nearest normal to a direction of any length; none for zero or a direction that is not finite.
-    #[must_use]
     pub fn encode(direction: DVec3) -> Self {
         let length_l1 = direction.x.abs() + direction.y.abs() + direction.z.abs();
         if !(length_l1.is_finite() && length_l1 > 0.0) {
@@ -56,7 +54,6 @@ impl PackedNormal {
     }
 
     /// The unit vector, if there is a normal. Any 16 bits are accepted.
-    #[must_use]
     pub fn decode(self) -> Option<DVec3> {
         if self == Self::NONE {
             return None;
@@ -67,7 +64,6 @@ impl PackedNormal {
         Some(point / libm::sqrt(point.length_squared()))
     }
 
-    #[must_use]
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }

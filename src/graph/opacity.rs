@@ -15,14 +15,12 @@ impl Opacity {
     pub const OPAQUE: Self = Self([0xff; 3]);
 
     /// From opacities by axis, seen from the side of low and of high coordinates; clamped to 15.
-    #[must_use]
     pub fn new(sides: [[u8; 2]; 3]) -> Self {
         Self(sides.map(|[low, high]| low.min(MOST_OPACITY) | high.min(MOST_OPACITY) << 4))
     }
 
     /// Opacity along axis `k`, seen from the side of high coordinates or from the other.
     #[inline(always)]
-    #[must_use]
     pub fn from_side(self, k: usize, high: bool) -> u8 {
         self.0[k] >> if high { 4 } else { 0 } & MOST_OPACITY
     }
@@ -36,7 +34,6 @@ impl Default for Opacity {
 
 /// Sixteenths of its outline that a voxel of this opacity covers, 0 to 16.
 #[inline(always)]
-#[must_use]
 pub const fn sixteenths(opacity: u8) -> u8 {
     opacity + (opacity >> 3)
 }

@@ -31,7 +31,6 @@ const PIECE: usize = 1 << 21;
 /// The voxels' name in errors.
 const VOXELS: &str = "voxels that are sorted";
 
-/// A pushed voxel: 20 bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PushedVoxel {
     /// Packed index while pushing, then the Morton key. Two halves, because eight-byte alignment would cost four bytes.
@@ -44,7 +43,6 @@ pub(super) struct PushedVoxel {
 }
 
 impl PushedVoxel {
-    /// A voxel with its file index.
     pub(super) fn new(
         index: [i32; 3],
         sequence: u32,
@@ -93,7 +91,6 @@ pub(super) struct PushedVoxels {
 }
 
 impl PushedVoxels {
-    /// Voxels held.
     pub(super) fn len(&self) -> usize {
         self.pieces.iter().map(Vec::len).sum()
     }
@@ -112,10 +109,7 @@ impl PushedVoxels {
         self.pieces.push(Vec::with_capacity(more));
     }
 
-    /// Adds a voxel.
-    ///
-    /// # Errors
-    /// When the system refuses memory for another piece.
+    /// Adds a voxel. Fails when the system refuses memory for another piece.
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
@@ -130,10 +124,8 @@ impl PushedVoxels {
         Ok(())
     }
 
-    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays.
-    ///
-    /// # Errors
-    /// When the system refuses memory for one array.
+    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays. Fails when the system
+    /// refuses memory for one array.
     pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         let mut sorted = self.in_one(min)?;
         sorted.par_sort_unstable_by_key(PushedVoxel::order);

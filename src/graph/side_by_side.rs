@@ -20,7 +20,6 @@ impl Graph {
     /// assert!(graph.links.is_empty() && graph.validate().is_ok());
     /// # Ok::<(), shiftvox::graph::linked::LinkedError>(())
     /// ```
-    #[must_use]
     pub fn side_by_side(&self) -> Option<Self> {
         if self.links.is_empty() {
             return Some(self.clone());

@@ -54,9 +54,6 @@ impl Graph {
     /// - stored level by level: no level is empty, the root is the only node of its level, the finest level has no
     ///   masks, children are of the level below; in a tree, each node is the child of exactly one, in order;
     /// - `voxels` is the counted number.
-    ///
-    /// # Errors
-    /// Names the first wrong entry.
     pub fn validate(&self) -> Result<(), Invalid> {
         self.validate_shape()?;
         self.validate_levels()?;

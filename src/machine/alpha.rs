@@ -25,7 +25,6 @@ const PRODUCT_BITS: u32 = 17;
 const LIGHT_BITS: u32 = 24;
 /// Bits of a colour in linear light.
 const COLOR_BITS: u32 = 16;
-/// Bits of an opacity.
 const OPACITY_BITS: u32 = 4;
 /// The weight of an opaque voxel.
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);

@@ -115,7 +115,6 @@ numbered! {
     Pop,
     /// A record is put on the stack.
     Push,
-    /// A fill vector is read.
     FillRead,
     /// A fill vector is written.
     FillWrite,

@@ -77,7 +77,6 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The parent's coordinate, of a child in an octant whose numbers were halved without a remainder.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self;
 
-    /// All vertices moved by `by`.
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
 
     /// The coordinate of the vertices' quotients `x / w`, computed by `divide`.

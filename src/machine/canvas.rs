@@ -181,7 +181,6 @@ impl Canvas<'_> {
         Err(divided)
     }
 
-    /// The quadrants of a node that are not full.
     fn open_quadrants<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

@@ -47,7 +47,6 @@ impl BlendEye {
     }
 }
 
-/// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
     pub(super) outline: OutlineRule,
@@ -65,7 +64,6 @@ pub(super) struct Constants {
     pub(super) screen_frac: u32,
     /// Places to the left, then to the right, that turn half samples into screen positions: one less than `screen_frac`.
     pub(super) half_sample_places: [u32; 2],
-    /// Whether the tolerance is finite.
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
     /// As [`Margin::Grow`], for the picture's edges, where boxes are never narrowed.
@@ -193,7 +191,6 @@ impl Constants {
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`. A level without a
 /// depth has the greatest word. Under the rules that draw outlines the constants of silhouette planes follow
 /// (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
-#[must_use]
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);

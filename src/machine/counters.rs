@@ -3,7 +3,6 @@
 
 use crate::project::Stats;
 
-/// A counter of the machine.
 #[derive(Debug, Clone, Copy)]
 pub struct CounterInfo {
     /// Name in statistics, and field in the machine.

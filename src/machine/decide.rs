@@ -18,11 +18,9 @@ use super::undrawn::first_undrawn;
 use super::verdict::{Verdict, is_hidden, verdict};
 use crate::frame::QuadNode;
 
-/// The work that remains for a record.
 pub(super) enum RemainingWork {
     /// None: it is drawn, hidden or dropped.
     Nothing,
-    /// Its children are to be pushed.
     Children,
 }
 

@@ -27,8 +27,6 @@ struct SizedFill {
 }
 
 impl Machine {
-    /// A machine with these options.
-    #[must_use]
     pub fn new(options: MachineOptions) -> Self {
         Self {
             options,
@@ -36,10 +34,7 @@ impl Machine {
         }
     }
 
-    /// Draws a frame with a probe; see [`Engine::render`].
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame with a probe; see [`Engine::render`]. Fails when a word overflows under the trap policy.
     pub fn render_probed<P: Probe>(
         &mut self,
         graph: &GraphView<'_>,
@@ -51,11 +46,9 @@ impl Machine {
         Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
     }
 
-    /// Draws a frame of at most `most_records` records; if it has more, returns `None`, and the frame's contents have no
-    /// meaning. For checks that every frame ends (`SPEC.md`, "Termination").
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame of at most `most_records` records; if it has more, returns `None`, and the frame's contents have
+    /// no meaning. For checks that every frame ends (`SPEC.md`, "Termination"). Fails when a word overflows under the
+    /// trap policy.
     pub fn render_within(
         &mut self,
         graph: &GraphView<'_>,

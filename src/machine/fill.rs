@@ -61,7 +61,6 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Level of the samples.
     pub(super) fn levels(&self) -> u32 {
         self.vectors.levels()
     }

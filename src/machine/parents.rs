@@ -45,7 +45,6 @@ pub(super) struct Parent<L: CageCoordinate> {
     left: u8,
     /// Numbers of its children; `None` if it is new or was stored.
     expanded: Option<Expanded<L>>,
-    /// Whether it is on the stack.
     is_stored: bool,
 }
 
@@ -84,7 +83,6 @@ impl<L: CageCoordinate> Parent<L> {
         self.left == 0
     }
 
-    /// Its path entry.
     fn entry(&self) -> PathEntry {
         let Record { cube, place, .. } = &self.record;
         PathEntry {
@@ -103,10 +101,8 @@ impl<L: CageCoordinate> Parent<L> {
 }
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough. Fails when a
+    /// word overflows under the trap policy.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);

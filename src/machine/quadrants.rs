@@ -46,7 +46,6 @@ pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) ->
     both
 }
 
-/// The only quadrant of a set of one.
 pub(super) fn only(quadrants: u8) -> Option<u8> {
     quadrants
         .is_power_of_two()
@@ -177,7 +176,6 @@ fn tap_bisector<P: Probe, L: CageCoordinate>(
     );
 }
 
-/// The margin `w / 2^places` of each vertex of a cage.
 pub(super) fn margins<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
     let margins = w.map(|w| margin(dp, w, places));
     let places = Short::signed(places, PLACES_BITS);

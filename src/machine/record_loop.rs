@@ -11,11 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack, in at most `most_records` turns. Returns whether that was
-    /// enough.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws the object in a tile, with children on the stack, in at most `most_records` turns. Returns whether that
+    /// was enough. Fails when a word overflows under the trap policy.
     pub(super) fn draw_object(
         &mut self,
         tile: QuadNode,
@@ -74,8 +71,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// # Errors
-/// When a word overflowed under the trap policy.
+/// Fails when a word overflowed under the trap policy.
 pub(super) fn check_trap<P: Probe>(dp: &Datapath<P>) -> Result<(), EngineError> {
     dp.trap().map_or(Ok(()), |trap| Err(trap.into()))
 }

@@ -8,7 +8,6 @@ use crate::frame::quadtree::nodes_to;
 /// Counts the turns at each quadtree node.
 #[derive(Debug)]
 pub(super) struct RecordsBySample {
-    /// Level of the samples.
     levels: u32,
     /// By address of the quadtree node.
     turns: Vec<u32>,

@@ -32,7 +32,6 @@ trait ImageBox: Copy {
     /// Results of the test of a node, reused by its quadrants.
     type Tested: Copy;
 
-    /// The quadrants of `quad` that the box overlaps.
     fn quadrants<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

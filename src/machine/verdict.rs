@@ -23,7 +23,6 @@ pub(super) enum Verdict {
     DrawBox,
     /// Draw it at every sample in its silhouette (the rules that draw outlines).
     DrawSolid,
-    /// It is invisible.
     Drop,
     Subdivide,
 }

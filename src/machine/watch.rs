@@ -4,7 +4,6 @@ use super::cage::CageCoordinate;
 use super::record::Record;
 use crate::frame::QuadNode;
 
-/// An event of a record.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'r, L> {
     /// The turn of a record begins; with its quadtree node.
@@ -17,7 +16,6 @@ pub(super) enum Event<'r, L> {
 
 /// Receives the events of records. The calls compile to nothing for the watch `()`.
 pub(super) trait Watch {
-    /// Receives an event.
     fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>);
 }
 

@@ -35,7 +35,6 @@ impl Default for Background {
 
 impl Background {
     /// The colour, sRGB; `None` if transparent.
-    #[must_use]
     pub fn color(self) -> Option<[u8; 3]> {
         match self {
             Self::None => None,

@@ -23,16 +23,12 @@ const BUFFERS: [Buffer; 5] = [
 /// The stream, all numbers little-endian: the 19 bytes `shiftvox picture 1\n`; width and height (u32); then buffer by
 /// buffer, each row by row, colour (4 bytes per pixel: red, green, blue, alpha), depth (bits of the f32), node (i32),
 /// normal (bits of 3 f32), voxel (4 i32). Negative zeros are replaced by zeros, and there is no NaN. Records are left out.
-#[must_use]
 pub fn hash(picture: &Picture) -> String {
     let Ok(hash) = hash_rows(picture);
     hash
 }
 
-/// [`hash`] of a picture that is made in groups of rows.
-///
-/// # Errors
-/// When rows cannot be made.
+/// [`hash`] of a picture that is made in groups of rows. Fails when rows cannot be made.
 pub fn hash_rows<R: Rows>(picture: &R) -> Result<String, R::Error> {
     let mut state = Xxh3::new();
     state.update(STREAM);

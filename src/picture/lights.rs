@@ -14,7 +14,6 @@ use crate::project::FrameSetup;
 ///
 /// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
 /// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
-#[must_use]
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
     if !setup.options.coverage.blends() {
         return Vec::new();

@@ -56,7 +56,6 @@ pub struct Picture {
 
 impl Picture {
     /// Pixels that show a voxel at their middle sample.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node >= 0).count()
     }

@@ -24,7 +24,6 @@ pub struct Array {
 /// Why bytes are not a supported array.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NpyError {
-    /// Not the format, or damaged.
     #[error("byte {offset}: expected {expected}, found {found}")]
     Format {
         /// From the file's beginning.
@@ -44,13 +43,11 @@ const MAGIC: &[u8; 6] = b"\x93NUMPY";
 const PREFIX: usize = 10;
 
 /// Whether a file begins like a `.npy` file.
-#[must_use]
 pub fn is_npy(beginning: &[u8]) -> bool {
     beginning.starts_with(MAGIC)
 }
 
 /// The bytes of a `.npy` file.
-#[must_use]
 pub fn encode(array: &Array) -> Vec<u8> {
     let mut bytes = header(&array.shape, &array.values);
     bytes.extend_from_slice(&array.values.bytes());
@@ -58,7 +55,6 @@ pub fn encode(array: &Array) -> Vec<u8> {
 }
 
 /// The header of an array's file, of numbers of the same type as `like`.
-#[must_use]
 pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
     let kind = match like {
         Values::U8(_) => "|u1",
@@ -84,10 +80,7 @@ pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
     bytes
 }
 
-/// Reads a `.npy` file's bytes.
-///
-/// # Errors
-/// See [`NpyError`]. Allocates no more than the bytes justify.
+/// Reads a `.npy` file's bytes. Errors: see [`NpyError`]. Allocates no more than the bytes justify.
 pub fn decode(bytes: &[u8]) -> Result<Array, NpyError> {
     let wrong = |offset, expected, found: &[u8]| NpyError::Format {
         offset,

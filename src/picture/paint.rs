@@ -184,7 +184,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         Ok(())
     }
 
-    /// Looks up another node.
     #[inline(always)]
     fn look_at<T>(&self, look: &mut Look<T>, node: u32, down: f32) {
         let at = node as usize;

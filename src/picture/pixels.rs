@@ -11,8 +11,6 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// Opaque pixels.
-    #[must_use]
     pub fn opaque(width: u32, height: u32, rgb: Vec<[u8; 3]>) -> Self {
         Self {
             width,
@@ -23,7 +21,6 @@ impl Pixels {
     }
 
     /// Pixels that may be transparent.
-    #[must_use]
     pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
         let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
         let mut bytes = rgba.into_flattened();
@@ -44,7 +41,6 @@ impl Pixels {
     }
 
     /// Red, green, blue and alpha of each pixel.
-    #[must_use]
     pub fn rgba(&self) -> Vec<[u8; 4]> {
         let (with_alpha, _) = self.bytes.as_chunks::<4>();
         let (opaque, _) = self.bytes.as_chunks::<3>();
@@ -69,7 +65,6 @@ impl Pixels {
     }
 
     /// Pixels across and down.
-    #[must_use]
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }

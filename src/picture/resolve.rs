@@ -19,10 +19,8 @@ use crate::project::FrameSetup;
 /// Makes the picture of a drawn frame.
 ///
 /// Colours are averaged over all samples of a pixel, in linear light. Other buffers show the sample right of and below
-/// the pixel's middle (the pixel's only one without anti-aliasing), records all samples together.
-///
-/// # Errors
-/// When the frame is not of the set-up's size, or does not determine the visible voxels, or indices leave `i32`.
+/// the pixel's middle (the pixel's only one without anti-aliasing), records all samples together. Fails when the frame
+/// is not of the set-up's size, or does not determine the visible voxels, or indices leave `i32`.
 pub fn resolve(
     frame: &Frame,
     graph: &Graph,
@@ -71,9 +69,7 @@ struct At {
 }
 
 impl<'f> Resolver<'f> {
-    ///
-    /// # Errors
-    /// When the frame is not of the set-up's size.
+    /// Fails when the frame is not of the set-up's size.
     pub fn new(
         frame: &'f Frame,
         graph: &'f Graph,
@@ -98,10 +94,8 @@ impl<'f> Resolver<'f> {
         })
     }
 
-    /// The colours of some rows: `N` bytes per pixel, red, green, blue, and alpha if `N` is 4.
-    ///
-    /// # Errors
-    /// When a colour depends on a voxel that the frame does not determine.
+    /// The colours of some rows: `N` bytes per pixel, red, green, blue, and alpha if `N` is 4. Fails when a colour
+    /// depends on a voxel that the frame does not determine.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
@@ -109,10 +103,7 @@ impl<'f> Resolver<'f> {
         Ok(pixels)
     }
 
-    /// [`Resolver::colors`] into the caller's pixels, as many as the rows have.
-    ///
-    /// # Errors
-    /// As [`Resolver::colors`].
+    /// [`Resolver::colors`] into the caller's pixels, as many as the rows have. Errors: as [`Resolver::colors`].
     pub fn write_colors<const N: usize>(
         &self,
         rows: Range<u32>,
@@ -127,20 +118,16 @@ impl<'f> Resolver<'f> {
         self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 
-    /// The frame.
-    #[must_use]
     pub fn frame(&self) -> &Frame {
         self.frame
     }
 
     /// Whether no pixel can be transparent.
-    #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.shader.background().is_some()
     }
 
     /// Pixels that show a voxel at their middle sample.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         if self.aa == 0 {
             return self.frame.drawn();

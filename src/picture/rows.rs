@@ -41,7 +41,6 @@ hwmodel::named! {
 
 impl Buffer {
     /// Numbers per pixel.
-    #[must_use]
     pub fn entries(self) -> usize {
         match self {
             Self::Depth | Self::Node | Self::Records => 1,
@@ -51,7 +50,6 @@ impl Buffer {
     }
 
     /// An empty list of the buffer's type.
-    #[must_use]
     pub fn none(self) -> Values {
         match self {
             Self::Color => Values::U8(Vec::new()),
@@ -72,10 +70,7 @@ pub trait Rows {
     /// Pixels across and down.
     fn size(&self) -> (u32, u32);
 
-    /// Some rows of a buffer.
-    ///
-    /// # Errors
-    /// When they cannot be made.
+    /// Some rows of a buffer. Fails when they cannot be made.
     fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Self::Error>;
 
     /// All rows from the top, in groups.
@@ -114,7 +109,6 @@ impl Rows for Picture {
 
 impl Values {
     /// The numbers' bytes, least significant first.
-    #[must_use]
     pub fn bytes(&self) -> Cow<'_, [u8]> {
         if cfg!(target_endian = "little") {
             return Cow::Borrowed(match self {

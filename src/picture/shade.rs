@@ -29,7 +29,6 @@ pub(super) struct Surface {
 
 impl<'g> Shader<'g> {
     /// The samples of a frame; `setup.levels` is their resolution.
-    #[must_use]
     pub fn new(
         graph: &'g Graph,
         setup: &FrameSetup,
@@ -53,19 +52,16 @@ impl<'g> Shader<'g> {
     }
 
     /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel, given as in a frame.
-    #[must_use]
     pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
         self.light_of(node, &self.surface(x, y, node, voxel))
     }
 
     /// Linear light of a sample that shows nothing; `None`: transparent.
-    #[must_use]
     pub fn background(&self) -> Option<[u32; 3]> {
         self.background
     }
 
     /// The sRGB colour whose linear light is nearest.
-    #[must_use]
     pub fn encode(&self, light: [u32; 3]) -> [u8; 3] {
         self.linear.encode(light)
     }

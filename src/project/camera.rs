@@ -60,9 +60,6 @@ pub struct Axes {
 
 impl Camera {
     /// The camera's axes.
-    ///
-    /// # Errors
-    /// See [`CameraError`].
     pub fn axes(&self) -> Result<Axes, CameraError> {
         if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return Err(CameraError::FieldOfView(self.fov_degrees));

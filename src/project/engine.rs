@@ -27,10 +27,7 @@ pub type Stats = Vec<(&'static str, u64)>;
 
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// Draws like [`Engine::render`], without work that only counters need.
-    ///
-    /// # Errors
-    /// As [`Engine::render`].
+    /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
@@ -40,11 +37,8 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' unlit colours. `of_node`: colours by graph node; `colors` has the size of `setup` and is cleared
-    /// first. Previews show this and experiments time it.
-    ///
-    /// # Errors
-    /// As [`Engine::render`].
+    /// Draws the samples' unlit colours. `of_node`: colours by graph node; `colors` has the size of `setup` and is
+    /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -57,10 +51,8 @@ pub trait Engine {
         Ok(())
     }
 
-    /// Draws into `frame`, which has the size of `setup` and is cleared first.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished; its contents then have no meaning.
+    /// Draws into `frame`, which has the size of `setup` and is cleared first. Fails when the frame cannot be finished;
+    /// its contents then have no meaning.
     fn render(
         &mut self,
         graph: &GraphView<'_>,

@@ -37,7 +37,6 @@ impl Up {
         Self::y_or_z(graph.placement.mesh.is_some_and(|mesh| mesh.y_up))
     }
 
-    #[must_use]
     pub fn axis(self) -> DVec3 {
         match self {
             Self::Z => DVec3::Z,
@@ -67,7 +66,6 @@ impl Bounds {
     /// The box of a graph's voxels in object coordinates, finest voxels; `None` without voxels.
     ///
     /// Exact, except for graphs with millions of nodes on their outside, whose box may be too large by a few voxels.
-    #[must_use]
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
         if graph.is_empty() {
             return None;
@@ -84,7 +82,6 @@ impl Bounds {
     }
 
     /// The bounds for a fitted camera: those of the graph's mesh, otherwise of its voxels.
-    #[must_use]
     pub fn of(graph: &Graph) -> Self {
         match &graph.placement.mesh {
             Some(mesh) => Self::of_mesh(mesh),
@@ -93,7 +90,6 @@ impl Bounds {
     }
 
     /// A mesh's box, with its bevels.
-    #[must_use]
     pub fn of_mesh(mesh: &MeshBox) -> Self {
         Self {
             low: mesh.low.into(),
@@ -103,7 +99,6 @@ impl Bounds {
     }
 
     /// The box of a graph's voxels in world units; the unit cube without voxels.
-    #[must_use]
     pub fn of_voxels(graph: &Graph) -> Self {
         let Some((low, high)) = Self::in_voxels(graph) else {
             return Self::of_box(DVec3::ZERO, DVec3::ONE);
@@ -122,7 +117,6 @@ impl Bounds {
         Self { low, high, hull }
     }
 
-    #[must_use]
     pub fn of_box(low: DVec3, high: DVec3) -> Self {
         let corner = |i: u32| {
             let pick = |bit: u32, k: usize| if i >> bit & 1 == 1 { high[k] } else { low[k] };
@@ -136,7 +130,6 @@ impl Bounds {
     }
 
     /// The bounds of the object revolved around the up axis, so that a fitted distance is the same from all sides.
-    #[must_use]
     pub fn revolved(&self, up: Up) -> Self {
         let centre = (self.low + self.high) / 2.0;
         let axis = up.axis();
@@ -263,7 +256,6 @@ impl Direction {
 }
 
 /// The nearest camera in a direction that sees the whole box, then magnified by `zoom` (the eye comes nearer).
-#[must_use]
 pub fn fit_camera(
     bounds: &Bounds,
     up: Up,

@@ -25,7 +25,6 @@ pub struct OpacityEye {
 
 impl FrameSetup {
     /// The eye, with as many bits as a word has room for.
-    #[must_use]
     pub fn opacity_eye(&self) -> OpacityEye {
         let room = (self.format.bits() - HEADROOM_BITS).min(MOST_BITS);
         let side = 1u64 << self.depth;

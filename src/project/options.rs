@@ -72,7 +72,6 @@ impl Coverage {
 
     /// The rule without blending.
     #[inline]
-    #[must_use]
     pub const fn outline_rule(self) -> OutlineRule {
         match self {
             Self::Any => OutlineRule::Box,
@@ -83,7 +82,6 @@ impl Coverage {
 
     /// Whether voxels are blended at their samples.
     #[inline]
-    #[must_use]
     pub const fn blends(self) -> bool {
         match self {
             Self::Any | Self::Center | Self::Exact => false,
@@ -93,14 +91,12 @@ impl Coverage {
 
     /// Whether voxels are drawn by their silhouettes.
     #[inline]
-    #[must_use]
     pub const fn draws_outlines(self) -> bool {
         self.outline_rule().has_planes()
     }
 
     /// The default tolerance, samples. Rules that draw outlines never change to screen space and allow only 0.
     #[inline]
-    #[must_use]
     pub const fn default_tolerance(self) -> f64 {
         match self {
             Self::Any | Self::Center => 1.0 / 8.0,
@@ -111,7 +107,6 @@ impl Coverage {
     /// The default size, pixels, up to which nodes are drawn as one voxel. A pixel is the paper's, and right for
     /// opacities, which are means. For outlines half a pixel is the largest without a relevant error (`docs/error.md`).
     #[inline]
-    #[must_use]
     pub const fn default_lod(self) -> f64 {
         match self {
             Self::Any | Self::Center | Self::Alpha => 1.0,
@@ -134,7 +129,6 @@ pub enum OutlineRule {
 impl OutlineRule {
     /// Whether it needs silhouette planes.
     #[inline]
-    #[must_use]
     pub const fn has_planes(self) -> bool {
         match self {
             Self::Box | Self::Centre => false,
@@ -169,7 +163,6 @@ impl Default for SetupOptions {
 
 impl SetupOptions {
     /// The default settings of a drawing rule.
-    #[must_use]
     pub fn of(coverage: Coverage) -> Self {
         Self {
             bits: 64,
@@ -183,7 +176,6 @@ impl SetupOptions {
     }
 
     /// The image-order paper's settings: eight corners per record, screen space at once, [`Coverage::Any`].
-    #[must_use]
     pub fn paper() -> Self {
         Self {
             cage: CageKind::Corners,
@@ -219,7 +211,6 @@ const SHIFT_SUM_BITS: i32 = 5;
 
 impl ShiftSum {
     /// The largest sum of at most five neighbouring powers of two that is not above `value`.
-    #[must_use]
     pub fn floor(value: f64) -> Self {
         if value <= 0.0 {
             return Self::default();
@@ -235,13 +226,11 @@ impl ShiftSum {
     }
 
     /// The shifts to the right, ascending.
-    #[must_use]
     pub fn shifts(&self) -> &[i32] {
         &self.0
     }
 
     /// The factor.
-    #[must_use]
     pub fn value(&self) -> f64 {
         let powers = self.0.iter().map(|&shift| libm::ldexp(1.0, -shift));
         powers.fold(0.0, |sum, power| sum + power)

@@ -124,10 +124,8 @@ pub struct FrameSetup {
 }
 
 impl FrameSetup {
-    /// Quantises a camera's view of a placed object of `2^depth` voxels a side.
-    ///
-    /// # Errors
-    /// When the camera cannot see, the format is invalid, or a setting is out of its range.
+    /// Quantises a camera's view of a placed object of `2^depth` voxels a side. Fails when the camera cannot see, the
+    /// format is invalid, or a setting is out of its range.
     pub fn new(
         camera: &Camera,
         placement: &Placement,
@@ -205,13 +203,11 @@ impl FrameSetup {
     }
 
     /// The deepest level of a record: that of the finest voxels plus the levels to which a solid may be subdivided.
-    #[must_use]
     pub fn level_bound(&self) -> u32 {
         self.depth + self.sub_levels
     }
 
     /// The same frame without level of detail, as a reference for measurements.
-    #[must_use]
     pub fn without_detail(&self) -> Self {
         let mut whole = self.clone();
         whole.options.lod_px = 0.0;
@@ -221,7 +217,6 @@ impl FrameSetup {
     }
 
     /// Largest magnitude of a coordinate of a clip vector in the object.
-    #[must_use]
     pub fn position_reach(&self) -> Option<i128> {
         let quantised = Quantised {
             origin: self.origin_clip,
@@ -231,14 +226,12 @@ impl FrameSetup {
     }
 
     /// World depth of one unit of `W`.
-    #[must_use]
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }
 }
 
 /// `ceil(log2)` of the longer side of a picture.
-#[must_use]
 pub fn root_log2(width: u32, height: u32) -> u32 {
     width.max(height).next_power_of_two().trailing_zeros()
 }

@@ -67,13 +67,11 @@ impl<E> std::fmt::Debug for Viewer<'_, E> {
 
 impl<'g, E: Engine> Viewer<'g, E> {
     /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
-    #[must_use]
     pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
         Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
     }
 
     /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
-    #[must_use]
     pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
         Self {
             graph,
@@ -85,7 +83,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
         }
     }
 
-    #[must_use]
     pub fn into_parts(self) -> (E, Frame) {
         (self.engine, self.frame)
     }
@@ -96,10 +93,8 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.forget();
     }
 
-    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept.
-    ///
-    /// # Errors
-    /// As [`Engine::draw`]; nothing is shown then.
+    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. Errors: as [`Engine::draw`];
+    /// nothing is shown then.
     pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
         if self.shows(setup) {
             return Ok(false);
@@ -110,18 +105,14 @@ impl<'g, E: Engine> Viewer<'g, E> {
         Ok(true)
     }
 
-    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are 0.
-    ///
-    /// # Errors
-    /// As [`Engine::render`]; nothing is shown then.
+    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are
+    /// 0. Errors: as [`Engine::render`]; nothing is shown then.
     pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
         self.render_lit(setup, &[])
     }
 
-    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up.
-    ///
-    /// # Errors
-    /// As [`Engine::render`]; nothing is shown then.
+    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. Errors: as
+    /// [`Engine::render`]; nothing is shown then.
     pub fn render_lit(
         &mut self,
         setup: &FrameSetup,
@@ -146,13 +137,11 @@ impl<'g, E: Engine> Viewer<'g, E> {
     }
 
     /// The picture of the last set-up, if there is one.
-    #[must_use]
     pub fn frame(&self) -> Option<&Frame> {
         self.shown.as_ref().map(|_| &self.frame)
     }
 
     /// Memory of the frame, bytes.
-    #[must_use]
     pub fn frame_bytes(&self) -> u64 {
         let Frame {
             node,
@@ -167,7 +156,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
     }
 
     /// Whether the frame is that of this set-up.
-    #[must_use]
     pub fn shows(&self, setup: &FrameSetup) -> bool {
         self.shown.as_ref() == Some(setup)
     }
@@ -178,10 +166,8 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.stats = None;
     }
 
-    /// Makes a frame of the set-up's size, or reuses the last one's memory. Shows nothing.
-    ///
-    /// # Errors
-    /// [`Shortage`] if the system refuses the memory.
+    /// Makes a frame of the set-up's size, or reuses the last one's memory. Shows nothing. Errors: [`Shortage`] if the
+    /// system refuses the memory.
     pub fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
         self.forget();
         let (width, height) = (setup.width, setup.height);

@@ -22,7 +22,6 @@
 use super::number::Number;
 use super::ray_frame::RayFrame;
 
-/// The line of one sample.
 pub(super) struct Line<'v, N> {
     view: &'v RayFrame,
     /// `f_j(0)`.

@@ -60,7 +60,6 @@ impl<'g> Caster<'g> {
     /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`] levels. If `setup.levels` is raised and
     /// nothing else changed, the samples are those of a finer grid in the same picture. They see the graph as the frame's
     /// level of detail cuts it; references start from [`FrameSetup::without_detail`].
-    #[must_use]
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
         let view = RayFrame::new(setup);
@@ -73,7 +72,6 @@ impl<'g> Caster<'g> {
     }
 
     /// Graph node and voxel, as a frame stores them, of sample `(x, y)`.
-    #[must_use]
     pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, [i32; 4])> {
         if self.is_narrow {
             Search::<i128>::new(self.graph, &self.view, x, y).nearest()

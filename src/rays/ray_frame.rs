@@ -15,7 +15,6 @@ pub(super) struct RayFrame {
     /// `edge[k + 1] x edge[k + 2]`: its product with a ray direction is that direction's object coordinate `k`, times the
     /// edges' determinant.
     pub(super) normal: [[i128; 3]; 3],
-    /// Sign of the edges' determinant.
     pub(super) determinant_sign: i32,
     /// Levels of the object.
     pub(super) depth: u32,

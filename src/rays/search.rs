@@ -23,7 +23,6 @@ use crate::graph::GraphView;
 /// A node, and its cell as a frame stores it.
 pub(super) type Seen = (u32, [i32; 4]);
 
-/// The search along one ray.
 pub(super) struct Search<'w, N> {
     graph: &'w GraphView<'w>,
     view: &'w RayFrame,

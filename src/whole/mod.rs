@@ -20,11 +20,9 @@ use error::failed;
 pub use temporary::{FolderLock, TemporaryGuard, remove_unfinished, temporary_folder};
 use temporary::{in_progress, temporary, tidy};
 
-/// Checks whether a file may be written, before long work.
-///
-/// # Errors
-/// [`WholeError::Exists`] if it exists and may not be overwritten, [`WholeError::NoFolder`] without a folder for it,
-/// [`WholeError::Io`] if a folder or a device has its name, its name is too long or its folder is not writable.
+/// Checks whether a file may be written, before long work. Errors: [`WholeError::Exists`] if it exists and may not be
+/// overwritten, [`WholeError::NoFolder`] without a folder for it, [`WholeError::Io`] if a folder or a device has its
+/// name, its name is too long or its folder is not writable.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     let path = &check_place(path, overwrite)?;
     let folder = folder_of(path);
@@ -52,10 +50,7 @@ fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     Ok(path)
 }
 
-/// Checks whether a folder exists, or can be created in the one above it.
-///
-/// # Errors
-/// As [`check_free`].
+/// Checks whether a folder exists, or can be created in the one above it. Errors: as [`check_free`].
 pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
     if folder.is_dir() {
         return Ok(());
@@ -73,8 +68,6 @@ pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
     }
 }
 
-/// The folder of a path.
-#[must_use]
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -95,10 +88,7 @@ fn target(path: &Path) -> PathBuf {
     }
 }
 
-/// Creates a folder in an existing one.
-///
-/// # Errors
-/// [`WholeError::NoFolder`] if that does not exist; the system's errors.
+/// Creates a folder in an existing one. Errors: [`WholeError::NoFolder`] if that does not exist; the system's errors.
 pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     match fs::create_dir(folder) {
         Ok(()) => Ok(()),
@@ -120,9 +110,6 @@ pub struct Prepared {
 }
 
 /// Writes a file under a temporary name beside its place. Its folder is created if the folder above exists.
-///
-/// # Errors
-/// See [`WholeError`].
 pub fn prepare(
     path: &Path,
     overwrite: bool,
@@ -147,9 +134,6 @@ pub fn prepare(
 }
 
 /// Renames files: all of them, or, if one fails, none that is new.
-///
-/// # Errors
-/// See [`WholeError`].
 pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
     // Not while the program is ending.
     let mut list = in_progress();
@@ -195,9 +179,6 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
 ///
 /// With `overwrite` an older file is replaced in one step; without, an existing file is an error, also if it appears during
 /// the writing.
-///
-/// # Errors
-/// See [`WholeError`].
 pub fn write_with(
     path: &Path,
     overwrite: bool,
@@ -207,9 +188,6 @@ pub fn write_with(
 }
 
 /// As [`write_with`], for existing bytes.
-///
-/// # Errors
-/// See [`WholeError`].
 pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
     write_with(path, overwrite, |file| file.write_all(bytes))
 }

@@ -82,9 +82,6 @@ impl InProgress {
 
 /// Creates a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
 /// dropped; if the process is killed, by the next one that writes there.
-///
-/// # Errors
-/// The system's.
 pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();

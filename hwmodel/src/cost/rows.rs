@@ -22,7 +22,6 @@ pub enum Quantity {
 
 impl Quantity {
     /// The quantity in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Nand2 => "area in NAND2 equivalents",
@@ -34,7 +33,6 @@ impl Quantity {
     }
 
     /// Its unit.
-    #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Nand2 => "NAND2",
@@ -45,7 +43,6 @@ impl Quantity {
     }
 
     /// The key of its figures in a table.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::Nand2 => "nand2",
@@ -57,7 +54,6 @@ impl Quantity {
     }
 
     /// The shipped file that holds such figures.
-    #[must_use]
     pub const fn file(self) -> &'static str {
         match self {
             Self::EnergyPj => "hwmodel/tables/energy.toml",
@@ -82,7 +78,6 @@ pub enum Goal {
 
 impl Goal {
     /// The goal in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Area => "for small area",
@@ -150,8 +145,7 @@ pub enum CostError {
         /// Requested goal, if it matters.
         goal: Option<Goal>,
     },
-    /// Operations cannot be priced in the requested way.
-    /// Operations cannot be costed in the requested way.
+    /// Operations cannot be priced in the requested way. Operations cannot be costed in the requested way.
     #[error(
         "{times} min/max operations of {width} bits in stage {stage} are not spans of eight values (7 min and 7 max each): pairs are for the corner cage"
     )]

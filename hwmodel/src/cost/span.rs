@@ -28,7 +28,6 @@ pub enum MinMaxUnits {
 
 impl MinMaxUnits {
     /// Compares and selects for the span of `values` values; none for fewer than two.
-    #[must_use]
     pub const fn compares_and_selects(self, values: u64) -> (u64, u64) {
         if values < 2 {
             return (0, 0);

@@ -30,7 +30,6 @@ pub struct Costing {
 }
 
 /// The operation of a table for a class. Logic is priced as `xor`, its most expensive operation.
-#[must_use]
 pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     match class {
         OpClass::Add => "add",
@@ -110,7 +109,6 @@ impl Breakdown {
     }
 
     /// The sources of all lines, each once, in order of first use.
-    #[must_use]
     pub fn sources(&self) -> Vec<&str> {
         let mut sources = Vec::new();
         for line in &self.lines {
@@ -122,7 +120,6 @@ impl Breakdown {
     }
 
     /// Whether a line's figure is interpolated or extrapolated.
-    #[must_use]
     pub fn is_estimated(&self) -> bool {
         self.lines.iter().any(|line| line.each.is_estimated())
     }
@@ -247,7 +244,6 @@ pub struct Stores {
 
 impl Stores {
     /// The technology of a memory.
-    #[must_use]
     pub const fn of(&self, memory: Memory) -> Store {
         match memory {
             Memory::Stack => self.stack,

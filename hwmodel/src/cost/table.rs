@@ -41,13 +41,11 @@ pub struct Cost {
 
 impl Cost {
     /// Whether no row has this figure.
-    #[must_use]
     pub fn is_estimated(&self) -> bool {
         self.fit != Fit::Row
     }
 
     /// Whether it is a range.
-    #[must_use]
     pub fn is_range(&self) -> bool {
         self.low < self.high
     }
@@ -91,7 +89,6 @@ const FARTHEST: f64 = 4.0;
 
 impl CostTable {
     /// A table without rows.
-    #[must_use]
     pub fn empty() -> Self {
         Self {
             rows: BTreeMap::new(),
@@ -267,7 +264,6 @@ impl CostTable {
     }
 
     /// All operations that have rows or are listed as quadratic, in order.
-    #[must_use]
     pub fn operations(&self) -> Vec<&str> {
         let of_rows = self.rows.keys().map(|key| key.1.as_str());
         let listed = self.quadratic.iter().map(String::as_str);

@@ -56,32 +56,27 @@ pub struct AccessCount {
 
 impl Counter {
     /// Operations of one class in one stage.
-    #[must_use]
     pub fn ops_at(&self, stage: Stage, class: OpClass) -> u64 {
         self.sum(|cell| cell.stage == stage && cell.class == class)
     }
 
     /// Operations of one class in all stages.
-    #[must_use]
     pub fn ops_of(&self, class: OpClass) -> u64 {
         self.sum(|cell| cell.class == class)
     }
 
     /// All operations.
-    #[must_use]
     pub fn ops(&self) -> u64 {
         self.sum(|_| true)
     }
 
     /// Operations of the cells that a filter selects.
-    #[must_use]
     pub fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
         let cells = self.cells().filter(wanted);
         cells.map(|cell| cell.times).sum()
     }
 
     /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`; keys without operations are absent.
-    #[must_use]
     pub fn sum_by<K: Ord>(&self, key: impl Fn(&OpCount) -> K) -> BTreeMap<K, u64> {
         let mut sums = BTreeMap::new();
         for cell in self.cells() {
@@ -91,7 +86,6 @@ impl Counter {
     }
 
     /// Accesses added up by any key; keys without accesses are absent.
-    #[must_use]
     pub fn accesses_by<K: Ord>(&self, key: impl Fn(&AccessCount) -> K) -> BTreeMap<K, Accesses> {
         let mut sums = BTreeMap::<K, Accesses>::new();
         for cell in self.accesses() {
@@ -101,21 +95,18 @@ impl Counter {
     }
 
     /// Reads of one memory.
-    #[must_use]
     pub fn reads(&self, memory: Memory) -> u64 {
         let accesses = self.accesses().filter(|cell| cell.memory == memory);
         accesses.map(|cell| cell.accesses.reads).sum()
     }
 
     /// Writes of one memory.
-    #[must_use]
     pub fn writes(&self, memory: Memory) -> u64 {
         let accesses = self.accesses().filter(|cell| cell.memory == memory);
         accesses.map(|cell| cell.accesses.writes).sum()
     }
 
     /// Records that had their turn.
-    #[must_use]
     pub fn records(&self) -> u64 {
         self.records.iter().sum()
     }
@@ -127,7 +118,6 @@ impl Counter {
     }
 
     /// Width of the widest operation, in bits; 0 if there was none.
-    #[must_use]
     pub fn widest(&self) -> u32 {
         self.cells().map(|cell| cell.bits).max().unwrap_or(0)
     }

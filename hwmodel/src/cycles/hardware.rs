@@ -79,7 +79,6 @@ pub struct OuterMemory {
 
 impl OuterMemory {
     /// Cycles for which a transfer of so many bits takes the port.
-    #[must_use]
     pub fn cycles(self, bits: u64) -> u64 {
         match self.bytes_per_cycle {
             0 => 0,
@@ -272,8 +271,7 @@ pub enum HardwareError {
         /// The allowed values.
         range: String,
     },
-    /// A class of operation without units that is not wires.
-    /// A class of operation that nothing does.
+    /// A class of operation without units that is not wires. A class of operation that nothing does.
     #[error(
         "hardware description: nothing does `{class}`; give it a [units.{class}] \
          or put it into `wires`"
@@ -329,7 +327,6 @@ impl Hardware {
     }
 
     /// The units of a class in a stage's block; `None`: wires.
-    #[must_use]
     pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
         if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
             return Some(*unit);
@@ -341,13 +338,11 @@ impl Hardware {
     }
 
     /// Whether lanes draw tiles: rule 13 of [this module's parent](super).
-    #[must_use]
     pub fn hands_out_tiles(&self) -> bool {
         self.sequential && self.organisation.tile_levels > 0
     }
 
     /// Number of stacks: lanes or, with [tiles](Self::hands_out_tiles), contexts.
-    #[must_use]
     pub fn stacks(&self) -> u32 {
         match self.hands_out_tiles() {
             true => self.lanes * self.contexts,
@@ -356,7 +351,6 @@ impl Hardware {
     }
 
     /// Contexts of all lanes.
-    #[must_use]
     pub fn all_contexts(&self) -> u64 {
         u64::from(self.lanes) * u64::from(self.contexts)
     }
@@ -447,7 +441,6 @@ impl Unit {
 
 impl Cache {
     /// Sets.
-    #[must_use]
     pub fn sets(&self) -> u32 {
         self.bytes / (self.ways * self.line_bytes)
     }

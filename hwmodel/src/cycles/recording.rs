@@ -96,7 +96,6 @@ impl Recording {
 
     /// The recorded turns as a workload, for hardware that [`Hardware::check`] accepts and that is not
     /// [sequential](Hardware::sequential): the order of a turn's steps is not recorded.
-    #[must_use]
     pub fn replay(&self, hardware: &Hardware) -> Replay<'_> {
         Replay {
             recording: self,
@@ -124,7 +123,6 @@ pub struct Tape {
 
 impl Tape {
     /// An empty tape, for a recording of at most so many bytes.
-    #[must_use]
     pub fn new(most_bytes: usize) -> Self {
         Self {
             times: Box::new([[[0; WIDTHS]; CLASSES]; STAGES]),
@@ -142,7 +140,6 @@ impl Tape {
     }
 
     /// The recording; none if it was too long.
-    #[must_use]
     pub fn finish(self) -> Option<Recording> {
         self.is_on().then_some(self.recording)
     }

@@ -28,7 +28,6 @@ macro_rules! causes {
 
         impl Stalls {
             /// Cycles of one cause.
-            #[must_use]
             pub fn of(&self, cause: Cause) -> u64 {
                 match cause { $(Cause::$cause => self.$field,)+ }
             }
@@ -60,7 +59,6 @@ causes! {
 
 impl Stalls {
     /// Cycles of all causes.
-    #[must_use]
     pub fn total(&self) -> u64 {
         Cause::ALL.iter().map(|&cause| self.of(cause)).sum()
     }

@@ -47,7 +47,6 @@ pub struct Recorder {
 
 impl Recorder {
     /// An empty recorder.
-    #[must_use]
     pub fn new(limit: TraceLimit) -> Self {
         Self {
             limit,
@@ -58,7 +57,6 @@ impl Recorder {
     }
 
     /// The recorded visits, in the order in which they began.
-    #[must_use]
     pub fn visits(&self) -> &[VisitSpan] {
         &self.visits
     }
@@ -144,8 +142,7 @@ impl Recorder {
     /// blocks, per context its stage, record, and whether it waits. One nanosecond is one cycle.
     ///
     /// # Errors
-    /// Those of `to`.
-    /// As `to` has them.
+    /// Those of `to`. As `to` has them.
     pub fn write_vcd(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
         let wires = Wires {
             contexts: hardware.contexts,

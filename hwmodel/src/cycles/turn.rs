@@ -75,7 +75,6 @@ pub struct ImageNode {
 impl ImageNode {
     /// Whether neither region contains the other.
     #[inline]
-    #[must_use]
     pub fn is_disjoint(self, other: Self) -> bool {
         let (up, down) = (
             other.level.saturating_sub(self.level),
@@ -91,7 +90,6 @@ const CLASS_OF_PLACE: [u8; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
 impl Independence {
     /// Whether `later` does not wait for its sibling `earlier`.
     #[inline]
-    #[must_use]
     pub fn allows(self, earlier: &Child, later: &Child) -> bool {
         let class = |child: &Child| CLASS_OF_PLACE[usize::from(child.place & 7)];
         let classes = || class(earlier) == class(later);
@@ -166,7 +164,6 @@ struct Issue {
 
 impl TurnLog {
     /// A log for turns on a hardware that [`Hardware::check`] finds sound.
-    #[must_use]
     pub fn new(hardware: &Hardware) -> Self {
         let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
         let mut units = [[Issue::default(); CLASSES]; STAGES];

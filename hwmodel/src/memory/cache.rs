@@ -21,8 +21,7 @@ pub enum CacheError {
         /// Requested bytes per line.
         line_bytes: u32,
     },
-    /// The cache is too large to be simulated.
-    /// The cache is too large to be simulated.
+    /// The cache is too large to be simulated. The cache is too large to be simulated.
     #[error("a cache of {0} lines is too large: at most 2^28")]
     TooLarge(u64),
 }
@@ -108,19 +107,16 @@ impl Cache {
     }
 
     /// Accesses that found their line.
-    #[must_use]
     pub fn hits(&self) -> u64 {
         self.hits
     }
 
     /// Accesses that did not find their line.
-    #[must_use]
     pub fn misses(&self) -> u64 {
         self.misses
     }
 
     /// Hits divided by accesses, 0..=1; `None` before the first access.
-    #[must_use]
     pub fn hit_rate(&self) -> Option<f64> {
         let accesses = self.hits + self.misses;
         (accesses > 0).then(|| self.hits as f64 / accesses as f64)

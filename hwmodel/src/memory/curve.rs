@@ -53,7 +53,6 @@ const FIRST_TIMES: usize = 1 << 12;
 
 impl MissCurve {
     /// An empty curve for lines of `line_bytes`, at least 1.
-    #[must_use]
     pub fn new(line_bytes: u32) -> Self {
         Self {
             line_bytes: line_bytes.max(1),
@@ -67,7 +66,6 @@ impl MissCurve {
     }
 
     /// Bytes of a line.
-    #[must_use]
     pub fn line_bytes(&self) -> u32 {
         self.line_bytes
     }
@@ -146,19 +144,16 @@ impl MissCurve {
     }
 
     /// Number of accesses; one that spans lines counts once per line.
-    #[must_use]
     pub fn accesses(&self) -> u64 {
         self.accesses
     }
 
     /// Number of different lines: the misses of a cache that holds everything.
-    #[must_use]
     pub fn distinct_lines(&self) -> u64 {
         self.last.len() as u64
     }
 
     /// Misses of a fully associative cache of so many lines.
-    #[must_use]
     pub fn misses(&self, lines: u64) -> u64 {
         let kept = usize::try_from(lines).unwrap_or(usize::MAX);
         let far = self.distances.iter().skip(kept);
@@ -167,13 +162,11 @@ impl MissCurve {
 
     /// Accesses by stack distance, without first accesses: entry `d` counts those with `d` other lines accessed since the
     /// same line.
-    #[must_use]
     pub fn distances(&self) -> &[u64] {
         &self.distances
     }
 
     /// The curve at 1, 2, 4, ... lines, up to the first size that holds every line.
-    #[must_use]
     pub fn points(&self) -> Vec<MissPoint> {
         let mut points = Vec::new();
         let mut lines = 1;

@@ -35,7 +35,6 @@ pub struct RecordBits {
 
 impl RecordBits {
     /// The same bits for all kinds.
-    #[must_use]
     pub const fn uniform(bits: u32) -> Self {
         Self {
             clip: bits,
@@ -46,7 +45,6 @@ impl RecordBits {
     }
 
     /// Bits of a record of a kind.
-    #[must_use]
     pub const fn of(&self, kind: RecordKind) -> u32 {
         match kind {
             RecordKind::Clip => self.clip,
@@ -56,13 +54,11 @@ impl RecordBits {
     }
 
     /// Bits of a stack's entry.
-    #[must_use]
     pub fn widest(&self) -> u32 {
         self.clip.max(self.screen).max(self.finest)
     }
 
     /// The kind of a record at an octree level.
-    #[must_use]
     pub fn kind(&self, level: u32, in_screen_space: bool) -> RecordKind {
         match self.finest_level {
             Some(finest) if level >= finest => RecordKind::Finest,
@@ -119,7 +115,6 @@ pub struct RecordProbe {
 
 impl RecordProbe {
     /// A probe without records.
-    #[must_use]
     pub fn new(bits: RecordBits) -> Self {
         Self {
             bits,
@@ -131,25 +126,21 @@ impl RecordProbe {
     }
 
     /// Bits of each kind.
-    #[must_use]
     pub fn bits(&self) -> RecordBits {
         self.bits
     }
 
     /// Accesses to records of a kind.
-    #[must_use]
     pub fn of(&self, kind: RecordKind) -> RecordAccesses {
         self.accesses[kind as usize]
     }
 
     /// Bits read, all kinds.
-    #[must_use]
     pub fn read_bits(&self) -> u64 {
         self.sum(|of| of.reads)
     }
 
     /// Bits written, all kinds.
-    #[must_use]
     pub fn written_bits(&self) -> u64 {
         self.sum(|of| of.writes)
     }

@@ -32,7 +32,6 @@ pub struct Widths {
 
 impl Widths {
     /// Bits of an access of a memory.
-    #[must_use]
     pub const fn of(&self, memory: Memory) -> u32 {
         match memory {
             Memory::Stack => self.stack_bits,
@@ -83,7 +82,6 @@ pub struct MemoryProbe {
 
 impl MemoryProbe {
     /// A probe without records.
-    #[must_use]
     pub fn new(widths: Widths) -> Self {
         Self {
             widths,
@@ -103,49 +101,41 @@ impl MemoryProbe {
     }
 
     /// Bits per access.
-    #[must_use]
     pub fn widths(&self) -> Widths {
         self.widths
     }
 
     /// Reads of a memory.
-    #[must_use]
     pub fn reads(&self, memory: Memory) -> u64 {
         self.reads[memory as usize]
     }
 
     /// Writes of a memory.
-    #[must_use]
     pub fn writes(&self, memory: Memory) -> u64 {
         self.writes[memory as usize]
     }
 
     /// Bits read from a memory.
-    #[must_use]
     pub fn read_bits(&self, memory: Memory) -> u64 {
         self.reads(memory) * u64::from(self.widths.of(memory))
     }
 
     /// Bits written to a memory.
-    #[must_use]
     pub fn written_bits(&self, memory: Memory) -> u64 {
         self.writes(memory) * u64::from(self.widths.of(memory))
     }
 
     /// Number of different addresses of a memory that were read or written.
-    #[must_use]
     pub fn distinct(&self, memory: Memory) -> u64 {
         self.touched[memory as usize].distinct()
     }
 
     /// Miss curves, in the order in which they were requested.
-    #[must_use]
     pub fn curves(&self) -> &[(Memory, MissCurve)] {
         &self.curves
     }
 
     /// Most records that the stack held at once.
-    #[must_use]
     pub fn deepest_stack(&self) -> u64 {
         self.deepest
     }

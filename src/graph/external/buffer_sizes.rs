@@ -28,9 +28,7 @@ fn block_bytes(shift: u32) -> u64 {
 /// later the halo's readers, a block and a chunk. Each stage stays within the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct BufferSizes {
-    /// Voxels per run.
     pub(super) run_records: usize,
-    /// Bytes of all readers of a merge.
     pub(super) merge_bytes: usize,
     /// Most runs per merge.
     pub(super) fan_in: usize,

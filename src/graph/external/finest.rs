@@ -181,12 +181,10 @@ impl BlockReader {
     }
 }
 
-/// The finest level in progress.
 struct FinestInProgress {
     color: Spool,
     own_normal: Spool,
     normal: Spool,
-    /// Voxels done.
     voxels: u64,
     centre: [f64; 3],
 }

@@ -40,7 +40,6 @@ const RUN_BYTES: u64 = 16;
 /// Least bytes per voxel in the graph.
 const GRAPH_BYTES: u64 = 5;
 
-/// Options of an external build.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
     pub build: BuildOptions,
@@ -73,10 +72,8 @@ pub enum ExternalError {
 pub struct ExternalReport {
     /// Voxels pushed, including repeated ones.
     pub pushed: u64,
-    /// Finest voxels of the graph.
     pub voxels: u64,
     pub nodes: u64,
-    /// Bytes of the file.
     pub bytes: u64,
     /// Sorted runs of voxels.
     pub runs: u64,
@@ -98,7 +95,6 @@ pub struct ExternalBuilder {
 
 impl ExternalBuilder {
     /// A builder without voxels.
-    #[must_use]
     pub fn new(options: ExternalOptions) -> Self {
         let sizes = BufferSizes::new(options.memory);
         let scratch = Scratch::new(options.temporary.clone());
@@ -121,21 +117,17 @@ impl ExternalBuilder {
     }
 
     /// Voxels pushed so far, including repeated ones.
-    #[must_use]
     pub fn len(&self) -> u64 {
         self.gather.pushed
     }
 
     /// Whether no voxel was pushed.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Fails where so many voxels, or the graph of them, take more disk than is free. To be called before they are pushed.
-    ///
-    /// # Errors
-    /// [`ExternalError::Disk`].
+    /// Fails where so many voxels, or the graph of them, take more disk than is free. To be called before they are
+    /// pushed. Errors: [`ExternalError::Disk`].
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
         let folder = path.parent().unwrap_or(path);
@@ -144,7 +136,6 @@ impl ExternalBuilder {
     }
 
     /// Most voxels that [`expect`](Self::expect) accepts, as far as temporary files go.
-    #[must_use]
     pub fn most_voxels(&self) -> u64 {
         budget::free_disk(&self.options.temporary).map_or(u64::MAX, |free| free / RUN_BYTES)
     }
@@ -155,11 +146,8 @@ impl ExternalBuilder {
     }
 
     /// Builds the graph and writes it to `path`. `placement_world` is as in
-    /// [`Builder::finish`](super::Builder::finish).
-    ///
-    /// # Errors
-    /// When there are no voxels, too many, or too far apart; when `path` exists and `overwrite` is false; when the
-    /// system refuses. Temporary files are removed in any case.
+    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart; when
+    /// `path` exists and `overwrite` is false; when the system refuses. Temporary files are removed in any case.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),

@@ -12,7 +12,6 @@ use super::buffer_sizes::BufferSizes;
 use super::record::key;
 use super::scratch::{Scratch, ScratchFile};
 
-/// Bytes of a record in a file.
 const RECORD_BYTES: u64 = size_of::<u128>() as u64;
 
 #[derive(Debug, Clone, Copy)]
@@ -110,7 +109,6 @@ struct Reader {
     next: usize,
 }
 
-/// Several runs as one.
 #[derive(Debug)]
 pub(super) struct Merge {
     file: ScratchFile,

@@ -30,12 +30,10 @@ impl FinishedNode {
     }
 }
 
-/// The nodes of a cluster.
 #[derive(Debug, Clone)]
 pub(super) struct ClusterNodes {
     /// Octants that contain voxels.
     pub(super) mask: u8,
-    /// A node for each of them.
     pub(super) octants: Vec<FinishedNode>,
     pub(super) sum: Sum,
 }

@@ -135,7 +135,6 @@ impl Estimate<'_> {
         (level, pieces)
     }
 
-    /// Finest voxels below a node.
     fn voxels_below(&self, node: u32, level: u32) -> usize {
         let first_voxel = |mut node: u32| {
             for below in level..self.depth {
@@ -233,7 +232,6 @@ struct PieceNormals<'w> {
     cluster_level: u32,
     first_cluster: u32,
     clusters: &'w [Cluster],
-    /// The next voxel of the piece.
     next: usize,
     normals: &'w mut [PackedNormal],
 }

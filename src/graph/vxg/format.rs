@@ -48,7 +48,6 @@ pub(super) const NO_MESH: u8 = 0;
 pub(super) const MESH_Z_UP: u8 = 1;
 pub(super) const MESH_Y_UP: u8 = 2;
 
-/// Bytes of an entry of the section table.
 const SECTION_ENTRY_BYTES: usize = 32;
 /// Most entries of the level table.
 pub(super) const MAX_LEVEL_STARTS: usize = MAX_DEPTH as usize + 2;

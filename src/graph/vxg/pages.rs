@@ -4,10 +4,8 @@ use std::ops::Range;
 
 use crate::graph::{Graph, Store};
 
-/// Pages of the file that a graph is mapped from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MappedPages {
-    /// Bytes per page.
     pub page_bytes: u64,
     /// Pages of the whole file.
     pub mapped: u64,
@@ -18,7 +16,6 @@ pub struct MappedPages {
 
 impl Graph {
     /// Pages of the mapped file; none where the graph owns its arrays or the system does not report them.
-    #[must_use]
     pub fn mapped_pages(&self) -> Option<MappedPages> {
         let Store::Mapped(map, _) = &self.color else {
             return None;

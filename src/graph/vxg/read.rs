@@ -18,18 +18,14 @@ use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
 /// Opens a file: maps it, and checks the header and that all sections are there.
 ///
-/// No section is read. A graph from a damaged file may look wrong, but walking it never panics: see [`super`].
-///
-/// # Errors
-/// When the file cannot be read, is something else, is truncated, or its header is damaged.
+/// No section is read. A graph from a damaged file may look wrong, but walking it never panics: see [`super`]. Fails
+/// when the file cannot be read, is something else, is truncated, or its header is damaged.
 pub fn open(path: &Path) -> Result<Graph, VxgError> {
     Ok(open_with_header(path)?.0)
 }
 
-/// Opens a file and checks all of it: checksums, padding and every index.
-///
-/// # Errors
-/// As [`open`], and when any byte is not as it was written.
+/// Opens a file and checks all of it: checksums, padding and every index. Errors: as [`open`], and when any byte is not
+/// as it was written.
 pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     let (graph, header, map) = open_with_header(path)?;
     advise(&map, Access::Whole);
@@ -39,10 +35,7 @@ pub fn verify(path: &Path) -> Result<Graph, VxgError> {
 }
 
 /// A graph from the bytes of a whole file, checked like [`verify`]. It owns its arrays. Errors name the file
-/// `(memory)`.
-///
-/// # Errors
-/// As [`verify`].
+/// `(memory)`. Errors: as [`verify`].
 pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
     let path = Path::new("(memory)");
     let header = Header::read(bytes, bytes.len() as u64, path)?;
@@ -100,7 +93,6 @@ struct Header {
 }
 
 impl Header {
-    /// Reads a header from the beginning of a file of `file_bytes`.
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, VxgError> {
         FORMAT.check_byte_order(path)?;
         let known = [VERSION, VERSION_WITH_OPACITY];

@@ -17,10 +17,8 @@ use crate::whole::{self, WholeError};
 
 /// Writes a graph to a file.
 ///
-/// A temporary file beside `path` is renamed when complete. Missing folders are created.
-///
-/// # Errors
-/// When the graph breaks an invariant, when `path` exists and `overwrite` is false, or when the system refuses.
+/// A temporary file beside `path` is renamed when complete. Missing folders are created. Fails when the graph breaks an
+/// invariant, when `path` exists and `overwrite` is false, or when the system refuses.
 pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
     graph.validate()?;
     replace(path, overwrite, |file| {
@@ -100,10 +98,8 @@ pub(in crate::graph) fn write_pieces(
     Ok(file_bytes)
 }
 
-/// Writes a graph to anything that takes bytes.
-///
-/// # Errors
-/// When the graph breaks an invariant, or the writer fails (errors name the file `(output)`).
+/// Writes a graph to anything that takes bytes. Fails when the graph breaks an invariant, or the writer fails (errors
+/// name the file `(output)`).
 pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
     graph.validate()?;
     write_unchecked(graph, out).map_err(|source| VxgError::Io {

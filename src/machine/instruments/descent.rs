@@ -76,8 +76,7 @@ impl Descent {
         }
     }
 
-    /// # Errors
-    /// If a word has overflowed.
+    /// Fails if a word has overflowed.
     pub(super) fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
         let dp = &mut self.dp;
         let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);

@@ -70,7 +70,6 @@ impl Machine {
     }
 }
 
-/// All short vectors.
 fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
     for bits in 0..16u8 {
         let halves = |at: u8| Halves {
@@ -215,7 +214,6 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     });
 }
 
-/// Silhouettes.
 fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let depth = state.job.constants.depth;
     let mut planes = inputs.planes();

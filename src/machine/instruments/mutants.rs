@@ -20,9 +20,7 @@ pub enum Mutation {
     UlpInCorners,
     /// Edges halved down instead of towards zero.
     HalvesDown,
-    /// Midpoints rounded up.
     MidpointsUp,
-    /// Quotients rounded up.
     QuotientsUp,
     /// Two neighbours of the order array swapped.
     OrderSwapped,

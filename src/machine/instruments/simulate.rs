@@ -43,14 +43,10 @@ impl Machine {
     /// [`Classes`] and [`Both`] the picture is the same if no two children of one class draw the same sample, as under the
     /// exact rule.
     ///
-    /// [`Independence::None`]: hwmodel::cycles::Independence::None
-    /// [`Image`]: hwmodel::cycles::Independence::Image
-    /// [`Classes`]: hwmodel::cycles::Independence::Classes
-    /// [`Both`]: hwmodel::cycles::Independence::Both
-    ///
-    /// # Errors
-    /// When the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not spill
-    /// is full.
+    /// [`Independence::None`]: hwmodel::cycles::Independence::None [`Image`]: hwmodel::cycles::Independence::Image
+    /// [`Classes`]: hwmodel::cycles::Independence::Classes [`Both`]: hwmodel::cycles::Independence::Both Fails when the
+    /// hardware's description is invalid, a word overflows under the trap policy, or a stack that does not spill is
+    /// full.
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
@@ -68,11 +64,9 @@ impl Machine {
     }
 
     /// Draws a frame and records its turns. With parents on the stack they are the same on every hardware of the
-    /// organisation: records that share a part of the picture come one after the other, and tiles share nothing. `None`:
-    /// the recording would take more than `most_bytes`, or children lie on the stack.
-    ///
-    /// # Errors
-    /// As [`Self::simulate`].
+    /// organisation: records that share a part of the picture come one after the other, and tiles share nothing.
+    /// `None`: the recording would take more than `most_bytes`, or children lie on the stack. Errors: as
+    /// [`Self::simulate`].
     pub fn record_turns(
         &mut self,
         graph: &GraphView<'_>,
@@ -154,7 +148,6 @@ impl Watch for Ranks {
     }
 }
 
-/// Waiting work.
 #[derive(Clone, Copy)]
 enum Work<L: CageCoordinate> {
     /// The tiles in a node of the image quadtree.
@@ -169,7 +162,6 @@ enum Work<L: CageCoordinate> {
 
 /// The walk that draws a tile.
 struct Walk<L> {
-    /// The previous record.
     last: Option<Record<L>>,
     /// Number of its waiting work items.
     waiting: u32,
@@ -205,7 +197,6 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     handed_out: Vec<QuadNode>,
     /// Each tile's view of the fill vectors above it.
     tiles: Vec<TileView>,
-    /// By tile.
     walks: Vec<Walk<L>>,
     open: Open,
     /// The tile whose view is in place.

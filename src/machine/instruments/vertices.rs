@@ -7,11 +7,9 @@ use super::descent::Descent;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::project::FrameSetup;
 
-/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the machine
-/// does so.
-///
-/// # Errors
-/// If a word overflows. The machine has these vertices relative to a node of the quadtree, where they are never larger.
+/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the
+/// machine does so. Fails if a word overflows. The machine has these vertices relative to a node of the quadtree, where
+/// they are never larger.
 pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     with_cage!(setup, L => cages_as::<L>(setup, path))
 }

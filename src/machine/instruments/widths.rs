@@ -1,13 +1,12 @@
 //! The bits of a record's numbers under the rules that draw outlines: proven from a frame's set-up, and measured.
 //!
 //! The proof. A vertex of any record lies in the object, so its clip vector lies in the hull of the object's eight
-//! corners. This bounds `W`, and `X` and `Y` relative to the whole picture. A box enters a quadrant only if it leaves that
-//! by at most half a sample, or by the quadrant's width (`near_node`). So relative to any other node `-W <= X <= 2W`, and
-//! no vertex lies behind the eye. Edges are differences of two such numbers.
-//! Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are products of a point of the object with an edge's
-//! direction, greatest at a corner of the object, and the same relative to every node. The edge's end is on the plane, so
-//! `|c| <= 2 (|a| + |b|)`. A plane across an axis is the difference of two planes through edges of the record, so its `c`
-//! is at most twice theirs.
+//! corners. This bounds `W`, and `X` and `Y` relative to the whole picture. A box enters a quadrant only if it leaves
+//! that by at most half a sample, or by the quadrant's width (`near_node`). So relative to any other node `-W <= X <=
+//! 2W`, and no vertex lies behind the eye. Edges are differences of two such numbers. Of a plane `a X + b Y + c W = 0`
+//! through an edge, `a` and `b` are products of a point of the object with an edge's direction, greatest at a corner of
+//! the object, and the same relative to every node. The edge's end is on the plane, so `|c| <= 2 (|a| + |b|)`. A plane
+//! across an axis is the difference of two planes through edges of the record, so its `c` is at most twice theirs.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +21,6 @@ use crate::project::vector::cross;
 use crate::project::{CageKind, EngineError, FrameSetup};
 
 hwmodel::named! {
-    /// The numbers of a record.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum RecordNumber {
         Node = "octree node",
@@ -38,7 +36,6 @@ hwmodel::named! {
         ClipW = "W",
         EdgeXy = "edge's X, Y",
         EdgeW = "edge's W",
-        /// The least W of the vertices.
         LeastW = "least W",
         /// Coefficient a or b of a silhouette plane.
         PlaneAb = "plane's a, b",
@@ -56,8 +53,6 @@ pub struct NumberSpan {
 }
 
 impl NumberSpan {
-    /// One value.
-    #[must_use]
     pub fn of(value: i128) -> Self {
         Self {
             least: value,
@@ -88,7 +83,6 @@ impl NumberSpan {
     }
 
     /// Bits that hold the span: two's complement if it contains negative values.
-    #[must_use]
     pub fn bits(self) -> u32 {
         let of = |value: i128| i128::BITS - value.leading_zeros();
         match self.least < 0 {
@@ -97,8 +91,6 @@ impl NumberSpan {
         }
     }
 
-    /// Whether it contains another.
-    #[must_use]
     pub fn holds(self, other: Self) -> bool {
         self.with(other) == self
     }
@@ -115,7 +107,6 @@ pub struct ProvenWidths {
 }
 
 /// The widths that a frame's set-up proves, for a graph of `nodes`; `None` under the rules that do not draw outlines.
-#[must_use]
 pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     if !setup.options.coverage.draws_outlines() {
         return None;
@@ -212,7 +203,6 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
 }
 
 /// The set-up with wide words of the proven bits. Blending keeps its own.
-#[must_use]
 pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     let mut narrow = setup.clone();
     if !setup.options.coverage.blends()
@@ -285,10 +275,7 @@ impl Watch for Seen {
 }
 
 impl Machine {
-    /// Draws a frame and returns the spans of its records' numbers.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame and returns the spans of its records' numbers. Fails when a word overflows under the trap policy.
     pub fn seen_numbers(
         &mut self,
         graph: &GraphView<'_>,
