@@ -1,7 +1,5 @@
-//! Files that are read whole: regular ones, no larger than they may be.
-//!
-//! A name can lead to a pipe that nobody writes to, or to a device that never ends. Both are refused before they are
-//! opened, because opening may wait already.
+//! Regular files of limited size, read whole. Pipes and devices are rejected before they are opened, because opening may
+//! wait.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -10,10 +8,7 @@ use std::path::Path;
 /// Most bytes of a file of settings: hardware, prices, flags.
 pub const SETTINGS: u64 = 16 << 20;
 
-/// Opens a regular file.
-///
-/// # Errors
-/// What the system says; or that it is something else.
+/// Opens a regular file. Errors: the system's; or it is not a regular file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_dir() {
@@ -25,10 +20,8 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The bytes of a regular file of at most so many.
-///
-/// # Errors
-/// As [`open`]; and where there are more, or more than there is memory for.
+/// The bytes of a regular file of at most `most` bytes. Errors: as [`open`]; and if the file is longer, or does not fit
+/// in memory.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut file = open(path)?;
     let bytes = file.metadata()?.len();
@@ -41,7 +34,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     }
     let mut content = crate::budget::room("a file that is read whole", bytes as usize)
         .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
-    // What it has by now; it may have grown.
+    // It may have grown.
     (&mut file)
         .take(bytes.saturating_add(1))
         .read_to_end(&mut content)?;
@@ -51,10 +44,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     }
 }
 
-/// The bytes of a regular file that there is memory for.
-///
-/// # Errors
-/// As [`read`]; [`OutOfMemory`](io::ErrorKind::OutOfMemory) where there is less memory.
+/// The bytes of a regular file that fits in memory. Errors: as [`read`]; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if
+/// it does not fit.
 pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = open(path)?.metadata()?.len();
     crate::budget::check("a file that is read whole", bytes)
@@ -62,10 +53,7 @@ pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     read(path, u64::MAX)
 }
 
-/// The text of a file of settings.
-///
-/// # Errors
-/// As [`read`]; and where it is not UTF-8.
+/// The text of a file of settings. Errors: as [`read`]; and if it is not UTF-8.
 pub fn read_settings(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path, SETTINGS)?);
     text.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))

@@ -1,8 +1,7 @@
-//! Memory and room on disks, asked for before they are taken.
+//! Checks of memory and disk space before they are used.
 //!
-//! What a file or a flag makes large is [checked](check) against the memory that is free before work begins,
-//! and [allocated](filled) so that a refusal is an error with figures and not the end of the process. Small
-//! things are allocated as usual: a system without memory for those has none for an error message either.
+//! Objects whose size depends on a file or a flag are [checked](check) against the free memory, and
+//! [allocated](filled) so that a refusal is an error. Small objects are allocated as usual.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -10,11 +9,11 @@ use std::path::{Path, PathBuf};
 /// Too little memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub struct Shortage {
-    /// What would have been made.
+    /// The object's name.
     pub what: &'static str,
-    /// Bytes that it takes, or more.
+    /// Least bytes that it needs.
     pub needed: u64,
-    /// Bytes that are free; `None` where the system does not report it.
+    /// Free bytes; `None` if the system does not report them.
     pub free: Option<u64>,
 }
 
@@ -29,10 +28,8 @@ impl fmt::Display for Shortage {
     }
 }
 
-/// Fails where something takes more memory than is free.
-///
-/// # Errors
-/// [`Shortage`]; never where the system does not report how much is free.
+/// Fails if an object needs more memory than is free. Errors: [`Shortage`]; never if the system does not report the
+/// free memory.
 pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     match available() {
         Some(free) if needed > free => Err(Shortage {
@@ -44,23 +41,18 @@ pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     }
 }
 
-/// Too little room on a disk.
+/// Too little space on a disk.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("{}: {needed} bytes of disk are needed, and {free} are free", folder.display())]
 pub struct DiskShortage {
     /// A folder on the disk.
     pub folder: PathBuf,
-    /// Bytes that would be written, or more.
     pub needed: u64,
-    /// Bytes that are free.
     pub free: u64,
 }
 
-/// Fails where files in a folder take more than is free on its disk. A folder that is going to be made is on the disk of
-/// the one above it.
-///
-/// # Errors
-/// [`DiskShortage`]; never where the system does not report how much is free.
+/// Fails if files in a folder, which need not exist, need more than is free on its disk. Errors: [`DiskShortage`];
+/// never if the system does not report the free space.
 pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
     match free_disk(folder) {
         Some(free) if needed > free => Err(DiskShortage {
@@ -72,8 +64,7 @@ pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
     }
 }
 
-/// Bytes that can still be written in a folder. `None` where the system does not report it.
-#[must_use]
+/// Bytes that can be written in a folder. `None` if the system does not report them.
 pub fn free_disk(folder: &Path) -> Option<u64> {
     #[cfg(unix)]
     {
@@ -93,10 +84,7 @@ pub fn free_disk(folder: &Path) -> Option<u64> {
     }
 }
 
-/// Room for so many items in an empty list.
-///
-/// # Errors
-/// [`Shortage`] where the system refuses it.
+/// An empty list with capacity for so many items. Errors: [`Shortage`] if the system refuses it.
 pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     let mut list = Vec::new();
     list.try_reserve_exact(items).map_err(|_| Shortage {
@@ -107,21 +95,17 @@ pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     Ok(list)
 }
 
-/// A list of so many equal items.
-///
-/// # Errors
-/// [`Shortage`] where the system refuses it.
+/// A list of equal items. Errors: [`Shortage`] if the system refuses it.
 pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec<T>, Shortage> {
     let mut list = room(what, items)?;
     list.resize(items, item);
     Ok(list)
 }
 
-/// Memory that this process can still take, bytes. `None` where the system does not report it.
+/// Memory that this process can still take, bytes. `None` if the system does not report it.
 ///
-/// The least of what the computer has free, what the process's container may have (Linux: control groups), and what
-/// is left of its address space where that is limited (`ulimit -v`).
-#[must_use]
+/// The least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
+/// a limited address space (`ulimit -v`).
 pub fn available() -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(name).ok();
     let free = kibibytes_of(&read("/proc/meminfo")?, "MemAvailable:")?;
@@ -138,8 +122,7 @@ pub fn available() -> Option<u64> {
     [granted, left].into_iter().flatten().chain([free]).min()
 }
 
-/// Bytes of memory that this process holds. `None` where the system does not report it.
-#[must_use]
+/// Resident memory of this process, bytes. `None` if the system does not report it.
 pub fn resident() -> Option<u64> {
     kibibytes_of(
         &std::fs::read_to_string("/proc/self/status").ok()?,
@@ -147,14 +130,14 @@ pub fn resident() -> Option<u64> {
     )
 }
 
-/// The bytes of an entry that is given in kibibytes. `None` where there is no such entry.
+/// The bytes of an entry in kibibytes.
 fn kibibytes_of(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
     kibibytes.checked_mul(1024)
 }
 
-/// The process's limit of address space, bytes. `None` where it has no limit.
+/// The process's limit of address space, bytes.
 fn address_space(limits: &str) -> Option<u64> {
     let mut lines = limits.lines();
     let line = lines.find_map(|line| line.strip_prefix("Max address space"))?;

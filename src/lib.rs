@@ -254,7 +254,7 @@ pub use hwmodel;
 #[doc(inline)]
 pub use hwmodel::Overflow;
 
-// Modules for the other crates of this workspace. They may change in any version and are no part of the API.
+// Modules for the other crates of this workspace; not part of the API.
 #[doc(hidden)]
 pub mod bounded;
 #[doc(hidden)]

@@ -1,17 +1,14 @@
-//! SplitMix64: random numbers that are the same in every run and on every computer.
+//! SplitMix64: reproducible random numbers.
 
-/// The numbers that follow from a seed.
+/// The sequence of a seed.
 #[derive(Debug, Clone)]
 pub struct SplitMix(u64);
 
 impl SplitMix {
-    /// A generator that begins at a seed.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -20,7 +17,7 @@ impl SplitMix {
         z ^ z >> 31
     }
 
-    /// A number from 0 to below `count`, which is 1 or more.
+    /// A number from 0 to below `count`, which is at least 1.
     pub fn below(&mut self, count: u64) -> u64 {
         self.bits() % count.max(1)
     }
@@ -31,8 +28,7 @@ impl SplitMix {
     }
 }
 
-/// 64 bits that look random and follow from `value`: the first ones of that seed.
-#[must_use]
+/// 64 bits that look random: the first of the seed `value`.
 pub fn mix(value: u64) -> u64 {
     SplitMix(value).bits()
 }

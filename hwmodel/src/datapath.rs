@@ -1,8 +1,7 @@
-//! The datapath: every arithmetic step of the machine is one call here.
+//! The datapath: every arithmetic step of the machine is one call.
 //!
-//! Each call does one operation on words, reports it to the probe, and applies the
-//! overflow policy. There is no call that multiplies and none that divides;
-//! the restoring divide is built by its user from [`Datapath::divide_step`].
+//! Each call does one operation on words, reports it to the probe, and applies the overflow policy. There is no
+//! multiplication and no division; users build a restoring divide from [`Datapath::divide_step`].
 
 use std::panic::Location;
 
@@ -12,12 +11,12 @@ use crate::{
     Wires, Word,
 };
 
-/// A datapath of one word format (and the wide one that goes with it).
+/// A datapath of one word format and its wide format.
 #[derive(Debug)]
 pub struct Datapath<P: Probe> {
     format: Format,
     policy: Overflow,
-    /// 64 less the width: shifting left and right by it sign-extends a word.
+    /// 64 less the width of words and wide words: shifting left and right by it sign-extends.
     spare: [u32; 2],
     place: StageLevel,
     record: u64,
@@ -46,37 +45,28 @@ impl<P: Probe> Datapath<P> {
     }
 
     /// The format of its words.
-    #[must_use]
     pub fn format(&self) -> Format {
         self.format
     }
 
-    /// Where it is at work.
-    #[inline(always)]
-    pub(crate) fn place(&self) -> StageLevel {
-        self.place
-    }
-
     /// The first overflow so far, if the policy is to trap.
     #[inline]
-    #[must_use]
     pub fn trap(&self) -> Option<Trap> {
         self.trap
     }
 
-    /// How many results did not fit so far, under any policy.
-    #[must_use]
+    /// Number of results that did not fit, under any policy.
     pub fn overflows(&self) -> u64 {
         self.overflows
     }
 
-    /// The probe at work.
+    /// The probe.
     #[inline]
     pub fn probe_mut(&mut self) -> &mut P {
         &mut self.probe
     }
 
-    /// The probe, to read what it saw.
+    /// Returns the probe.
     pub fn into_probe(self) -> P {
         self.probe
     }
@@ -91,19 +81,19 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Goes on with a record of this level, whose turn began before.
+    /// Continues a record of this level, whose turn began before.
     #[inline(always)]
     pub fn resume(&mut self, level: u32) {
         self.place.level = level;
     }
 
-    /// Names the stage to which the operations that follow belong.
+    /// Sets the stage of the following operations.
     #[inline(always)]
     pub fn stage(&mut self, stage: Stage) {
         self.place.stage = stage;
     }
 
-    /// Says that what follows needs what is done, after `idle` cycles without operations ([`Probe::next_step`]).
+    /// Marks that the following operations need the results so far ([`Probe::next_step`]).
     #[inline(always)]
     pub fn next_step(&mut self, idle: u32) {
         if P::ENABLED {
@@ -111,7 +101,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Does work of another stage, which hardware does beside that of this one ([`Probe::beside`]).
+    /// Does work of another stage, which hardware does in the same cycles ([`Probe::beside`]).
     #[inline(always)]
     pub fn beside<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.place.stage, stage);
@@ -142,8 +132,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Shows a probe what crosses the border of a block: its inputs, and what
-    /// it made of them. Nothing is left of it where no probe taps.
+    /// Shows a probe the inputs and outputs of a block. Compiles to nothing where no probe taps.
     #[inline(always)]
     pub fn tap(&mut self, block: impl Into<u32>, stimulus: &impl Wires, expected: &impl Wires) {
         if P::TAPS && self.probe.is_tapping() {
@@ -173,7 +162,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Tells a probe by how many places the caller's line shifts.
+    /// Reports by how many places the caller's line shifts.
     #[inline(always)]
     #[track_caller]
     fn note_shift<T: Number>(&mut self, places: u32) {
@@ -184,7 +173,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Brings an exact result (`raw`, or beyond 64 bits if `carried`) into the format.
+    /// Fits an exact result (`raw`, beyond 64 bits if `carried`) into the format.
     #[inline(always)]
     fn fit<T: Number>(&mut self, op: TrapOp, raw: i64, carried: bool) -> T {
         let spare = self.spare[usize::from(T::WIDE)];
@@ -209,7 +198,7 @@ impl<P: Probe> Datapath<P> {
         }
         if self.policy == Overflow::Saturate {
             let spare = self.spare[usize::from(T::WIDE)];
-            // A carry out of 64 bits flips the sign of what is left.
+            // A carry out of 64 bits flips the sign.
             let negative = (raw < 0) != carried;
             return T::from_raw(if negative {
                 i64::MIN >> spare
@@ -220,13 +209,13 @@ impl<P: Probe> Datapath<P> {
         T::from_raw(wrapped)
     }
 
-    /// Takes a constant of the frame; one that does not fit overflows.
+    /// Loads a constant of the frame; one that does not fit overflows.
     #[inline]
     pub fn load(&mut self, value: i64) -> Word {
         self.fit(TrapOp::Load, value, false)
     }
 
-    /// Takes a wide constant of the frame; one that does not fit overflows.
+    /// Loads a wide constant of the frame; one that does not fit overflows.
     #[inline]
     pub fn load_wide(&mut self, value: i64) -> WideWord {
         self.fit(TrapOp::Load, value, false)
@@ -256,8 +245,7 @@ impl<P: Probe> Datapath<P> {
         self.fit(TrapOp::Sub, raw, carried)
     }
 
-    /// `(a + b) >> 1`, the sum taken in one bit more than the word: it cannot
-    /// overflow. One add, one shift.
+    /// `(a + b) >> 1` without overflow: the sum has one bit more than the word. One add, one shift.
     #[inline(always)]
     pub fn midpoint<T: Number>(&mut self, a: T, b: T) -> T {
         if P::ENABLED {
@@ -283,7 +271,7 @@ impl<P: Probe> Datapath<P> {
         T::from_raw(a.raw() >> places.min(63))
     }
 
-    /// `a << places`; overflows where bits that matter would be lost.
+    /// `a << places`; overflows where significant bits would be lost.
     #[inline(always)]
     #[track_caller]
     pub fn shl<T: Number>(&mut self, a: T, places: u32) -> T {
@@ -292,7 +280,7 @@ impl<P: Probe> Datapath<P> {
         let raw = a.raw();
         let shifted = if places < 64 { raw << places } else { 0 };
         if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {
-            // What is left has lost bits; `carried`: whether its sign is still the word's.
+            // Bits are lost; `carried`: whether the sign changed.
             let spare = self.spare[usize::from(T::WIDE)];
             let carried = (shifted < 0) != (raw < 0);
             let wrapped = (shifted << spare) >> spare;
@@ -366,14 +354,12 @@ impl<P: Probe> Datapath<P> {
 
     /// Bit `place` of a word, from the right: a wire.
     #[inline(always)]
-    #[must_use]
     pub fn bit<T: Number>(&self, a: T, place: u32) -> bool {
         (a.raw() >> place.min(63)) & 1 != 0
     }
 
     /// A word with bit `place` zero: a wire to ground.
     #[inline(always)]
-    #[must_use]
     pub fn without_bit(&self, a: Word, place: u32) -> Word {
         Word(a.0 & !(1 << place.min(63)))
     }
@@ -381,34 +367,33 @@ impl<P: Probe> Datapath<P> {
     /// Bitwise and of two short vectors of `bits` bits.
     #[inline(always)]
     pub fn and_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
-        self.logic(bits);
+        self.note_short(OpClass::Logic, bits);
         a & b
     }
 
     /// Bitwise or of two short vectors of `bits` bits.
     #[inline(always)]
     pub fn or_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
-        self.logic(bits);
+        self.note_short(OpClass::Logic, bits);
         a | b
     }
 
     /// Bitwise exclusive or of two short vectors of `bits` bits.
     #[inline(always)]
     pub fn xor_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
-        self.logic(bits);
+        self.note_short(OpClass::Logic, bits);
         a ^ b
     }
 
     #[inline(always)]
-    fn logic(&mut self, bits: u32) {
+    pub(crate) fn note_short(&mut self, class: OpClass, bits: u32) {
         if P::ENABLED {
-            self.probe
-                .op_on(Operand::Short, OpClass::Logic, bits, self.place);
+            self.probe.op_on(Operand::Short, class, bits, self.place);
         }
     }
 
-    /// A word shifted left by one with `bit` coming in from the right: the
-    /// quotient register of a divide. Wires, not counted; overflows like a shift.
+    /// A word shifted left by one with `bit` as its last: the quotient register of a divide. Wires, not counted;
+    /// overflows like a shift.
     #[inline(always)]
     pub fn shift_in(&mut self, a: Word, bit: bool) -> Word {
         let raw = a.0;
@@ -416,13 +401,10 @@ impl<P: Probe> Datapath<P> {
         self.fit(TrapOp::ShiftLeft, raw << 1 | i64::from(bit), carried)
     }
 
-    /// One step of a restoring divide: the remainder is doubled, `bit` comes
-    /// in from the right, and the divisor is taken away if it fits.
+    /// One step of a restoring divide: the remainder is doubled, `bit` comes in from the right, and the divisor is
+    /// subtracted if it fits. Returns the new remainder and the quotient's next bit.
     ///
-    /// `0 <= remainder < divisor` must hold before (else the quotient is of no
-    /// use) and holds after; the doubled remainder needs one bit more than the
-    /// word, as in hardware.
-    /// Returns the new remainder and the quotient's next bit.
+    /// `0 <= remainder < divisor` must hold before and holds after. The doubled remainder has one bit more than the word.
     #[inline(always)]
     pub fn divide_step(&mut self, remainder: Word, divisor: Word, bit: bool) -> (Word, bool) {
         if P::ENABLED {
@@ -440,13 +422,11 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// One step of a restoring divide for a quotient bit of weight
-    /// `2^place`: `divisor << place` is taken away if it fits. The shifted
-    /// divisor is wires into a subtractor of `place` bits more than the word.
+    /// One step of a restoring divide for a quotient bit of weight `2^place`: `divisor << place` is subtracted if it
+    /// fits. Returns the new remainder and the quotient's bit.
     ///
-    /// `0 <= remainder` and `0 < divisor` must hold (else the quotient is of
-    /// no use). A divisor shifted by 63 or more is larger than any remainder.
-    /// Returns the new remainder and the quotient's bit.
+    /// `0 <= remainder` and `0 < divisor` must hold. The shifted divisor is wires into a subtractor of `place` bits more
+    /// than the word. A divisor shifted by 63 or more is larger than any remainder.
     #[inline(always)]
     pub fn divide_integer_step(
         &mut self,

@@ -1,5 +1,4 @@
-//! Run-time word formats: how many bits a word has, how many of them are
-//! fraction, and what happens when a result does not fit.
+//! Word formats: bits, bits of fraction, and the overflow policy.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +7,7 @@ pub const MIN_BITS: u32 = 16;
 /// Widest word, in bits.
 pub const MAX_BITS: u32 = 64;
 
-/// A two's complement word format: `bits` in all, `frac` of them fraction.
+/// A two's complement word format: `bits` bits, `frac` of them fraction.
 ///
 /// Values run from `-2^(bits-1)` to `2^(bits-1) - 1` units of `2^-frac`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -21,7 +20,7 @@ pub struct Format {
     wide_bits: u32,
 }
 
-/// A format as a file has it, before it is checked.
+/// A format in a file, unchecked.
 #[derive(Deserialize)]
 struct Fields {
     bits: u32,
@@ -45,9 +44,9 @@ pub enum FormatError {
     /// The fraction leaves no integer bit beside the sign.
     #[error("a word of {bits} bits holds at most {max} fraction bits, not {frac}", max = bits - 2)]
     Frac {
-        /// Width requested, in bits.
+        /// Requested width, bits.
         bits: u32,
-        /// Fraction bits requested.
+        /// Requested fraction bits.
         frac: u32,
     },
 }
@@ -73,19 +72,17 @@ impl Format {
     }
 
     /// Width in bits, 16..=64.
-    #[must_use]
     pub const fn bits(self) -> u32 {
         self.bits
     }
 
     /// Fraction bits, 0..=bits-2.
-    #[must_use]
     pub const fn frac(self) -> u32 {
         self.frac
     }
 
-    /// The format of wide words: twice the bits (at most 64), which hold products of two words,
-    /// unless [`with_wide_bits`](Self::with_wide_bits) says fewer.
+    /// The format of wide words: twice the bits, at most 64, or the number set by
+    /// [`with_wide_bits`](Self::with_wide_bits).
     #[must_use]
     pub const fn wide(self) -> Self {
         Self {
@@ -95,7 +92,7 @@ impl Format {
         }
     }
 
-    /// The same words, with wide words of `bits`: as many as a word has at least, twice as many (or 64) at most.
+    /// The same words with wide words of `bits`, clamped to at least a word's bits and at most twice as many (or 64).
     #[must_use]
     pub const fn with_wide_bits(self, bits: u32) -> Self {
         let most = widest(self.bits);
@@ -108,36 +105,33 @@ impl Format {
     }
 
     /// Largest value, in units of the last place.
-    #[must_use]
     pub const fn max(self) -> i64 {
         i64::MAX >> (64 - self.bits)
     }
 
     /// Smallest value, in units of the last place.
-    #[must_use]
     pub const fn min(self) -> i64 {
         i64::MIN >> (64 - self.bits)
     }
 
-    /// Whether `value` (units of the last place) is a word of this format.
-    #[must_use]
+    /// Whether `value` (units of the last place) fits.
     pub const fn holds(self, value: i64) -> bool {
         let spare = 64 - self.bits;
         (value << spare) >> spare == value
     }
 }
 
-/// Bits of what holds products of two words of `bits`.
+/// Bits that hold products of two words of `bits`.
 const fn widest(bits: u32) -> u32 {
     if bits > 32 { 64 } else { bits * 2 }
 }
 
-/// What a result outside the format becomes.
+/// The result of an operation whose exact result does not fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Overflow {
-    /// The machine stops with an error that names operation, stage and record.
+    /// The machine stops with an error that gives operation, stage and record.
     #[default]
     Trap,
     /// The bits above the word are dropped.

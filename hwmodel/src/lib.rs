@@ -1,11 +1,8 @@
-//! Words, datapath and counters of a light hardware: adders, shifts, logic
-//! and compares; no multiplier, no divider, no floating point.
+//! Words, datapath and counters of hardware with adders, shifts, logic and compares, but no multiplier, divider or
+//! floating point.
 //!
-//! This crate is the ground floor of `shiftvox`. It does not depend on
-//! the renderer and knows voxels only by the words *record*, *stage* and *level*.
-//!
-//! Every operation is a call on a [`Datapath`]; a [`Probe`] sees it, and a
-//! result that does not fit its word goes by the [`Overflow`] policy:
+//! The lowest crate of `shiftvox`. It knows voxels only as *record*, *stage* and *level*. Every operation is a call on
+//! a [`Datapath`] and is reported to a [`Probe`]. The [`Overflow`] policy handles results that do not fit:
 //!
 //! ```
 //! use hwmodel::count::Counter;
@@ -40,6 +37,25 @@
 //! ```
 
 #![forbid(unsafe_code)]
+/// Defines an enum whose variants have names in words.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named {
+    ($(#[$meta:meta])* pub enum $type:ident { $($(#[$doc:meta])* $variant:ident = $name:literal,)+ }) => {
+        $(#[$meta])*
+        pub enum $type { $($(#[$doc])* $variant,)+ }
+
+        impl $type {
+            /// All values, in the order of their discriminants.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
+
+            /// The name in words.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)+ }
+            }
+        }
+    };
+}
 
 pub mod cost;
 pub mod count;

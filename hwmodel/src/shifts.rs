@@ -1,9 +1,7 @@
-//! Shifts, told apart by how far their places vary: wires, or a shifter.
+//! Shifts by how far their places vary: wires, or a shifter.
 //!
-//! A shift by one place, always, is wires. All others need a shifter: by a number of the
-//! frame, which the host sets; by one of the octree level; by one that each operation has
-//! of its own. Which one it is is not declared but seen: every line of the machine that shifts is
-//! watched for the places that it shifts by.
+//! A shift that is always by one place is wires. All others need a shifter, by a number of the frame, of the octree
+//! level, or of each operation. The kind is not declared: the probe records the places of every line that shifts.
 
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};
@@ -13,46 +11,32 @@ use serde::{Deserialize, Serialize};
 
 use crate::{OpClass, Operand, Probe, Stage, StageLevel};
 
-/// How far the places of a shift vary.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ShiftKind {
-    /// By one place, always: wires.
-    Wires,
-    /// The same in all of the frame; another frame may have another.
-    Frame,
-    /// The same at every octree level.
-    Level,
-    /// Different from operation to operation.
-    Operation,
-}
-
-impl ShiftKind {
-    /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Wires, Self::Frame, Self::Level, Self::Operation];
-
-    /// The kind in words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Wires => "wires",
-            Self::Frame => "one a frame",
-            Self::Level => "one a level",
-            Self::Operation => "one an operation",
-        }
+named! {
+    /// How far the places of a shift vary.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum ShiftKind {
+        /// Always by one place: wires.
+        Wires = "wires",
+        /// The same in all of a frame.
+        Frame = "one a frame",
+        /// The same at every octree level.
+        Level = "one a level",
+        /// Different from operation to operation.
+        Operation = "one an operation",
     }
 }
 
 /// A line of the machine that shifts, in one stage and width.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ShiftSite {
-    /// Where: file and line, or `midpoint` for the halving of a sum.
+    /// File and line, or `midpoint` for the halving of a sum.
     pub site: String,
-    /// Its stage.
+    /// Stage of the record loop.
     pub stage: Stage,
-    /// Width of what is shifted, bits.
+    /// Width of the operand, bits.
     pub bits: u32,
-    /// How often.
+    /// Number of shifts.
     pub times: u64,
     /// Fewest places.
     pub least: u32,
@@ -60,7 +44,7 @@ pub struct ShiftSite {
     pub most: u32,
     /// How far they vary.
     pub kind: ShiftKind,
-    /// How often in steps of which stage: another one's where it is done beside that ([`Probe::beside`]).
+    /// Number of shifts in the steps of each stage, which may be [beside](Probe::beside) another one.
     #[serde(skip)]
     pub in_steps: BTreeMap<Stage, u64>,
 }
@@ -81,7 +65,7 @@ impl Seen {
     }
 }
 
-/// A probe that watches by how many places every line shifts.
+/// A probe that records by how many places every line shifts.
 ///
 /// ```
 /// use hwmodel::shifts::{ShiftKind, ShiftProbe};
@@ -113,16 +97,16 @@ pub struct ShiftProbe {
     seen: HashMap<SiteKey, (Place, Seen), BuildHasherDefault<SiteHasher>>,
     /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
-    /// The stage that was in turn last, and whether work of another one is done beside it.
+    /// The stage of the last operation, and whether work of another one is done beside it.
     in_turn: Option<Stage>,
     beside: bool,
 }
 
 type Place = &'static Location<'static>;
-/// The place's address, its stage and the one in whose steps it is, width and level.
+/// The place's address, its stage and that of its step, width and level.
 type SiteKey = (usize, [u8; 2], u32, u32);
 
-/// A hash of a few numbers that nobody chooses to collide: asked for at every shift of a frame.
+/// A fast hash of a few numbers.
 #[derive(Debug, Clone, Copy, Default)]
 struct SiteHasher(u64);
 
@@ -152,14 +136,12 @@ impl Hasher for SiteHasher {
 }
 
 impl ShiftProbe {
-    /// A probe that has seen nothing.
-    #[must_use]
+    /// A probe without records.
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Every line that shifted, by file, line, stage and width; halvings last.
-    #[must_use]
     pub fn sites(&self) -> Vec<ShiftSite> {
         #[derive(Default)]
         struct Levels {
@@ -189,7 +171,7 @@ impl ShiftProbe {
             } else if most == 1 {
                 ShiftKind::Wires
             } else {
-                // Also by 0: no line of the machine shifts by 0 in every frame.
+                // No line of the machine shifts by 0 in every frame.
                 ShiftKind::Frame
             };
             ShiftSite {
@@ -219,7 +201,6 @@ impl ShiftProbe {
     }
 
     /// Shifts that need a shifter, by stage and width.
-    #[must_use]
     pub fn variable(&self) -> BTreeMap<(Stage, u32), u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {
@@ -230,9 +211,7 @@ impl ShiftProbe {
         sums
     }
 
-    /// As [`variable`](Self::variable), by the stage in whose steps hardware does it: what is done beside another stage
-    /// takes no steps of its own.
-    #[must_use]
+    /// As [`variable`](Self::variable), by the stage in whose steps hardware does it.
     pub fn variable_in_steps(&self) -> BTreeMap<(Stage, u32), u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {
@@ -246,7 +225,6 @@ impl ShiftProbe {
     }
 
     /// Shifts by kind.
-    #[must_use]
     pub fn by_kind(&self) -> BTreeMap<ShiftKind, u64> {
         let mut sums = BTreeMap::new();
         for site in self.sites() {
@@ -272,7 +250,7 @@ impl Probe for ShiftProbe {
     #[inline]
     fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         self.op(class, bits, place, 1);
-        // The datapath halves sums of one bit more than a word, and nothing else of that width.
+        // Only the datapath's halving of sums has this width.
         if class == OpClass::Shift && matches!(operand, Operand::Carry | Operand::WideCarry) {
             *self.halvings.entry((place.stage, bits)).or_default() += 1;
         }

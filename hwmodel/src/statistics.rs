@@ -1,11 +1,10 @@
-//! A list of named numbers, and the forms in which other programs read it.
+//! A list of named numbers, for other programs.
 
 use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-/// Version of the serialised form; a change that a reader must know of
-/// raises it.
+/// Version of the serialised form, raised by incompatible changes.
 pub const SCHEMA: u32 = 1;
 
 /// A number.
@@ -14,8 +13,7 @@ pub const SCHEMA: u32 = 1;
 pub enum Value {
     /// A count.
     Count(u64),
-    /// A measure: a mean, a rate, an energy. Formats that have no infinity
-    /// and no NaN get null for them.
+    /// A measure: a mean, a rate, an energy.
     Measure(f64),
 }
 
@@ -35,7 +33,7 @@ impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Count(count) => f.pad(&count.to_string()),
-            // As gem5 writes them.
+            // As gem5 writes it.
             Self::Measure(measure) if measure.is_nan() => f.pad("nan"),
             Self::Measure(measure) => f.pad(&format!("{measure:.6}")),
         }
@@ -47,11 +45,11 @@ impl std::fmt::Display for Value {
 pub struct Statistic {
     /// Dotted name, such as `machine.ops.add.w32.vertex_pool`.
     pub name: String,
-    /// The number.
+    /// Value.
     pub value: Value,
     /// Unit, such as `Count`, `Cycle`, `Byte` or `pJ`.
     pub unit: String,
-    /// What it is, in words.
+    /// Meaning.
     pub description: String,
 }
 
@@ -63,13 +61,10 @@ pub struct Statistic {
 /// let mut statistics = Statistics::new();
 /// statistics.add("machine.records", 12u64, "Count", "records that had their turn");
 /// statistics.add("machine.energy", 3.5, "pJ", "energy of all operations");
-/// let text = statistics.to_stats_txt();
-/// assert!(text.contains("machine.records"));
-/// assert_eq!(statistics.to_csv().lines().count(), 3);
+/// assert!(statistics.to_stats_txt().contains("machine.records"));
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// [`SCHEMA`] of the program that wrote it.
     schema: u32,
     statistics: Vec<Statistic>,
 }
@@ -85,13 +80,11 @@ impl Default for Statistics {
 
 impl Statistics {
     /// An empty list.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a number. White space in the name becomes `_`, so that readers
-    /// that split at spaces get along.
+    /// Adds a number. White space in the name becomes `_`.
     pub fn add(&mut self, name: &str, value: impl Into<Value>, unit: &str, description: &str) {
         self.statistics.push(Statistic {
             name: one_word(name),
@@ -101,26 +94,17 @@ impl Statistics {
         });
     }
 
-    /// The schema version of the list.
-    #[must_use]
-    pub fn schema(&self) -> u32 {
-        self.schema
-    }
-
-    /// All of them, in order.
+    /// All statistics, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Statistic> {
         self.statistics.iter()
     }
 
-    /// The first of a name.
-    #[must_use]
+    /// The first statistic of a name.
     pub fn get(&self, name: &str) -> Option<&Statistic> {
         self.iter().find(|statistic| statistic.name == name)
     }
 
-    /// In gem5's manner: name, value, `#` description and `(unit)`, in columns,
-    /// between a first and a last line of dashes.
-    #[must_use]
+    /// Text in the format of gem5: name, value, `#` description and `(unit)`, between lines of dashes.
     pub fn to_stats_txt(&self) -> String {
         let mut text = String::from("\n---------- Begin Simulation Statistics ----------\n");
         for statistic in self.iter() {
@@ -131,39 +115,6 @@ impl Statistics {
         }
         text.push_str("\n---------- End Simulation Statistics   ----------\n");
         text
-    }
-
-    /// Comma-separated, with a first line of headings, quoted where RFC 4180
-    /// wants it.
-    #[must_use]
-    pub fn to_csv(&self) -> String {
-        let mut text = String::from("name,value,unit,description\n");
-        for statistic in self.iter() {
-            let value = match statistic.value {
-                Value::Count(count) => count.to_string(),
-                Value::Measure(measure) if measure.is_finite() => measure.to_string(),
-                Value::Measure(_) => String::new(),
-            };
-            let fields = [
-                &statistic.name,
-                &value,
-                &statistic.unit,
-                &statistic.description,
-            ];
-            text.push_str(&fields.map(|field| csv_field(field)).join(","));
-            text.push('\n');
-        }
-        text
-    }
-}
-
-/// A field of a CSV line, quoted if it has to be.
-#[must_use]
-pub fn csv_field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }
 

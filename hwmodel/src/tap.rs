@@ -1,27 +1,25 @@
-//! What a logic analyser sees: the values on the wires into and out of a block.
+//! Values on the wires of a block, for test benches.
 //!
-//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap); a
-//! [`Probe`](crate::Probe) whose `TAPS` is set takes rows of [`Signal`]s from there. Nothing
-//! comes back, and without such a probe the call compiles to nothing.
+//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap). A [`Probe`](crate::Probe) whose
+//! `TAPS` is set receives rows of [`Signal`]s. Without such a probe the call compiles to nothing.
 
 use crate::{Format, Narrow, WideWord, Word};
 
-/// How wide a signal is, and how it is to be read.
+/// Width and sign of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SignalKind {
     /// A word: two's complement, the format's bits.
     Word,
     /// A wide word: two's complement, the wide format's bits.
     Wide,
-    /// A number of so many bits (1 to 64), never negative.
+    /// A number of 1 to 64 bits that is never negative.
     Unsigned(u32),
-    /// A two's complement number of so many bits (1 to 64).
+    /// A two's complement number of 1 to 64 bits.
     Signed(u32),
 }
 
 impl SignalKind {
     /// Width in bits, for a datapath of words of `format`.
-    #[must_use]
     pub const fn bits(self, format: Format) -> u32 {
         match self {
             Self::Word => format.bits(),
@@ -31,7 +29,6 @@ impl SignalKind {
     }
 
     /// Whether the highest bit is a sign.
-    #[must_use]
     pub const fn is_signed(self) -> bool {
         !matches!(self, Self::Unsigned(_))
     }
@@ -40,20 +37,19 @@ impl SignalKind {
 /// A value on the wires of a block's border.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Signal {
-    /// Its width and sign.
+    /// Width and sign.
     pub kind: SignalKind,
-    /// Its value, in units of its last place.
+    /// Value, in units of the last place.
     pub value: i64,
 }
 
-/// A short number that is no word: a level, a quadrant, a vector of bits.
+/// A short number that is not a word: a level, a quadrant, a vector of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Short(Signal);
 
 impl Short {
     /// A number that is never negative, on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn unsigned(value: impl Into<u32>, bits: u32) -> Self {
         Self(Signal {
             kind: SignalKind::Unsigned(bits),
@@ -63,7 +59,6 @@ impl Short {
 
     /// A two's complement number on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn signed(value: i32, bits: u32) -> Self {
         Self(Signal {
             kind: SignalKind::Signed(bits),
@@ -73,15 +68,14 @@ impl Short {
 
     /// A narrow number, on `bits` wires.
     #[inline(always)]
-    #[must_use]
     pub fn narrow(value: Narrow, bits: u32) -> Self {
         Self::unsigned(value.to_host(), bits)
     }
 }
 
-/// What can be shown at a block's border.
+/// A value that can be shown at a block's border.
 pub trait Wires {
-    /// Adds its signals, the most significant first.
+    /// Adds the signals, the most significant first.
     fn show(&self, to: &mut Vec<Signal>);
 }
 

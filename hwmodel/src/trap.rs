@@ -1,30 +1,19 @@
-//! A word that overflowed, and where: what a frame ends with under [`Overflow::Trap`](crate::Overflow::Trap).
+//! Overflow of a word, which ends a frame under [`Overflow::Trap`](crate::Overflow::Trap).
 
 use crate::StageLevel;
 
-/// The operation during which a word overflowed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum TrapOp {
-    /// A sum.
-    Add,
-    /// A difference or a negation.
-    Sub,
-    /// A left shift.
-    ShiftLeft,
-    /// A constant of the frame, handed over by the host.
-    Load,
-}
-
-impl TrapOp {
-    /// The operation in words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Add => "add",
-            Self::Sub => "subtract",
-            Self::ShiftLeft => "shift left",
-            Self::Load => "load of a frame constant",
-        }
+named! {
+    /// The operation during which a word overflowed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum TrapOp {
+        /// A sum.
+        Add = "add",
+        /// A difference or a negation.
+        Sub = "subtract",
+        /// A left shift.
+        ShiftLeft = "shift left",
+        /// A constant of the frame.
+        Load = "load of a frame constant",
     }
 }
 
@@ -41,6 +30,6 @@ pub struct Trap {
     pub place: StageLevel,
     /// Number of the record within the frame, from 0.
     pub record: u64,
-    /// Width of the word that overflowed, in bits.
+    /// Width of the word, in bits.
     pub bits: u32,
 }

@@ -214,8 +214,4 @@ fn the_stack_s_depths() {
     }
     probe.read(Memory::Stack, 9, PLACE);
     assert_eq!(probe.deepest_stack(), 3);
-    assert_eq!(probe.stack_depths(), [0, 1, 2, 2]);
-    // An address that is no depth takes no memory to speak of.
-    probe.write(Memory::Stack, u64::MAX, PLACE);
-    assert_eq!(probe.deepest_stack(), 1 << 20);
 }

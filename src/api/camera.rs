@@ -1,4 +1,4 @@
-//! Where a picture is seen from.
+//! Cameras of the public API.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::{Error, Scene};
 use crate::project;
 use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 
-/// A camera at a place that the caller chose. [`Camera::fit`] makes one that finds its own place.
+/// A camera at a chosen place. [`Camera::fit`] makes one that finds its own place.
 ///
 /// ```
 /// # use shiftvox::{Camera, Renderer, Scene};
@@ -36,9 +36,8 @@ impl Camera {
         }
     }
 
-    /// A camera that sees all of a scene, whatever the picture's size, from the front right and above (azimuth 45,
-    /// elevation 35.264 degrees), with a vertical field of view of 40 degrees. For voxels that were made from a mesh it
-    /// sees all of the mesh.
+    /// A camera that sees all of a scene at any size of picture, from the front right and above (azimuth 45, elevation
+    /// 35.264 degrees), with a vertical field of view of 40 degrees. For voxels made from a mesh it sees all of the mesh.
     #[must_use]
     pub fn fit(scene: &Scene) -> FittedCamera {
         FittedCamera {
@@ -66,7 +65,7 @@ impl Camera {
     }
 }
 
-/// A camera that finds the place from which it sees all of a scene: [`Camera::fit`].
+/// A camera that finds a place from which it sees all of a scene: [`Camera::fit`].
 ///
 /// ```
 /// # use shiftvox::{Camera, Renderer, Scene};
@@ -123,7 +122,7 @@ impl FittedCamera {
 
 /// A camera of either kind: [`Camera`] or [`FittedCamera`].
 pub trait View: private::Sealed {
-    /// The camera of a picture of a size, pixels.
+    /// The camera of a picture of this size, pixels.
     #[doc(hidden)]
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error>;
 }

@@ -1,14 +1,14 @@
-//! Why a scene cannot be opened, drawn or saved.
+//! Errors of the public API.
 
 use crate::budget::Shortage;
 use crate::drawing::DrawError;
 use crate::picture::ResolveError;
 use crate::project::{EngineError, SetupError};
 
-/// What went wrong, for people: a message, and what it came from.
+/// A message and its source.
 type Reason = Box<dyn std::error::Error + Send + Sync>;
 
-/// Why a scene cannot be opened, drawn or saved. Messages name the file to blame, where there is one.
+/// Why a scene cannot be opened, drawn or saved. Messages name the affected file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -21,9 +21,8 @@ pub enum Error {
     /// Camera and settings make no frame.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// A setting that the engine does not have, samples of a pixel along an axis other than 1, 2 and 4, a picture of
-    /// more than 2^27 samples, more than 1024 threads, a zoom that is not above 0, or a buffer that a picture does not
-    /// have because it was not requested.
+    /// An invalid setting: one that the engine does not have, samples per axis other than 1, 2 and 4, more than 2^27
+    /// samples or 1024 threads, a zoom that is not above 0, or a buffer that was not requested.
     #[error("{0}")]
     Setting(String),
     /// The picture does not fit in memory.
@@ -41,7 +40,7 @@ pub enum Error {
     /// The frame makes no picture.
     #[error(transparent)]
     Resolve(Reason),
-    /// A file cannot be written. What stood there before still does.
+    /// A file cannot be written; an older one is kept.
     #[error(transparent)]
     Write(Reason),
 }

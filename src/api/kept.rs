@@ -9,7 +9,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::{EngineKind, Error};
 use crate::drawing::Canvas;
 
-/// Most threads of a renderer.
 pub(super) const MOST_THREADS: usize = 1024;
 
 /// The settings on which an engine and its threads depend.
@@ -29,7 +28,7 @@ pub(super) struct Job {
     pub(super) canvas: Option<Canvas>,
 }
 
-/// Jobs that are idle: as many as ever drew at the same time.
+/// Idle jobs: as many as ever drew at the same time.
 #[derive(Default)]
 pub(super) struct Kept(Mutex<Vec<Job>>);
 
@@ -78,7 +77,7 @@ impl Kept {
     }
 }
 
-/// A copy of a renderer begins with nothing.
+/// A copy starts empty.
 impl Clone for Kept {
     fn clone(&self) -> Self {
         Self::default()

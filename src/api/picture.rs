@@ -10,10 +10,9 @@ use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine.
-/// All have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
-/// normal, voxel and node are those of one sample: the pixel's only one, or of several the one right of and below its
-/// middle.
+/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine. All
+/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth, normal,
+/// voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
     width: u32,
@@ -23,7 +22,6 @@ pub struct Picture {
     operations: Option<Counter>,
 }
 
-/// The contents of a picture.
 #[derive(Debug)]
 pub(super) struct Buffers {
     pub(super) rgba: Vec<[u8; 4]>,
@@ -72,8 +70,7 @@ impl Picture {
         self.buffers.rgba.get(self.at(x, y)?).copied()
     }
 
-    /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity where nothing is
-    /// seen.
+    /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -81,7 +78,7 @@ impl Picture {
         self.floats(Buffer::Depth)
     }
 
-    /// Unit normals in world directions; zero where nothing is seen.
+    /// Unit normals in world directions; zero without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -89,8 +86,8 @@ impl Picture {
         Ok(self.floats(Buffer::Normal)?.as_chunks().0)
     }
 
-    /// Lowest corner of the voxel that is seen, in units of the finest voxels, and its level (0: the whole object);
-    /// `[0, 0, 0, -1]` where nothing is seen.
+    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0: the whole object);
+    /// `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -98,7 +95,7 @@ impl Picture {
         Ok(self.integers(Buffer::Voxel)?.as_chunks().0)
     }
 
-    /// Graph node that is seen; -1 where nothing is.
+    /// Visible graph node; -1 without one.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -106,8 +103,8 @@ impl Picture {
         self.integers(Buffer::Node)
     }
 
-    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` where nothing is
-    /// seen, and outside the picture.
+    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel, and
+    /// outside the picture.
     ///
     /// # Errors
     /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
@@ -122,8 +119,8 @@ impl Picture {
         is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
 
-    /// What the engine counted, by name. Names differ by engine; all have `samples_drawn`. The fast engine has
-    /// `handed_to_machine`, 1, where it could not draw the frame itself, and why ([`Declined::counter`]).
+    /// The engine's counters by name. Names differ by engine; all have `samples_drawn`. The fast engine has
+    /// `handed_to_machine`, 1, where the machine drew the frame instead, and the reason ([`Declined::counter`]).
     ///
     /// [`Declined::counter`]: crate::Declined::counter
     #[must_use]
@@ -168,8 +165,8 @@ impl Picture {
         .map_err(|e| Error::Write(e.into()))
     }
 
-    /// Writes a buffer as an array of NumPy: `height x width`, times the entries of a pixel where it has several.
-    /// Replaces an existing file; the file appears whole or not at all.
+    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces an
+    /// existing file; the file appears whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.

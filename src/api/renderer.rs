@@ -1,4 +1,4 @@
-//! How a picture is drawn.
+//! The renderer of the public API.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -21,11 +21,11 @@ use crate::project::{
 };
 use crate::rays::Rays;
 
-/// Which engine draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
+/// The engine that draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum EngineKind {
-    /// The default: on all threads, with AVX2 where the processor has it.
+    /// The default: on all threads, with AVX2 if available.
     #[default]
     Fast,
     /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
@@ -35,8 +35,8 @@ pub enum EngineKind {
     Rays,
 }
 
-/// Draws scenes. Settings are given one after the other. Each has a default that is right for a picture. Threads, engine
-/// and frame are kept for the next picture, until [`Renderer::forget`] or the end of the renderer.
+/// Draws scenes. Each setting has a default for ordinary pictures. Threads, engine and frame are kept for the next picture,
+/// until [`Renderer::forget`] or the end of the renderer.
 ///
 /// ```
 /// use shiftvox::{Camera, EngineKind, Renderer, Scene};
@@ -99,53 +99,52 @@ impl Renderer {
         }
     }
 
-    /// Which engine draws.
+    /// The engine that draws.
     #[must_use]
     pub fn engine(mut self, engine: EngineKind) -> Self {
         self.engine = Some(engine);
         self
     }
 
-    /// Which samples a voxel covers. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
-    /// opened with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made of such meshes.
+    /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities: those of meshes opened
+    /// with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made from such meshes.
     #[must_use]
     pub fn coverage(mut self, coverage: Coverage) -> Self {
         self.coverage = coverage;
         self
     }
 
-    /// The size, pixels, up to which nodes are drawn as one voxel; 0: only leaves. By default half a pixel with
-    /// exact coverage, else a pixel.
+    /// The size, pixels, up to which nodes are drawn as one voxel; 0: only leaves. By default half a pixel with exact
+    /// coverage, otherwise a pixel.
     #[must_use]
     pub fn level_of_detail(mut self, pixels: f64) -> Self {
         self.level_of_detail = Some(pixels);
         self
     }
 
-    /// Samples of a pixel along each axis: 1, 2 or 4.
+    /// Samples per pixel along each axis: 1, 2 or 4.
     #[must_use]
     pub fn samples(mut self, along_each_axis: u32) -> Self {
         self.samples = along_each_axis;
         self
     }
 
-    /// The deviation, samples, at which a record may change from clip space to screen space; 0 never, infinity at
-    /// once. Of [`Coverage::Any`] and [`Coverage::Center`]; the other rules take 0.
+    /// The deviation, samples, at which a record may change from clip space to screen space: 0 never, infinity always.
+    /// Rules other than [`Coverage::Any`] and [`Coverage::Center`] allow only 0.
     #[must_use]
     pub fn tolerance(mut self, samples: f64) -> Self {
         self.tolerance = Some(samples);
         self
     }
 
-    /// How a record holds its vertices. Changes what is counted, never the picture.
+    /// Representation of a record's vertices. Changes the counters, but not the picture.
     #[must_use]
     pub fn cage(mut self, cage: CageKind) -> Self {
         self.cage = Some(cage);
         self
     }
 
-    /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room
-    /// for).
+    /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room for).
     #[must_use]
     pub fn word(mut self, bits: u32, fraction_bits: Option<u32>) -> Self {
         self.bits = bits;
@@ -153,14 +152,14 @@ impl Renderer {
         self
     }
 
-    /// What a result becomes that does not fit its word.
+    /// Treatment of a result that does not fit its word.
     #[must_use]
     pub fn overflow(mut self, overflow: Overflow) -> Self {
         self.overflow = Some(overflow);
         self
     }
 
-    /// The rules of the image-order paper: eight corners a record, screen space at once, [`Coverage::Any`].
+    /// The rules of the image-order paper: eight corners per record, screen space at once, [`Coverage::Any`].
     #[must_use]
     pub fn paper(self) -> Self {
         let paper = SetupOptions::paper();
@@ -169,29 +168,29 @@ impl Renderer {
             .tolerance(paper.tolerance_px)
     }
 
-    /// How a voxel's colour depends on where it looks.
+    /// Dependence of a voxel's colour on its orientation.
     #[must_use]
     pub fn shading(mut self, shading: Shading) -> Self {
         self.shading = shading;
         self
     }
 
-    /// What is behind the object.
+    /// The picture behind the object.
     #[must_use]
     pub fn background(mut self, background: Background) -> Self {
         self.background = background;
         self
     }
 
-    /// Threads that draw, up to 1024; 0: as many as there are. Never changes the picture.
+    /// Threads that draw, up to 1024; 0: as many as available. Does not change the picture.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
         self
     }
 
-    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`]; another
-    /// engine, given later, counts none and is refused.
+    /// Counts the operations of the machine, for [`Picture::operations`]. Selects [`EngineKind::Machine`]; another engine,
+    /// selected later, is an error.
     #[must_use]
     pub fn count_operations(mut self) -> Self {
         self.engine = Some(EngineKind::Machine);
@@ -199,9 +198,8 @@ impl Renderer {
         self
     }
 
-    /// Buffers that pictures have besides their colours; none by default. They cost time and memory: 4 bytes per pixel
-    /// for [`Buffer::Depth`], [`Buffer::Node`] and [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for
-    /// [`Buffer::Voxel`].
+    /// Buffers in addition to the colours; none by default. Bytes per pixel: 4 for [`Buffer::Depth`], [`Buffer::Node`] and
+    /// [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for [`Buffer::Voxel`].
     ///
     /// ```
     /// # use shiftvox::{Buffer, Camera, Renderer, Scene};
@@ -218,8 +216,7 @@ impl Renderer {
         self
     }
 
-    /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed once,
-    /// some rows at a time.
+    /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed once.
     #[must_use]
     pub fn hashed(mut self, is_hashed: bool) -> Self {
         self.is_hashed = is_hashed;
@@ -228,15 +225,12 @@ impl Renderer {
 
     /// Draws a picture of `width` x `height` pixels.
     ///
-    /// Threads, engine and frame are kept in the renderer for the next picture. Several threads may draw with one
-    /// renderer at the same time.
+    /// Several threads may draw with one renderer at the same time.
     ///
     /// # Errors
-    /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
-    /// [`Error::Setting`] for samples other than 1, 2 and 4, for more than 2^27 samples in all, for a zoom of 0 or
-    /// less, for more than 1024 threads and for settings that the engine does not have, [`Error::Memory`] where the
-    /// picture does not fit in memory, [`Error::Engine`] where a word overflows, [`Error::Threads`] where the system
-    /// gives no threads.
+    /// [`Error::Setup`] if camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
+    /// [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
+    /// [`Error::Engine`] if a word overflows, [`Error::Threads`] if the system provides no threads.
     pub fn render(
         &self,
         scene: &Scene,
@@ -273,7 +267,7 @@ impl Renderer {
     }
 
     /// Draws a picture into the caller's pixels, row by row from the top left: red, green, blue (sRGB) and alpha, as in
-    /// [`Picture::rgba`]. Returns what the engine counted, as [`Picture::counters`] does.
+    /// [`Picture::rgba`]. Returns the counters, as [`Picture::counters`].
     ///
     /// ```
     /// # use shiftvox::{Camera, Renderer, Scene};
@@ -284,8 +278,8 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash
-    /// or operations were requested, which only a [`Picture`] has.
+    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash or
+    /// operations were requested, which only a [`Picture`] has.
     pub fn render_into(
         &self,
         scene: &Scene,
@@ -314,7 +308,7 @@ impl Renderer {
         Ok(drawn.stats)
     }
 
-    /// Draws a frame on an idle job, and makes something from it. `pixel_bytes`: memory that `finish` takes per pixel.
+    /// Draws a frame on an idle job, and makes something from it. `pixel_bytes`: memory that `finish` needs per pixel.
     fn draw<T: Send>(
         &self,
         scene: &Scene,
@@ -355,8 +349,7 @@ impl Renderer {
         Ok(made?)
     }
 
-    /// Gives back the memory that is kept for the next picture: as much as the largest pictures took that were drawn at
-    /// the same time.
+    /// Frees the memory that is kept for the next picture: that of the largest pictures drawn at the same time.
     pub fn forget(&self) {
         self.kept.clear();
     }
@@ -416,11 +409,11 @@ impl Renderer {
         Err(Error::Setting(reason.to_owned()))
     }
 
-    /// Draws on a simulated hardware: its cycles, what they were spent on, and the machine's counters.
+    /// Draws on simulated hardware. Returns cycles, their causes, and the machine's counters.
     ///
     /// # Errors
-    /// As [`Renderer::render`], [`Error::Setting`] for an engine other than the machine, and [`Error::Simulate`] where
-    /// the hardware's description is not sound or its stack overflows.
+    /// As [`Renderer::render`], [`Error::Setting`] for an engine other than the machine, and [`Error::Simulate`] if the
+    /// hardware's description is invalid or its stack overflows.
     pub fn simulate(
         &self,
         scene: &Scene,
@@ -473,7 +466,7 @@ impl Renderer {
     }
 }
 
-/// Memory of a sample with its voxel and with room to blend, bytes.
+/// Bytes per sample with its voxel and blending.
 const FRAME_BYTES: u64 = 36;
 
 /// The machine with a probe that counts its operations.

@@ -1,4 +1,4 @@
-//! A scene: a voxel graph, where it lies, and which way is up.
+//! A scene: a voxel graph, its place, and its vertical axis.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use crate::scene::{
     NoMeshes, OpenOptions, Opened, SceneFile, Source, open, open_bytes, open_source,
 };
 
-/// What a renderer draws: a voxel graph in world coordinates.
+/// A voxel graph in world coordinates, to be drawn.
 ///
-/// World units are those of the file; a voxel of index `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)`
-/// unless the file says another size and place.
+/// World units are those of the file; a voxel of index `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)` unless the file
+/// gives another size and place.
 #[derive(Debug)]
 pub struct Scene {
     graph: Graph,
@@ -45,8 +45,8 @@ impl Scene {
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
-    /// Makes a scene of a generator's specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All
-    /// generators and their parameters: `spec/generators.md`.
+    /// Generates a scene of a specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All generators and
+    /// their parameters: `spec/generators.md`.
     ///
     /// # Errors
     /// [`Error::Open`] where no generator has the name, or its parameters are wrong.
@@ -56,7 +56,7 @@ impl Scene {
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
-    /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one counts.
+    /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one is kept.
     ///
     /// # Errors
     /// [`Error::Build`] where there is no voxel, where the voxels span more than 2^21 (2,097,152) along an axis, or
@@ -76,8 +76,8 @@ impl Scene {
         Ok(graph.into())
     }
 
-    /// The same scene with another axis up, which [`Camera::fit`](super::Camera::fit) follows; kept by
-    /// [`Scene::save_vxg`] where the scene was made of a mesh.
+    /// The same scene with another axis up, for [`Camera::fit`](super::Camera::fit); stored by [`Scene::save_vxg`] if the
+    /// scene was made from a mesh.
     #[must_use]
     pub fn with_up(mut self, up: Up) -> Self {
         self.up = up;
@@ -99,7 +99,7 @@ impl Scene {
         self.graph.depth
     }
 
-    /// Bytes of the graph, in memory or in the file that it is mapped from.
+    /// Bytes of the graph, in memory or in the mapped file.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.graph.bytes()
@@ -112,8 +112,8 @@ impl Scene {
         [bounds.low.to_array(), bounds.high.to_array()]
     }
 
-    /// Writes the scene as a `.vxg` file, which opens without being built. Replaces what is there; the file
-    /// appears whole or not at all.
+    /// Writes the scene as a `.vxg` file, which opens without being built. Replaces an existing file; the file appears
+    /// whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] where the system refuses.
@@ -121,14 +121,14 @@ impl Scene {
         vxg::write(&self.graph, path.as_ref(), true).map_err(|e| Error::Write(e.into()))
     }
 
-    /// Which axis is up: Z for voxels, Y for meshes other than STL and what was made of them, unless
-    /// [`Scene::with_up`] said another.
+    /// The vertical axis: Z for voxels; Y for meshes other than STL and files made from them; or that of
+    /// [`Scene::with_up`].
     #[must_use]
     pub fn up(&self) -> Up {
         self.up
     }
 
-    /// Warnings about the file that was opened, one sentence each: for example, that some of it was skipped.
+    /// Warnings about the opened file, one sentence each: for example, that some of it was skipped.
     ///
     /// ```
     /// use shiftvox::Scene;
@@ -171,7 +171,7 @@ impl From<Opened> for Scene {
 }
 
 impl From<Graph> for Scene {
-    /// A scene of a graph, Z up unless it was made of a mesh with Y up. It counts as verified.
+    /// A scene of a graph, Z up unless it was made from a mesh with Y up. It counts as verified.
     fn from(graph: Graph) -> Self {
         Self {
             up: Up::of(&graph),

@@ -1,4 +1,4 @@
-//! A voxel graph as something that can be drawn, by any engine of voxels.
+//! A voxel graph as a [`Drawable`], with any engine of voxels.
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -16,46 +16,40 @@ use crate::project::{
     Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
-/// What a voxel graph is drawn with.
+/// Settings for drawing a voxel graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphStyle {
-    /// Rules and words.
     pub options: SetupOptions,
-    /// Light.
     pub shading: Shading,
-    /// What is behind.
     pub background: Background,
-    /// Buffers that are wanted beside the colours.
+    /// Buffers in addition to the colours.
     pub buffers: Vec<Buffer>,
-    /// Whether the picture's hash is wanted, which is over all buffers.
+    /// Whether the picture's hash is needed, which is over all buffers.
     pub is_hashed: bool,
 }
 
-/// A graph that is drawn, once or from many cameras: what is made for a frame
-/// and can stay (engine, frame, and a picture that does not change) does.
+/// A graph drawn from one or many cameras. Engine, frame and an unchanged picture are kept.
 pub struct GraphDrawing<'g> {
     graph: &'g Graph,
     up: Up,
     style: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
     viewer: Viewer<'g, Box<dyn Engine + Send>>,
-    /// What the viewer's frames hold.
     contents: Contents,
-    /// Memory of a finished pixel, bytes, that drawing will take besides the frame.
+    /// Memory per finished pixel in addition to the frame, bytes.
     pixel_bytes: u64,
     /// The last picture, if it was finished.
     last: Option<Drawn>,
 }
 
-/// An engine and a frame without a graph: the part of a [`GraphDrawing`] that can be used again for another graph.
+/// An engine and a frame, to be reused for another graph.
 pub struct Canvas {
     engine: Box<dyn Engine + Send>,
     frame: Frame,
 }
 
 impl Canvas {
-    /// A canvas that has no frame yet.
-    #[must_use]
+    /// A canvas without a frame.
     pub fn new(engine: Box<dyn Engine + Send>) -> Self {
         Self {
             engine,
@@ -66,7 +60,6 @@ impl Canvas {
 
 /// A frame that the viewer shows.
 pub struct DrawnFrame {
-    /// Its integers.
     pub setup: FrameSetup,
     /// The counters of the engine.
     pub stats: Stats,
@@ -88,8 +81,7 @@ struct Drawn {
 }
 
 impl<'g> GraphDrawing<'g> {
-    /// Nothing is drawn yet. `engine` makes a new engine, always the same one.
-    #[must_use]
+    /// Draws nothing. `engine` makes equal new engines.
     pub fn new(
         graph: &'g Graph,
         up: Up,
@@ -99,9 +91,7 @@ impl<'g> GraphDrawing<'g> {
         Self::on(Canvas::new(engine()), graph, up, style, engine)
     }
 
-    /// [`GraphDrawing::new`] on a canvas that another drawing gave back; its engine must be of the kind that `engine`
-    /// makes.
-    #[must_use]
+    /// [`GraphDrawing::new`] on another drawing's canvas, whose engine must be of the kind that `engine` makes.
     pub fn on(
         canvas: Canvas,
         graph: &'g Graph,
@@ -116,8 +106,8 @@ impl<'g> GraphDrawing<'g> {
         } else if style.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
             Contents::Voxels
         } else {
-            // A fifth of the memory. Colours depend on voxels where a node has
-            // no normal, and the node's place follows from the graph.
+            // A fifth of the memory. Colours depend on voxels only where a node has no normal, and the node's place
+            // follows from the graph.
             Contents::Nodes
         };
         Self {
@@ -132,23 +122,17 @@ impl<'g> GraphDrawing<'g> {
         }
     }
 
-    /// The engine and the frame, for another drawing.
-    #[must_use]
     pub fn into_canvas(self) -> Canvas {
         let (engine, frame) = self.viewer.into_parts();
         Canvas { engine, frame }
     }
 
-    /// Says how much memory the caller is going to take for each finished pixel, bytes: it is counted when the memory
-    /// for a frame is checked. By default 3, for colours.
+    /// Sets the memory that the caller needs per finished pixel, bytes, for the check of memory; by default 3, for colours.
     pub fn expect_pixel_bytes(&mut self, bytes: u64) {
         self.pixel_bytes = bytes;
     }
 
-    /// The integers of a frame.
-    ///
-    /// # Errors
-    /// When the picture is too large, or the frame cannot be set up.
+    /// The integers of a frame. Fails when the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
         check_samples(
             camera,
@@ -168,7 +152,6 @@ impl<'g> GraphDrawing<'g> {
         )?)
     }
 
-    /// Bytes that a frame has for each sample.
     fn sample_bytes(&self) -> u64 {
         let (node, voxel, records, blend) = (4, 16, 4, 16);
         let voxels = match self.contents {
@@ -180,10 +163,7 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
-    /// Draws a frame, unless the viewer shows it already.
-    ///
-    /// # Errors
-    /// See [`DrawError`]; nothing is shown then.
+    /// Draws a frame, unless the viewer shows it already. Errors: see [`DrawError`]; nothing is shown then.
     pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
         let setup = self.setup(camera)?;
         let was_shown = self.viewer.shows(&setup);
@@ -202,11 +182,8 @@ impl<'g> GraphDrawing<'g> {
         Ok(self.viewer.render_lit(setup, &light)?)
     }
 
-    /// Makes something from a drawn frame. A frame of nodes alone may not determine the voxels that colours depend on:
-    /// then the frame is drawn again with voxels.
-    ///
-    /// # Errors
-    /// See [`DrawError`].
+    /// Makes something from a drawn frame. If colours depend on voxels that a frame of nodes does not determine, the frame
+    /// is drawn again with voxels.
     pub fn resolve<T>(
         &mut self,
         drawn: &mut DrawnFrame,
@@ -234,9 +211,9 @@ impl<'g> GraphDrawing<'g> {
         })
     }
 
-    /// The buffers of what the viewer shows.
+    /// The buffers of the viewer's frame.
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
-        // A frame that is not there has no samples.
+        // Without a frame there are no samples.
         let frame = self.viewer.frame();
         let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
         let GraphStyle {
@@ -267,8 +244,8 @@ impl Drawable for GraphDrawing<'_> {
         self.up
     }
 
-    /// Draws the graph, unless it was drawn like this the last time, and makes the colours. With
-    /// several runs the times are those of so many frames drawn for that alone.
+    /// Draws the graph, unless the last frame was the same, and makes the colours. Several runs are measured on separate
+    /// frames.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         let measured = match runs {
             0 | 1 => None,
@@ -303,7 +280,7 @@ impl Drawable for GraphDrawing<'_> {
             .iter()
             .map(|&(name, count)| (name, count.into()))
             .collect();
-        // Of a mapped graph: all pages, and those in memory by now.
+        // Of a mapped graph: all pages, and those in memory.
         if let Some(pages) = self.graph.mapped_pages() {
             counters.push(("pages_mapped", pages.mapped.into()));
             counters.push(("pages_resident", pages.resident.into()));
@@ -324,12 +301,12 @@ impl Drawable for GraphDrawing<'_> {
         }))
     }
 
-    /// Clear, traverse, colours of the samples without light, as experiments time a frame.
+    /// Clears, traverses, and looks up unlit colours, as experiments time a frame.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
         let (graph, setup) = (self.graph, self.setup(camera)?);
         let mut engine = (self.engine)();
         let mut colors = Colors::new(setup.width, setup.height);
-        // Pages are there before the first frame.
+        // Touches the pages before the first frame.
         colors.words.fill(1);
         let light = lights(graph, &setup, Shading::Flat);
         Ok(Box::new(move || {

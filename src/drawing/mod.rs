@@ -1,9 +1,7 @@
-//! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels,
-//! triangles, the hybrid.
+//! One trait for everything that can be drawn: voxel graphs, far voxels, textured voxels, triangles, the hybrid.
 //!
-//! A [`Drawable`] is data, an engine and its options. It draws a picture from a camera, and what it
-//! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and
-//! counters.
+//! A [`Drawable`] is data, an engine and its options. The [result](Drawable::shown) has the same form for all methods:
+//! colours, buffers, times and counters.
 
 mod graph;
 
@@ -26,55 +24,45 @@ pub trait Drawable {
     /// The box, and points that enclose the contents, for a fitted camera.
     fn bounds(&self) -> Bounds;
 
-    /// Which axis is up, by the file's own account.
+    /// The vertical axis of the file.
     fn up(&self) -> Up;
 
-    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the
-    /// work.
-    ///
-    /// # Errors
-    /// See [`DrawError`]; nothing is shown then.
+    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work. Errors: see
+    /// [`DrawError`]; nothing is shown then.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError>;
 
-    /// What was drawn last, if anything was.
-    ///
-    /// # Errors
-    /// When the buffers cannot be made of it.
+    /// The last picture. Fails when its buffers cannot be made.
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
 
-    /// Makes ready what draws the frame of a camera again and again, on an engine of its own: for
-    /// times of frames alone. Nothing is kept.
-    ///
-    /// # Errors
-    /// When the frame cannot be set up.
+    /// A function that draws the frame of a camera again and again, on its own engine, to measure times. Fails when the
+    /// frame cannot be set up.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
 
-/// Draws a frame each time that it is called.
+/// Draws a frame per call.
 pub type Frames<'d> = Box<dyn FnMut() -> Result<(), DrawError> + Send + 'd>;
 
-/// Figures by name, in an order for people.
+/// Figures by name, in the order of display.
 pub type Figures = Vec<(&'static str, Value)>;
 
-/// A drawn picture, and what it took.
+/// A drawn picture, and its measurements.
 pub struct Shown<'d> {
-    /// The colours.
     pub pixels: Cow<'d, Pixels>,
     /// All buffers, made on demand.
     pub buffers: Buffers<'d>,
     /// Pixels that show something at their middle sample.
     pub pixels_drawn: usize,
-    /// Of each pixel, the share that is covered, as far as the method knows it; else empty.
+    /// The covered share of each pixel; empty if the method does not know it.
     pub coverage: &'d [f32],
     /// Time of each run, milliseconds.
     pub times_ms: &'d [f64],
-    /// What was counted of one frame.
+    /// Counts of one frame.
     pub counters: Figures,
-    /// Figures of this method alone.
+    /// Figures of this method only.
     pub details: Figures,
 }
 
-/// The buffers of a picture that is whole in memory, or of one that is made of an engine's frame.
+/// The buffers of a picture in memory, or of an engine's frame.
 pub enum Buffers<'d> {
     /// Whole.
     Whole(&'d Picture),
@@ -121,16 +109,14 @@ pub enum DrawError {
     /// The colours cannot be made.
     #[error(transparent)]
     Resolve(#[from] ResolveError),
-    /// A method of another crate cannot draw so.
+    /// A failure of another crate's method.
     #[error(transparent)]
     Method(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Checks that a picture fits in memory: `sample_bytes` for each sample and `pixel_bytes` for each pixel. `aa_log2`:
-/// samples per pixel and axis, as a power of two. `held`: memory that is going to be freed or used for it, bytes.
-///
-/// # Errors
-/// [`DrawError::TooLarge`] for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
+/// Checks that a picture fits in memory: `sample_bytes` per sample and `pixel_bytes` per pixel. `aa_log2`: logarithm of
+/// the samples per pixel and axis. `held`: memory that will be freed or reused, bytes. Errors: [`DrawError::TooLarge`]
+/// for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
 pub fn check_samples(
     camera: &Camera,
     aa_log2: u32,
@@ -147,12 +133,11 @@ pub fn check_samples(
     Ok(())
 }
 
-/// Less memory than this is not checked: to ask the system takes longer than to draw a small picture.
+/// Less memory is not checked, because the check takes longer than drawing a small picture.
 const UNCHECKED_BYTES: u64 = 1 << 24;
-/// Memory of a pixel's colour in a file, bytes.
+/// Bytes per colour of a pixel in a file.
 pub const COLOR_BYTES: u64 = 3;
-/// Runs `run` `runs` times, once at the least: the last result, and how long each run took,
-/// milliseconds.
+/// Calls `run` `runs` times, at least once. Returns the last result, and the time of each run, milliseconds.
 pub fn timed<T>(
     runs: u32,
     mut run: impl FnMut() -> Result<T, DrawError>,
@@ -168,8 +153,6 @@ pub fn timed<T>(
     }
 }
 
-/// Time that has passed, milliseconds.
-#[must_use]
 pub fn milliseconds_since(started: Instant) -> f64 {
     started.elapsed().as_secs_f64() * 1e3
 }

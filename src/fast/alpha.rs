@@ -1,8 +1,5 @@
-//! Blending (rule R11), under `alpha` (`SPEC.md`, section 11): with products
-//! where the machine adds shifts.
-//!
-//! Voxels reach the same samples in the same order as under `exact`. A sample stays open until it is
-//! opaque enough.
+//! Blending (R11; `SPEC.md`, section 11), with products where the machine adds shifts. Voxels reach the same samples in
+//! the same order as under `exact`; a sample stays open until it is opaque enough.
 
 use super::band::Band;
 use super::lanes::Isa;
@@ -10,7 +7,7 @@ use super::window::bits;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 
-/// By axis, the weight of the side that is seen, sixteenths of an outline, of a voxel with this lowest corner and side.
+/// Weights of the visible sides of a voxel with this lowest corner and side: by axis, in sixteenths of its outline.
 fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
     let along: [i64; 3] = std::array::from_fn(|k| {
         let centre = i64::from(min[k]) + i64::from(side / 2);
@@ -28,8 +25,8 @@ fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
 }
 
 impl<I: Isa> Band<'_, I> {
-    /// Shows a voxel at open samples of the square whose first sample is given,
-    /// eight bits per row. Those that are drawn by that: all, unless voxels are blended.
+    /// Shows a voxel at open samples of a square, eight bits per row. Returns the samples that are full by that: all,
+    /// unless voxels are blended.
     #[inline(always)]
     pub(super) fn show(
         &mut self,

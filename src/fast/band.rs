@@ -1,5 +1,4 @@
-//! A band, the rows of the picture that one task draws: the state that the steps of the traversal
-//! share.
+//! The state of a band: the rows of the picture that one task draws.
 
 use super::canvas::{Fill, Pixels};
 use super::constants::Constants;
@@ -10,7 +9,6 @@ use super::strips::Candidates;
 use super::switches::Switches;
 use crate::graph::GraphView;
 
-/// A band of the picture while it is drawn.
 #[derive(Debug)]
 pub(super) struct Band<'b, I> {
     pub(super) isa: I,
@@ -21,22 +19,18 @@ pub(super) struct Band<'b, I> {
     pub(super) fill: Fill<'b>,
     pub(super) pixels: Pixels<'b>,
     pub(super) counters: Counters,
-    /// Whether voxels are blended.
     pub(super) blends: bool,
-    /// By sample of a square: how many entries of the picture it lies behind the square's first
-    /// sample.
+    /// By sample of a square: how many entries of the picture it lies behind the square's first sample.
     pub(super) sample_offsets: [u32; 64],
     /// By sample of the current square: the parts that its line may meet.
     pub(super) candidates: Candidates,
-    /// The hits of the current square's samples.
     pub(super) hits: [Hit; 64],
-    /// The node that each of them shows; used only for bricks of four levels without blending.
+    /// The node that each of them shows. Only for bricks of four levels without blending.
     pub(super) nodes: [u32; 64],
-    /// The blocks of the current brick of four levels.
     pub(super) brick_blocks: &'b mut BrickBlocks,
 }
 
-/// The blocks of a brick of four levels: its parts, with theirs.
+/// The parts of a brick of four levels, with theirs.
 #[derive(Debug)]
 pub(super) struct BrickBlocks {
     /// Masks of the parts of each block. Blocks and parts are both in order of occlusion.
@@ -44,7 +38,7 @@ pub(super) struct BrickBlocks {
     pub(super) parts: [Parts; 64],
 }
 
-/// A node at its place in the object: the unit of work above bricks.
+/// A node and its place: the unit of work above bricks.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Record {
     pub(super) node: u32,
@@ -55,7 +49,7 @@ pub(super) struct Record {
     pub(super) centre: [f64; 3],
 }
 
-/// A voxel as pictures store it: its lowest corner, and its level.
+/// A voxel as pictures store it: lowest corner and level.
 #[inline(always)]
 pub(super) fn voxel_at(min: [i32; 3], level: u32) -> [i32; 4] {
     [min[0], min[1], min[2], level as i32]
@@ -68,13 +62,10 @@ pub(super) struct Brick<'b> {
     pub(super) parts: &'b Parts,
 }
 
-/// The part of a brick that a sample shows.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hit {
-    /// The sample.
     pub(super) bit: u8,
-    /// The block, in order of occlusion; of bricks of two levels nothing.
+    /// The block, in order of occlusion; no meaning in bricks of two levels.
     pub(super) block: u8,
-    /// The part.
     pub(super) part: u8,
 }

@@ -1,4 +1,4 @@
-//! A picture in bands, the rows that one task draws, and the threads that draw them.
+//! Division of a picture into bands, and their threads.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
 
-/// The data that all bands of a frame share.
+/// Data that all bands of a frame share.
 pub(super) struct Job<'j> {
     pub(super) constants: &'j Constants,
     pub(super) exact: &'j Exact,
@@ -23,7 +23,7 @@ pub(super) struct Job<'j> {
     pub(super) switches: &'j Switches,
 }
 
-/// The memory of a band of the picture: whole rows of tiles.
+/// The memory of a band: whole rows of tiles.
 pub(super) struct BandBuffers<'p> {
     pub(super) grid: TileGrid,
     pub(super) bounds: Window,
@@ -31,11 +31,10 @@ pub(super) struct BandBuffers<'p> {
     pub(super) pixels: Pixels<'p>,
 }
 
-/// Rows of tiles of the first band, of `rows` from `top` on. If these are all, there is one band.
+/// Rows of tiles of the first band, of `rows` from `top`; all of them: there is one band.
 ///
-/// Nodes that lie across two bands are visited in both, so there are few bands; several to a
-/// thread, large ones first, so that threads end together. Only the
-/// rows that the object covers count, because the others cost nothing.
+/// A node across two bands is visited in both, so bands are few: several per thread, large ones first, so that threads
+/// end together. Only rows that the object covers count.
 fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) -> usize {
     let begin = object.start.max(top);
     let covered = object.end.min(top + rows).saturating_sub(begin);
@@ -47,7 +46,6 @@ fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) ->
 }
 
 impl BandBuffers<'_> {
-    /// Splits off the first rows of tiles.
     fn split(self, rows: usize) -> (Self, Self) {
         let top = self.bounds.top + ((rows << TILE_LOG2) as i32);
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
@@ -84,8 +82,7 @@ impl BandBuffers<'_> {
     }
 }
 
-/// Draws the first band, while other threads draw the rest in the same way. `object`: rows of tiles
-/// that the object covers.
+/// Draws the first band, while other threads draw the rest in the same way. `object`: the rows of tiles that it covers.
 pub(super) fn run_bands<I: Isa>(
     job: &Job<'_>,
     buffers: BandBuffers<'_>,
@@ -108,7 +105,6 @@ pub(super) fn run_bands<I: Isa>(
     counters
 }
 
-/// Draws one band.
 fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
     let mut brick_blocks = BrickBlocks {
         exist: [0; 64],

@@ -1,12 +1,11 @@
 //! Bricks: nodes of which two or four levels are drawn in one step, sample by sample.
 //!
-//! A brick is a node whose 64 parts, its grandchildren, are solids. For each open sample, three
-//! look-ups say which parts its line may meet, in the order in which it meets them (`strips.rs`). The
-//! sample shows the first part that it does meet (`lines.rs`). So the work is for samples, not for
-//! voxels, and occluded voxels cost nothing.
+//! The 64 parts of a brick, its grandchildren, are solids. For each open sample three look-ups give the parts that its
+//! line may meet, nearest first (`strips.rs`); the sample shows the first part that the line meets (`lines.rs`). So
+//! occluded voxels cost nothing.
 //!
-//! Where voxels are smaller than samples, the parts are blocks, nodes with 64 parts of their own: the
-//! same look-ups twice, for 4096 voxels. A block's parts are read when the first line needs them.
+//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice, for 4096
+//! voxels. A block's parts are read when the first line needs them.
 
 use super::band::{Band, Brick, Hit, voxel_at};
 use super::directions::Samples;
@@ -31,7 +30,7 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     let level = &band.constants.levels[brick.record.level as usize];
     let across = if DEEP { 16.0 } else { 4.0 };
     let projection = Projection::new(isa, band.constants, level, brick.record.centre, across);
-    // Where there is one square anyway, it would not be worth its time.
+    // One square is not worth the time.
     let window = if window.right - window.left > 7 || window.bottom - window.top > 7 {
         let parts = brick.parts.exist;
         projection.window(isa, band.constants, level, across, parts, window)
@@ -152,8 +151,8 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// The first part that each sample's line may meet: samples that meet it, whose hits come first,
-/// and samples that may meet others. Without a branch: what a line meets cannot be predicted.
+/// Splits samples by the first part that their lines may meet: those that meet it, whose hits come first, and those
+/// that may meet others. Has no branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
     let isa = band.isa;
@@ -166,7 +165,7 @@ fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: 
         let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-        // The next hit takes its place if it is none.
+        // Overwritten by the next hit if it is none.
         band.hits[count & 63] = Hit {
             bit: bit as u8,
             block: 0,
@@ -174,7 +173,7 @@ fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: 
         };
         count += usize::from(is_met);
         drawn |= u64::from(is_met) << bit;
-        // Without the first if that is missed for certain.
+        // Without the first part if that is certainly missed.
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
         others |= u64::from((parts != 0) & !is_met) << bit;
@@ -183,7 +182,6 @@ fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: 
 }
 
 impl Hit {
-    /// The part.
     #[inline(always)]
     fn part<I: Isa, const DEEP: bool>(self, band: &Band<'_, I>, brick: Brick<'_>) -> Part {
         let parts = if DEEP {
@@ -194,7 +192,7 @@ impl Hit {
         parts.part(band.graph, u32::from(self.part))
     }
 
-    /// The node, and where in the brick it is.
+    /// The node, and its place in the brick.
     #[inline(never)]
     fn path<I: Isa, const DEEP: bool>(
         self,
@@ -212,8 +210,7 @@ impl Hit {
     }
 }
 
-/// Shows what was found. Memory was asked for before, for all samples, so that waiting for one does
-/// not hold up the next.
+/// Shows the hits. All memory was prefetched, so that waiting for one hit does not delay the next.
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -247,8 +244,8 @@ fn show_hits<I: Isa, const DEEP: bool>(
     }
 }
 
-/// Blends what a sample meets: whether that hides all that is behind it, and how many levels
-/// below the brick or block it is.
+/// Blends what a sample meets. Returns whether that hides everything behind it, and how many levels below the brick or
+/// block it is.
 #[inline(never)]
 fn blend<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -266,7 +263,7 @@ fn blend<I: Isa, const DEEP: bool>(
     (full != 0, path.levels)
 }
 
-/// Whether a sample that is in doubt meets what it may, by the exact rule.
+/// Whether a doubtful sample meets a part, by the exact rule.
 #[inline(never)]
 fn is_hit<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -279,7 +276,7 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, usize::from(hit.bit), &path)
 }
 
-/// Puts a block's parts in order.
+/// Puts a block's parts in occlusion order.
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
     let block = brick
@@ -291,18 +288,17 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octa
     band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
 }
 
-/// Where in a brick a voxel is.
+/// The place of a voxel in a brick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path {
-    /// In which block, where parts are blocks.
+    /// The block, where parts are blocks.
     pub(super) block: Option<u32>,
     pub(super) part: u32,
-    /// Levels that the part is below the brick or block.
+    /// Levels from the brick or block down to the part.
     pub(super) levels: u32,
 }
 
 impl Path {
-    /// The voxel, as a picture shows it.
     #[inline(never)]
     pub(super) fn voxel(&self, brick: Brick<'_>, side: i32) -> [i32; 4] {
         let (mut min, mut side, mut level) = (brick.record.min, side, brick.record.level);

@@ -1,9 +1,8 @@
-//! The picture in the making: a coverage mask of the samples that are drawn, and their contents.
+//! The picture in progress: masks of open samples, and their contents.
 //!
-//! The mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second
-//! level has one bit per tile, in words of 8 x 8 tiles (blocks). So a few words decide whether anything
-//! can still be drawn in a window. Samples outside the picture count as drawn. A square (`squares.rs`)
-//! is at most as large as a tile and may lie anywhere.
+//! A mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second level has one bit
+//! per tile, in words of 8 x 8 tiles (blocks). So a few words tell whether a window is open. Samples outside the
+//! picture count as drawn. A square (`squares.rs`) is at most a tile large and may lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
@@ -12,23 +11,19 @@ use crate::frame::{Blend, NO_NODE, color_word};
 /// Tiles along a block's side.
 const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 
-/// The coverage mask of a band of the picture.
 #[derive(Debug)]
 pub(super) struct Fill<'p> {
-    /// The band's samples.
     pub(super) bounds: Window,
     grid: TileGrid,
     /// Index of the band's first tile in the whole picture.
     first_tile: usize,
-    /// Row of the band's first blocks in the whole picture; of these the band may have the lower
-    /// tiles alone.
+    /// Row of the band's first blocks in the whole picture. A band may have only the lower tiles of these.
     first_block_row: i32,
     part: FillPart<'p>,
-    /// Samples not drawn yet.
     pub(super) open: u64,
 }
 
-/// The memory of a picture's fill, or a band's part of it.
+/// The memory of a fill, or a band's part of it.
 #[derive(Debug)]
 pub(super) struct FillPart<'p> {
     /// One bit per sample, set where it is open; by tile.
@@ -37,7 +32,6 @@ pub(super) struct FillPart<'p> {
     blocks: &'p mut [u64],
 }
 
-/// The memory of a picture's fill.
 #[derive(Debug, Default)]
 pub(super) struct FillMemory {
     tiles: Vec<u64>,
@@ -45,15 +39,13 @@ pub(super) struct FillMemory {
 }
 
 impl FillMemory {
-    /// Makes room for a picture in bands; no more is allocated for the next of its size.
+    /// Makes room for a picture. Allocates nothing for the next one of its size.
     pub(super) fn resize(&mut self, grid: &TileGrid) {
-        // Beyond the last tile there is room for what lies below and beside
-        // it, so that squares there can be looked at like others.
+        // Room below and beside the last tile, so that squares there are read like others.
         let beyond = grid.tiles_across + 2;
         self.tiles
             .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
-        // Bands that share a row of blocks each have a row of their own; there may be a band for
-        // each row of tiles.
+        // Each band has its own row of blocks; there may be a band for each row of tiles.
         let block_rows = grid.tiles_down.div_ceil(TILES_PER_BLOCK) + grid.tiles_down;
         self.blocks.resize(block_rows * grid.blocks_across, 0);
     }
@@ -67,7 +59,7 @@ impl FillMemory {
 }
 
 impl FillPart<'_> {
-    /// The first rows of tiles, and the others. `top`: the first of these rows in the picture.
+    /// The first rows of tiles, and the others. `top`: the first row in the picture.
     pub(super) fn split(self, grid: &TileGrid, top: usize, rows: usize) -> (Self, Self) {
         let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_across);
         let block_rows = (top + rows).div_ceil(TILES_PER_BLOCK) - top / TILES_PER_BLOCK;
@@ -77,7 +69,6 @@ impl FillPart<'_> {
     }
 }
 
-/// How many tiles and blocks a picture has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TileGrid {
     pub(super) tiles_across: usize,
@@ -86,7 +77,7 @@ pub(super) struct TileGrid {
 }
 
 impl TileGrid {
-    /// The grid of a picture: whole blocks across, whole tiles down.
+    /// Whole blocks across, whole tiles down.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let blocks_across = (width as usize).div_ceil(1 << BLOCK_LOG2);
         Self {
@@ -108,7 +99,7 @@ static COLUMNS: [u64; 9] = {
     masks
 };
 
-/// The first rows and columns of a tile: by rows less one times eight, and columns less one.
+/// The first rows and columns of a tile, by `8 * (rows - 1) + columns - 1`.
 static SQUARES: [u64; 64] = {
     let mut masks = [0; 64];
     let mut rows = 0;
@@ -125,7 +116,7 @@ static SQUARES: [u64; 64] = {
 };
 
 impl<'p> Fill<'p> {
-    /// An empty band. `bounds.top` is a multiple of a tile's side.
+    /// An empty band. `bounds.top` is the top of a tile.
     pub(super) fn clear(grid: &TileGrid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;
@@ -151,7 +142,6 @@ impl<'p> Fill<'p> {
         fill
     }
 
-    /// Index of the tile in column `x` and row `y` of tiles.
     #[inline(always)]
     fn tile_at(&self, x: i32, y: i32) -> usize {
         let from_top = (y as usize).wrapping_mul(self.grid.tiles_across);
@@ -168,7 +158,7 @@ impl<'p> Fill<'p> {
         (at, 1u64 << ((y & 7) << 3 | (x & 7)))
     }
 
-    /// A tile's open samples. Beside the band nothing is open.
+    /// A tile's open samples; none outside the band.
     #[inline(always)]
     fn tile(&self, at: usize) -> u64 {
         self.part.tiles.get(at).copied().unwrap_or(0)
@@ -183,8 +173,7 @@ impl<'p> Fill<'p> {
             (window.bottom - window.top) as usize,
         );
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        // The four tiles that the window may reach. Those that it does not reach are shifted out
-        // or masked.
+        // The four tiles that the window may reach; unreached ones are shifted out or masked.
         let below = at.wrapping_add(self.grid.tiles_across);
         let [a, b, c, d] = match self.part.tiles.get(at..below.wrapping_add(2)) {
             Some(tiles) => [tiles[0], tiles[1], tiles[below - at], tiles[below - at + 1]],
@@ -196,12 +185,12 @@ impl<'p> Fill<'p> {
         ((left ^ right) & own ^ right) & SQUARES[(more_y << 3 | more_x) & 63]
     }
 
-    /// Marks samples of a tile as drawn, which are open.
+    /// Marks open samples of a tile as drawn.
     #[inline(always)]
     fn mark_at(&mut self, at: usize, x: i32, y: i32, samples: u64) {
         if let Some(tile) = self.part.tiles.get_mut(at) {
             *tile &= !samples;
-            // Without a branch for tiles of which nothing is drawn: those cannot be predicted.
+            // No branch for tiles without drawn samples: unpredictable.
             if (*tile == 0) & (samples != 0) {
                 let (block, bit) = self.block_of(x, y);
                 self.part.blocks[block] &= !bit;
@@ -209,14 +198,12 @@ impl<'p> Fill<'p> {
         }
     }
 
-    /// Marks open samples of a tile as drawn.
     #[inline(always)]
     pub(super) fn mark_tile(&mut self, x: i32, y: i32, samples: u64) {
         self.open -= u64::from(samples.count_ones());
         self.mark_at(self.tile_at(x, y), x, y, samples);
     }
 
-    /// Marks open samples of a square as drawn.
     #[inline(always)]
     pub(super) fn mark_square(&mut self, window: &Window, samples: u64) {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
@@ -241,7 +228,6 @@ impl<'p> Fill<'p> {
         );
     }
 
-    /// The samples of a tile that are in the window and not drawn.
     #[inline(always)]
     pub(super) fn open_in_tile(&self, x: i32, y: i32, window: &Window) -> u64 {
         self.tile(self.tile_at(x, y)) & window.bits(x << TILE_LOG2, y << TILE_LOG2)
@@ -275,9 +261,8 @@ impl<'p> Fill<'p> {
         false
     }
 
-    /// Whether there may be a sample to draw in a window that is not empty
-    /// and lies in the band. In windows larger than a tile, tiles that are
-    /// not full count as open.
+    /// Whether a sample of a window inside the band may be open. In windows larger than a tile, tiles that are not full
+    /// count as open.
     #[inline(always)]
     pub(super) fn is_open(&self, window: &Window) -> bool {
         if window.right - window.left < 8 && window.bottom - window.top < 8 {
@@ -287,31 +272,29 @@ impl<'p> Fill<'p> {
     }
 }
 
-/// The contents of a band's samples.
 #[derive(Debug)]
 pub(super) struct Pixels<'f> {
     /// Samples per row.
     pub(super) width: usize,
     /// First row of the band.
     pub(super) top: i32,
-    /// Nodes, or their colours as words.
+    /// Nodes, or their colours.
     pub(super) shown: &'f mut [u32],
-    /// Colours by node if they are requested, else empty.
+    /// Colours by node; empty where nodes are wanted.
     pub(super) color: &'f [[u8; 3]],
-    /// Empty unless voxels are requested.
+    /// Empty where voxels are not wanted.
     pub(super) voxel: &'f mut [[i32; 4]],
-    /// The blended light so far. Empty under rules that do not blend.
+    /// Blended light so far; empty under rules that do not blend.
     pub(super) blend: &'f mut [Blend],
 }
 
 impl Pixels<'_> {
-    /// Whether voxels are requested.
     #[inline(always)]
     pub(super) fn wants_voxels(&self) -> bool {
         !self.voxel.is_empty()
     }
 
-    /// The entry of a sample that shows a node.
+    /// What a sample that shows a node holds.
     #[inline(always)]
     pub(super) fn word(&self, node: u32) -> u32 {
         if self.color.is_empty() {
@@ -321,14 +304,12 @@ impl Pixels<'_> {
         color.map_or(0, |&color| color_word(color))
     }
 
-    /// Index of a sample.
     #[inline(always)]
     pub(super) fn at(&self, x: i32, y: i32) -> usize {
         (y - self.top) as usize * self.width + x as usize
     }
 
-    /// Shows a node, and a voxel if requested, at samples of the square whose first sample is (x, y),
-    /// eight bits per row.
+    /// Shows a node, and a voxel if wanted, at samples of a square, eight bits per row.
     #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,
@@ -340,7 +321,7 @@ impl Pixels<'_> {
     ) {
         let first = self.at(x, y);
         let word = self.word(node);
-        // All eight rows, drawn or not: how many there are cannot be predicted.
+        // All eight rows: the number of drawn ones is unpredictable.
         let end = first + 7 * self.width + 8;
         match self.shown.get_mut(first..end) {
             Some(rows) => isa.store_masked(rows, self.width, samples, word),
@@ -353,7 +334,6 @@ impl Pixels<'_> {
         }
     }
 
-    /// Forgets what was shown.
     pub(super) fn clear(&mut self) {
         let nothing = if self.color.is_empty() { NO_NODE } else { 0 };
         self.shown.fill(nothing);

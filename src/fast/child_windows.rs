@@ -1,28 +1,26 @@
-//! The windows of a node's eight children, eight at a time: bounding rectangles in the picture.
-//!
-//! A window may be too wide, never too narrow; `spec/fast.md`, section 5, derives the margins.
+//! Windows of a node's eight children, eight at a time: bounding rectangles in the picture. A window may be too wide,
+//! never too narrow (margins: `spec/fast.md`, section 5).
 
 use super::constants::{Constants, Level};
 use super::lanes::{F32x8, Floats, Isa, Lanes};
 use super::window::{BEYOND, WINDOW_MARGIN, Window};
 
-/// The rounding of `f32`, with room: of positions, and of extents.
+/// Rounding of positions and extents in `f32`, with room.
 const ROUNDING: f32 = 1.0 / (1 << 21) as f32;
-/// Factor on extents, for an inverse of 11 bits and their own rounding.
+/// Factor on extents, for an inverse of 11 bits and its rounding.
 const SCALE: f32 = 1.0 + 1.0 / 256.0;
-/// Margin of windows in `f64`, in samples and relative to the numbers they are made of.
+/// Margin of windows in `f64`: in samples, and relative to their terms.
 const TINY_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The windows of a node's children, by octant, cut to the band. They hold all samples in the
-/// children's boxes.
+/// Windows by octant, cut to the band. They hold all samples in the children's boxes.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(32))]
 pub(super) struct ChildWindows {
     /// Left, top, right and bottom.
     sides: [[i32; 8]; 4],
-    /// Mask of the windows with a sample. Of no meaning for children that are near.
+    /// Windows with a sample, as a mask; no meaning for children that are near.
     pub(super) held: u8,
-    /// Mask of the children that reach to the eye's plane or behind it.
+    /// Children that reach the eye's plane or lie behind it, as a mask.
     pub(super) near: u8,
 }
 
@@ -32,7 +30,7 @@ impl ChildWindows {
         Window::of([0, 1, 2, 3].map(|i| self.sides[i][octant & 7]))
     }
 
-    /// Computes the windows of the children of a node, in a band. `centre`: the node's clip vector.
+    /// Computes the windows of a node's children. `centre`: the node's clip vector.
     #[inline(always)]
     pub(super) fn compute<I: Isa>(
         &mut self,
@@ -91,7 +89,7 @@ impl ChildWindows {
         }
     }
 
-    /// The same in `f64`, one child at a time, with a margin for nodes much smaller than a sample.
+    /// The same in `f64`, child by child, with a margin for nodes much smaller than a sample.
     #[inline(never)]
     fn compute_tiny(
         &mut self,
@@ -128,7 +126,6 @@ impl ChildWindows {
     }
 }
 
-/// A coordinate of the clip vectors of the children's centres.
 #[inline(always)]
 fn children<I: Isa>(isa: I, own: &Level, centre: &[f64; 3], c: usize) -> [I::F64x4; 2] {
     let middle = I::F64x4::splat(isa, centre[c]);

@@ -1,53 +1,48 @@
-//! The constants of a frame, as the traversal needs them; the nearest octant of a node (rule R9).
+//! Constants of a frame for the traversal; the nearest octant of a node (R9).
 //!
-//! Clip vectors of nodes are halves of whole numbers in `f64`, and exact:
-//! [`Constants::new`] takes no frame whose positions, times sixteen, leave 53 bits.
-//! So the compares with depths of level of detail are the machine's.
+//! Clip vectors of nodes are halves of whole numbers in `f64`, and exact: [`Constants::new`] declines frames whose
+//! positions, times sixteen, exceed 53 bits. So level of detail compares the same depths as the machine.
 
 use crate::project::vector::cross;
 use crate::project::{FrameSetup, OpacityEye};
 
-/// Positions, times sixteen, stay below this: whole numbers of an `f64`.
+/// Bound of positions times sixteen: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
 
-/// Most of the image root's width over the focal length: fields of view up to about 179.98
-/// degrees. Beyond, the rounding of slopes is more than the engine's margins are for.
+/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees. Beyond, slopes
+/// round by more than the margins allow.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
-/// Size, in samples, from which on voxels are drawn one by one
-/// (`voxels.rs`) and not sample by sample (`bricks.rs`). Measured.
+/// Least size of voxels drawn one by one (`voxels.rs`) and not sample by sample (`bricks.rs`), samples. Measured.
 const COARSE_SAMPLES: f64 = 3.0;
-/// Size, in samples, up to which four levels are one brick. Measured.
+/// Largest size of voxels of bricks of four levels, samples. Measured.
 const FINE_SAMPLES: f64 = 0.75;
-/// Size, in samples, from which on a cube is drawn by its planes, whole
-/// blocks and tiles at a time (`exact.rs`). Measured.
+/// Least size of a cube drawn by its planes, whole blocks and tiles at a time (`exact.rs`), samples. Measured.
 const LARGE_SAMPLES: f64 = 24.0;
 
-/// Size, in samples, from which on windows are computed with a margin that nodes can have.
+/// Least size of nodes whose windows are computed in `f32`, samples.
 const TINY_SAMPLES: f64 = 1.0 / 8.0;
 
-/// The constants of an octree level.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
-    /// The children's centres relative to their parent's: by coordinate of the clip vector, then by
-    /// octant.
+    /// The children's centres relative to their parent's: by coordinate of the clip vector, then by octant.
     pub(super) child: [[f64; 8]; 3],
-    /// The vertices relative to the centre, in the same way.
+    /// Vertices relative to the centre, likewise.
     pub(super) vertices: [[f64; 8]; 3],
     /// Half of a node's extent in depth.
     pub(super) half_depth: f64,
-    /// Least W of a node with children that is a solid by level of detail. Infinite where none is.
+    /// Least W of a node with children that level of detail makes a solid; infinite where there is none.
     pub(super) lod_depth: f64,
-    /// A node's side, finest voxels.
+    /// Side, finest voxels.
     pub(super) side: i32,
-    /// 1 / the side: a power of two.
+    /// 1 / side: a power of two.
     pub(super) inverse_side: f64,
-    /// Depth up to which a node's parts, a quarter of its side, are coarse ([`COARSE_SAMPLES`]).
+    /// Largest depth at which parts of a quarter of a node's side are coarse ([`COARSE_SAMPLES`]).
     pub(super) coarse_depth: f64,
-    /// Depth from which on parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
+    /// Least depth at which parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
     pub(super) fine_depth: f64,
-    /// Depth from which on a node is tiny ([`TINY_SAMPLES`]).
+    /// Least depth at which a node is tiny ([`TINY_SAMPLES`]).
     pub(super) tiny_depth: f64,
-    /// Depth up to which a node itself is large ([`LARGE_SAMPLES`]).
+    /// Largest depth at which a node is large ([`LARGE_SAMPLES`]).
     pub(super) large_depth: f64,
 }
 
@@ -55,26 +50,25 @@ pub(super) struct Level {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 #[non_exhaustive]
 pub enum Declined {
-    /// Other rules than `exact` and `alpha` are defined by the machine's steps.
+    /// Only `exact` and `alpha` are defined without the machine's steps.
     #[error("the drawing rule is defined by the machine's own steps")]
     Rule,
-    /// Words may overflow, and what becomes of that is the machine's.
+    /// Words may overflow, which only the machine handles.
     #[error("words of this format may overflow in this frame")]
     Words,
-    /// Positions take more bits than an `f64` has.
+    /// Positions exceed the bits of an `f64`.
     #[error("positions take more than the 53 bits of a double")]
     Range,
-    /// Beyond about 179.98 degrees slopes are rounded too much.
+    /// Beyond about 179.98 degrees slopes round too much.
     #[error("the field of view is too wide")]
     FieldOfView,
-    /// The work of each record was asked for.
+    /// Records per sample are wanted.
     #[error("records are counted, which only the machine has")]
     Records,
 }
 
 impl Declined {
-    /// The name by which the engine counts frames that it declined for this.
-    #[must_use]
+    /// The counter of frames declined for this reason.
     pub const fn counter(self) -> &'static str {
         match self {
             Self::Rule => "handed_for_rule",
@@ -86,7 +80,6 @@ impl Declined {
     }
 }
 
-/// The constants of a frame.
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
     /// By octree level.
@@ -95,37 +88,28 @@ pub(super) struct Constants {
     pub(super) depth: u32,
     /// Clip vector of the object's centre.
     pub(super) centre: [f64; 3],
-    /// Samples a side of the image root.
+    /// Samples per side of the image root.
     pub(super) root_samples: f64,
-    /// Clip vectors of a finest voxel's edges, X and Y in samples:
-    /// `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that the quotient is 0 at the centre of the
-    /// first sample.
+    /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
+    /// the quotient is 0 at the centre of the first sample.
     pub(super) edge: [[f64; 3]; 3],
-    /// The direction of a sample's ray in the object, along each axis, as a
-    /// linear function of column and row: `[along x, along y, at sample 0]`.
-    /// Scaled, so that it is about 1, and turned so that rays run forward.
+    /// Direction of a sample's ray in the object, by axis: `[per column, per row, at sample 0]`. Scaled to about 1;
+    /// rays run forward.
     pub(super) direction: [[f64; 3]; 3],
     /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
     /// [`Constants::edge`] by coordinate, then by axis.
     pub(super) edge_columns: [[f64; 4]; 3],
-    /// [`Constants::edge`], rounded.
     pub(super) edge_lanes: [[f32; 3]; 3],
     /// Scale of a product of two edges in [`Constants::direction`].
     pub(super) scale: f64,
-    /// 1 / the scale.
     pub(super) inverse_scale: f64,
-    /// The eye, finest voxels, rounded down.
     pub(super) eye_floor: [i64; 3],
-    /// Under the rule that blends.
     pub(super) opacity_eye: Option<OpacityEye>,
 }
 
 impl Constants {
-    /// The constants of a frame.
-    ///
-    /// # Errors
-    /// Why this engine does not draw the frame.
+    /// Errors: why this engine does not draw the frame.
     pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
         if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
             return Err(Declined::Rule);
@@ -185,8 +169,8 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object's box covers, about; all of a picture of this height where
-    /// the box reaches behind the eye. Work is shared out by them, nothing is left out.
+    /// Rows of samples that the object's box covers, about; all rows of a picture of this height where the box reaches
+    /// behind the eye. Only divides the work.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
@@ -202,8 +186,8 @@ impl Constants {
         top..bottom
     }
 
-    /// The octant nearest to the eye, of a node with this lowest corner and half side: bit k is set
-    /// where the eye is above the centre.
+    /// The octant nearest to the eye, of a node with this lowest corner and half side: bit k is set where the eye is
+    /// above the centre.
     #[inline(always)]
     pub(super) fn nearest_octant(&self, min: [i32; 3], half_side: i32) -> u8 {
         let mut octant = 0;
@@ -215,8 +199,7 @@ impl Constants {
     }
 }
 
-/// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that
-/// a finest voxel takes, times its depth.
+/// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that a finest voxel takes, times its depth.
 fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
     // Corners of a cube about its centre: by coordinate, then by octant.

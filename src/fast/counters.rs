@@ -1,23 +1,20 @@
-//! The counts of a frame: work done, and work skipped.
+//! Counts of a frame: work done and work skipped.
 
 use crate::project::Stats;
 
-/// Makes [`Counters`] from a table of its fields, their names in reports, and their meaning.
+/// Makes [`Counters`] of a table: field, name in reports, meaning.
 macro_rules! counters {
     ($($(#[$meaning:meta])* $field:ident = $name:literal;)*) => {
-        /// Counts of a frame, or of a band of it.
         #[derive(Debug, Default, Clone, Copy)]
         pub(super) struct Counters {
             $($(#[$meaning])* pub(super) $field: u64,)*
         }
 
         impl Counters {
-            /// Adds another band's counts.
             pub(super) fn add(&mut self, other: &Self) {
                 $(self.$field += other.$field;)*
             }
 
-            /// Names and counts, in a fixed order.
             pub(super) fn stats(&self) -> Stats {
                 vec![("records", self.nodes + self.bricks), $(($name, self.$field)),*]
             }

@@ -1,21 +1,20 @@
-//! Where the lines of a square's samples run: their direction, and the octant that they begin in.
+//! Direction of the lines of a square's samples, and the octant in which they begin.
 
 use super::constants::Constants;
 use super::exact::Exact;
 use super::lanes::{F32x4, Floats, Isa};
 use super::window::{Window, bits};
 
-/// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
-/// summed up at most: `spec/fast.md` counts them.
+/// Roundings in `f32` of a line's values, each 2^-24 of the largest sum (counted in `spec/fast.md`).
 pub(super) const STEPS: f32 = 18.0;
-/// Bounds the error in `f32` of a direction, a moment, and a line's distance from a part, relative to
-/// the sum of the sizes of their terms.
+/// Bound of the error in `f32` of a direction, a moment, and a line's distance from a part, relative to the sum of the
+/// sizes of their terms.
 pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
-/// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
-/// of numbers up to 2^13 times as large (`Constants::new`).
+/// Rounding of a direction in `f64`, relative to its terms: its coefficients are differences of numbers up to 2^13
+/// times as large (`Constants::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
-/// The direction of lines in a square's middle, and by how much it changes from there.
+/// Direction of the lines in a square's middle, and its change from there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions<I: Isa> {
     pub(super) middle: I::F32x4,
@@ -24,7 +23,7 @@ pub(super) struct Directions<I: Isa> {
     pub(super) size: I::F32x4,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
-    /// Whether lines of the square differ in that, or may.
+    /// Whether the lines of the square may begin in several octants.
     pub(super) is_mixed: bool,
 }
 
@@ -60,7 +59,6 @@ impl<I: Isa> Directions<I> {
 /// Octants by signs, which have the x axis in their lowest bit.
 static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
 
-/// Open samples of a square whose lines begin in one octant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Samples<'s, I: Isa> {
     pub(super) square: &'s Window,
@@ -71,7 +69,7 @@ pub(super) struct Samples<'s, I: Isa> {
 }
 
 impl<I: Isa> Samples<'_, I> {
-    /// Goes on to the first of the groups that is not empty, and takes it from there.
+    /// Takes the first group that is not empty.
     #[inline(always)]
     pub(super) fn take_group(&mut self, groups: &mut [u64; 8]) -> bool {
         let first = groups.iter().position(|&group| group != 0);
@@ -83,7 +81,7 @@ impl<I: Isa> Samples<'_, I> {
     }
 }
 
-/// The samples of a square whose lines begin in each octant, by each sample's own sign.
+/// Samples of a square by the octant in which their lines begin, by each sample's own signs.
 #[inline(never)]
 pub(super) fn by_octant(
     constants: &Constants,

@@ -1,19 +1,18 @@
-//! Exact silhouettes (rule R8 of `SPEC.md`, with its ties R8.1 and the plane of the eye R8.2): in `f64` where its
-//! error bound decides, in 128-bit integers where it does not.
+//! Exact silhouettes (R8, ties R8.1, the plane of the eye R8.2): in `f64` where its error bound decides, otherwise in
+//! 128-bit integers.
 //!
-//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and a cube's
-//! edge. The sign of their permuted inner product says on which side the ray passes.
+//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube: the sign
+//! of their permuted inner product tells the side on which the ray passes.
 //!
-//! The plane through the eye and the edge of direction j that starts at `A` has
-//! the normal `n = A x e_j`. With the sample as `q = (2x + 1, 2y + 1, 2^(R + 1))`
-//! its side is the sign of `n q`; a zero is decided as the machine does, by the
-//! signs of `n_X` and `n_Y`.
+//! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. With the
+//! sample as `q = (2x + 1, 2y + 1, 2^(R + 1))` its side is the sign of `n q`; a zero is decided by the signs of `n_X`
+//! and `n_Y`, as in the machine.
 
 use super::window::Window;
 use crate::project::FrameSetup;
 
-/// Bounds the error in `f64` of a plane's value at a sample, relative to the sum of the sizes of its
-/// at most nine products. Each of the few operations in a row adds 2^-53, so there is room.
+/// Bound of the error in `f64` of a plane's value at a sample, relative to the sum of the sizes of its at most nine
+/// products. Each of a few operations in a row adds 2^-53, so there is room.
 const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// The integers of a frame that exact decisions need.
@@ -49,8 +48,7 @@ fn side_of(plane: [i128; 3], sample: [i64; 3]) -> i8 {
     0
 }
 
-/// A product of vectors, and with the second's sizes instead what bounds its
-/// rounding error.
+/// A cross product; and with the second vector's sizes, a bound of its rounding error.
 #[inline(always)]
 fn dot(a: &[f64; 3], b: &[f64; 3], size: &[f64; 3]) -> (f64, f64) {
     (
@@ -86,11 +84,10 @@ impl Exact {
         at
     }
 
-    /// Whether the ray of a sample meets the inside of a cube that lies before the eye.
+    /// Whether the ray of a sample meets the inside of a cube before the eye.
     ///
-    /// By direction j, `n q = A (e_j x q)` for the four edges' starts `A`, the
-    /// corners of a parallelogram: the least and the greatest of the four are
-    /// what counts.
+    /// In direction j, `n q = A (e_j x q)` for the starts `A` of the four edges, the corners of a parallelogram: their
+    /// least and greatest values decide.
     #[inline(always)]
     pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
         let corner = self.at(min);
@@ -152,7 +149,6 @@ impl Exact {
         [2 * i64::from(x) + 1, 2 * i64::from(y) + 1, self.unit]
     }
 
-    /// The silhouette of a cube.
     pub(super) fn outline(&self, min: [i32; 3], side: i32, is_before_eye: bool) -> Outline {
         let edges = [0, 1, 2].map(|j| {
             let (k, l) = ((j + 1) % 3, (j + 2) % 3);
@@ -167,8 +163,8 @@ impl Exact {
         Outline { edges, front }
     }
 
-    /// The half of the rays that reach a cube which does not hold the eye:
-    /// along an axis on which the eye is outside it, rays go towards it.
+    /// The half of the rays that reach a cube that does not hold the eye: along an axis on which the eye is outside it,
+    /// rays run towards it.
     fn front(&self, min: [i32; 3], side: i32) -> Option<(Plane, i8)> {
         (0..3).find_map(|axis| {
             let upwards = self.eye_ceil[axis] <= i64::from(min[axis]);
@@ -193,7 +189,6 @@ impl Exact {
     }
 }
 
-/// A plane through the eye.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     exact: [i128; 3],
@@ -202,8 +197,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// The side that all samples of a window are on, or `None` where they may
-    /// be on both. 0: the plane is none.
+    /// The side of all samples of a window; `None`: both may occur. 0: there is no plane.
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;
         let odd = |i: i32| f64::from(i) * 2.0 + 1.0;
@@ -240,13 +234,11 @@ impl Plane {
     }
 }
 
-/// A cube's silhouette.
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
-    /// By direction, the planes of the four edges along it.
+    /// Planes of the four edges, by direction.
     edges: [[Plane; 4]; 3],
-    /// For a cube beside the eye: a plane, and the side of it that sees the
-    /// cube and not its mirror image behind the eye.
+    /// Of a cube beside the eye: a plane, and its side that sees the cube and not its mirror image behind the eye.
     front: Option<(Plane, i8)>,
 }
 

@@ -1,17 +1,15 @@
-//! Rule R8 by lines in Plücker coordinates: the lines of a square's samples against the parts of a node.
+//! R8 by lines in Plücker coordinates: the lines of a square's samples against the parts of a node.
 //!
-//! A sample's ray is a line in the object. Its Plücker coordinates are its direction `v` and its
-//! moment `m` about the node's centre. With `P` the clip vector of that centre, `e_k` a voxel's edges
-//! and `q` the sample, they are `v_k = (e_k+1 x e_k+2) q` and `m_j = (P x e_j) q`, the functions of the
-//! exact rule (`SPEC.md`, "Exact coverage"). Whether the line meets a part follows from the side
-//! operator: the line's permuted inner product with the part's edges (`spec/fast.md`, section 2).
+//! The coordinates of a sample's ray are its direction `v` and its moment `m` about the node's centre. With `P` the
+//! centre's clip vector, `e_k` a voxel's edges and `q` the sample, `v_k = (e_k+1 x e_k+2) q` and `m_j = (P x e_j) q`,
+//! the functions of the exact rule (`SPEC.md`, "Exact coverage"). The side operator, the permuted inner product with a
+//! part's edges, tells whether the line meets the part (`spec/fast.md`, section 2).
 //!
-//! Both are linear in the sample, so perspective costs nothing: a line is two multiply-adds from that
-//! of the square's first sample. The only error is the rounding of `f32`. The numbers are small,
-//! because moments are taken about the node, and columns and rows are counted from the square.
+//! Both are linear in the sample, so perspective costs nothing: a line is two multiply-adds from that of the square's
+//! first sample. The only error is the rounding of `f32`. The numbers are small: moments are taken about the node,
+//! columns and rows from the square.
 //!
-//! Axes are mirrored so that lines run upwards along each (`v_k >= 0`). The unit of length is the side
-//! of a part.
+//! Axes are mirrored so that lines run upwards along each (`v_k >= 0`). The unit of length is the side of a part.
 
 use super::constants::Constants;
 use super::directions::{LINE_ERROR, Samples};
@@ -20,13 +18,12 @@ use super::orders::along;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
 
-/// Rounding of a centre's column in `f64`, of the column, over [`LINE_ERROR`]: 2^-50 over
-/// 2^-20.
+/// Rounding of a centre's column in `f64` relative to the column, over [`LINE_ERROR`]: 2^-50 over 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
-/// Parts' centres are at most this many sides of a part from the node's.
+/// Largest distance of a part's centre from the node's, sides of a part.
 const FARTHEST: f32 = 8.0;
 
-/// By octant: which signs direction's components have, and products of two of them.
+/// By octant: signs of the direction's components, and of products of two of them.
 static SIGNS: [[[f32; 4]; 2]; 8] = {
     let mut table = [[[0.0; 4]; 2]; 8];
     let mut octant = 0;
@@ -46,24 +43,23 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
     table
 };
 
-/// The lines of a square's samples, by their Plücker coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
     /// Directions: at the first sample, and their slopes by column and by row.
     direction: [I::F32x4; 3],
-    /// Moments, in the same way.
+    /// Moments, likewise.
     moment: [I::F32x4; 3],
     /// Tables of strips, by function.
     pub(super) tables: [usize; 3],
     /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
     inverse: I::F32x4,
-    /// By how many widths the values of functions that see may be wrong, at most.
+    /// Bound of the error of the values of functions that see, in widths.
     pub(super) error: f32,
-    /// Of that, the rounding.
+    /// The part of `error` that is rounding.
     pub(super) rounding: f32,
     /// Whether a function is blind: its table excludes no part.
     pub(super) has_blind: bool,
-    /// Distance from a part's outline below which a sample is in doubt.
+    /// Distance from a part's outline below which a sample is doubtful.
     doubt: I::F32x4,
 }
 
@@ -76,7 +72,7 @@ pub(super) struct InUnits<I: Isa> {
 }
 
 impl<I: Isa> InUnits<I> {
-    /// The functions' values about a part's centre.
+    /// Values of the functions about a part's centre.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, offset: &Offset) -> [I::F32x4; 3] {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
@@ -105,18 +101,16 @@ pub(super) struct Line<I: Isa> {
 pub(super) enum Meeting {
     Misses,
     Meets,
-    /// Nearer to the outline than the arithmetic's error.
+    /// Nearer to the outline than the error.
     Doubt,
 }
 
-/// The greatest of three lanes.
 #[inline(always)]
 fn greatest<F: F32x4>(four: F) -> f32 {
     four.max(four.next()).max(four.last()).values()[0]
 }
 
 impl<I: Isa> Lines<I> {
-    /// The lines of samples, against a node.
     #[inline(always)]
     pub(super) fn new(
         isa: I,
@@ -133,7 +127,7 @@ impl<I: Isa> Lines<I> {
         let rows = isa.four(&constants.direction_lanes[1]).flip(turn);
         let middle = directions.middle.flip(turn);
         let first = middle.sub(columns.fma(half_across, rows.mul(half_down)));
-        // Where lines of a square run both ways, the middle may be of the others.
+        // Where lines run both ways, the middle may belong to the others.
         let middle = middle.max(zero);
         let (next, last) = (middle.next(), middle.last());
         let width = next.add(last);
@@ -151,7 +145,7 @@ impl<I: Isa> Lines<I> {
             (f64::from(square.top) - projection.centre[1]) as f32,
         ];
         let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
-        // The centre's own rounding in f64, of which the bound takes 16 times 2^-24.
+        // Rounding of the centre in f64; the bound includes 16 times 2^-24 of it.
         let unsure = projection
             .centre
             .map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
@@ -176,7 +170,7 @@ impl<I: Isa> Lines<I> {
         let mut has_blind = false;
         let mut most = MOST_ERROR[0];
         if isa.splat(most).sub(error).signs() & 7 != 0 {
-            // Values are not so good here.
+            // Values are less accurate here.
             most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
                 if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
@@ -211,7 +205,7 @@ impl<I: Isa> Lines<I> {
         self.moment.map(|moment| moment.mul(self.inverse))
     }
 
-    /// All that the values about a part's centre are made of, in parts of a width.
+    /// The terms of the values about a part's centre, in parts of a width.
     #[inline(always)]
     pub(super) fn in_units(&self, isa: I, units_per_width: f32) -> InUnits<I> {
         let unit = self.inverse.mul(isa.splat(units_per_width));
@@ -236,7 +230,7 @@ impl<I: Isa> Lines<I> {
         ]
     }
 
-    /// The line of a sample, its column and row in the square given.
+    /// The line of a sample of the square.
     #[inline(always)]
     pub(super) fn line(&self, isa: I, [x, y]: [f32; 2]) -> Line<I> {
         let (x, y) = (isa.splat(x), isa.splat(y));
@@ -258,8 +252,7 @@ impl<I: Isa> Lines<I> {
         line.moment.fma(unit, isa.splat(MIDDLE)).indices::<CELLS>()
     }
 
-    /// Whether a line certainly meets the part of side 1 whose centre lies at an offset, and
-    /// whether it may.
+    /// Whether a line certainly meets the part of side 1 at an offset, and whether it may.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
@@ -270,7 +263,7 @@ impl<I: Isa> Lines<I> {
         ]
     }
 
-    /// Whether a line meets the part of side 1 whose centre lies at an offset.
+    /// Whether a line meets the part of side 1 at an offset.
     #[inline(always)]
     pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
         let [is_inside, may_be_inside] = self.are_inside(isa, line, offset);
@@ -292,7 +285,7 @@ impl<I: Isa> Line<I> {
         next.fms(self.last, last.mul(self.next))
     }
 
-    /// The same line about a block's centre, whose offset is given in sides of a block, of 4 parts.
+    /// The line about a block's centre, whose offset is in sides of a block, 4 parts.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
         let shift = self.shift(isa, block);
@@ -303,8 +296,8 @@ impl<I: Isa> Line<I> {
     }
 }
 
-/// Where a part's centre lies from its node's, in sides of a part: by function
-/// j, along the next axis and along the last one.
+/// Offset of a part's centre from its node's, in sides of a part: by function j, along the next axis and along the last
+/// one.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(32))]
 pub(super) struct Offset {
@@ -312,7 +305,6 @@ pub(super) struct Offset {
     pub(super) last: [f32; 4],
 }
 
-/// The offsets of 64 parts.
 pub(super) static OFFSETS: [Offset; 64] = {
     let mut table = [NO_OFFSET; 64];
     let mut part = 0;
@@ -328,7 +320,6 @@ pub(super) static OFFSETS: [Offset; 64] = {
     table
 };
 
-/// The offset of a node from itself.
 pub(super) const NO_OFFSET: Offset = Offset {
     next: [0.0; 4],
     last: [0.0; 4],

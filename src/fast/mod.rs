@@ -53,7 +53,7 @@ use lanes::Scalar;
 pub use switches::Switches;
 use window::{TILE_LOG2, Window};
 
-/// The instructions that the engine uses. They never change a bit of a picture.
+/// The instructions used. They do not change a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
@@ -62,36 +62,31 @@ pub enum Instructions {
     Auto,
     /// Plain Rust.
     Scalar,
-    /// AVX2; plain Rust where the processor has none.
+    /// AVX2, or plain Rust where the processor has none.
     Avx2,
 }
 
-/// How the engine works. None of it changes a bit of a picture.
+/// Settings, none of which changes a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct FastOptions {
-    /// Threads. 0 stands for the number of threads of the current pool.
+    /// 0: as many as the current pool.
     pub threads: usize,
-    /// Instructions.
     pub instructions: Instructions,
-    /// Skips and short cuts.
     pub switches: Switches,
 }
 
 /// The fast engine.
 pub struct Fast {
     options: FastOptions,
-    /// Draws the frames that this engine does not.
+    /// Draws the frames that this engine declines.
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
-    /// The constants of the last frame, good for the next of the same set-up.
+    /// Constants of the last frame, reused for the next one of the same set-up.
     prepared: Option<Prepared>,
-    /// Counts of the last frame.
     counters: Counters,
-    /// Why the last frame went to the fallback.
     declined: Option<Declined>,
 }
 
-/// A frame's constants.
 struct Prepared {
     setup: FrameSetup,
     constants: Result<Constants, Declined>,
@@ -107,9 +102,7 @@ impl std::fmt::Debug for Fast {
 }
 
 impl Fast {
-    /// An engine that hands to `fallback`, which must draw the machine's bits,
-    /// the frames that it does not draw itself.
-    #[must_use]
+    /// `fallback` draws the frames that this engine declines, and must draw the machine's bits.
     pub fn new(options: FastOptions, fallback: Box<dyn Engine + Send>) -> Self {
         Self {
             options,
@@ -121,15 +114,12 @@ impl Fast {
         }
     }
 
-    /// The reason why the fallback, which is many times slower, drew the last frame. `None` if it did
-    /// not.
-    #[must_use]
+    /// Why the fallback, many times slower, drew the last frame; `None`: it did not.
     pub fn declined(&self) -> Option<Declined> {
         self.declined
     }
 
-    /// Draws a frame; returns `false` if it has to be drawn by the fallback. Allocates nothing
-    /// when the set-up is that of the last frame.
+    /// Draws a frame. `false`: the fallback has to. Allocates nothing when the set-up is that of the last frame.
     fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
         let prepared = match &mut self.prepared {
             Some(prepared) if prepared.setup == *setup => prepared,
@@ -212,7 +202,7 @@ impl Engine for Fast {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         if setup.options.coverage.blends() {
-            // Nodes first: what is blended has no colour before the last voxel.
+            // Nodes first: a blended sample has no colour before its last voxel.
             self.draw(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
             return Ok(());
@@ -249,7 +239,6 @@ impl Engine for Fast {
     }
 }
 
-/// A set of instructions that the processor has.
 enum InstructionSet {
     #[cfg(target_arch = "x86_64")]
     Avx2(lanes::Avx2),
@@ -257,7 +246,6 @@ enum InstructionSet {
 }
 
 impl Instructions {
-    /// The best of these sets that the processor has.
     fn best(self) -> InstructionSet {
         #[cfg(target_arch = "x86_64")]
         if let Some(isa) = lanes::Avx2::detect().filter(|_| self != Self::Scalar) {
@@ -266,8 +254,7 @@ impl Instructions {
         InstructionSet::Scalar(Scalar)
     }
 
-    /// Whether the processor has these; without, the next lower set is used.
-    #[must_use]
+    /// Whether the processor has these. If not, the next lower set is used.
     pub fn are_available(self) -> bool {
         self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
     }

@@ -1,20 +1,18 @@
-//! Parts: the 64 grandchildren of a node.
+//! Parts: the 64 grandchildren of a node, each a quarter of its side.
 
 use super::lanes::Isa;
 use crate::graph::GraphView;
 
-/// The children's children of a node: 64 parts of a quarter of its side.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
     /// Mask of those that exist: bit `outer << 3 | inner`, octants in Morton order.
     pub(super) exist: u64,
-    /// Where the node's children begin.
+    /// The first child.
     first: u32,
-    /// The node itself.
     node: u32,
     /// Mask of the node's children.
     mask: u8,
-    /// Children that are solid themselves: all their parts are they.
+    /// Children that are solid: each fills all its parts.
     solid: u8,
     kind: Kind,
 }
@@ -25,17 +23,16 @@ enum Kind {
     /// Each part is a node; children lie one after the other.
     #[default]
     Plain,
-    /// Each part is a node, which the graph's links name; or a child is solid.
+    /// Each part is a node, named by the graph's links; or a child is solid.
     Linked,
     /// The node is solid: all parts are it.
     Solid,
 }
 
-/// A part of a node: the node that fills it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Part {
     pub(super) node: u32,
-    /// Levels below the node whose part it is: 2, or less where a part is of something larger.
+    /// Levels below the node: 2, or less for a part of something larger.
     pub(super) levels: u32,
 }
 
@@ -48,7 +45,6 @@ fn rank(mask: u32, place: u32) -> u32 {
 }
 
 impl Parts {
-    /// The parts of a solid node.
     pub(super) fn of_solid(node: u32) -> Self {
         Self {
             exist: u64::MAX,
@@ -58,8 +54,8 @@ impl Parts {
         }
     }
 
-    /// The parts of a node with children. `is_last`: its children are voxels of the finest
-    /// level. `detail`: its children that level of detail takes for solids.
+    /// The parts of a node with children. `is_last`: the children are finest voxels. `detail`: the children that level
+    /// of detail makes solids.
     #[inline(always)]
     pub(super) fn of<I: Isa>(
         isa: I,
@@ -73,7 +69,7 @@ impl Parts {
         parts
     }
 
-    /// [`Parts::of`], in place: to move parts there takes longer than to make them.
+    /// [`Parts::of`] in place, because moving parts is slower than making them.
     #[inline(always)]
     pub(super) fn read<I: Isa>(
         &mut self,
@@ -95,7 +91,7 @@ impl Parts {
                 .and_then(|m| m.first_chunk())
         {
             let [exist, bytes] = isa.expand(u64::from_le_bytes(*eight), mask);
-            // A byte of zeros among those of children: a child without children.
+            // A byte of zeros is a child without children.
             let filled = exist | !bytes;
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
                 self.exist = exist;
@@ -144,13 +140,13 @@ impl Parts {
         self.solid == 0 && self.kind != Kind::Solid
     }
 
-    /// Asks the memory for what [`Parts::part`] reads.
+    /// Prefetches what [`Parts::part`] reads.
     #[inline(always)]
     pub(super) fn prefetch<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         isa.prefetch(graph.first, self.first as usize);
     }
 
-    /// Asks the memory for what parts of these are made of, where nodes lie level by level.
+    /// Prefetches the parts' children, where nodes lie level by level.
     #[inline(always)]
     pub(super) fn prefetch_below<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let first = graph.first.get(self.first as usize).copied().unwrap_or(0) as usize;
@@ -161,8 +157,7 @@ impl Parts {
         }
     }
 
-    /// Asks the memory for the masks below the parts, once what [`Parts::prefetch_below`] asked for
-    /// has come.
+    /// Prefetches the masks below the parts, once [`Parts::prefetch_below`] has taken effect.
     #[inline(always)]
     pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let part = graph.first.get(self.first as usize).copied().unwrap_or(0);
@@ -178,7 +173,6 @@ impl Parts {
         self.kind == Kind::Solid
     }
 
-    /// A part that exists.
     #[inline(always)]
     pub(super) fn part(&self, graph: &GraphView<'_>, part: u32) -> Part {
         if self.kind != Kind::Plain {

@@ -1,18 +1,15 @@
-//! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of
-//! samples at a time.
+//! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of samples at a time.
 
 use super::band::Band;
 use super::exact::{Cover, Outline};
 use super::lanes::Isa;
 use super::window::{BLOCK_LOG2, TILE_LOG2, Window, bits};
 
-/// The part of a window in a cell of a grid of `2^log2` samples.
 fn cell_of(x: i32, y: i32, log2: u32, window: &Window) -> Window {
     let (left, top, side) = (x << log2, y << log2, 1 << log2);
     Window::of([left, top, left + side - 1, top + side - 1]).and(window)
 }
 
-/// Draws all open samples of a window that the silhouette covers.
 #[inline(always)]
 pub(super) fn draw<I: Isa>(
     band: &mut Band<'_, I>,

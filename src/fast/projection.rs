@@ -1,5 +1,4 @@
-//! A node projected to the picture: its centre, the slopes of its moments, and the window about its
-//! parts.
+//! Projection of a node: its centre, the slopes of its moments, and the window around its parts.
 
 use super::constants::{Constants, Level};
 use super::lanes::{F32x4, Floats, Isa, Lanes, U64x4};
@@ -9,24 +8,22 @@ use super::window::{BEYOND, WINDOW_MARGIN, Window};
 /// Rounding of [`Projection::window`], relative to its terms: `spec/fast.md`, section 5.
 const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 
-/// Half a node's depth over its centre's, from which on [`Projection::window`] leaves windows as
-/// they are: rounding counts the more the nearer that is to 1.
+/// Half a node's depth over its centre's, from which [`Projection::window`] leaves windows unchanged: towards 1
+/// rounding grows.
 const NEAR: f32 = 0.25;
 
-/// A node's centre in the picture, and the slopes of its moments (`spec/fast.md`, section 2).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection<I: Isa> {
-    /// Column and row of its centre.
+    /// Column and row.
     pub(super) centre: [f64; 2],
-    /// 1 / its depth.
     inverse: f64,
-    /// The slopes of the moments by column and by row, by axis.
+    /// Slopes of the moments by column and by row, by axis.
     pub(super) step: [I::F32x4; 2],
 }
 
 impl<I: Isa> Projection<I> {
-    /// The projection of a node of a level, the clip vector of its centre given. A node is `across`
-    /// parts wide; the unit of its slopes is the side of a part.
+    /// Projects a node that is `across` parts wide, with its centre's clip vector. The unit of slopes is the side of a
+    /// part.
     #[inline(always)]
     pub(super) fn new(
         isa: I,
@@ -46,12 +43,11 @@ impl<I: Isa> Projection<I> {
         }
     }
 
-    /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the
-    /// node as given to [`Projection::new`]; it lies before the eye. All of the window where the
-    /// eye is near ([`NEAR`]).
+    /// The part of a window that the box around some of a node's 64 parts covers, or a little more. The node, that of
+    /// [`Projection::new`], lies before the eye. Where it is near ([`NEAR`]), the whole window.
     ///
-    /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant,
-    /// over its depth, which is at most half a node's from the centre's.
+    /// A point `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth, which
+    /// differs from the centre's by at most half a node's.
     #[inline(always)]
     pub(super) fn window(
         &self,
@@ -72,7 +68,7 @@ impl<I: Isa> Projection<I> {
         let scale = side * side / (4.0 * across) * constants.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
         let spread = isa.splat(share).div(isa.splat(1.0 - share));
-        // Left and top with their sign turned, right and bottom: outward is upward.
+        // Left and top with turned sign: outward is upward.
         let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
         let [x, y] = self.centre.map(|c| c as f32);
         let centre = isa.four(&[x, y, x, y]).flip(outward);
@@ -89,14 +85,14 @@ impl<I: Isa> Projection<I> {
         let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
         let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
         let bounds = isa.four(&bounds).flip(outward);
-        // NaN leaves the window as it is.
+        // NaN leaves the window unchanged.
         let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
         Window::of(end.floor().flip(outward).whole())
     }
 }
 
-/// The slopes, by column and by row, of moments about the point at `centre` (column and row).
-/// `edges`: by coordinate, times `unit`.
+/// Slopes by column and by row of moments about a point at `centre` (column and row). `edges`: by coordinate, times
+/// `unit`.
 #[inline(always)]
 fn steps<I: Isa>(isa: I, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [I::F32x4; 2] {
     let (column, row) = (
@@ -114,8 +110,7 @@ fn steps<I: Isa>(isa: I, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> 
     ]
 }
 
-/// The middle and half the extent, along each axis, of the box around parts of a node: from its
-/// centre, in sides of a part.
+/// Middle and half the extent by axis of the box around parts of a node: from its centre, in sides of a part.
 #[inline(always)]
 fn extent<I: Isa>(isa: I, parts: u64) -> [I::F32x4; 2] {
     let mut extent = [isa.splat(0.0); 2];

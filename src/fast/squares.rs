@@ -5,7 +5,6 @@ use super::directions::{Directions, Samples, by_octant};
 use super::lanes::Isa;
 use super::window::Window;
 
-/// Column and row of a square's samples.
 pub(super) static SAMPLES: [[f32; 2]; 64] = {
     let mut table = [[0.0; 2]; 64];
     let mut sample = 0;
@@ -16,8 +15,8 @@ pub(super) static SAMPLES: [[f32; 2]; 64] = {
     table
 };
 
-/// Divides a window into squares with open samples, and those into samples whose lines begin in one
-/// octant, which nearly always is all of them. `draw` draws such samples and returns those drawn.
+/// Divides a window into squares with open samples, and those by the octant in which their lines begin, usually one.
+/// `draw` returns the samples drawn.
 #[inline(always)]
 pub(super) fn each_square<I: Isa>(
     band: &mut Band<'_, I>,

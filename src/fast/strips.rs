@@ -1,31 +1,28 @@
 //! Strips: three table look-ups give the parts of a node that a line may meet.
 //!
-//! A part is a grandchild of a node, a cube. Seen along a line it is a hexagon, the intersection of
-//! three strips, one along each kind of edge. Let `v` and `m` be the line's Plücker coordinates about
-//! the node's centre (`lines.rs`). The line is in the strips of the part at `t` (in sides of a part) if
-//! for each axis j, with `n`, `l` the next two,
+//! Seen along a line, a part (a cube) is a hexagon: the intersection of three strips, one along each kind of edge. With
+//! `v` and `m` the line's Plücker coordinates about the node's centre (`lines.rs`), the line is in the strips of the
+//! part at `t` (in sides of a part) if for each axis j, with `n`, `l` the next two,
 //!
 //! ```text
 //! |m_j - (t_n v_l - t_l v_n)| < (v_n + v_l) / 2
 //! ```
 //!
-//! Divided by `v_n + v_l`, a strip is 1 wide, and the 16 strips of a function lie at
-//! `t_n s - t_l (1 - s)`. They depend only on the share `s = v_l / (v_n + v_l)`. So there is a table for
-//! each share, made once for all frames, which says for each cell of the value which parts may be
-//! met. The answers of the three functions are combined by `and`. Strips in tables are wider by a
-//! margin, so that no part is left out (`spec/fast.md`, section 3).
+//! Divided by `v_n + v_l`, a strip is 1 wide, and the 16 strips of a function lie at `t_n s - t_l (1 - s)`: they depend
+//! only on the share `s = v_l / (v_n + v_l)`. A table per share, made once for all frames, gives for each cell of the
+//! value the parts that may be met. The answers of the three functions are combined by `and`. Strips in tables are
+//! wider by a margin, so that no part is left out (`spec/fast.md`, section 3).
 //!
-//! Parts are numbered `outer << 3 | inner`, each an octant in Morton order, with bits turned where the
-//! line runs downwards. So a line meets lower numbers first.
+//! Parts are numbered `outer << 3 | inner`, octants in Morton order, with bits turned where the line runs downwards. So
+//! a line meets lower numbers first.
 
 use std::sync::LazyLock;
 
 use super::lanes::{Floats, Isa, Lanes, U64x4};
 use super::orders::SLABS;
 
-/// Shares that there are tables for: from 0 to 1, both included.
+/// Shares with tables: from 0 to 1, both included.
 pub(super) const SHARES: usize = 128;
-/// Steps of the share between them.
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
 /// Cells of a strip's width.
 pub(super) const CELLS_PER_WIDTH: f32 = 30.0;
@@ -34,26 +31,23 @@ pub(super) const CELLS: usize = 128;
 /// The cell of a line through the node's centre.
 pub(super) const MIDDLE: f32 = 64.0;
 
-/// Classes of tables.
 const CLASSES: usize = 3;
-/// Margins that there are tables for, in widths.
+/// Margins with tables, in widths.
 const MARGINS: [f32; CLASSES] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0];
-/// Of a margin, what the rounding of the share and of the cell's number needs:
-/// at most `3 / 2 SHARE_STEPS`, and 1/512.
+/// The part of a margin for the rounding of the share and of the cell's number: at most `3 / 2 SHARE_STEPS`, and 1/512.
 const ROUNDING: f32 = 1.5 / SHARE_STEPS + 1.0 / 512.0;
-/// By how many widths values may be wrong, for each margin.
+/// Allowed error of values, in widths, by margin.
 pub(super) const MOST_ERROR: [f32; CLASSES] = [
     MARGINS[0] - ROUNDING,
     MARGINS[1] - ROUNDING,
     MARGINS[2] - ROUNDING,
 ];
 
-/// Tables of one margin.
 const PER_MARGIN: usize = 3 * SHARES;
 /// By cell, parts.
 pub(super) type Row = [u64; CELLS];
 
-/// The tables: by margin, axis and share, and the blind one.
+/// By margin, axis and share, and the blind table.
 #[derive(Debug)]
 pub(super) struct Strips {
     /// Parts whose strip the cell may lie in.
@@ -64,18 +58,16 @@ pub(super) struct Strips {
     begins_below: Vec<Row>,
 }
 
-/// The tables, made when they are first wanted.
+/// Made on first use.
 pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 
-/// By sample of a square: the parts that its line may meet.
 #[derive(Debug)]
 #[repr(C, align(32))]
 pub(super) struct Candidates(pub(super) [u64; 64]);
 
 impl Candidates {
-    /// Looks up the `wanted` parts that the tables name, by open sample of a square. Returns the open
-    /// samples that have any, eight bits per row. `cells`: the three functions in cells, at the first
-    /// sample, and their slopes by column and by row.
+    /// Looks up the parts among `wanted` by open sample of a square. Returns the open samples that have any, eight bits
+    /// per row. `cells`: the three functions in cells, at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn look_up<I: Isa>(
         &mut self,
@@ -155,8 +147,8 @@ impl Strips {
         strips
     }
 
-    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then
-    /// adds up, upwards the parts that have begun and downwards those that have not ended.
+    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then adds up, upwards
+    /// the parts that have begun and downwards those that have not ended.
     fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
@@ -177,14 +169,13 @@ impl Strips {
         }
     }
 
-    /// The number of the table of an axis for a share, in steps, and for values that may be wrong
-    /// as [`MOST_ERROR`] says of a class.
+    /// Number of the table of an axis for a share, in steps, and a class of [`MOST_ERROR`].
     #[inline(always)]
     pub(super) fn table(axis: usize, share: usize, class: usize) -> usize {
         class * PER_MARGIN + axis * SHARES + share
     }
 
-    /// The number of the blind table, which excludes no part.
+    /// Number of the blind table, which excludes no part.
     pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
     /// By cell, the parts that may be met, of three tables.

@@ -9,9 +9,8 @@
 //!     else:                                                  put it on the stack
 //! ```
 //!
-//! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too
-//! narrow. The loop and each way to draw are functions compiled for the instruction set
-//! ([`Isa::vectorize`]).
+//! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too narrow. The loop and each
+//! way to draw are functions compiled for the instruction set ([`Isa::vectorize`]).
 
 use super::band::{Band, Brick, Record, voxel_at};
 use super::child_windows::ChildWindows;
@@ -61,8 +60,7 @@ pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
     }
 }
 
-/// Draws a node of which something may be seen in the window. Returns `false` where its children
-/// have to be visited instead.
+/// Draws a visible node. `false`: its children have to be visited instead.
 #[inline(always)]
 fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> bool {
     let (constants, isa) = (band.constants, band.isa);
@@ -109,7 +107,7 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     let is_last = record.level + 1 == constants.depth;
     let detail = detail(constants, record);
     let parts = &Parts::of(isa, band.graph, record.node, is_last, detail);
-    // Voxels are blended once, so none may consist of several parts.
+    // Voxels are blended once: none may consist of several parts.
     if !parts.are_even() && constants.opacity_eye.is_some() {
         return false;
     }
@@ -127,8 +125,7 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     true
 }
 
-/// Whether all solids below a node, by the graph's depth or by level of detail, are four levels
-/// below it.
+/// Whether all solids below a node are four levels below it, by the graph's depth or by level of detail.
 #[inline(always)]
 fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
     let ends = record.level as usize + 4;
@@ -141,8 +138,7 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
         && (ends == constants.depth as usize || least_depth >= constants.levels[ends].lod_depth)
 }
 
-/// The children of a node that level of detail draws as solids although they may have children: one
-/// bit each.
+/// Children that level of detail draws as solids although they may have children, as a mask.
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
     let (own, below) = (
@@ -159,15 +155,13 @@ fn detail(constants: &Constants, record: &Record) -> u8 {
     (0..8).map(is_solid).sum()
 }
 
-/// A node whose children are being visited, nearest first.
 #[derive(Debug, Clone, Copy)]
 struct Children<'b> {
     record: Record,
     level: &'b Level,
     windows: ChildWindows,
-    /// The octant that is nearest to the eye.
     nearest: u32,
-    /// Children still to be visited: bit `c` is child `c ^ nearest`.
+    /// Remaining children: bit `c` is child `c ^ nearest`.
     left: u32,
 }
 
@@ -203,7 +197,7 @@ impl<'b> Children<'b> {
             wanted &= windows.held | windows.near;
             band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
         } else {
-            // Only for measurements: children without a sample are tested against the whole band.
+            // For measurements: children without a sample are tested against the whole band.
             windows.near |= !windows.held;
         }
         self.record = *record;
@@ -212,7 +206,7 @@ impl<'b> Children<'b> {
         self.left = u32::from(turned(wanted, nearest));
     }
 
-    /// Takes the next child: the child and its window, if something of it may be seen.
+    /// Takes the next child and its window, if something of it may be seen.
     #[inline(always)]
     fn next<I: Isa>(&mut self, band: &mut Band<'_, I>) -> Option<(Record, Window)> {
         let (record, level) = (&self.record, self.level);
@@ -250,8 +244,7 @@ impl<'b> Children<'b> {
     }
 }
 
-/// Tests the windows of children that do not exist, as for those that do: measures what skipping
-/// them saves.
+/// Tests the windows of absent children, to measure what skipping them saves.
 #[inline(never)]
 fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: u8) {
     let held = absent & windows.held & !windows.near;
@@ -262,9 +255,8 @@ fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: 
     }
 }
 
-/// Whether a box that is partly behind the eye lies outside the frustum: all eight vertices are beyond
-/// one edge of the image root. The numbers are exact, and the test is linear: what holds for
-/// the vertices holds for every point.
+/// Whether a box partly behind the eye lies outside the frustum: all eight vertices are beyond one edge of the image
+/// root. Exact, and linear: what holds for the vertices holds for every point.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {
@@ -273,7 +265,6 @@ fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     })
 }
 
-/// Draws a brick, or a solid, voxel by voxel.
 #[inline(always)]
 fn draw_voxels<I: Isa>(band: &mut Band<'_, I>, record: &Record, parts: &Parts, window: &Window) {
     let brick = Brick { record, parts };
@@ -285,7 +276,6 @@ fn draw_voxels<I: Isa>(band: &mut Band<'_, I>, record: &Record, parts: &Parts, w
     );
 }
 
-/// Draws a solid by its planes.
 #[inline(always)]
 fn draw_planes<I: Isa>(
     band: &mut Band<'_, I>,

@@ -1,9 +1,8 @@
-//! Voxels of some samples, one after the other, each against a square of samples at once.
+//! Voxels one after the other, each against a square of samples at once.
 //!
-//! For each square, the tables (`strips.rs`) say which parts its lines may meet, between the least and
-//! the greatest values of the three functions. Each of these parts, nearest first, is tested against
-//! 64 samples in numbers of 16 bits. Samples well inside are drawn. Those near the outline are decided
-//! one by one.
+//! For each square, the tables (`strips.rs`) give the parts that its lines may meet, between the least and greatest
+//! values of the three functions. Each part, nearest first, is tested against 64 samples in 16-bit numbers. Samples
+//! well inside are drawn; those near the outline are decided one by one.
 
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
@@ -16,15 +15,14 @@ use super::squares::{SAMPLES, each_square};
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::window::{Window, bits};
 
-/// Units of a width in numbers of 16 bits.
+/// Units per width in 16-bit numbers.
 const UNIT: f32 = 2048.0;
-/// Rounding of values in these numbers, in units: of the first sample's, and of
-/// seven steps of a column and of a row, half a unit each, and a unit.
+/// Rounding in units: of the first sample's value, and of seven steps of a column and of a row, half a unit each, and a
+/// unit.
 const ROUNDING: f32 = 8.5;
-/// Values up to this, in units, fit these numbers.
+/// Largest value, in units, in these numbers.
 const LARGEST: f32 = 30_000.0;
 
-/// Draws a brick voxel by voxel, or a solid.
 #[inline(always)]
 pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
     let is_single = brick.parts.is_single();
@@ -40,7 +38,7 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     );
 }
 
-/// Draws the parts that samples show; returns the samples drawn.
+/// Returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa>(
     band: &mut Band<'_, I>,
@@ -60,8 +58,7 @@ fn draw_samples<I: Isa>(
     if wanted == 0 {
         return 0;
     }
-    // Only a strip's width changes within a square, from which the tables' error is four times as
-    // large.
+    // Only a strip's width changes within a square, from which the tables' error is four times as large.
     let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
     let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
     let sure = if lines.has_blind {
@@ -135,8 +132,8 @@ fn draw_samples<I: Isa>(
     drawn
 }
 
-/// How far the three functions are from 0 at most, by sample of a square, two rows to a vector. Of no
-/// use where values leave 16 bits.
+/// Distances of the three functions from 0, the largest by sample of a square, two rows per vector. No meaning where
+/// values exceed 16 bits.
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
@@ -166,7 +163,7 @@ impl<I: Isa> Distances<I> {
         }
     }
 
-    /// The samples at which distances are below a limit, eight bits per row.
+    /// Samples at which distances are below a limit, eight bits per row.
     #[inline(always)]
     fn below(&self, isa: I, limit: i16) -> u64 {
         let limit = I::I16x16::splat(isa, limit);
@@ -175,7 +172,6 @@ impl<I: Isa> Distances<I> {
     }
 }
 
-/// The parts that a square's lines may meet.
 #[inline(always)]
 fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     let [first, step_x, step_y] = lines.in_widths();

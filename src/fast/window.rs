@@ -1,15 +1,15 @@
-//! Windows: rectangles of samples, and which bits of a tile or block lie in one.
+//! Windows: rectangles of samples, and their bits in tiles and blocks.
 
-/// Samples along a tile's side, as a power of two.
+/// Log2 of the samples per side of a tile.
 pub(super) const TILE_LOG2: u32 = 3;
-/// Samples along a block's side, as a power of two.
+/// Log2 of the samples per side of a block.
 pub(super) const BLOCK_LOG2: u32 = 6;
 /// A tile or block with everything open.
 pub(super) const ALL: u64 = u64::MAX;
 /// The leftmost samples of a tile's eight rows.
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
-/// Margin of windows beyond their rounding, in samples.
+/// Margin beyond rounding, samples.
 pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
 /// Columns and rows beyond all pictures.
 pub(super) const BEYOND: f64 = 40_000.0;
@@ -35,7 +35,6 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// A window of its left, top, right and bottom.
     #[inline(always)]
     pub(super) fn of([left, top, right, bottom]: [i32; 4]) -> Self {
         Self {
@@ -46,13 +45,11 @@ impl Window {
         }
     }
 
-    /// Whether it has no sample.
     #[inline(always)]
     pub(super) fn is_empty(&self) -> bool {
         self.left > self.right || self.top > self.bottom
     }
 
-    /// The intersection with another.
     #[inline(always)]
     pub(super) fn and(&self, other: &Self) -> Self {
         Self {
@@ -63,15 +60,14 @@ impl Window {
         }
     }
 
-    /// The bits of a tile or block that lie in the window. `x`, `y`: the
-    /// window's unit that the word's first bit stands for.
+    /// The bits of a tile or block in the window. `x`, `y`: the window's unit at the word's first bit.
     #[inline(always)]
     pub(super) fn bits(&self, x: i32, y: i32) -> u64 {
         let left = (self.left - x).max(0) as u32;
         let right = (self.right - x).min(7) as u32;
         let top = (self.top - y).max(0) as u32;
         let bottom = (self.bottom - y).min(7) as u32;
-        // Each is in 0..8, since the word and the window overlap.
+        // Each is in 0..8, since word and window overlap.
         let row = ((0xffu64 << left) & 0xff) & (0xff >> (7 - right));
         let rows = (ALL << (8 * top)) & (ALL >> (8 * (7 - bottom)));
         row.wrapping_mul(LEFT_COLUMN) & rows

@@ -1,13 +1,13 @@
-//! The quickest picture: each sample's own colour, unlit, ready for display in a window.
+//! A quick picture: each sample's own unlit colour, for display.
 
 use std::sync::LazyLock;
 
 use super::{Blend, Frame, NO_NODE};
 use crate::srgb::from_linear;
 
-/// Samples tested together: where none shows anything, no colour is looked up.
+/// Samples tested together for being empty.
 const TOGETHER: usize = 16;
-/// Samples that are worth a thread's while.
+/// Samples per task of a thread.
 const SHARE: usize = 1 << 15;
 
 /// The colours of a frame's samples.
@@ -17,7 +17,7 @@ pub struct Colors {
     pub width: u32,
     /// Samples down.
     pub height: u32,
-    /// [`color_word`] of what each sample shows, row by row; 0 where nothing is seen.
+    /// [`color_word`] of each sample, row by row; 0 without a voxel.
     pub words: Vec<u32>,
     /// For engines that draw nodes first. Made on demand.
     nodes: Option<Frame>,
@@ -25,14 +25,12 @@ pub struct Colors {
 
 /// A colour as `0xffRRGGBB`.
 #[inline(always)]
-#[must_use]
 pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0xff, r, g, b])
 }
 
 impl Colors {
-    /// A picture that shows nothing.
-    #[must_use]
+    /// An empty picture.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -42,15 +40,14 @@ impl Colors {
         }
     }
 
-    /// A frame of the same size to draw nodes into, for [`Colors::take_nodes`].
+    /// A frame of the same size for nodes, for [`Colors::take_nodes`].
     pub fn nodes(&mut self) -> &mut Frame {
         let (width, height) = (self.width, self.height);
         self.nodes
             .get_or_insert_with(|| Frame::nodes_only(width, height))
     }
 
-    /// Takes the colours of the nodes that [`Colors::nodes`] shows. `of_node`:
-    /// colours by graph node.
+    /// Looks up the colours of the nodes that [`Colors::nodes`] shows. `of_node`: colours by graph node.
     pub fn take_nodes(&mut self, of_node: &[[u8; 3]]) {
         if let Some(frame) = self.nodes.take() {
             self.take(of_node, &frame);
@@ -58,8 +55,7 @@ impl Colors {
         }
     }
 
-    /// Takes the colours of the nodes that a frame of this size shows, on the
-    /// threads of the current pool.
+    /// Looks up the colours of a frame of this size, on the threads of the current pool.
     pub fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
         if let Some(blend) = &frame.blend {
             self.take_blended(blend);
@@ -68,14 +64,12 @@ impl Colors {
         let threads = rayon::current_num_threads();
         write(of_node, &frame.node, &mut self.words, threads);
     }
-}
 
-impl Colors {
-    /// Takes what was blended, over black: linear light by a table to sRGB.
+    /// Blended samples over black: linear light by a table to sRGB.
     fn take_blended(&mut self, blend: &[Blend]) {
         let encoded = &*ENCODED;
         for (word, sample) in self.words.iter_mut().zip(blend) {
-            // 24 bits a channel, of which the table has as many as it takes.
+            // 24 bits per channel, of which the table uses the highest.
             let byte = |c: u32| encoded[(c >> (24 - ENCODED_BITS)) as usize & (ENCODED_SIZE - 1)];
             *word = match sample.left {
                 256 => 0,
@@ -85,7 +79,7 @@ impl Colors {
     }
 }
 
-/// Bits of linear light that a preview's colours are made from.
+/// Bits of linear light for a preview's colours.
 const ENCODED_BITS: u32 = 12;
 const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
 
@@ -119,7 +113,7 @@ fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) 
             continue;
         }
         for (&node, word) in nodes.iter().zip(words) {
-            // The number of "no node" is beyond every graph's nodes.
+            // `NO_NODE` is beyond every graph's nodes.
             *word = of_node
                 .get(node as usize)
                 .map_or(0, |&color| color_word(color));

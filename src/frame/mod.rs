@@ -1,4 +1,4 @@
-//! What an engine draws into: one entry for each sample.
+//! The frame: one entry per sample.
 
 mod colors;
 pub mod quadtree;
@@ -9,14 +9,11 @@ pub use quadtree::{FillVectors, QuadNode};
 /// Most samples of a picture: about three gigabytes with all buffers.
 const MAX_SAMPLES: u64 = 1 << 27;
 
-/// A picture has more samples than memory should be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
 pub struct TooManySamples(u64);
 
-/// The samples of a picture of so many pixels. `aa_log2`: samples per pixel and axis, as a power of two.
-///
-/// # Errors
+/// The number of samples of a picture. `aa_log2`: logarithm of the samples per pixel and axis. Errors:
 /// [`TooManySamples`] where they are more than 2^27.
 pub fn count_samples(width: u32, height: u32, aa_log2: u32) -> Result<u64, TooManySamples> {
     let pixels = u64::from(width) * u64::from(height);
@@ -33,34 +30,30 @@ pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 
 /// The samples of one frame, row by row from the top left.
 ///
-/// An engine stores which voxel is seen and nothing else; colour, normal and
-/// depth follow from it and are made afterwards, once for each sample.
+/// An engine only stores the visible voxels; colour, normal and depth are derived from them once per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Samples across.
     pub width: u32,
     /// Samples down.
     pub height: u32,
-    /// Graph node seen, or [`NO_NODE`].
+    /// Visible graph node, or [`NO_NODE`].
     pub node: Vec<u32>,
-    /// Object coordinates of the seen voxel's lowest corner, in finest
-    /// voxels, and its octree level (0 = root); or [`NO_VOXEL`]. Empty where
-    /// voxels are not stored ([`Frame::nodes_only`]).
+    /// Object coordinates of the visible voxel's lowest corner, in finest voxels, and its octree level (0 = root); or
+    /// [`NO_VOXEL`]. Empty if voxels are not stored ([`Frame::nodes_only`]).
     pub voxel: Vec<[i32; 4]>,
-    /// Share of the records worked on for this sample, if requested:
-    /// a record counts 1, spread evenly over its quadtree node's samples.
+    /// Share of the processed records, if requested: a record counts 1, spread evenly over its quadtree node's samples.
     pub records: Option<Vec<f32>>,
-    /// What the samples took of the voxels before them, where those were
-    /// blended; `node` and `voxel` are then the first that a sample took.
+    /// Blended voxels, under the rule that blends; `node` and `voxel` are then the first of a sample.
     pub blend: Option<Vec<Blend>>,
 }
 
-/// What a sample has taken of the voxels before it.
+/// Blended voxels of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Blend {
-    /// How much it still lets through: 256 all, 0 nothing.
+    /// Transmittance: 256 all, 0 nothing.
     pub left: u16,
-    /// Linear light, 0 to 65535 a channel, times the share that it was given of 256.
+    /// Linear light, 0 to 65535 per channel, times its share of 256.
     pub light: [u32; 3],
 }
 
@@ -74,8 +67,7 @@ impl Default for Blend {
 }
 
 impl Frame {
-    /// An empty frame; `with_records`: with the records of each sample.
-    #[must_use]
+    /// An empty frame; `with_records`: with the records per sample.
     pub fn new(width: u32, height: u32, with_records: bool) -> Self {
         let samples = width as usize * height as usize;
         Self {
@@ -88,9 +80,7 @@ impl Frame {
         }
     }
 
-    /// An empty frame whose `voxel` stays empty, for uses that need nodes alone:
-    /// a fifth of the memory to write. Engines then store no voxels.
-    #[must_use]
+    /// An empty frame whose `voxel` stays empty, a fifth of the memory. Engines then store no voxels.
     pub fn nodes_only(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -102,7 +92,7 @@ impl Frame {
         }
     }
 
-    /// Forgets what was drawn, keeps the memory.
+    /// Clears the samples, and keeps the memory.
     pub fn clear(&mut self) {
         self.node.fill(NO_NODE);
         self.voxel.fill(NO_VOXEL);
@@ -111,7 +101,7 @@ impl Frame {
         }
     }
 
-    /// Has room for what is blended, and nothing in it, or has none.
+    /// Adds empty samples for blending, or removes them.
     pub fn set_blending(&mut self, blends: bool) {
         let samples = self.node.len();
         match &mut self.blend {
@@ -121,7 +111,6 @@ impl Frame {
     }
 
     /// Samples that show a voxel.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node != NO_NODE).count()
     }

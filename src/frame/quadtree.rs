@@ -1,9 +1,8 @@
-//! The image quadtree: which parts of the picture are full (image-order paper, 3.3).
+//! The image quadtree and its fill vectors (image-order paper, 3.3).
 //!
-//! Each node has a 4-bit fill vector, one bit for each quadrant
-//! (`y << 1 | x`). A drawn sample sets all its bits; a full node sets its bit
-//! in its parent. Quadrants outside the picture are full from the start, so
-//! that clipping to the picture is the same test as occlusion.
+//! Each node has a 4-bit fill vector, one bit per quadrant (`y << 1 | x`). A drawn sample sets all its bits; a full node
+//! sets its bit in its parent. Quadrants outside the picture are full from the start, so clipping is the same test as
+//! occlusion.
 
 /// A node of the image quadtree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -17,7 +16,7 @@ pub struct QuadNode {
 }
 
 impl QuadNode {
-    /// The root: the whole picture and what is right of and below it.
+    /// The root: the whole picture and the area right of and below it.
     pub const ROOT: Self = Self {
         level: 0,
         x: 0,
@@ -35,7 +34,7 @@ impl QuadNode {
         }
     }
 
-    /// The node of a level above, or its own, that holds this node.
+    /// The node at `level`, at or above its own, that contains this node.
     #[inline(always)]
     #[must_use]
     pub const fn ancestor(self, level: u32) -> Self {
@@ -49,14 +48,11 @@ impl QuadNode {
 
     /// Address of the node's fill vector: level by level, row by row.
     #[inline]
-    #[must_use]
     pub const fn address(self) -> usize {
         level_start(self.level) + ((self.y as usize) << self.level) + self.x as usize
     }
 
-    /// Which quadrant of its parent this node is.
     #[inline]
-    #[must_use]
     pub const fn in_parent(self) -> u8 {
         ((self.y & 1) << 1 | self.x & 1) as u8
     }
@@ -73,7 +69,7 @@ pub struct FillVectors {
     empty_picture: Vec<u8>,
 }
 
-/// Levels that a picture can have, and one more, for the number of its nodes.
+/// One more than the levels of a picture, for the number of its nodes.
 const LEVELS: usize = 32;
 
 /// Place of each level's first node among all nodes: `(4^level - 1) / 3`.
@@ -87,21 +83,18 @@ const LEVEL_STARTS: [usize; LEVELS] = {
     starts
 };
 
-/// Place of a level's first node among all nodes.
 #[inline(always)]
 const fn level_start(level: u32) -> usize {
     LEVEL_STARTS[level as usize % LEVELS]
 }
 
 /// Nodes of the image quadtree from its root to the samples, at level `levels`.
-#[must_use]
 pub const fn nodes_to(levels: u32) -> usize {
     level_start(levels + 1)
 }
 
 impl FillVectors {
     /// An empty picture of `width` x `height` samples in a root of `2^levels` a side.
-    #[must_use]
     pub fn new(levels: u32, width: u32, height: u32) -> Self {
         let mut fill = Self {
             levels,
@@ -130,20 +123,16 @@ impl FillVectors {
         fill
     }
 
-    /// Forgets what was drawn.
+    /// Empties the picture.
     pub fn clear(&mut self) {
         self.vectors.copy_from_slice(&self.empty_picture);
     }
 
-    /// Level of the samples.
-    #[must_use]
     pub fn levels(&self) -> u32 {
         self.levels
     }
 
-    /// The fill vector of a node.
     #[inline]
-    #[must_use]
     pub fn vector(&self, node: QuadNode) -> u8 {
         self.vectors[node.address()]
     }
@@ -156,8 +145,7 @@ impl FillVectors {
         self.vectors[at]
     }
 
-    /// Puts a vector in place of a node's, and returns that.
-    #[must_use]
+    /// Replaces a node's vector, and returns the previous one.
     pub fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         std::mem::replace(&mut self.vectors[node.address()], vector)
     }

@@ -1,9 +1,7 @@
-//! Averages of colour and normal, exact and in any order the same.
+//! Averages of colour and normal, exact and independent of the order.
 //!
-//! Colours are averaged in linear light, because that is what adds up in an
-//! eye or a lens: a far wall of black and white voxels is sRGB 188, not 128.
-//! The sums are integers (linear light in 24 bits, normals in 2^-20), so the
-//! order of adding is of no consequence.
+//! Colours are averaged in linear light: a far wall of black and white voxels is sRGB 188, not 128. The sums are
+//! integers (linear light in 24 bits, normals in 2^-20).
 
 use std::sync::LazyLock;
 
@@ -25,10 +23,10 @@ static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     })
 });
 
-/// Bits of linear light by which [`encode`] begins to look.
+/// Highest bits of linear light, by which [`encode`] starts its search.
 const BEGINNING_BITS: u32 = 12;
 
-/// For each beginning of 24 bits of linear light how many sRGB values are darker than all of it.
+/// For each value of these bits: the number of sRGB values that are darker than all such light.
 static DARKER: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let darker = |beginning: u32| {
         let least = beginning << (24 - BEGINNING_BITS);
@@ -56,17 +54,11 @@ fn encode(linear: u64) -> u8 {
     }
     let to_above = u64::from(table[above]) - linear;
     let to_below = linear - u64::from(table[above - 1]);
-    // `above` is 1..=255 here.
-    (if to_above <= to_below {
-        above
-    } else {
-        above - 1
-    }) as u8
+    // 1 to 255.
+    (above - usize::from(to_above > to_below)) as u8
 }
 
-/// Colours and normals of some voxels, added up.
-///
-/// Room for 2^32 voxels: 24 + 32 bits of light, 21 + 32 bits of normal.
+/// Sums of colours and normals of up to 2^32 voxels: 24 + 32 bits of light, 21 + 32 bits of normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Sum {
     count: u64,
@@ -75,7 +67,6 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    /// Adds a voxel.
     pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: PackedNormal) {
         self.count += 1;
         for (light, value) in self.light.iter_mut().zip(color) {
@@ -83,13 +74,12 @@ impl Sum {
         }
         if let Some(unit) = normal.decode() {
             for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                // Towards zero: both signs alike.
+                // Towards zero, for both signs.
                 *sum += (part * UNIT_NORMAL) as i64;
             }
         }
     }
 
-    /// Adds another sum.
     pub(super) fn add(&mut self, other: &Self) {
         self.count += other.count;
         for c in 0..3 {
@@ -98,7 +88,7 @@ impl Sum {
         }
     }
 
-    /// The average colour; black of nothing.
+    /// The average colour; black without voxels.
     pub(super) fn color(&self) -> [u8; 3] {
         let count = self.count.max(1);
         let mut color = [0; 3];

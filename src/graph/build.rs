@@ -1,9 +1,7 @@
 //! From loose voxels to a tree stored level by level.
 //!
-//! Voxels get a Morton key, are sorted by it, and of those at one index the
-//! last pushed stays. In that order every node's voxels are neighbours and a
-//! node of level `l` begins wherever the first `3 l` bits of the key change:
-//! one scan counts the nodes of each level, a second one writes them.
+//! Voxels are sorted by Morton key. A node of level `l` begins wherever the first `3 l` bits of the key change: one
+//! scan counts the nodes of each level, a second one writes them.
 
 use rayon::prelude::*;
 
@@ -14,10 +12,9 @@ use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
 use crate::budget::{self, Shortage};
 
-/// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Normals {
-    /// A voxel's own normal where it has one, else that of the surface around it.
+    /// A voxel's own normal, otherwise that of the surface around it.
     #[default]
     FromSurface,
     /// Only voxels' own normals.
@@ -27,15 +24,13 @@ pub enum Normals {
 /// How a graph is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct BuildOptions {
-    /// Where normals come from.
     pub normals: Normals,
 }
 
-/// Collects voxels and makes a graph of them.
+/// Collects voxels in memory and builds a graph.
 ///
-/// Holds 20 bytes for each voxel pushed, and room for at most two million
-/// more. [`Builder::finish`] sorts in place and needs the output besides:
-/// about 29 bytes a voxel for a surface, at the most (`spec/graph.md`).
+/// Holds 20 bytes per pushed voxel. [`Builder::finish`] sorts in place and needs the output in addition, at most about
+/// 29 bytes per voxel of a surface (`spec/graph.md`).
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
@@ -44,13 +39,11 @@ pub struct Builder {
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
     pushed: u64,
-    /// Why none are kept any more.
+    /// Set when memory was refused; then no voxels are kept.
     short: Option<Shortage>,
 }
 
 impl Builder {
-    /// A builder without voxels.
-    #[must_use]
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
@@ -62,27 +55,23 @@ impl Builder {
         }
     }
 
-    /// Makes room for so many voxels more. Worth while where the number is
-    /// known: they are then never moved before they are sorted.
+    /// Reserves memory for more voxels, which are then not moved before they are sorted.
     pub fn reserve(&mut self, voxels: usize) {
         self.records.reserve(voxels);
     }
 
-    /// Voxels pushed so far, repeated ones included.
-    #[must_use]
+    /// Voxels pushed so far, including repeated ones.
     pub fn len(&self) -> u64 {
         self.pushed
     }
 
-    /// Whether no voxel was pushed yet.
-    #[must_use]
+    /// Whether no voxel was pushed.
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
 
     /// Adds a voxel; it replaces an earlier one at the same index.
     pub fn push(&mut self, voxel: Voxel) {
-        // NO_NODE is not a node, hence `<`.
         if self.pushed < u64::from(u32::MAX) && self.short.is_none() {
             for axis in 0..3 {
                 let index = voxel.index[axis];
@@ -101,14 +90,9 @@ impl Builder {
         self.pushed += 1;
     }
 
-    /// Makes the graph, placed at a world position of file index (0, 0, 0)
-    /// and with a world length of a voxel's side.
-    ///
-    /// The same voxels give the same graph whatever the order of pushing
-    /// (voxels at one index apart) and the number of threads.
-    ///
-    /// # Errors
-    /// When there are no voxels, too many, or too far apart: see [`BuildError`].
+    /// Builds the graph. `placement_world` is the world position of file index (0, 0, 0) and the length of a voxel's
+    /// side. The result does not depend on the number of threads, nor on the order of voxels at different indices.
+    /// Fails when there are no voxels, too many, or too far apart.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),
@@ -172,7 +156,6 @@ impl Builder {
 }
 
 impl Placement {
-    /// Whether the world part makes sense.
     pub(super) fn check_world(&self) -> Result<(), BuildError> {
         match self.can_be_seen(0) {
             true => Ok(()),
@@ -180,7 +163,7 @@ impl Placement {
         }
     }
 
-    /// Whether an object of so many levels can be looked at, and its voxels told apart.
+    /// Whether an object of `depth` levels can be shown and its voxels resolved.
     pub(super) fn can_be_seen(&self, depth: u32) -> bool {
         let side = (1u64 << depth.min(morton::MAX_BITS)) as f64;
         let corner = |inside: f64| {
@@ -199,7 +182,7 @@ impl Extend<Voxel> for Builder {
     }
 }
 
-/// What errors call the arrays.
+/// The arrays' name in errors.
 const THE_GRAPH: &str = "a graph of all voxels";
 
 /// The graph's arrays while they are made.
@@ -263,8 +246,7 @@ impl Tree {
         })
     }
 
-    /// Writes the averages of a node and all below it, and returns its sum.
-    /// Each finest voxel counts the same. At most 21 calls deep.
+    /// Writes the averages of a node and its descendants, and returns its sum, in which each finest voxel counts once.
     fn average(&mut self, node: u32, level: u32) -> Sum {
         let mut sum = Sum::default();
         let at = node as usize;

@@ -1,4 +1,4 @@
-//! Why no graph was built of voxels.
+//! Failures of building a graph from voxels.
 
 use crate::budget::Shortage;
 
@@ -11,24 +11,17 @@ pub enum BuildError {
     /// No voxel was pushed.
     #[error("there are no voxels, so there is nothing to build")]
     Empty,
-    /// The bounding box is too long.
     #[error(
         "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
          are there stray voxels far from the object?"
     )]
-    TooLarge {
-        /// `x`, `y` or `z`.
-        axis: char,
-        /// Length of the bounding box, voxels.
-        extent: u64,
-    },
+    TooLarge { axis: char, extent: u64 },
     /// More voxels or nodes than 32 bits number.
     #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
     TooMany(u64),
     /// The system refuses the memory.
     #[error(transparent)]
     Memory(#[from] Shortage),
-    /// The world placement makes no sense.
     #[error(
         "the world origin and the voxel size must be finite, the size above 0, and voxels there far enough apart to be told apart"
     )]

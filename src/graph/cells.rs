@@ -1,4 +1,4 @@
-//! Walking a graph: its cells in Morton order, and counts by level.
+//! Walks over a graph: its cells in Morton order, and counts per level.
 
 use super::Graph;
 
@@ -7,9 +7,8 @@ use super::Graph;
 pub struct Cell {
     /// Lowest corner in object coordinates, finest voxels.
     pub corner: [i32; 3],
-    /// Its level, 0 = root; it is `2^(depth - level)` finest voxels a side.
+    /// 0: the root. A cell's side is `2^(depth - level)` finest voxels.
     pub level: u32,
-    /// The node that is seen there.
     pub node: u32,
 }
 
@@ -17,7 +16,7 @@ pub struct Cell {
 #[derive(Debug)]
 pub struct Voxels<'g> {
     graph: &'g Graph,
-    /// What is still to do, the next on top: at most seven a level.
+    /// The next cell last; at most seven per level.
     stack: Vec<Cell>,
 }
 
@@ -43,8 +42,7 @@ impl Iterator for Voxels<'_> {
                     node,
                 });
             }
-            // So too a node whose children a damaged file has lost: then
-            // every node leads to a cell, and the walk never runs dry.
+            // Every node leads to a cell, also where a damaged file has lost its children.
             if self.stack.len() == before {
                 return Some(cell);
             }
@@ -54,9 +52,8 @@ impl Iterator for Voxels<'_> {
 }
 
 impl Graph {
-    /// Finest voxels and solid leaves in Morton order. In a cyclic graph
-    /// they may be too many to list: see [`Graph::voxels`](field@Graph::voxels).
-    #[must_use]
+    /// Finest voxels and solid leaves in Morton order. A cyclic graph may have too many to list: see
+    /// [`Graph::voxels`](field@Graph::voxels).
     pub fn voxels(&self) -> Voxels<'_> {
         let root = Cell {
             corner: [0; 3],
@@ -70,15 +67,10 @@ impl Graph {
         }
     }
 
-    /// Where the one voxel of a node is: lowest corner in finest voxels, and
-    /// level. Found upwards, by its number: nodes are stored level by
-    /// level and parent by parent, so of the nodes above, the last whose children do
-    /// not begin after it is its parent. Takes a search a level.
+    /// Lowest corner, in finest voxels, and level of the one voxel that shows a node.
     ///
-    /// None in graphs whose nodes may be in several places, that are not
-    /// stored so, or whose leaves lie above the finest level: an engine may then
-    /// show a part of a leaf.
-    #[must_use]
+    /// Searches upwards by the node's number, one binary search per level. None in graphs whose nodes may be in several
+    /// places or are not stored level by level, and for leaves above the finest level.
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -111,14 +103,12 @@ impl Graph {
     }
 
     /// File index of a cell's lowest corner.
-    #[must_use]
     pub fn file_index(&self, cell: &Cell) -> [i64; 3] {
         let origin = self.placement.origin_index;
         [0, 1, 2].map(|k| origin[k].saturating_add(i64::from(cell.corner[k])))
     }
 
-    /// Distinct nodes of each level, root first: `depth + 1` numbers.
-    #[must_use]
+    /// Distinct nodes per level, root first: `depth + 1` numbers.
     pub fn nodes_per_level(&self) -> Vec<u64> {
         if self.is_level_ordered() {
             let pairs = self.level_start.windows(2);
@@ -142,21 +132,18 @@ impl Graph {
     }
 
     /// Whether nodes are stored level by level.
-    #[must_use]
     pub fn is_level_ordered(&self) -> bool {
         !self.level_start.is_empty()
     }
 
-    /// Counts the finest voxels, those inside solid leaves too and repeated
-    /// parts as often as they occur; saturates. Takes time in proportion to
-    /// the nodes (times the levels, if the graph is not level by level).
-    #[must_use]
+    /// Counts the finest voxels, including those inside solid leaves, and repeated parts as often as they occur;
+    /// saturates. Takes time in proportion to the nodes (times the levels, if they are not stored level by level).
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {
             return self.count_tree_voxels();
         }
-        // Voxels below a node that is `height` levels above the finest.
+        // Voxels below a node, by node.
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
             let level = (self.depth - height) as usize;
@@ -191,7 +178,7 @@ impl Graph {
         below.get(self.root as usize).copied().unwrap_or(0)
     }
 
-    /// The same for a tree stored level by level, where every node occurs once.
+    /// The same for a tree stored level by level.
     fn count_tree_voxels(&self) -> u64 {
         let levels = self.level_start.windows(2).zip(0u32..);
         levels.fold(0u64, |total, (ends, level)| {

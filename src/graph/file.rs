@@ -1,6 +1,5 @@
-//! Files that are used in place, mapped or held: what all formats of this
-//! program that are have in common. A header of fixed length with a checksum,
-//! then sections, each aligned to 64 bytes with zeros between.
+//! Files that are used in place, mapped or held: the parts that `.vxg`, `.far` and `.tvx` share. A header of fixed
+//! length with a checksum, then sections, each aligned to 64 bytes with zeros between.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -11,56 +10,51 @@ use std::sync::Arc;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::Invalid;
 use super::map::map;
 use crate::bounded;
 
 /// Sections begin at multiples of this.
 pub const ALIGNMENT: u64 = 64;
 
-/// Why a file of a mesh method was not read or written.
+/// Why a file was not read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The operating system refused.
     #[error("{}: cannot {doing}: {source}", file.display())]
     Io {
-        /// The file.
         file: PathBuf,
-        /// What was tried.
+        /// A verb and its object.
         doing: &'static str,
-        /// The system's error.
         source: io::Error,
     },
-    /// The file is not as it should be.
-    #[error("{}: {section}, byte {offset}: expected {expected}; {advice}", file.display())]
+    /// The file exists, and overwriting was not requested.
+    #[error("{}: the file exists already", .0.display())]
+    Exists(PathBuf),
+    #[error("{}: section {section}, byte {offset}: expected {expected}; {advice}", file.display())]
     Malformed {
-        /// The file.
         file: PathBuf,
-        /// The header, or a section.
+        /// `header`, `padding`, or the name of a section.
         section: &'static str,
         /// Bytes from the beginning of the file.
         offset: u64,
-        /// What should have been there, and what was.
+        /// The expected contents, and the found ones.
         expected: String,
-        /// What to do.
         advice: &'static str,
     },
-    /// A machine that stores the highest byte first.
+    /// This computer stores the highest byte first.
     #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
-    ByteOrder {
-        /// The file.
-        file: PathBuf,
-        /// The ending of such files, with its dot.
-        ending: &'static str,
-    },
+    ByteOrder { file: PathBuf, ending: &'static str },
+    /// The graph to be written breaks an invariant.
+    #[error("the graph cannot be stored: {0}")]
+    Graph(#[from] Invalid),
 }
 
-/// Advice for a damaged file.
-const DAMAGED: &str = "the file is damaged: copy it again, or convert it again from its mesh";
-/// Advice for a file of another program version.
+const DAMAGED: &str = "the file is damaged: copy it again, or convert it again from its source";
 const NEWER: &str = "the file is of another version: convert it again with this one";
 
 impl FileError {
-    /// A file that is damaged somewhere.
+    /// A damaged file.
     pub fn damaged(
         path: &Path,
         section: &'static str,
@@ -76,8 +70,7 @@ impl FileError {
         }
     }
 
-    /// Whether the file is sound and only too large for the memory that there is.
-    #[must_use]
+    /// Whether the file is sound and only too large for the available memory.
     pub fn is_limit(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
@@ -92,23 +85,21 @@ impl FileError {
     }
 }
 
-/// What the operating system refused to do with a file.
+/// A refusal of the operating system.
 pub struct Refused {
     pub doing: &'static str,
     pub source: io::Error,
 }
 
-/// A file that is open, of which only the header was read.
+/// An open file, of which only the header was read.
 pub struct Opened {
     pub file: File,
-    /// Its length in bytes.
     pub bytes: u64,
-    /// Its header; shorter where the file is.
+    /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
 }
 
-/// Opens a regular file and reads its header: a file is not mapped before its
-/// length was found right.
+/// Opens a regular file and reads its header. Callers check the length before they map the file.
 pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
     let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
     let mut file = bounded::open(path).map_err(refused("open it"))?;
@@ -126,7 +117,6 @@ pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
 }
 
 impl Opened {
-    /// Maps all of it.
     pub fn map(&self) -> Result<Arc<Mmap>, Refused> {
         let doing = "map it into memory";
         map(&self.file).map_err(|source| Refused { doing, source })
@@ -137,12 +127,11 @@ impl Opened {
 #[derive(Debug)]
 pub enum Bytes {
     Mapped(Arc<Mmap>),
-    /// In words of 64 bits, so that records are aligned; and how many bytes count.
+    /// Words of 64 bits, so that records are aligned, and the number of bytes.
     Held(Vec<u64>, usize),
 }
 
 impl Bytes {
-    /// A copy of some bytes.
     pub fn held(bytes: &[u8]) -> Self {
         let mut words = vec![0u64; bytes.len().div_ceil(8)];
         bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
@@ -157,46 +146,43 @@ impl Bytes {
     }
 }
 
-/// A place in a mapped file: within the address space, as the file's length is.
+/// A place in a mapped file, which lies within the address space.
 pub fn range([begin, end]: [u64; 2]) -> Range<usize> {
     begin as usize..end as usize
 }
 
-/// The next section after a byte, so many items of so many bytes. Saturates.
+/// Begin and end of the next section after byte `end`, of `count` items. Saturates.
 pub fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
     let begin = end.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
     let bytes = count.saturating_mul(item_bytes as u64);
     [begin, begin.saturating_add(bytes)]
 }
 
-/// A format: how its header begins. Each has version, header length and file
-/// length at the same places.
+/// A format. All have version, header length and file length at the same places, and the header's checksum in its
+/// last eight bytes.
 pub struct Format {
     /// The ending of its files, with the dot.
     pub ending: &'static str,
-    /// First eight bytes.
     pub magic: [u8; 8],
-    /// Version of the layout.
     pub version: u32,
-    /// What a header should begin with.
+    /// The expected beginning, for messages.
     pub signature: &'static str,
-    /// Advice for a file that is something else.
+    /// Advice for a file of another format.
     pub not_ours: &'static str,
 }
 
-/// Bytes of a header.
+/// Bytes of a header, except that of `.vxg`.
 pub const HEADER_BYTES: usize = 128;
 
-/// Where things are in the header of every format.
+/// Offsets in the header of every format.
 mod at {
     pub(super) const VERSION: usize = 8;
     pub(super) const HEADER_BYTES: usize = 12;
     pub(super) const FILE_BYTES: usize = 16;
-    pub(super) const CHECKSUM: usize = 120;
 }
 
 impl Format {
-    /// Refuses machines whose byte order does not allow to use a file in place.
+    /// Rejects computers whose byte order does not allow to use a file in place.
     pub fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
         if cfg!(target_endian = "big") {
             return Err(FileError::ByteOrder {
@@ -207,30 +193,50 @@ impl Format {
         Ok(())
     }
 
-    /// A header that is filled in by `fields`, which is handed a function that
-    /// puts bytes at an offset: with what every header has.
+    /// A header. `fields` receives a function that puts bytes at an offset.
     pub fn header(
         &self,
         file_bytes: u64,
         fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
     ) -> [u8; HEADER_BYTES] {
-        let mut header = [0u8; HEADER_BYTES];
+        self.header_of(self.version, file_bytes, fields)
+    }
+
+    /// A header of any version and length.
+    pub(super) fn header_of<const N: usize>(
+        &self,
+        version: u32,
+        file_bytes: u64,
+        fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
+    ) -> [u8; N] {
+        let mut header = [0u8; N];
         let mut put = |offset: usize, bytes: &[u8]| {
             header[offset..offset + bytes.len()].copy_from_slice(bytes);
         };
         put(0, &self.magic);
-        put(at::VERSION, &self.version.to_le_bytes());
-        put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
+        put(at::VERSION, &version.to_le_bytes());
+        put(at::HEADER_BYTES, &(N as u32).to_le_bytes());
         put(at::FILE_BYTES, &file_bytes.to_le_bytes());
         fields(&mut put);
-        let checksum = xxh3_64(&header[..at::CHECKSUM]);
-        header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());
+        let checksum = xxh3_64(&header[..N - 8]);
+        header[N - 8..].copy_from_slice(&checksum.to_le_bytes());
         header
     }
 
-    /// Checks what every header has, of a file of `file_bytes` that begins so.
+    /// Checks the common fields of a header, of a file of `file_bytes` bytes.
     pub fn read<'f>(
         &self,
+        beginning: &'f [u8],
+        file_bytes: u64,
+        path: &'f Path,
+    ) -> Result<Fields<'f>, FileError> {
+        self.read_of::<HEADER_BYTES>(&[self.version], beginning, file_bytes, path)
+    }
+
+    /// The same for a header of any version of `known`, and any length.
+    pub(super) fn read_of<'f, const N: usize>(
+        &self,
+        known: &[u32],
         beginning: &'f [u8],
         file_bytes: u64,
         path: &'f Path,
@@ -245,26 +251,25 @@ impl Format {
         if !beginning.starts_with(&self.magic) {
             return Err(other(0, self.signature.to_owned(), self.not_ours));
         }
-        let Some(header) = beginning.first_chunk::<HEADER_BYTES>() else {
+        let Some(header) = beginning.get(..N) else {
             let length = beginning.len();
-            let expected = format!("{HEADER_BYTES} bytes, not {length}");
+            let expected = format!("a header of {N} bytes, not {length}");
             return Err(other(length, expected, DAMAGED));
         };
         let fields = Fields { header, path };
         let version = fields.u32_at(at::VERSION);
-        let stored = fields.u64_at(at::CHECKSUM);
-        let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
+        let stored = fields.u64_at(N - 8);
+        let sound = stored == xxh3_64(&header[..N - 8]);
         // A sound header of another version is no damage.
-        if version != self.version && sound {
-            let expected = format!("version {}, not {version}", self.version);
+        if !known.contains(&version) && sound {
+            let names: Vec<String> = known.iter().map(u32::to_string).collect();
+            let expected = format!("version {}, not {version}", names.join(" or "));
             return Err(other(at::VERSION, expected, NEWER));
         }
-        fields.ensure(sound, at::CHECKSUM, || {
-            format!("header checksum {stored:016x}")
-        })?;
+        fields.ensure(sound, N - 8, || format!("header checksum {stored:016x}"))?;
         let length = fields.u32_at(at::HEADER_BYTES);
-        fields.ensure(length == HEADER_BYTES as u32, at::HEADER_BYTES, || {
-            format!("a header length of {HEADER_BYTES}, not {length}")
+        fields.ensure(length == N as u32, at::HEADER_BYTES, || {
+            format!("a header length of {N}, not {length}")
         })?;
         let said = fields.u64_at(at::FILE_BYTES);
         fields.ensure(said == file_bytes, at::FILE_BYTES, || {
@@ -274,13 +279,12 @@ impl Format {
     }
 }
 
-/// The fields of a header that begins as it should.
+/// A header whose common fields are sound. Offsets are within the header.
 pub struct Fields<'f> {
-    header: &'f [u8; HEADER_BYTES],
+    header: &'f [u8],
     path: &'f Path,
 }
 
-/// Offsets are those of a format: within the header.
 impl Fields<'_> {
     pub fn bytes_at<const N: usize>(&self, offset: usize) -> [u8; N] {
         std::array::from_fn(|i| self.header[offset + i])
@@ -298,7 +302,7 @@ impl Fields<'_> {
         u64::from_le_bytes(self.bytes_at(offset))
     }
 
-    /// As many numbers of double precision as are wanted, one after the other.
+    /// `N` numbers of double precision, one after the other.
     pub fn f64s_at<const N: usize>(&self, offset: usize) -> [f64; N] {
         std::array::from_fn(|k| f64::from_bits(self.u64_at(offset + 8 * k)))
     }
@@ -307,7 +311,7 @@ impl Fields<'_> {
         self.header[range].iter().all(|&byte| byte == 0)
     }
 
-    /// Says what was expected at an offset, where it does not hold.
+    /// Reports the expected contents at an offset, unless the condition holds.
     pub fn ensure<E: Into<String>>(
         &self,
         holds: bool,
@@ -326,14 +330,22 @@ impl Fields<'_> {
     }
 }
 
-/// Checks that there is nothing between header and sections, which are in the
-/// order of the file and within it.
+/// Checks that there are only zeros between header and sections, which come in the order of the file and lie within it.
 pub fn check_padding(
     all: &[u8],
     sections: impl Iterator<Item = [u64; 2]>,
     path: &Path,
 ) -> Result<(), FileError> {
-    let mut end = HEADER_BYTES as u64;
+    padding_after(HEADER_BYTES as u64, all, sections, path)
+}
+
+/// The same after a header of any length.
+pub(super) fn padding_after(
+    mut end: u64,
+    all: &[u8],
+    sections: impl Iterator<Item = [u64; 2]>,
+    path: &Path,
+) -> Result<(), FileError> {
     for section in sections {
         if all[range([end, section[0]])].iter().any(|&byte| byte != 0) {
             return Err(FileError::damaged(path, "padding", end, "zeros"));
@@ -343,13 +355,11 @@ pub fn check_padding(
     Ok(())
 }
 
-/// Writes header and sections, in the order of the file, with zeros between.
-///
-/// # Errors
-/// The writer's byte order; a machine that stores the highest byte first.
+/// Writes header and sections, in the order of the file, with zeros between. Errors: the writer's error; a computer
+/// that stores the highest byte first.
 pub fn write<'s>(
     format: &Format,
-    header: &[u8; HEADER_BYTES],
+    header: &[u8],
     sections: impl Iterator<Item = ([u64; 2], &'s [u8])>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -360,7 +370,7 @@ pub fn write<'s>(
         )));
     }
     out.write_all(header)?;
-    let mut written = HEADER_BYTES as u64;
+    let mut written = header.len() as u64;
     for ([begin, end], bytes) in sections {
         // Less than the alignment.
         out.write_all(&[0; ALIGNMENT as usize][..(begin - written) as usize])?;

@@ -1,22 +1,20 @@
-//! Where a hardware reads nodes: in words of eight bytes.
+//! The words of memory in which hardware holds nodes, eight bytes each.
 
 use std::ops::Range;
 
 use super::GraphView;
 
-/// How nodes lie in a hardware's memory. A node is a word: which children it has, which of them are leaves, and
-/// where they begin. A *brick* is a node two levels above the finest voxels, in two words: 64 bits, one for
-/// each of its voxels, which of its children are leaves, and where children and voxels begin. Its children are
-/// not read at all: which voxels a child has and where they begin follows from the bits, since the voxels of a
-/// brick lie side by side. [`Self::brick_words`] has the words.
+/// The layout of nodes in the memory of hardware. A node is a word: its children, which of them are leaves, and where
+/// they begin. A *brick* is a node two levels above the finest voxels, in two words (see [`Self::brick_words`]). Its
+/// children are not read: the voxels of a brick lie side by side, so their places follow from the brick's bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
-    /// Whether a node says which of its children are leaves, so that a leaf need not be read.
+    /// Whether a node says which of its children are leaves, so that leaves need not be read.
     pub leaf_masks: bool,
     bricks: Option<Bricks>,
 }
 
-/// The level of bricks, the first node there, and the one after the last.
+/// The level of bricks, its first node, and the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Bricks {
     level: u32,
@@ -28,9 +26,7 @@ struct Bricks {
 const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
-    /// Of a graph's nodes. Only trees that are stored level by level have bricks: there a
-    /// brick's voxels lie side by side.
-    #[must_use]
+    /// The layout of a graph. Only trees stored level by level have bricks.
     pub fn new(graph: &GraphView<'_>, leaf_masks: bool, bricks: bool) -> Self {
         let level = graph.depth.checked_sub(2).filter(|_| bricks);
         let found = level.filter(|_| is_by_level(graph)).and_then(|level| {
@@ -45,15 +41,13 @@ impl NodeLayout {
         }
     }
 
-    /// The nodes that are bricks; none: an empty range.
-    #[must_use]
+    /// The nodes that are bricks; may be empty.
     pub fn bricks(&self) -> Range<u32> {
         self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
     }
 
-    /// The words of a brick: its voxels, a byte for each child, of a leaf all ones; then
+    /// The words of a brick: its voxels, a byte per child (all ones for a leaf); then
     /// `leaves << 56 | where children begin << 28 | where voxels begin`. `None`: a number does not fit.
-    #[must_use]
     pub fn brick_words(graph: &GraphView<'_>, brick: u32) -> Option<[u64; 2]> {
         let (mut voxels, mut leaves, mut first_voxel) = (0, 0, None);
         for octant in 0..8 {
@@ -78,9 +72,7 @@ impl NodeLayout {
         fit.then_some([voxels, second])
     }
 
-    /// The words to read for a node at a level.
     #[inline]
-    #[must_use]
     pub fn words(&self, node: u32, level: u32) -> Range<u64> {
         let at = u64::from(node);
         match self.bricks {
@@ -94,7 +86,7 @@ impl NodeLayout {
     }
 }
 
-/// Whether it is a tree that is stored level by level: the children of each node follow on those of the node before.
+/// Whether a graph is a tree stored level by level.
 fn is_by_level(graph: &GraphView<'_>) -> bool {
     let mut next = u64::from(graph.root) + 1;
     let nodes = graph.mask.iter().zip(graph.first);
@@ -106,7 +98,7 @@ fn is_by_level(graph: &GraphView<'_>) -> bool {
         })
 }
 
-/// The first node of a level, in a tree that is stored level by level.
+/// The first node of a level, in a tree stored level by level.
 fn first_of_level(graph: &GraphView<'_>, level: u32) -> Option<u32> {
     let mut first = graph.root;
     for _ in 0..level {

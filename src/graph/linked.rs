@@ -1,9 +1,8 @@
-//! Small graphs made by hand, cyclic ones among them.
+//! Small graphs made by hand, which may be cyclic.
 
-use super::{Graph, MAX_DEPTH, PackedNormal, Placement};
+use super::{Graph, MAX_DEPTH, PackedNormal, Placement, Store};
 
-/// Collects nodes whose children may be any nodes: earlier ones, later ones,
-/// themselves.
+/// Collects nodes. Their children may be any nodes.
 ///
 /// ```
 /// use shiftvox::graph::LinkedGraph;
@@ -37,24 +36,15 @@ pub enum LinkedError {
     /// Deeper than coordinates reach.
     #[error("a graph has at most {MAX_DEPTH} levels below the root, not {0}")]
     Depth(u32),
-    /// The root was not added; so too where there are no nodes.
+    /// The root was not added, or there are no nodes.
     #[error("the root is node {root}, but there are {nodes} nodes")]
-    Root {
-        /// The root.
-        root: u32,
-        /// Nodes added.
-        nodes: usize,
-    },
+    Root { root: u32, nodes: usize },
     /// A child was not added.
     #[error("child {octant} of node {node} is node {child}, but there are {nodes} nodes")]
     Child {
-        /// The parent.
         node: usize,
-        /// Which child.
         octant: usize,
-        /// The node that it would be.
         child: u32,
-        /// Nodes added.
         nodes: usize,
     },
     /// More than 32 bits number.
@@ -66,9 +56,7 @@ pub enum LinkedError {
 const MAX_NODES: usize = (u32::MAX / 8) as usize;
 
 impl LinkedGraph {
-    /// A graph of `2^depth` finest voxels a side, still without nodes; its
-    /// root is the node added first.
-    #[must_use]
+    /// A graph without nodes of `2^depth` finest voxels a side. Its root is the first added node.
     pub fn new(depth: u32) -> Self {
         Self {
             depth,
@@ -78,14 +66,12 @@ impl LinkedGraph {
         }
     }
 
-    /// Adds a node and returns its number: 0, 1, 2, ... Children are by
-    /// octant, `x << 2 | y << 1 | z`; they may be added later. A node without
-    /// children is solid.
+    /// Adds a node and returns its number: 0, 1, 2, ... Children are by octant, `x << 2 | y << 1 | z`, and may be added
+    /// later. A node without children is solid.
     pub fn add_node(&mut self, color: [u8; 3], children: [Option<u32>; 8]) -> u32 {
         self.add_node_with_normal(color, PackedNormal::NONE, children)
     }
 
-    /// Adds a node that has a normal.
     pub fn add_node_with_normal(
         &mut self,
         color: [u8; 3],
@@ -101,10 +87,8 @@ impl LinkedGraph {
         number
     }
 
-    /// Makes the graph. Nothing is averaged: colours and normals are as given.
-    ///
-    /// # Errors
-    /// When it is too deep, or the root or a child was never added.
+    /// Builds the graph. Colours and normals are not averaged. Fails when it is too deep, or the root or a child was
+    /// not added.
     pub fn build(&self) -> Result<Graph, LinkedError> {
         let nodes = self.nodes.len();
         if self.depth > MAX_DEPTH {
@@ -144,19 +128,9 @@ impl LinkedGraph {
             mask: masks.into(),
             first: firsts.into(),
             links: links.into(),
-            color: self
-                .nodes
-                .iter()
-                .map(|n| n.color)
-                .collect::<Vec<_>>()
-                .into(),
-            normal: self
-                .nodes
-                .iter()
-                .map(|n| n.normal)
-                .collect::<Vec<_>>()
-                .into(),
-            opacity: Vec::new().into(),
+            color: self.nodes.iter().map(|n| n.color).collect(),
+            normal: self.nodes.iter().map(|n| n.normal).collect(),
+            opacity: Store::default(),
             level_start: Vec::new(),
             voxels: 0,
             placement: self.placement,

@@ -8,29 +8,26 @@ use memmap2::Mmap;
 
 /// Maps a whole file for reading.
 pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
-    // SAFETY: a map must not change while it is borrowed. The map is private
-    // to this process and read-only, and files that this program writes are
-    // never changed in place: a new file takes the name, and the map keeps the
-    // old one alive. That no other program rewrites or truncates the file is
-    // the user's part, as with any program that maps its input: see `spec/graph.md`. What is read is plain numbers of any value, and no
-    // index among them is followed unchecked, so changed bytes give a wrong
-    // picture. A file truncated under the map ends the process (SIGBUS); the
-    // command line says why (`crates/cli/src/fatal_signals.rs`).
+    // SAFETY: a map must not change while it is borrowed. The map is private to this process and read-only, and this
+    // program never changes files in place: a new file takes the name, and the map keeps the old one alive. That no
+    // other program rewrites or truncates the file is the user's part, as with any program that maps its input
+    // (`spec/graph.md`). All contents are plain numbers of any value and no index among them is followed unchecked, so
+    // changed bytes give a wrong picture. A file truncated under the map ends the process (SIGBUS); the command line
+    // reports why (`crates/cli/src/fatal_signals.rs`).
     let map = unsafe { Mmap::map(file) }?;
     Ok(Arc::new(map))
 }
 
-/// How a mapped file is going to be read.
+/// Order in which a mapped file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::graph) enum Access {
-    /// Here and there: a page that is missing is read alone, not with those around it.
+    /// A missing page is read alone.
     Scattered,
     /// From the beginning to the end.
     Whole,
 }
 
-/// Advises the system how the file is going to be read. Reading works also where
-/// the system has no such call or ignores it.
+/// Advises the system how the file is read, where it has such a call.
 pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
     #[cfg(unix)]
     {
@@ -38,25 +35,23 @@ pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
             Access::Scattered => memmap2::Advice::Random,
             Access::Whole => memmap2::Advice::Sequential,
         };
-        // Refused advice changes nothing but speed.
+        // Refused advice only costs speed.
         let _ = map.advise(advice);
     }
     #[cfg(not(unix))]
     let _ = (map, access);
 }
 
-/// Lets go of the pages of a range of bytes: they are read from the file again
-/// when they are next read. False where the system has no such call, or
-/// refuses it.
+/// Drops the pages of a range of bytes: they are read from the file again when needed. False where the system has no
+/// such call, or refuses it.
 pub fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
     #[cfg(unix)]
     {
         if from > map.len() || bytes > map.len() - from {
             return false;
         }
-        // SAFETY: what this call can destroy are changes to private pages. The
-        // map is read-only, so there are none: every page that is dropped comes
-        // back with the file's bytes, and references into it stay valid.
+        // SAFETY: this call can only destroy changes to private pages. The map is read-only, so there are none. A
+        // dropped page comes back with the file's bytes, and references into it stay valid.
         let dropped =
             unsafe { map.unchecked_advise_range(memmap2::UncheckedAdvice::DontNeed, from, bytes) };
         dropped.is_ok()

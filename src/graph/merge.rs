@@ -1,57 +1,48 @@
 //! Merging equal subtrees: a tree becomes a directed acyclic graph.
 //!
-//! Two nodes are equal if their children are, octant by octant, and their
-//! colours, normals and opacities. In a graph stored level by level, levels are merged
-//! from the finest up, so each node is examined once; two equal nodes of different levels stay
-//! apart. In any other graph, cyclic ones included, nodes start out equal and
-//! are distinguished by their children's differences until no more are found.
+//! Two nodes are equal if their children are equal octant by octant, and so are their colours, normals and opacities.
+//! In a graph stored level by level, levels are merged from the finest up, and equal nodes of different levels stay
+//! apart. In any other graph, nodes start out equal and are distinguished by their children until no class splits.
 //!
-//! Nodes of the result are numbered in the order in which a walk by levels
-//! from the root meets them, so the root is node 0, and nodes and children that
-//! a render meets together lie together. A graph stored level by level stays so,
-//! unless nothing led to the nodes of its finest levels.
+//! Nodes of the result are numbered in breadth-first order. A graph stored level by level stays so, unless some finest
+//! levels had no reachable nodes.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-use super::{Graph, Progress};
+use super::{Graph, Progress, Store};
 
-/// When two nodes are the same.
+/// Compared properties of nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MergeBy {
     /// Same shape, colours, normals and opacities: the merged graph looks the same.
     #[default]
     ShapeAndAttributes,
-    /// Same shape; of the attributes, some one's are kept. Tells what a
-    /// geometry alone would gain.
+    /// Same shape; the attributes of one node of each class are kept.
     Shape,
 }
 
-/// What merging has done.
+/// Sizes before and after merging.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MergeReport {
-    /// Nodes before.
     pub nodes_before: u64,
-    /// Nodes after.
     pub nodes_after: u64,
-    /// [`Graph::bytes`] before.
+    /// [`Graph::bytes`].
     pub bytes_before: u64,
-    /// [`Graph::bytes`] after, the child lists included.
+    /// The same, including the child lists.
     pub bytes_after: u64,
 }
 
 impl MergeReport {
-    /// Nodes before for each node after, 1 or more.
-    #[must_use]
+    /// Nodes before per node after, at least 1.
     pub fn gain(&self) -> f64 {
         self.nodes_before as f64 / self.nodes_after.max(1) as f64
     }
 }
 
-/// XXH3 of a key's parts, each at once: keys are short, and a hash that
-/// takes them byte by byte would spend its time on keeping books.
+/// XXH3 of a key's parts, each hashed at once: keys are short.
 #[derive(Default)]
 struct Parts(u64);
 
@@ -60,7 +51,7 @@ impl Hasher for Parts {
         self.0 = xxh3_64_with_seed(bytes, self.0);
     }
 
-    /// Lengths of arrays are the same in all keys of a map.
+    /// All keys of a map have arrays of the same length.
     fn write_usize(&mut self, _: usize) {}
 
     fn finish(&self) -> u64 {
@@ -69,13 +60,11 @@ impl Hasher for Parts {
 }
 
 type Map<K> = HashMap<K, u32, BuildHasherDefault<Parts>>;
-/// What stands for a child that does not exist.
+/// Number of a child that does not exist.
 const ABSENT: u32 = u32::MAX;
 
-/// Merges equal nodes. The result is the same on every computer; its cells
-/// are those of `graph` one for one, and so are their colours and normals
+/// Merges equal nodes. The cells of the result are those of `graph` one for one, with the same colours and normals
 /// under [`MergeBy::ShapeAndAttributes`].
-#[must_use]
 pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, MergeReport) {
     progress.begin("merge equal subtrees", 0);
     let class = if graph.is_level_ordered() {
@@ -94,7 +83,7 @@ pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, Mer
     (merged, report)
 }
 
-/// Colour, normal and opacity in one number, or nothing.
+/// Colour, normal and opacity in one number, or 0.
 fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
     if by == MergeBy::Shape {
         return 0;
@@ -105,39 +94,31 @@ fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
     u64::from_le_bytes([red, green, blue, normal[0], normal[1], x, y, z])
 }
 
-/// The classes of a node's children.
 fn child_classes(graph: &Graph, node: u32, class: &[u32]) -> [u32; 8] {
     graph
         .children(node)
         .map(|child| child.map_or(ABSENT, |child| class[child as usize]))
 }
 
-/// The number that stands for a key: the next one, if it is new.
+/// The number of a key: the next one, if it is new.
 fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
     // Fewer classes than nodes, which 32 bits number.
     let next = known.len() as u32;
     *known.entry(key).or_insert(next)
 }
 
-/// The class of each node, apart for each level.
+/// The class of each node; levels have separate classes.
 fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let mut class = vec![0; graph.len()];
     for pair in graph.level_start.windows(2).rev() {
         let nodes = pair[0]..pair[1].min(class.len() as u32);
-        if pair[0] as usize >= graph.mask.len() {
-            let mut known = Map::default();
-            for node in nodes {
-                class[node as usize] = number(&mut known, attributes(graph, node, by));
-            }
-        } else {
-            let mut known = Map::default();
-            for node in nodes {
-                let key = (
-                    attributes(graph, node, by),
-                    child_classes(graph, node, &class),
-                );
-                class[node as usize] = number(&mut known, key);
-            }
+        let mut known = Map::default();
+        for node in nodes {
+            let key = (
+                attributes(graph, node, by),
+                child_classes(graph, node, &class),
+            );
+            class[node as usize] = number(&mut known, key);
         }
     }
     class
@@ -166,12 +147,11 @@ fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
     }
 }
 
-/// One node for each class that can be reached.
+/// A graph with one node per reachable class.
 fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     let ordered = graph.is_level_ordered();
     let classes = class.iter().max().map_or(0, |&most| most as usize + 1);
-    // New number by class. Classes of different levels share numbers in a graph stored
-    // level by level, so there the table is for one level.
+    // New number per class. Where nodes are stored level by level, the table is for one level.
     let mut renamed = vec![ABSENT; classes];
     let mut chosen = vec![graph.root];
     let mut links = Vec::new();
@@ -224,38 +204,27 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     firsts.truncate(inner);
     firsts.shrink_to_fit();
     links.shrink_to_fit();
+    let view = graph.view();
+    let opacity = match graph.opacity.is_empty() {
+        true => Store::default(),
+        false => chosen.iter().map(|&n| view.opacity_of(n)).collect(),
+    };
     let mut merged = Graph {
         depth: graph.depth,
         root: 0,
         mask: masks.into(),
         first: firsts.into(),
         links: links.into(),
-        color: chosen
-            .iter()
-            .map(|&n| graph.color_of(n))
-            .collect::<Vec<_>>()
-            .into(),
-        normal: chosen
-            .iter()
-            .map(|&n| graph.normal_of(n))
-            .collect::<Vec<_>>()
-            .into(),
-        opacity: match graph.opacity.is_empty() {
-            true => Vec::new().into(),
-            false => chosen
-                .iter()
-                .map(|&n| graph.view().opacity_of(n))
-                .collect::<Vec<_>>()
-                .into(),
-        },
+        color: chosen.iter().map(|&n| graph.color_of(n)).collect(),
+        normal: chosen.iter().map(|&n| graph.normal_of(n)).collect(),
+        opacity,
         level_start: Vec::new(),
         voxels: graph.voxels,
         placement: graph.placement,
     };
     if ordered {
         level_start.push(merged.len() as u32);
-        // Nodes that nothing leads to are left out. If a level had no others, it is
-        // empty now, which the level table cannot express; the graph is as sound without it.
+        // A level without reachable nodes is empty, which the level table cannot express.
         if level_start.len() == graph.depth as usize + 2 {
             merged.level_start = level_start;
         }

@@ -1,33 +1,31 @@
-//! What a fitted camera sees of a mesh: kept in every file that is made of one, so that it is seen from one place
-//! whatever draws it.
+//! The part of a mesh's shape that fitted cameras use. Every file made of a mesh keeps it, so that all methods are seen
+//! from the same place.
 
 use super::place;
 
-/// Parts of an edge in which bevels are counted.
+/// Bevels are counted in this share of an edge.
 const PARTS: f64 = 512.0;
 
-/// The box around a mesh with bevelled corners, and which axis is up.
+/// The box around a mesh with bevelled corners, and its vertical axis.
 ///
 /// A bevel is the plane that cuts a corner off at one share of its three edges, beyond which the mesh has no vertex. A
 /// share is less than half an edge, so bevels do not meet, and the 24 points where bevels and edges meet enclose the
 /// mesh. Fitted to the box alone, a camera would show round objects smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshBox {
-    /// Lowest corner, world units, as single precision holds it.
+    /// Lowest corner, world units, rounded to single precision.
     pub low: [f64; 3],
-    /// Highest corner.
+    /// Highest corner, likewise.
     pub high: [f64; 3],
-    /// Bevels of the corners `x << 2 | y << 1 | z`, in 512ths; 0: nothing.
+    /// Bevels of the corners `x << 2 | y << 1 | z`, in 512ths of the edges.
     pub bevels: [u8; 8],
-    /// Whether +Y is up; else +Z.
+    /// +Y is up; otherwise +Z.
     pub y_up: bool,
 }
 
 impl MeshBox {
-    /// A box with bevels, in single precision as in all files.
-    #[must_use]
+    /// Rounds to single precision as all files store it.
     pub fn new((low, high): ([f64; 3], [f64; 3]), bevels: [u8; 8], y_up: bool) -> Self {
-        // As far voxels are stored; the others round likewise, so that all are the same.
         let centre = place::centre(low, high);
         let kept =
             |p: [f64; 3]| [0, 1, 2].map(|k| centre[k] + f64::from((p[k] - centre[k]) as f32));
@@ -40,7 +38,6 @@ impl MeshBox {
     }
 
     /// The box around points, bevelled as far as they allow.
-    #[must_use]
     pub fn around(
         span: ([f64; 3], [f64; 3]),
         points: impl Iterator<Item = [f64; 3]>,
@@ -64,7 +61,7 @@ impl MeshBox {
         [0, 1, 2].map(|k| [self.low, self.high][corner >> (2 - k) & 1][k])
     }
 
-    /// Whether a camera can look at it, and tell parts of length `finest` apart.
+    /// Whether a camera can show it and resolve parts of length `finest`.
     pub(super) fn can_be_seen(&self, finest: f64) -> bool {
         let (mut longest, mut is_box) = (0.0f64, true);
         for k in 0..3 {
@@ -75,12 +72,12 @@ impl MeshBox {
     }
 }
 
-/// Which share of the edges at each corner of a box has no point beyond it.
+/// Share of the edges at each corner of a box that has no point beyond it.
 fn bevels((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 3]>) -> [u8; 8] {
     let side = [0, 1, 2].map(|k| high[k] - low[k]);
     let mut least = [1.0f64; 8];
     for point in points {
-        // From the lowest corner and from the highest, in sides; a box without extent along an axis has none.
+        // From the lowest corner and from the highest, in sides; 0 for a box without extent along an axis.
         let shares = [0, 1, 2].map(|k| match side[k] > 0.0 {
             true => [
                 (point[k] - low[k]) / side[k],
@@ -93,7 +90,7 @@ fn bevels((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 
             *least = least.min(x + y + z);
         }
     }
-    // A step less, so that rounding takes no point; saturates.
+    // A step less, so that rounding excludes no point; saturates.
     least.map(|share| (share * PARTS - 1.0) as u8)
 }
 

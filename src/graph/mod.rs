@@ -41,7 +41,7 @@ pub use voxel::Voxel;
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
 
-/// Where the object lies in the file's indices and in the world.
+/// The object's place in the file's indices and in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// File index of the object's lowest corner, in finest voxels; may be negative.
@@ -50,7 +50,7 @@ pub struct Placement {
     pub world_origin: [f64; 3],
     /// World length of a finest voxel's side.
     pub voxel_size: f64,
-    /// Of voxels that were made of a mesh: what fitted cameras look at.
+    /// Of voxels made of a mesh: its box, for fitted cameras.
     pub mesh: Option<MeshBox>,
 }
 
@@ -72,26 +72,23 @@ pub struct PackedNormal(pub u16);
 
 /// A voxel graph.
 ///
-/// Nodes `0..mask.len()` may have children; nodes from there up to
-/// `color.len()` are voxels of the finest level, which need neither mask nor
-/// child list. Five bytes a node, five more for one that may have children. A
-/// node without children is solid and, as in the image-order paper (section 2.2), points
-/// to itself. A node that is reached at level `depth` is a voxel, whatever
-/// children it has: that is what ends a cyclic graph.
+/// Nodes `0..mask.len()` may have children. Nodes from there up to `color.len()` are voxels of the finest level, which
+/// have neither mask nor child list. Five bytes per node, five more for one that may have children. A node without
+/// children is solid and, as in the image-order paper (section 2.2), its own child. A node reached at level `depth`
+/// is a voxel, even if it has children: this ends a cyclic graph.
 #[derive(Debug, Clone)]
 pub struct Graph {
     /// Levels below the root: the object is a cube of `2^depth` finest voxels a side.
     pub depth: u32,
-    /// The node of the object.
+    /// The object's node.
     pub root: u32,
-    /// Which children an inner node has: bit `c` is set where child
-    /// `c = x << 2 | y << 1 | z` exists. No bit: a solid leaf.
+    /// Children of the inner nodes: bit `c` is set where child `c = x << 2 | y << 1 | z` exists. 0: a solid leaf.
     pub mask: Store<u8>,
-    /// Where an inner node's children begin: a node in a tree, an entry of
-    /// `links` in a linked graph. As long as `mask`; of no meaning where that is 0.
+    /// First child of the inner nodes: a node in a tree, an entry of `links` in a linked graph. Has no meaning where
+    /// the mask is 0.
     pub first: Store<u32>,
-    /// Child lists of a linked graph; empty in a plain tree, where the
-    /// children of a node are `first`, `first + 1`, ... in octant order.
+    /// Child lists of a linked graph. Empty in a tree, where a node's children are `first`, `first + 1`, ... in
+    /// octant order.
     pub links: Store<u32>,
     /// Average colour (sRGB) of each node.
     pub color: Store<[u8; 3]>,
@@ -99,43 +96,38 @@ pub struct Graph {
     pub normal: Store<PackedNormal>,
     /// Opacity of each node; empty where all are opaque.
     pub opacity: Store<Opacity>,
-    /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; else empty.
+    /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; otherwise
+    /// empty.
     pub level_start: Vec<u32>,
-    /// Voxels of the finest level that the object consists of, counted with repetition; saturates.
+    /// Voxels of the finest level, counted with repetition; saturates.
     pub voxels: u64,
-    /// Where the object lies.
     pub placement: Placement,
 }
 
 impl Graph {
     /// Number of nodes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.color.len()
     }
 
-    /// Whether there is nothing to draw.
-    #[must_use]
+    /// Whether it has no nodes.
     pub fn is_empty(&self) -> bool {
         self.color.is_empty()
     }
 
     /// Colour of a node; black for a node that does not exist.
     #[inline]
-    #[must_use]
     pub fn color_of(&self, node: u32) -> [u8; 3] {
         self.color.get(node as usize).copied().unwrap_or_default()
     }
 
     /// Normal of a node; none for a node that does not exist.
     #[inline]
-    #[must_use]
     pub fn normal_of(&self, node: u32) -> PackedNormal {
         self.normal.get(node as usize).copied().unwrap_or_default()
     }
 
-    /// The children of a node by octant, those that do not exist left out.
-    #[must_use]
+    /// The children of a node by octant. Children that are not nodes are left out.
     pub fn children(&self, node: u32) -> [Option<u32>; 8] {
         let view = self.view();
         let nodes = self.len() as u64;
@@ -145,8 +137,7 @@ impl Graph {
         })
     }
 
-    /// Bytes of the arrays, in memory or in the file that they are mapped from.
-    #[must_use]
+    /// Bytes of the arrays, in memory or in the mapped file.
     pub fn bytes(&self) -> u64 {
         let sizes = [
             size_of_val::<[u8]>(&self.mask),
@@ -160,8 +151,7 @@ impl Graph {
         sizes.iter().map(|&size| size as u64).sum()
     }
 
-    /// The graph's arrays as plain slices: what an engine walks.
-    #[must_use]
+    /// The graph's arrays as slices.
     pub fn view(&self) -> GraphView<'_> {
         GraphView {
             depth: self.depth,
@@ -175,64 +165,49 @@ impl Graph {
     }
 }
 
-/// Borrowed shape of a graph, with what a rule needs that blends: opacities, and light.
+/// Borrowed shape of a graph, with opacities and light for rules that blend.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GraphView<'g> {
-    /// Levels below the root.
     pub depth: u32,
-    /// The node of the object.
     pub root: u32,
-    /// Children of the inner nodes, one bit each.
     pub mask: &'g [u8],
-    /// Where the children of the inner nodes begin.
     pub first: &'g [u32],
-    /// Child lists of a linked graph, or empty.
     pub links: &'g [u32],
-    /// Opacities by node; empty: all are opaque.
+    /// Empty: all are opaque.
     pub opacity: &'g [Opacity],
-    /// Linear light by node, 0 to 65535 a channel, for rules that blend (`SPEC.md`,
-    /// section 11); empty: white.
+    /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11); empty: white.
     pub light: &'g [[u16; 3]],
 }
 
 impl GraphView<'_> {
-    /// The children that a node has, one bit each; 0 for a leaf.
+    /// The mask of a node's children; 0 for a leaf.
     #[inline]
-    #[must_use]
     pub fn mask(&self, node: u32) -> u8 {
         self.mask.get(node as usize).copied().unwrap_or(0)
     }
 
-    /// Where a node's children begin, among the nodes or, in a linked graph, in the child lists; 0 for a leaf.
+    /// The node's entry of `first`; 0 for a leaf.
     #[inline]
-    #[must_use]
     pub fn first(&self, node: u32) -> u32 {
         self.first.get(node as usize).copied().unwrap_or(0)
     }
 
-    /// Opacity of a node.
     #[inline]
-    #[must_use]
     pub fn opacity_of(&self, node: u32) -> Opacity {
         self.opacity.get(node as usize).copied().unwrap_or_default()
     }
 
-    /// Light of a node.
     #[inline]
-    #[must_use]
     pub fn light_of(&self, node: u32) -> [u16; 3] {
         let light = self.light.get(node as usize);
         light.copied().unwrap_or([u16::MAX; 3])
     }
 
-    /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
+    /// Child `octant` (`x << 2 | y << 1 | z`) of a node; none for a leaf.
     ///
-    /// A leaf has no children here; the renderer may treat it as its own child.
-    /// Never panics, whatever a damaged file holds: a child list that leaves
-    /// the file reads as no child, and a child without a node as a leaf
-    /// ([`Graph::color_of`] is then black).
+    /// Never panics, whatever a damaged file holds: a child list that leaves the file reads as no child, and a child
+    /// without a node as a leaf.
     #[inline]
-    #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
         let mask = self.mask(node);
         if mask >> octant & 1 == 0 {
@@ -240,7 +215,7 @@ impl GraphView<'_> {
         }
         let before = mask & ((1u8 << octant) - 1);
         let first = *self.first.get(node as usize)?;
-        // Wraps only in a damaged file, where one wrong place is as good as another.
+        // Wraps only in a damaged file.
         let slot = first.wrapping_add(before.count_ones());
         if self.links.is_empty() {
             Some(slot)

@@ -1,11 +1,9 @@
-//! Normals in two bytes: octahedral, one byte an axis.
+//! Normals in two bytes: octahedral, one byte per axis.
 //!
-//! The sphere is projected to the octahedron `|x| + |y| + |z| = 1`, its lower
-//! half is folded over the upper, and the square that results is a grid of
-//! 255 by 255 points. A byte holds `-127..=127` as `1..=255`; no byte is ever
-//! 0 in a normal, so the value 0 is free to mean "no normal". The six
-//! axes are exact. Of the four grid points around a direction the nearest is
-//! taken: the error stays below 0.7 degrees.
+//! The sphere is projected to the octahedron `|x| + |y| + |z| = 1`, its lower half is folded over the upper, and the
+//! resulting square is a grid of 255 by 255 points. A byte holds `-127..=127` as `1..=255`, so the value 0 means "no
+//! normal". The six axes are exact. The nearest of the four grid points around a direction is taken: the error stays
+//! below 0.7 degrees.
 
 use glam::DVec3;
 
@@ -13,22 +11,19 @@ use super::PackedNormal;
 
 /// Grid steps from the middle of the square to its edge.
 const STEPS: f64 = 127.0;
-/// The byte that stands for 0.
+/// The byte of coordinate 0.
 const ZERO: u16 = 128;
 
 impl PackedNormal {
     /// No normal.
     pub const NONE: Self = Self(0);
 
-    /// The nearest normal to a direction (x, y, z) of any length; none for zero or what is not finite.
-    #[must_use]
+    /// [`Self::encode`] of coordinates x, y, z.
     pub fn from_array(direction: [f64; 3]) -> Self {
         Self::encode(direction.into())
     }
 
-    /// The nearest normal to a direction of any length; none for zero or a
-    /// direction that is not finite.
-    #[must_use]
+    /// The nearest normal to a direction of any length; none for zero or a direction that is not finite.
     pub fn encode(direction: DVec3) -> Self {
         let length_l1 = direction.x.abs() + direction.y.abs() + direction.z.abs();
         if !(length_l1.is_finite() && length_l1 > 0.0) {
@@ -48,7 +43,7 @@ impl PackedNormal {
             let (u, v) = (low_u + du, low_v + dv);
             let point = unfold(u, v);
             let along = unit.dot(point);
-            // The square of the cosine, but for a factor, with its sign.
+            // The square of the cosine with its sign, up to a factor.
             let likeness = along * along.abs() / point.length_squared();
             if likeness > best.0 {
                 let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
@@ -59,7 +54,6 @@ impl PackedNormal {
     }
 
     /// The unit vector, if there is a normal. Any 16 bits are accepted.
-    #[must_use]
     pub fn decode(self) -> Option<DVec3> {
         if self == Self::NONE {
             return None;
@@ -70,8 +64,6 @@ impl PackedNormal {
         Some(point / libm::sqrt(point.length_squared()))
     }
 
-    /// Whether there is no normal.
-    #[must_use]
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
@@ -83,7 +75,7 @@ fn fold(u: f64, v: f64) -> (f64, f64) {
     ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v))
 }
 
-/// The point of the octahedron that a grid point stands for.
+/// The point of the octahedron of a grid point.
 fn unfold(u: f64, v: f64) -> DVec3 {
     let (mut u, mut v) = (u * (1.0 / STEPS), v * (1.0 / STEPS));
     let z = 1.0 - u.abs() - v.abs();

@@ -1,31 +1,26 @@
-//! How opaque a voxel is, seen from each of six sides (`spec/graph.md`, "Opacities").
+//! Opacity of a voxel from each of six sides (`spec/graph.md`, "Opacities").
 
-/// Opacity of a voxel along the six main directions, four bits each: 0 lets all
-/// through, 15 nothing.
+/// Opacity of a voxel along the six main directions, 0 (transparent) to 15 (opaque), four bits each.
 ///
-/// Byte `k` is for axis `k`: its low half is the opacity seen from the side of low
-/// coordinates, its high half that seen from the side of high ones.
+/// Byte `k` is for axis `k`: the low half seen from the side of low coordinates, the high half from the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct Opacity(pub [u8; 3]);
 
-/// The opacity of what lets nothing through.
+/// Opacity of an opaque voxel.
 pub const MOST_OPACITY: u8 = 15;
 
 impl Opacity {
-    /// Lets nothing through, from any side.
+    /// Opaque from all sides.
     pub const OPAQUE: Self = Self([0xff; 3]);
 
-    /// From opacities by axis, seen from the side of low and of high
-    /// coordinates; more than 15 is 15.
-    #[must_use]
+    /// From opacities by axis, seen from the side of low and of high coordinates; clamped to 15.
     pub fn new(sides: [[u8; 2]; 3]) -> Self {
         Self(sides.map(|[low, high]| low.min(MOST_OPACITY) | high.min(MOST_OPACITY) << 4))
     }
 
-    /// Seen along axis `k`, from the side of high coordinates or from the other.
+    /// Opacity along axis `k`, seen from the side of high coordinates or from the other.
     #[inline(always)]
-    #[must_use]
     pub fn from_side(self, k: usize, high: bool) -> u8 {
         self.0[k] >> if high { 4 } else { 0 } & MOST_OPACITY
     }
@@ -37,10 +32,8 @@ impl Default for Opacity {
     }
 }
 
-/// Sixteenths of its outline that a voxel of this opacity covers: so that 15
-/// is all of it.
+/// Sixteenths of its outline that a voxel of this opacity covers, 0 to 16.
 #[inline(always)]
-#[must_use]
 pub const fn sixteenths(opacity: u8) -> u8 {
     opacity + (opacity >> 3)
 }

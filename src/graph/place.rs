@@ -1,19 +1,16 @@
-//! Places in the world that can be drawn.
-//!
-//! Numbers of double precision reach farther than a camera does: its squares and products overflow, and far from the
-//! origin neighbours fall on one number. What lies there cannot be looked at, so files that say so are refused.
+//! Bounds on world positions: beyond them squares and products overflow, or neighbouring voxels fall on one number.
+//! Files with such positions are rejected.
 
-/// Farthest from the origin, and shortest: the cubes of both are numbers of full precision.
+/// Largest distance from the origin and shortest length: their cubes have full precision.
 const FARTHEST: f64 = 1e90;
 const SHORTEST: f64 = 1e-90;
-/// Steps from the origin that differ from their neighbours.
+/// Largest distance from the origin in steps that remain distinct.
 const STEPS: f64 = (1u64 << 52) as f64;
 
-/// Parts along the longest side of what is drawn, or less.
+/// Most parts along the longest side of an object.
 pub const MOST_PARTS: f64 = (1u64 << 21) as f64;
 
-/// What single precision coordinates of a mesh are relative to: zero, unless it is so far from it that they would not
-/// hold its parts.
+/// The origin of a mesh's single-precision coordinates: zero, or the box's middle where the box is far from zero.
 pub fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
     let (mut extent, mut farthest) = (0.0f64, 0.0f64);
     for k in 0..3 {
@@ -26,7 +23,7 @@ pub fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
     }
 }
 
-/// Whether a box of the world can be looked at, and its parts of length `finest` told apart.
+/// Whether a camera can show a box of the world and resolve its parts of length `finest`.
 pub fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
     let most = FARTHEST.min(finest * STEPS);
     // NaN is not within.

@@ -1,10 +1,10 @@
-//! Progress of long work, reported without knowledge of how it is shown.
+//! Progress of long work.
 
-/// Receives the progress of long work. Calls may come from any thread.
+/// Receives the progress of long work, from any thread.
 pub trait Progress: Sync {
-    /// A piece of work begins: what it is, and how many steps it has (0: unknown).
+    /// A piece of work with `steps` steps begins (0: unknown).
     fn begin(&self, what: &str, steps: u64);
-    /// So many steps more are done.
+    /// `steps` more steps are done.
     fn advance(&self, steps: u64);
     /// The piece of work is done.
     fn end(&self);

@@ -1,9 +1,7 @@
 //! Pushed voxels, until they are sorted.
 //!
-//! How many will come is often unknown. A `Vec` that grows holds the old and
-//! the new copy while it moves, three times its contents at worst, where the
-//! system cannot move pages instead. So voxels are kept in pieces, which
-//! become one array when all are there, each let go as soon as it is copied.
+//! Their number is often unknown. A growing `Vec` holds the old and the new copy while it moves, up to three times its
+//! contents. So voxels are kept in pieces, which become one array at the end, each freed after it is copied.
 
 use rayon::prelude::*;
 
@@ -11,7 +9,7 @@ use super::build_error::{BuildError, MAX_SIDE};
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
-/// Sides of the bounding box from its lowest to its highest voxel.
+/// Sides of the bounding box from its lowest to its highest voxel, finest voxels.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
     let mut extent = [0; 3];
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
@@ -27,39 +25,30 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels in a piece, the first included; only one that was reserved has
-/// more. 40 MB: allocators return blocks of that size to the system at once.
+/// Voxels per piece; a reserved one may have more. 40 MB: allocators return blocks of that size to the system at once.
 const PIECE: usize = 1 << 21;
 
-/// What errors call the voxels.
+/// The voxels' name in errors.
 const VOXELS: &str = "voxels that are sorted";
 
-/// A pushed voxel: 20 bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PushedVoxel {
-    /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
-    /// halves, because eight-byte alignment would cost four bytes.
+    /// Packed index while pushing, then the Morton key. Two halves, because eight-byte alignment would cost four bytes.
     key_high: u32,
     key_low: u32,
-    /// Order of pushing.
+    /// Number of voxels pushed before.
     sequence: u32,
     pub(super) color: [u8; 3],
     pub(super) normal: PackedNormal,
 }
 
 impl PushedVoxel {
-    /// A voxel as it is pushed: the `sequence`-th, at a file index.
     pub(super) fn new(
         index: [i32; 3],
         sequence: u32,
         color: [u8; 3],
         normal: PackedNormal,
     ) -> Self {
-        let mut packed = 0u64;
-        for (axis, index) in (0u32..).zip(index) {
-            let low_bits = u64::from(index as u32) & (MAX_SIDE - 1);
-            packed |= low_bits << (axis * morton::MAX_BITS);
-        }
         let record = Self {
             key_high: 0,
             key_low: 0,
@@ -67,7 +56,7 @@ impl PushedVoxel {
             color,
             normal,
         };
-        record.with_key(packed)
+        record.with_key(morton::pack(index))
     }
 
     /// The Morton key, once sorted.
@@ -75,8 +64,7 @@ impl PushedVoxel {
         u64::from(self.key_high) << 32 | u64::from(self.key_low)
     }
 
-    /// What records are sorted by: the key, then the last pushed first. One
-    /// number, so that a comparison is two subtractions and no branch.
+    /// The sorting key: the Morton key, then the last pushed first. One number, so that a comparison has no branch.
     fn order(&self) -> u128 {
         u128::from(self.key()) << 32 | u128::from(!self.sequence)
     }
@@ -89,35 +77,28 @@ impl PushedVoxel {
         }
     }
 
-    /// With the Morton key from the lowest corner in place of the index.
+    /// With the Morton key from the lowest corner instead of the index.
     fn placed(&self, min: [i32; 3]) -> Self {
-        let packed = self.key();
-        // The extent is at most 2^21, so the low bits give the distance.
-        let at = [0, 1, 2].map(|axis| {
-            let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
-            low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)
-        });
-        self.with_key(morton::key(at))
+        self.with_key(morton::key_from(self.key(), min))
     }
 }
 
-/// All voxels pushed, 20 bytes each, and at most a piece's room besides.
+/// All voxels pushed, 20 bytes each, and room for at most one piece.
 #[derive(Debug, Default)]
 pub(super) struct PushedVoxels {
-    /// None is empty, but for a last one that was reserved.
+    /// Only the last may be empty, if it was reserved.
     pieces: Vec<Vec<PushedVoxel>>,
 }
 
 impl PushedVoxels {
-    /// Voxels held.
     pub(super) fn len(&self) -> usize {
         self.pieces.iter().map(Vec::len).sum()
     }
 
-    /// Makes room for so many more in one piece, which then need not be copied.
+    /// Reserves memory in one piece, which then need not be copied.
     pub(super) fn reserve(&mut self, more: usize) {
         let room = self.pieces.last().map_or(0, |p| p.capacity() - p.len());
-        // Less than a piece comes by itself.
+        // Less than a piece is reserved when needed.
         if more <= room.max(PIECE) {
             return;
         }
@@ -128,14 +109,11 @@ impl PushedVoxels {
         self.pieces.push(Vec::with_capacity(more));
     }
 
-    /// Adds a voxel.
-    ///
-    /// # Errors
-    /// Where the system refuses the memory for another piece.
+    /// Adds a voxel. Fails when the system refuses memory for another piece.
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
-            // The first grows from little: most objects in tests are small.
+            // The first grows: most objects in tests are small.
             None => self.pieces.push(vec![record]),
             Some(_) => {
                 let mut piece = budget::room(VOXELS, PIECE)?;
@@ -146,11 +124,8 @@ impl PushedVoxels {
         Ok(())
     }
 
-    /// Sorts by Morton key from the lowest corner, and keeps the last pushed
-    /// of those at one index.
-    ///
-    /// # Errors
-    /// Where the system refuses the memory for one array.
+    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays. Fails when the system
+    /// refuses memory for one array.
     pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         let mut sorted = self.in_one(min)?;
         sorted.par_sort_unstable_by_key(PushedVoxel::order);
@@ -158,9 +133,8 @@ impl PushedVoxels {
         Ok(sorted)
     }
 
-    /// All voxels in one array, with their Morton keys. A piece's memory goes
-    /// back as the array's pages are first written, so both together hold
-    /// each voxel once and one piece twice.
+    /// All voxels in one array, with their Morton keys. A piece is freed before the next one is copied, so memory holds
+    /// at most one piece twice.
     fn in_one(mut self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         if self.pieces.len() == 1
             && let Some(mut only) = self.pieces.pop()

@@ -1,4 +1,4 @@
-//! An array of the graph: owned, or a window of a mapped file.
+//! An array of the graph: owned, or a range of a mapped file.
 
 use std::fmt;
 use std::ops::{Deref, Range};
@@ -7,9 +7,8 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use memmap2::Mmap;
 
-/// An array in memory or in a mapped file; reads as a slice either way.
+/// An array in memory or in a mapped file; derefs to a slice.
 pub enum Store<T: Pod> {
-    /// Held in memory.
     Owned(Vec<T>),
     /// A range of bytes of a mapped file, aligned for `T`.
     Mapped(Arc<Mmap>, Range<usize>),
@@ -33,6 +32,17 @@ impl<T: Pod> From<Vec<T>> for Store<T> {
     }
 }
 
+impl<T: Pod> Default for Store<T> {
+    fn default() -> Self {
+        Self::Owned(Vec::new())
+    }
+}
+
+impl<T: Pod> FromIterator<T> for Store<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(items: I) -> Self {
+        Self::Owned(items.into_iter().collect())
+    }
+}
 impl<T: Pod> Clone for Store<T> {
     fn clone(&self) -> Self {
         match self {

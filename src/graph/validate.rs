@@ -2,7 +2,7 @@
 
 use super::{Graph, MAX_DEPTH, place};
 
-/// What is wrong with a graph: an array, an entry, and what it should be.
+/// A broken invariant of a graph.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{array} entry {index}: expected {expected}")]
 pub struct Invalid {
@@ -10,11 +10,11 @@ pub struct Invalid {
     pub array: &'static str,
     /// Entry of the array; 0 for a field that is not an array.
     pub index: usize,
-    /// What should have been there, and what was.
+    /// The expected value, and the found one.
     pub expected: String,
 }
 
-/// Children by mask.
+/// Number of children by mask.
 const CHILDREN: [u8; 256] = {
     let mut table = [0; 256];
     let mut mask = 0;
@@ -48,18 +48,12 @@ impl Graph {
     /// Checks every invariant, reading every entry.
     ///
     /// - `depth` at most [`MAX_DEPTH`]; placement finite, voxel size above 0;
-    /// - as many normals as colours, and as many opacities or none, at least one, fewer than `u32::MAX`; no
-    ///   more masks than nodes; an entry of `first` for each mask; the root among the nodes;
-    /// - child lists within `links`, or within the nodes where there are no
-    ///   links; links within the nodes;
-    /// - stored level by level: levels follow each other without gap, none
-    ///   empty, the root is the first node and the only one of its level, the
-    ///   finest level has no masks, children are of the level below; in a
-    ///   tree, each node is the child of exactly one, in order;
-    /// - `voxels` is what counting gives.
-    ///
-    /// # Errors
-    /// Names the first entry that is wrong.
+    /// - 1 to `u32::MAX - 1` colours, as many normals, as many opacities or none; no more masks than nodes; an entry of
+    ///   `first` per mask; the root among the nodes;
+    /// - child lists within `links`, or within the nodes where there are no links; links within the nodes;
+    /// - stored level by level: no level is empty, the root is the only node of its level, the finest level has no
+    ///   masks, children are of the level below; in a tree, each node is the child of exactly one, in order;
+    /// - `voxels` is the counted number.
     pub fn validate(&self) -> Result<(), Invalid> {
         self.validate_shape()?;
         self.validate_levels()?;
@@ -75,7 +69,7 @@ impl Graph {
         })
     }
 
-    /// Lengths and single fields: no entry of an array of nodes is read.
+    /// Checks lengths and single fields. Reads no array of nodes.
     pub(super) fn validate_shape(&self) -> Result<(), Invalid> {
         let nodes = self.color.len();
         check(self.depth <= MAX_DEPTH, "depth", 0, || {
@@ -157,15 +151,14 @@ impl Graph {
         })
     }
 
-    /// Whether children are as they should be in a tree stored level by level,
-    /// whose lengths and levels are sound; false for other graphs. A quick test
-    /// that does not find out what is wrong.
+    /// Whether children are sound in a tree stored level by level whose lengths and levels are sound; false for other
+    /// graphs. A quick test that does not locate the fault.
     fn is_sound_tree(&self) -> bool {
         if self.level_start.is_empty() || !self.links.is_empty() {
             return false;
         }
         let mut sound = true;
-        // The next node that has no parent yet.
+        // The next node without a parent.
         let mut orphan = 1u32;
         for (level, pair) in self.level_start.windows(2).enumerate() {
             let has_masks = |at: u32| (at as usize).min(self.mask.len());
@@ -176,7 +169,7 @@ impl Graph {
                 // Wraps only where there are more children than nodes.
                 orphan = orphan.wrapping_add(u32::from(CHILDREN[usize::from(mask)]));
             }
-            // The children of a level are all of the next, and no others.
+            // The children of a level are all of the next.
             sound &= orphan == self.level_start.get(level + 2).copied().unwrap_or(pair[1]);
         }
         sound
@@ -191,13 +184,9 @@ impl Graph {
                 format!("a node below {nodes}, not {link}")
             })?;
         }
-        let slots = if linked {
-            self.links.len() as u64
-        } else {
-            nodes
-        };
+        let slots = if linked { self.links.len() } else { self.len() } as u64;
         let mut level = 0;
-        // In a tree stored level by level: the next node that has no parent yet.
+        // In a tree stored level by level: the next node without a parent.
         let mut orphan = 1u64;
         let lists = self.mask.iter().zip(self.first.iter()).enumerate();
         for (index, (&mask, &first)) in lists {

@@ -1,4 +1,4 @@
-//! One voxel of a file, before it becomes part of a graph.
+//! One voxel of a file.
 
 use super::PackedNormal;
 
@@ -9,6 +9,6 @@ pub struct Voxel {
     pub index: [i32; 3],
     /// sRGB colour.
     pub color: [u8; 3],
-    /// Normal, where the file has one.
+    /// None: the file has none.
     pub normal: Option<PackedNormal>,
 }

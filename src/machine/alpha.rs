@@ -1,13 +1,10 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, R11): how much of its
-//! outline a voxel covers, and what that adds to a sample.
+//! Blending, under the rule `alpha` (`SPEC.md`, R11): the share of its outline that a voxel covers, and its contribution
+//! to a sample.
 //!
-//! At most three sides of a voxel are seen. The share of each is the eye's
-//! distance along its axis over the sum of the three, in sixteenths. A side counts
-//! by the square of its cosine, which is unbiased over all directions. Both are
-//! quotients of few bits, computed for each voxel that is drawn. Counts and
-//! opacities of the three sides give the voxel's weight, and a sample takes that
-//! weight times the light that it still lets through. Products are sums of
-//! shifts over the at most nine bits of one factor.
+//! At most three sides of a voxel are visible. The share of each is the eye's distance along its axis divided by the sum
+//! of the three, in sixteenths. A side counts by the square of its cosine, which is unbiased over all directions. Counts
+//! and opacities of the sides give the voxel's weight, and a sample takes that weight times its transmittance. Products
+//! are sums of shifts over the at most nine bits of one factor.
 
 use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
@@ -20,20 +17,19 @@ use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, SHARES};
 
 /// Bits of a share of a direction, 0 to 16.
 const SHARE_BITS: u32 = 5;
-/// Bits of a weight, and of the part of light that a sample lets through: 0 to 256.
+/// Bits of a weight, and of a sample's transmittance: 0 to 256.
 const WEIGHT_BITS: u32 = 9;
-/// Bits of a weight times a part of light, with a half added.
+/// Bits of a weight times a transmittance, plus a half.
 const PRODUCT_BITS: u32 = 17;
 /// Bits of a colour in linear light times a share, and of the sum of those.
 const LIGHT_BITS: u32 = 24;
 /// Bits of a colour in linear light.
 const COLOR_BITS: u32 = 16;
-/// Bits of an opacity.
 const OPACITY_BITS: u32 = 4;
-/// The weight of a voxel that lets nothing through.
+/// The weight of an opaque voxel.
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
-/// By axis, the sixteenths of a voxel's outline that the side that is seen counts for.
+/// By axis, the sixteenths of a voxel's outline for which the visible side counts.
 #[derive(Debug, Clone, Copy)]
 struct VisibleSides([Narrow; 3]);
 
@@ -80,8 +76,7 @@ impl VisibleSides {
         Self(counts)
     }
 
-    /// A voxel's weight, 0 to 256. `high`: by axis, whether the eye is on the
-    /// side of the greater coordinate.
+    /// A voxel's weight, 0 to 256. `high`: by axis, whether the eye is on the side of the greater coordinate.
     fn weight<P: Probe>(&self, dp: &mut Datapath<P>, opacity: Opacity, high: [bool; 3]) -> Narrow {
         let mut weight = Narrow::ZERO;
         let mut is_whole = false;
@@ -92,8 +87,8 @@ impl VisibleSides {
             let eighth = dp.shr_narrow(OPACITY_BITS, opacity, 3);
             let covered = dp.add_narrow(SHARE_BITS, opacity, eighth);
             weight = plus_product(dp, WEIGHT_BITS, weight, covered, count, SHARE_BITS);
-            // Sixteen sixteenths: one bit. Such a side lets nothing through, however flat the angle. Otherwise a ray that
-            // grazes a wall would pass many of its voxels, since each covers little from there.
+            // Sixteen sixteenths: one bit. Such a side is opaque at any angle. Otherwise a ray that grazes a wall would
+            // pass many of its voxels, since each covers little from there.
             is_whole |= dp.bit_narrow(covered, OPACITY_BITS);
         }
         let weight = dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight);
@@ -115,8 +110,7 @@ fn wires<const N: usize>(numbers: [Narrow; N], bits: u32) -> [Short; N] {
     numbers.map(|number| Short::narrow(number, bits))
 }
 
-/// `16 a / all` to the nearest, halves up, by a restoring divide of one
-/// integer step and five more. `0 <= a <= all`.
+/// `16 a / all` to the nearest, halves up, by a restoring divide. `0 <= a <= all`.
 fn sixteenths_of<P: Probe>(dp: &mut Datapath<P>, a: Word, all: Word) -> Word {
     let (mut remainder, bit) = dp.divide_integer_step(a, all, 0);
     let mut quotient = dp.shift_in(Word::ZERO, bit);
@@ -129,8 +123,7 @@ fn sixteenths_of<P: Probe>(dp: &mut Datapath<P>, a: Word, all: Word) -> Word {
     dp.shr(up, 1)
 }
 
-/// The square root of the sum of three squares, to the nearest whole number:
-/// 9 to 16, for numbers whose sum is 16.
+/// The square root of the sum of three squares of numbers whose sum is 16, to the nearest whole number: 9 to 16.
 fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
     let two = dp.add_narrow(WEIGHT_BITS, x, y);
     let all = dp.add_narrow(WEIGHT_BITS, two, z);
@@ -143,12 +136,10 @@ fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
 }
 
 const LEAST_LENGTH: u32 = 9;
-/// `n (n + 1)` for `n` from 9 to 15, which is `(n + 1/2)^2 - 1/4`: the root of a
-/// greater whole number is above `n + 1/2`.
+/// `n (n + 1)` for `n` from 9 to 15, which is `(n + 1/2)^2 - 1/4`: roots of greater whole numbers are above `n + 1/2`.
 const HALF_WAYS: [u32; 7] = [90, 110, 132, 156, 182, 210, 240];
 
-/// A square of at most 256 over a length that is no less than its root, to the
-/// nearest, halves up.
+/// A square of at most 256 divided by a length that is at least its root, to the nearest, halves up.
 fn quotient_of<P: Probe>(dp: &mut Datapath<P>, square: Narrow, length: Narrow) -> Narrow {
     let doubled = dp.shl_narrow(WEIGHT_BITS + 1, square, 1);
     let length = dp.widened(length);
@@ -187,22 +178,20 @@ fn plus_product<P: Probe>(
 pub(super) struct BlendColor {
     /// 0 to 256.
     pub(super) weight: Narrow,
-    /// Linear light, 0 to 65535 a channel.
+    /// Linear light, 0 to 65535 per channel.
     pub(super) light: [Narrow; 3],
 }
 
-/// The state of a sample after it took a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct BlendOutcome {
-    /// Whether the voxel is the first that the sample took.
+    /// The voxel is the first of the sample.
     pub(super) is_first: bool,
-    /// Whether the sample is opaque enough.
+    /// The sample is opaque enough.
     pub(super) is_full: bool,
 }
 
 impl BlendColor {
-    /// Of a voxel with these opacities and this light; `None` if its weight is
-    /// zero and it adds nothing. `eye_floor`: the eye in the units of `cube`.
+    /// `None`: the weight is zero. `eye_floor`: the eye in the units of `cube`.
     pub(super) fn of_voxel<P: Probe>(
         dp: &mut Datapath<P>,
         eye: &BlendEye,

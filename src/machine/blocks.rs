@@ -1,6 +1,5 @@
-//! The blocks of the machine: combinational parts that a designer would build and
-//! test separately. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
-//! `shiftvox model --vectors` writes their inputs and outputs.
+//! The blocks of the machine: combinational parts that a designer would build and test separately.
+//! [`Datapath::tap`](hwmodel::Datapath::tap) reports their inputs and outputs, and `shiftvox model --vectors` writes them.
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
@@ -22,8 +21,7 @@ macro_rules! numbered {
 }
 
 numbered! {
-    /// A block of the machine that works without memory: its outputs follow
-    /// from its inputs and the frame's constants.
+    /// A block without memory: its outputs follow from its inputs and the frame's constants.
     Block, 38:
     /// Is the quadtree node full?
     Filled,
@@ -35,7 +33,7 @@ numbered! {
     ToScreenDivide,
     /// Is a node, by its depth, within the level of detail?
     DetailDepth,
-    /// Extent that a clip-space record of one sample may have.
+    /// Size limit of a clip-space record.
     SizeLimit,
     /// Is a clip-space record no larger, along one axis?
     SizeClip,
@@ -77,7 +75,7 @@ numbered! {
     NodeChoice,
     /// The middle of a cage, one coordinate.
     CageCentre,
-    /// In which half a centre lies, and where there.
+    /// The half that contains a centre, and the centre's place there.
     CentreHalf,
     /// The sample that holds a screen-space centre, along one axis.
     CentreSample,
@@ -85,7 +83,7 @@ numbered! {
     CubePlanes,
     /// From which side rays reach a cube that is not before the eye.
     CubeFront,
-    /// On which side of a plane a node's samples are.
+    /// The side of a plane on which a node's samples are.
     PlaneSide,
     /// Sides of a cube's planes to: covered, outside, mixed.
     PlaneCover,
@@ -93,7 +91,7 @@ numbered! {
     FillUpdate,
     /// The way from the eye to a voxel along one axis.
     BlendWay,
-    /// A voxel's outline shared among the three sides that are seen.
+    /// A voxel's outline divided among the three visible sides.
     BlendShares,
     /// The weights of the three sides, from their shares.
     BlendCounts,
@@ -110,24 +108,23 @@ impl From<Block> for u32 {
 }
 
 numbered! {
-    /// A port between a record's turn and the machine's memories. A probe sees it as a block, with a number after those
-    /// of all [`Block`]s: its input is the address, and its output what is written or read there.
+    /// A port between a record's turn and the machine's memories. For a probe it is a block, numbered after all
+    /// [`Block`]s: its input is the address, and its output the written or read data.
     Port, 8:
     /// A record is taken from the stack: its turn begins.
     Pop,
     /// A record is put on the stack.
     Push,
-    /// A fill vector is read.
     FillRead,
     /// A fill vector is written.
     FillWrite,
-    /// A node is read: which children it has, and where they begin.
+    /// A node is read: its mask and its first child.
     NodeRead,
     /// The attributes of a node are read. The record loop does not use them.
     AttributeRead,
     /// A pixel is written: the node that it shows.
     PixelWrite,
-    /// Where parents lie on the stack: a record is in registers, new (0) or restored (1).
+    /// With parents on the stack: a record is in registers, new (0) or restored (1).
     Made,
 }
 

@@ -1,14 +1,12 @@
-//! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, held
-//! in either of two ways: eight corners (the image-order paper) or one corner and
-//! three edges.
+//! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, as eight corners (the image-order paper)
+//! or as one corner and three edges.
 //!
-//! A cage coordinate gives its children's by adds and shifts, and the least
-//! and the greatest of its vertices. A cage is two coordinates in screen space (x,
-//! y), three in clip space (X, Y, W).
+//! A cage coordinate yields its children's by adds and shifts, and the least and the greatest of its vertices. A cage is
+//! two coordinates in screen space (x, y), three in clip space (X, Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
-/// Evaluates an expression with the type of cage coordinate that a set-up's records have.
+/// Evaluates an expression with the type of a set-up's cage coordinates.
 macro_rules! with_cage {
     ($setup:expr, $coordinate:ident => $body:expr) => {
         match $setup.options.cage {
@@ -27,18 +25,16 @@ pub(super) use with_cage;
 
 /// One coordinate of eight vertices.
 pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
-    /// The vertices of a parallelepiped with this corner and these edges
-    /// (along x, y, z).
+    /// The vertices of a parallelepiped with this corner and these edges (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
     /// All numbers of the children's coordinates.
     type Pool: Copy;
 
-    /// Computes the children's numbers. The children's vertices lie between
-    /// this coordinate's least and greatest.
+    /// Computes the children's numbers. The children's vertices lie between this coordinate's least and greatest.
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
 
-    /// The coordinate of one child, selected from the pool: wires, no operation.
+    /// The coordinate of one child, selected from the pool without an operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
     /// The numbers from which children are made one at a time.
@@ -47,7 +43,7 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// Computes the numbers from which children are made.
     fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed;
 
-    /// The coordinate of one child, as [`child`](Self::child) has it.
+    /// The coordinate of one child, equal to that of [`child`](Self::child).
     fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self::Seed, octant: usize) -> Self;
 
     /// The children's coordinates, in Morton order, selected from the pool.
@@ -81,7 +77,6 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The parent's coordinate, of a child in an octant whose numbers were halved without a remainder.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self;
 
-    /// All vertices moved by `by`.
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
 
     /// The coordinate of the vertices' quotients `x / w`, computed by `divide`.
@@ -123,10 +118,8 @@ impl CageCoordinate for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The image-order paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the
-    /// eight children, by 4 midpoints along x, then 6 along y, then 9 along z.
-    /// The order is normative: midpoints are rounded down, so that another order
-    /// differs in the last bit.
+    /// The image-order paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the eight children, by 4 midpoints
+    /// along x, then 6 along y, then 9 along z. The order is normative, because midpoints are rounded down.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
@@ -168,8 +161,7 @@ impl CageCoordinate for Corners {
 
     #[inline]
     fn child(pool: &[Word; 27], octant: usize) -> Self {
-        // Index of the child's lowest corner. Masked, so that no bounds check
-        // is left.
+        // Index of the child's lowest corner, masked to avoid a bounds check.
         const LOWEST: [u8; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
         let low = usize::from(LOWEST[octant & 7]);
         Self(std::array::from_fn(|corner| {
@@ -260,8 +252,7 @@ impl CageCoordinate for CornerAndEdges {
         Self { corner, edges }
     }
 
-    /// Halves edges towards zero (the sign bit is added before the shift), so
-    /// that children never leave their parent; seven adds give the eight corners.
+    /// Halves edges towards zero (the sign bit is added before the shift), so that children stay within their parent.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
         let Self { corner, edges } = self.seed(dp);

@@ -1,5 +1,4 @@
-//! The canvas: draws samples and updates the fill vectors
-//! (image-order paper, 3.3).
+//! The canvas: draws samples and updates the fill vectors (image-order paper, 3.3).
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -11,14 +10,13 @@ use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
 use crate::frame::{Frame, QuadNode};
 
-/// The entry that a record writes to the samples where it is drawn.
+/// The entry that a record writes to its samples.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
-    /// Octree node.
     pub(super) node: u32,
     /// The voxel's lowest corner in finest voxels, and its level.
     pub(super) voxel: [i32; 4],
-    /// Weight and colour under the rule that blends; else `None`.
+    /// Weight and colour under the rule that blends.
     pub(super) color: Option<BlendColor>,
 }
 
@@ -73,15 +71,14 @@ impl Canvas<'_> {
         let shown = Short::unsigned(paint.node, ADDRESS_BITS);
         Port::PixelWrite.tap(dp, at as u64, &shown);
         self.frame.node[at] = paint.node;
-        // Empty in a frame of nodes alone.
+        // Empty in a frame of nodes only.
         if let Some(to) = self.frame.voxel.get_mut(at) {
             *to = paint.voxel;
         }
         counts.samples_drawn += 1;
     }
 
-    /// Blends a voxel into sample number `at`, which shows the first voxel that
-    /// it takes. Returns whether the sample is opaque enough.
+    /// Blends a voxel into sample number `at`, which shows its first voxel. Returns whether the sample is opaque enough.
     fn blend<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -102,8 +99,8 @@ impl Canvas<'_> {
         taken.is_full
     }
 
-    /// Draws all samples of `quad` inside a silhouette that are not full yet. Returns the level of the last node
-    /// that was divided, at or below `quad`; its parent's if that was not.
+    /// Draws all samples of `quad` inside a silhouette that are not full. Returns the level of the last node that was
+    /// divided, at or below `quad`; its parent's if that was not.
     pub(super) fn draw_silhouette<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -121,7 +118,7 @@ impl Canvas<'_> {
             Cover::Some => {
                 divided = quad.level;
                 for quadrant in self.open_quadrants(dp, quad) {
-                    // Hardware has the planes of one node, and takes them back up a level at a time.
+                    // Hardware has the planes of one node, and restores them one level at a time.
                     dp.next_step(divided - quad.level);
                     let inner = silhouette.in_quadrant(dp, quadrant);
                     dp.next_step(0);
@@ -133,7 +130,7 @@ impl Canvas<'_> {
         divided
     }
 
-    /// Draws all samples of a node that are not full yet.
+    /// Draws all samples of a node that are not full.
     fn draw_all<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -151,8 +148,8 @@ impl Canvas<'_> {
         }
     }
 
-    /// Whether a sample of `quad` inside a silhouette is not full yet. `Err`: none is, and this is the level of the last
-    /// node that was divided, as of [`Self::draw_silhouette`].
+    /// Whether a sample of `quad` inside a silhouette is not full. `Err`: none is; with the level of the last divided node,
+    /// as in [`Self::draw_silhouette`].
     pub(super) fn sees<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
@@ -184,7 +181,6 @@ impl Canvas<'_> {
         Err(divided)
     }
 
-    /// The quadrants of a node that are not full.
     fn open_quadrants<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

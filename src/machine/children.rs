@@ -1,5 +1,5 @@
-//! Subdivision: a record's children, in the order of R9 (`SPEC.md`), their vertices, and which of
-//! them are pushed (image-order paper, 3.2 and 3.4).
+//! Subdivision: a record's children, in the order of R9 (`SPEC.md`), their vertices, and which of them are pushed
+//! (image-order paper, 3.2 and 3.4).
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -14,7 +14,7 @@ use super::state::{Job, Traversal};
 use super::watch::{Event, Watch};
 
 impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
-    /// Makes a record's children and pushes those that can be seen.
+    /// Makes a record's children and pushes the visible ones.
     pub(super) fn subdivide<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -47,8 +47,8 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         }
     }
 
-    /// Pushes the children that exist, the farthest first. `push`, given the
-    /// child's octant and cube, returns whether the child was pushed.
+    /// Pushes the existing children, the farthest first. `push` receives the child's octant and cube, and returns whether
+    /// it pushed the child.
     #[inline(always)]
     fn push_children<P: Probe>(
         &mut self,
@@ -70,7 +70,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         }
     }
 
-    /// Pushes a child in clip space, if it can be seen. `planes` are its parent's, in which it has an octant.
+    /// Pushes a child in clip space, if it is visible. `planes` are its parent's, in which it has an octant.
     pub(super) fn push_clip_child<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -96,7 +96,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     }
 }
 
-/// The centre of a cube that is subdivided, and its octants, nearest first.
+/// The centre of a cube, and its octants, nearest first.
 #[inline(always)]
 pub(super) fn centre_and_order<P: Probe>(
     dp: &mut Datapath<P>,

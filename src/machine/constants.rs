@@ -1,7 +1,5 @@
-//! The frame's constants as machine words, loaded before the first record.
-//!
-//! The only module within the machine that multiplies: on the host, once a
-//! frame. Every load checks that the constant fits its word.
+//! The frame's constants as machine words, loaded before the first record. The only module of the machine that
+//! multiplies, on the host. Every load checks that the constant fits its word.
 
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
@@ -10,33 +8,30 @@ use crate::project::FrameSetup;
 use crate::project::options::{OutlineRule, ShiftSum};
 use crate::project::vector::cross;
 
-/// How a clip-space box is compared with a bisector of the quadtree.
+/// Comparison of a clip-space box with a bisector of the quadtree.
 #[derive(Debug, Clone)]
 pub(super) enum Margin {
-    /// As it is: half-open boxes.
+    /// Half-open boxes.
     Plain,
-    /// Widened by `2^-shift` samples on each side, closed: as much as the
-    /// change to screen space may add.
+    /// Closed boxes, widened by `2^-shift` samples on each side: the most that the change to screen space may add.
     Grow(i32),
-    /// Narrowed by half a sample on each side, closed: a quadrant counts only
-    /// if the box holds one of its sample points. Only under the rules that draw
-    /// outlines, which never leave clip space.
+    /// Closed boxes, narrowed by half a sample on each side: a quadrant counts only if the box contains one of its
+    /// sample points. Only under the rules that draw outlines, which never leave clip space.
     Gap,
 }
 
-/// Size, in units of the last place of a screen position, up to which a record
-/// is drawn as a solid, with children or without. Rounded midpoints cannot separate
-/// vertices so near to each other.
+/// Size, in units of the last place of a screen position, up to which a record is drawn as a solid. Rounded midpoints
+/// cannot separate closer vertices.
 const LEAST_SIZE: i64 = 4;
 
-/// Records across the near plane are dropped once the depth that they span is
-/// less than the near plane's, shifted right by this.
+/// Records across the near plane are dropped if the depth that they span is less than the near plane's, shifted right by
+/// this.
 const NEAR_CROSSING_SHIFT: u32 = 6;
 
-/// The eye, as the directions to voxels are taken from it where they blend.
+/// The eye, for directions to blended voxels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendEye {
-    /// Places by which coordinates are shifted right first.
+    /// Places by which coordinates are shifted right.
     pub(super) shift: u32,
     /// The eye in object space, rounded down, shifted.
     pub(super) at: [Word; 3],
@@ -52,10 +47,8 @@ impl BlendEye {
     }
 }
 
-/// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
-    /// Rule by which a voxel's samples are found.
     pub(super) outline: OutlineRule,
     /// `Some` under the rule that blends.
     pub(super) blend_eye: Option<BlendEye>,
@@ -69,18 +62,15 @@ pub(super) struct Constants {
     pub(super) level_bound: u32,
     /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
-    /// Places to the left, then to the right, by which a number of half
-    /// samples becomes a screen position: one less than `screen_frac`.
+    /// Places to the left, then to the right, that turn half samples into screen positions: one less than `screen_frac`.
     pub(super) half_sample_places: [u32; 2],
-    /// Whether the tolerance is a number of samples, not infinite.
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
-    /// As [`Margin::Grow`], for the picture's edges, where boxes are never
-    /// narrowed.
+    /// As [`Margin::Grow`], for the picture's edges, where boxes are never narrowed.
     pub(super) grow: Option<i32>,
     /// Samples that a voxel drawn at its centre may span.
     pub(super) size_limit: ShiftSum,
-    /// Samples up to which a node is drawn as a solid, if any is.
+    /// Samples up to which a node is drawn as a solid.
     pub(super) lod_limit: Option<ShiftSum>,
     /// `size_limit` and `lod_limit` in screen units, at least [`LEAST_SIZE`].
     pub(super) size_limit_screen: Word,
@@ -90,14 +80,12 @@ pub(super) struct Constants {
     pub(super) near: Word,
     /// Depth that a record across the near plane must span to be subdivided.
     pub(super) near_crossing: Word,
-    /// By level, least depth of a record that may change to screen space, if any
-    /// may.
+    /// By level, least depth of a record that may change to screen space.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a clip-space node that level of detail draws as a
-    /// solid, if it draws any.
+    /// By level, least depth of a clip-space node that level of detail draws as a solid.
     pub(super) lod_depth: Vec<Option<Word>>,
-    /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded
-    /// down and up, and brought to just beyond the object if it is far away.
+    /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded down and up, and moved to just beyond
+    /// the object if it is far away.
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     /// Whether the edges' clip vectors, as columns, have a positive determinant.
@@ -115,7 +103,7 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Loads a frame; no probe sees it.
+    /// Loads a frame; probes do not see it.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         let options = &setup.options;
         let outline = options.coverage.outline_rule();
@@ -133,7 +121,7 @@ impl Constants {
             };
             depths.iter().map(depth).collect()
         };
-        // All eyes beyond the object compare alike, so a far eye is moved to its border.
+        // All eyes beyond the object compare equally, so a far eye is moved to its border.
         let beyond = (1i64 << (setup.depth + setup.sub_levels)) + 1;
         let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, beyond)));
         let screen_frac = setup.format.frac();
@@ -151,8 +139,7 @@ impl Constants {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let mut plane = |a: [i64; 3], b: [i64; 3]| {
-                    // Beyond 64 bits it is clamped to a number that no format
-                    // holds, so that the load overflows as it must.
+                    // Beyond 64 bits it is clamped to a number that no format holds, so that the load overflows.
                     cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c)))
                 };
                 let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
@@ -201,10 +188,9 @@ impl Constants {
     }
 }
 
-/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on. A level without a depth has the greatest word. Under the rules that draw outlines the constants of silhouette
-/// planes follow (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
-#[must_use]
+/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`. A level without a
+/// depth has the greatest word. Under the rules that draw outlines the constants of silhouette planes follow
+/// (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);
@@ -256,7 +242,7 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 
-/// With 64 bits; beyond them the nearest.
+/// Clamps to 64 bits.
 fn clamped(value: i128) -> i64 {
     let most = if value < 0 { i64::MIN } else { i64::MAX };
     i64::try_from(value).unwrap_or(most)

@@ -1,16 +1,15 @@
-//! The table of the machine's counters. It feeds the frame's statistics, their descriptions in reports, and the
-//! fields that the steps count in. A new counter is a row here and a line where the event occurs.
+//! The machine's counters: one table for the frame's statistics, their descriptions, and the fields in which the steps
+//! count. A new counter is a row here and a line where the event occurs.
 
 use crate::project::Stats;
 
-/// A counter of the machine.
 #[derive(Debug, Clone, Copy)]
 pub struct CounterInfo {
-    /// Its name in statistics, and its field in the machine.
+    /// Name in statistics, and field in the machine.
     pub name: &'static str,
-    /// The things that it counts.
+    /// The counted things.
     pub unit: &'static str,
-    /// The event that it counts, in one sentence.
+    /// The counted event.
     pub meaning: &'static str,
     /// The files of `src/machine` that count.
     pub counted_in: &'static [&'static str],

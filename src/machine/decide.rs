@@ -1,5 +1,5 @@
 //! The work on one record without its children: it is changed to screen space, then drawn or dropped (`SPEC.md`, R7, and
-//! R10 for the graph's depth), or left to be subdivided.
+//! R10 for the graph's depth), or subdivided.
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -18,11 +18,9 @@ use super::undrawn::first_undrawn;
 use super::verdict::{Verdict, is_hidden, verdict};
 use crate::frame::QuadNode;
 
-/// The work that remains for a record.
 pub(super) enum RemainingWork {
     /// None: it is drawn, hidden or dropped.
     Nothing,
-    /// Its children are to be pushed.
     Children,
 }
 
@@ -45,7 +43,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
 
     dp.stage(Stage::OnePixel);
     let cube = &mut record.cube;
-    // Where leaf masks tell leaves apart, a record reads its node only if it is subdivided.
+    // With leaf masks, a record reads its node only if it is subdivided.
     let is_read_late = job.layout.leaf_masks;
     if !cube.solid {
         let (node, level) = (cube.node, cube.level);
@@ -96,7 +94,7 @@ fn read_node<P: Probe>(dp: &mut Datapath<P>, job: &Job<'_>, node: u32, level: u3
     }
 }
 
-/// The sample that holds a record's centre, if that is in the picture and not before the near plane.
+/// The sample that contains a record's centre, if it is in the picture and not before the near plane.
 fn centre_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -146,7 +144,7 @@ fn draw_solid<P: Probe, L: CageCoordinate>(
     canvas.draw_silhouette(dp, counts, record.place.quad, silhouette, &paint);
 }
 
-/// The node and the voxel that a record shows where it is drawn.
+/// The node and the voxel that a record shows.
 fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Paint {
     let cube = &record.cube;
     let side_log2 = c.depth - cube.voxel_level;

@@ -18,7 +18,7 @@ pub struct Machine {
     fill: Option<SizedFill>,
 }
 
-/// Fill vectors, kept from frame to frame, and the size that they are for.
+/// Fill vectors, kept from frame to frame, and their size.
 #[derive(Debug)]
 struct SizedFill {
     /// Level of the samples, samples across and down.
@@ -27,8 +27,6 @@ struct SizedFill {
 }
 
 impl Machine {
-    /// A machine with these options.
-    #[must_use]
     pub fn new(options: MachineOptions) -> Self {
         Self {
             options,
@@ -36,10 +34,7 @@ impl Machine {
         }
     }
 
-    /// Draws a frame while `probe` watches; see [`Engine::render`].
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame with a probe; see [`Engine::render`]. Fails when a word overflows under the trap policy.
     pub fn render_probed<P: Probe>(
         &mut self,
         graph: &GraphView<'_>,
@@ -51,12 +46,9 @@ impl Machine {
         Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
     }
 
-    /// Draws a frame of at most `most_records` records; if it has more, returns
-    /// `None`, and the frame's contents are of no use. Every frame ends
-    /// (`SPEC.md`, "Termination"): this is for checks of that.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame of at most `most_records` records; if it has more, returns `None`, and the frame's contents have
+    /// no meaning. For checks that every frame ends (`SPEC.md`, "Termination"). Fails when a word overflows under the
+    /// trap policy.
     pub fn render_within(
         &mut self,
         graph: &GraphView<'_>,
@@ -108,7 +100,7 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
-    /// Clears a frame, and makes fill vectors of its size with nothing drawn.
+    /// Clears a frame, and returns empty fill vectors of its size.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
         frame.set_blending(setup.options.coverage.blends());

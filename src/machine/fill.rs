@@ -1,9 +1,9 @@
-//! The fill vectors as the machine holds them: four bits for each node of the image quadtree, or the lowest two levels
-//! joined. Both decisions of R6 (`SPEC.md`) that follow from one vector are here.
+//! The machine's fill vectors: four bits per node of the image quadtree, or the lowest two levels joined. Both decisions
+//! of R6 (`SPEC.md`) that follow from one vector are here.
 //!
-//! A sample's vector is all ones or all zeros, and each bit of its parent's says the same of a sample. *Joined*,
-//! a node two levels above the samples has one word of 16 bits, one a sample, in the place of the 21 vectors
-//! from it down. The word read last stays in a register for as long as a record has its turn.
+//! A sample's vector is all ones or all zeros, like its bit in its parent's vector. *Joined*, a node two levels above the
+//! samples has one word of 16 bits, one per sample, instead of its own and its descendants' 21 vectors. The last word
+//! read stays in a register during a record's turn.
 
 use std::cell::Cell;
 
@@ -15,11 +15,9 @@ use super::quadrants::only;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
-/// Levels of fill vectors that a word takes the place of, below its own.
+/// Levels of fill vectors that a word replaces, below its own.
 const LEVELS_BELOW: u32 = 2;
-/// Samples of a word.
 const WORD_BITS: u32 = 16;
-/// A word whose samples are all drawn.
 const ALL_DRAWN: u16 = u16::MAX;
 /// No word is in the register.
 const NO_WORD: u64 = u64::MAX;
@@ -28,7 +26,7 @@ const NO_WORD: u64 = u64::MAX;
 #[derive(Debug)]
 pub(super) struct FillStore<'f> {
     vectors: &'f mut FillVectors,
-    /// Of the nodes two levels above the samples, row by row; empty where nothing is joined.
+    /// Of the nodes two levels above the samples, row by row; empty if not joined.
     words: Vec<u16>,
     /// The address of the word in the register.
     latched: Cell<u64>,
@@ -37,8 +35,7 @@ pub(super) struct FillStore<'f> {
 }
 
 impl<'f> FillStore<'f> {
-    /// Vectors as they are, or with the lowest two levels joined, where there are
-    /// so many below the tiles.
+    /// Joins the lowest two levels if the organisation says so and there are as many below the tiles.
     pub(super) fn new(
         vectors: &'f mut FillVectors,
         organisation: Organisation,
@@ -64,13 +61,12 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Level of the samples.
     pub(super) fn levels(&self) -> u32 {
         self.vectors.levels()
     }
 
-    /// A tile is begun, or a picture of one tile: each of its vectors is written, and those on the way to it. They are
-    /// as they should be already, so only a probe sees anything of it.
+    /// Begins a tile, or a picture of one tile: reports the writes of its vectors and of those above it, which are up to
+    /// date.
     pub(super) fn begin_tile<P: Probe>(&self, dp: &mut Datapath<P>, tile: QuadNode) {
         if !P::ENABLED {
             return;
@@ -98,7 +94,7 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// A record begins its turn: the register holds nothing of use.
+    /// Begins a record's turn: empties the register.
     #[inline(always)]
     pub(super) fn begin_turn(&self) {
         self.latched.set(NO_WORD);
@@ -115,7 +111,7 @@ impl<'f> FillStore<'f> {
         self.peek(node)
     }
 
-    /// Whether all of a record's node is drawn by the time of its turn.
+    /// Whether a record's node is full at the beginning of its turn.
     #[inline(always)]
     pub(super) fn is_full<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode) -> bool {
         dp.stage(Stage::Filled);
@@ -130,10 +126,9 @@ impl<'f> FillStore<'f> {
 
     /// Whether the search for a box's node rejects the box, which overlaps `quadrants` of `quad`: none of them is open.
     ///
-    /// The search never steps into a full node, so it needs no test for one, and a count of such steps is always zero. It
-    /// continues only with a quadrant that is open in its parent's vector, and a node that becomes full sets its bit
-    /// there ([`Self::mark`]). Only the node where the search begins may be full: a parent that draws its children one
-    /// by one may have filled its own node. Then no quadrant is open, and the box is rejected here.
+    /// The search never enters a full node. It continues only with an open quadrant, and a node that becomes full sets
+    /// its bit in its parent's vector ([`Self::mark`]). Only the first node of the search may be full: a parent that draws
+    /// its children one by one may have filled its own node. Then no quadrant is open, and the box is rejected here.
     #[inline]
     pub(super) fn rejects<P: Probe>(
         &self,
@@ -159,7 +154,7 @@ impl<'f> FillStore<'f> {
         rejects
     }
 
-    /// A node's vector.
+    /// A node's vector, unreported.
     #[inline(always)]
     pub(super) fn peek(&self, node: QuadNode) -> u8 {
         if self.is_joined(node) {
@@ -169,13 +164,12 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Puts a vector in place of a node's, and returns that. Not for joined nodes.
+    /// Replaces the vector of a node that is not joined, and returns the previous one.
     pub(super) fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         self.vectors.replace(node, vector)
     }
 
-    /// Sets a sample's vector, and in each ancestor the bit of a quadrant
-    /// that is full with it.
+    /// Sets a sample's vector, and in each ancestor the bit of a quadrant that became full.
     #[inline(always)]
     pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
         dp.stage(Stage::FillUpdate);
@@ -209,7 +203,7 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Sets a sample's bit in its word. Where that fills the word: the node above it, and its bit there.
+    /// Sets a sample's bit in its word. If that fills the word, returns the node above it, and its bit there.
     fn mark_in_word<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -219,7 +213,7 @@ impl<'f> FillStore<'f> {
         self.read_word(dp, sample);
         let word = &mut self.words[at];
         let quadrant = sample.ancestor(sample.level - 1).in_parent();
-        // Four gates a quadrant, of which one changes, beside what led here: the word is in its register.
+        // Four gates per quadrant, of which one changes; the word is in its register.
         let before = (*word >> (quadrant << 2)) as u8 & FULL;
         dp.beside(Stage::FillUpdate, |dp| {
             dp.or_bits(4, before, 1 << sample.in_parent());
@@ -247,7 +241,7 @@ impl<'f> FillStore<'f> {
         !self.words.is_empty() && node.level + LEVELS_BELOW >= self.levels()
     }
 
-    /// The node whose word holds a joined node, and the word's place.
+    /// The node whose word contains a joined node, and the word's index.
     fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
         let level = self.levels() - LEVELS_BELOW;
         let holder = node.ancestor(level);

@@ -1,5 +1,4 @@
-//! The machine: the loop of the image-order paper (`REFERENCES.md`), sections 3.1 to 3.6, in words
-//! that cannot multiply.
+//! The machine: the loop of the image-order paper (`REFERENCES.md`), sections 3.1 to 3.6, in words that cannot multiply.
 //!
 //! ```text
 //! push the object's record
@@ -12,27 +11,21 @@
 //!           unfilled quadtree node that holds it; push it if there is one
 //! ```
 //!
-//! The scalar machine defines the bits: every faster engine must draw what it
-//! draws. Every arithmetic step is a call on a
-//! [`Datapath`](hwmodel::Datapath), so that a probe sees all of it.
+//! The scalar machine defines the bits: every faster engine must draw the same. Every arithmetic step is a call on a
+//! [`Datapath`](hwmodel::Datapath), visible to a probe.
 //!
-//! Each file imports files named before it only:
+//! Each file imports only files named before it:
 //!
 //! - data: `blocks`, `counters`, `options`, `cage`, `record`, `constants`;
-//! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`,
-//!   `to_screen`, `size`, `alpha`, `canvas`, `undrawn`, `path`;
+//! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`, `alpha`, `canvas`,
+//!   `undrawn`, `path`;
 //! - steps of the loop: `watch`, `state`, `verdict`, `decide`, `push`, `children`;
-//! - the loop: `record_loop`, and `parents`, the loop with parents on its stack,
-//!   and tiles;
-//! - `records_by_sample`, and `engine`, the machine as an
-//!   [`Engine`](crate::project::Engine);
-//! - `instruments`, which watch the machine or drive it in another way. The
-//!   machine does not depend on them.
+//! - the loop: `record_loop`, and `parents`, the loop with parents on its stack, and tiles;
+//! - `records_by_sample`, and `engine`, the machine as an [`Engine`](crate::project::Engine);
+//! - `instruments`, which observe the machine or drive it in another way.
 //!
-//! Every step takes the parts of the state (`state.rs`) that it works on, so that its
-//! signature lists its inputs and outputs. The parts are the datapath, on which it
-//! computes, the `Job`, which no step writes, the `Canvas` with its fill vectors,
-//! and the `Traversal` with its counts.
+//! Every step takes the parts of the state (`state.rs`) that it works on: the datapath, the constant `Job`, the `Canvas`
+//! with its fill vectors, and the `Traversal` with its counts.
 
 mod alpha;
 mod blocks;

@@ -1,4 +1,4 @@
-//! Settings of the machine that are not part of a frame set-up.
+//! Settings of the machine.
 
 use hwmodel::Overflow;
 use hwmodel::cycles::Organisation;
@@ -10,15 +10,11 @@ use crate::project::OCCLUSION_ORDER;
 pub struct MachineOptions {
     /// Treatment of a result that does not fit its word.
     pub overflow: Overflow,
-    /// Whether records whose quadrants are all full are rejected. The picture
-    /// is the same either way.
+    /// Whether records whose quadrants are all full are rejected; does not change the picture.
     pub reject_filled: bool,
-    /// Children by octant, nearest first, for octant 000; only tests use
-    /// another array than [`OCCLUSION_ORDER`].
+    /// Children by octant, nearest first, for octant 000; only tests use another array than [`OCCLUSION_ORDER`].
     pub order: [u8; 8],
-    /// Contents of the stack, reads for a leaf, and whether the picture is drawn by tiles.
-    /// Without the organisation of the image-order paper, only a frame's records and accesses
-    /// change, not its picture.
+    /// Organisation of stack, nodes and tiles; changes a frame's records and accesses, but not its picture.
     pub organisation: Organisation,
 }
 

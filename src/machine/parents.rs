@@ -11,16 +11,14 @@
 //!     when none is left: take the current record from the stack; end when that is empty
 //! ```
 //!
-//! The image-order paper's loop stores each child that can be seen, with its vertices, and reads it
-//! back. Here only a record that is subdivided is stored, and only while it has children left. So the
-//! stack is never deeper than the octree, and a drawn voxel is never on it. The search for a child's
-//! node is made when its turn comes, and finds more of the picture drawn. The vertices of a parent's
-//! children are kept in registers, and made again when the parent comes back from the stack. The stack
-//! holds whole parents, or a path entry of each: its node and the children that are left. Then the rest
-//! is restored from the record that the walk comes from (`path.rs`).
+//! The image-order paper's loop stores each visible child with its vertices. Here only a subdivided record is stored,
+//! while it has remaining children. So the stack is never deeper than the octree, and never contains a drawn voxel. The
+//! search for a child's node runs in its turn, when more of the picture is drawn. The vertices of a parent's children are
+//! in registers, and computed again when the parent returns from the stack. The stack contains whole parents, or a path
+//! entry of each: its node and the remaining children. Then the rest is restored from a descendant (`path.rs`).
 //!
-//! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile
-//! full from the start. Only the fill vectors above the tiles differ from one tile to the next.
+//! *Tiles*: the object is drawn once per tile of the picture, with everything outside the tile full from the start. Only
+//! the fill vectors above the tiles differ between tiles.
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Stage, Word};
@@ -39,15 +37,14 @@ use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 use crate::project::EngineError;
 
-/// A record that is subdivided, while it has children left.
+/// A subdivided record with remaining children.
 #[derive(Clone, Copy)]
 pub(super) struct Parent<L: CageCoordinate> {
     pub(super) record: Record<L>,
-    /// Children that are left, a bit for each place in the order, nearest first.
+    /// Remaining children, one bit per place in the order, nearest first.
     left: u8,
     /// Numbers of its children; `None` if it is new or was stored.
     expanded: Option<Expanded<L>>,
-    /// Whether it lies on the stack.
     is_stored: bool,
 }
 
@@ -62,7 +59,7 @@ pub(super) enum Stored<L: CageCoordinate> {
     Path(PathEntry),
 }
 
-/// The numbers from which a record's children are made: in registers.
+/// The numbers from which a record's children are computed.
 #[derive(Clone, Copy)]
 struct Expanded<L: CageCoordinate> {
     centre: [Word; 3],
@@ -86,7 +83,6 @@ impl<L: CageCoordinate> Parent<L> {
         self.left == 0
     }
 
-    /// Its entry where paths lie on the stack.
     fn entry(&self) -> PathEntry {
         let Record { cube, place, .. } = &self.record;
         PathEntry {
@@ -98,18 +94,15 @@ impl<L: CageCoordinate> Parent<L> {
         }
     }
 
-    /// Whether it is new, and so was never on the stack.
+    /// Whether it was never on the stack.
     fn is_new(&self) -> bool {
         self.left == u8::MAX
     }
 }
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was
-    /// enough.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough. Fails when a
+    /// word overflows under the trap policy.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);
@@ -123,7 +116,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The tiles of a picture of which nothing is drawn, row by row.
+    /// The tiles of an empty picture, row by row.
     pub(super) fn tiles(&self) -> Vec<QuadNode> {
         let level = self.tile_levels();
         let side = 1u32 << level;
@@ -140,7 +133,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         wanted.min(self.job.constants.levels)
     }
 
-    /// Draws all samples of the picture that are not full.
+    /// Draws all samples of the tile that are not full.
     fn draw_tile(&mut self, tile: QuadNode, most_records: u64) -> Result<bool, EngineError> {
         if self.job.organisation.stack == StackHolds::Children {
             return self.draw_object(tile, most_records);
@@ -148,7 +141,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let mut stack = Vec::new();
         let mut current = self.object(tile);
         check_trap(&self.dp)?;
-        // The record that the walk comes from.
+        // The previous record of the walk.
         let mut last = None;
         loop {
             let mut parent = match current.take().map(Stored::Whole).or_else(|| stack.pop()) {
@@ -180,7 +173,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The whole object in a tile, if it is to be subdivided; it is drawn or dropped if not.
+    /// The whole object in a tile, if it must be subdivided; otherwise it is drawn or dropped.
     pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
         let fill = &self.canvas.fill;
         self.traversal
@@ -188,7 +181,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.work_on_new()
     }
 
-    /// A parent goes to the stack. `address`: its place there.
+    /// Puts a parent on the stack at `address`.
     pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
         let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
         dp.resume(parent.record.cube.level);
@@ -205,8 +198,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
     }
 
-    /// Restores a parent from its path entry on the stack, at `address`, to continue with its children. `None`: its
-    /// quadtree node is full by now. `from`: the record that the walk comes from.
+    /// Restores a parent from its path entry on the stack, at `address`. `None`: its quadtree node is full. `from`: the
+    /// previous record of the walk.
     pub(super) fn take_back(
         &mut self,
         entry: &PathEntry,
@@ -237,8 +230,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         })
     }
 
-    /// Continues with a parent's children until one can be seen. Draws that one, or returns it if
-    /// it must be subdivided. `address`: the parent's on the stack, if it was there.
+    /// Continues with a parent's children until one is visible. Draws that one, or returns it if it must be subdivided.
+    /// `address`: the parent's on the stack, if it was there.
     pub(super) fn parent_turn(
         &mut self,
         parent: &mut Parent<L>,
@@ -298,7 +291,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         None
     }
 
-    /// Draws or drops the record that was just made, unless it must be subdivided.
+    /// Draws or drops the new record, unless it must be subdivided.
     fn work_on_new(&mut self) -> Option<Parent<L>> {
         let mut record = self.traversal.stack.pop()?;
         let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
@@ -315,8 +308,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// Shows a restored parent to the probe, without the numbers that its turn does not need: its node, which the stack
-/// has, and its least depth.
+/// Reports a restored parent to the probe, without the numbers that its turn does not need: node and least depth.
 fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: Record<L>) {
     record.cube.node = 0;
     if let Pose::Clip(clip, _) = &mut record.pose {
@@ -325,7 +317,7 @@ fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: 
     Port::Made.tap(dp, u64::from(true), &record);
 }
 
-/// Computes the numbers from which a record's children are made.
+/// Computes the numbers from which a record's children are computed.
 fn expand<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -346,17 +338,16 @@ fn expand<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// A tile's own view of the fill vectors above it: all but the path to the tile is full.
+/// A tile's own view of the fill vectors above it: everything outside the path to the tile is full.
 #[derive(Debug, Clone)]
 pub(super) struct TileView {
     tile: QuadNode,
-    /// Vectors of the nodes above the tile, from the root on, while they are not in use; then those
-    /// of the others.
+    /// Vectors of the nodes above the tile, from the root; while the view is in use, the replaced ones.
     above: Vec<u8>,
 }
 
 impl TileView {
-    /// The view of a tile that is not begun.
+    /// The view of a tile before its first record.
     pub(super) fn new(tile: QuadNode) -> Self {
         let vector = |level: u32| {
             let child = tile.ancestor(level + 1);
@@ -368,7 +359,7 @@ impl TileView {
         }
     }
 
-    /// Puts the view's vectors into their places, and keeps those that were there.
+    /// Exchanges the view's vectors with the current ones.
     pub(super) fn swap(&mut self, fill: &mut FillStore<'_>) {
         for (level, own) in (0..self.tile.level).zip(&mut self.above) {
             *own = fill.replace(self.tile.ancestor(level), *own);

@@ -1,12 +1,10 @@
 //! Restores a record's ancestor from the record.
 //!
-//! Under the rules that draw outlines every step down can be undone to the bit:
+//! Under the rules that draw outlines every step down can be undone exactly:
 //!
 //! - Edges were halved without a remainder, since no record is finer than the finest voxels.
 //! - A child's vertices and planes are its parent's, moved by its own edges.
 //! - Coordinates in a quadrant, `2x` or `2x - w`, return by an add and a shift by one place.
-//!
-//! So a parent need not be stored with its vertices: its node and the children that are left are enough.
 
 use hwmodel::{Datapath, Probe, Short, Signal, Wires};
 
@@ -16,22 +14,21 @@ use super::constants::Constants;
 use super::planes;
 use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
 
-/// The entry of a parent on the stack.
+/// A parent's entry on the stack.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathEntry {
-    /// Its octree node; with it, in hardware, which children it has and where they begin.
+    /// Octree node; in hardware with its mask and first child.
     pub(super) node: u32,
-    /// Its octree level.
     pub(super) level: u32,
-    /// The level of its quadtree node, which holds its descendants'.
+    /// The level of its quadtree node, which contains its descendants'.
     pub(super) quad_level: u32,
     /// [`ImagePlace::inside`].
     pub(super) inside: bool,
-    /// Children that are left, a bit for each place in the order.
+    /// Remaining children, one bit per place in the order.
     pub(super) left: u8,
 }
 
-/// The fields but the node, of which only the number is known here.
+/// The fields except the node.
 impl Wires for PathEntry {
     fn show(&self, to: &mut Vec<Signal>) {
         Short::unsigned(self.left, 8).show(to);
@@ -55,7 +52,7 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
     let mut quad = from.place.quad;
     while quad.level > entry.quad_level {
         out_of_quadrant(dp, constants, &mut clip, &mut planes, quad.in_parent());
-        // Hardware undoes a level at a time, of the picture or of the octree.
+        // Hardware undoes one level at a time, of the picture or of the octree.
         dp.next_step(0);
         quad = quad.ancestor(quad.level - 1);
     }
@@ -92,7 +89,7 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Vertices and planes relative to the parent of a quadrant, to which they were relative.
+/// Makes vertices and planes relative to the parent of their quadrant.
 fn out_of_quadrant<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,

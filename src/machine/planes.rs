@@ -1,11 +1,9 @@
 //! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
 //!
-//! A ray meets the inside of a cube if and only if for each axis j the four
-//! edges along j do not all pass on one side of it. The plane through the eye
-//! and the edge from `A` along `e_j` has the normal `A x e_j`; moving the edge
-//! by another edge adds a constant of the object. So children's planes follow by
-//! shifts and adds of constants, and planes relative to a quadrant by
-//! `c' = 2c + bx a + by b` (`bx`, `by`: the quadrant's column and row).
+//! A ray meets the inside of a cube if and only if for each axis j the four edges along j do not all pass on one side of
+//! it. The plane through the eye and the edge from `A` along `e_j` has the normal `A x e_j` (Plücker coordinates); moving
+//! the edge by another edge adds a constant of the object. So children's planes follow by shifts and adds of constants,
+//! and planes relative to a quadrant by `c' = 2c + bx a + by b` (`bx`, `by`: the quadrant's column and row).
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
@@ -16,12 +14,11 @@ use super::record::{Cube, Planes};
 /// Side of a plane on which all samples of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
-    /// On both, or not known yet.
+    /// On both, or unknown.
     Both,
     Positive,
     Negative,
-    /// On neither: a degenerate edge, whose line holds the eye and spans no
-    /// plane with it.
+    /// On neither: a degenerate edge, whose line contains the eye.
     Nowhere,
 }
 
@@ -71,7 +68,7 @@ impl Plane {
         let low = dp.add(self.c, self.least);
         let high = dp.add(self.c, self.greatest);
         if !dp.is_negative(low) {
-            // Zero on the node's border at most, unless the function is constant.
+            // At most zero on the node's border, unless the function is constant.
             self.side = if dp.is_zero(low) && dp.is_zero(high) {
                 Side::Nowhere
             } else {
@@ -86,8 +83,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. If that is on the plane, a tie (R8.1): of a
-    /// point right of it by an infinitesimal and below it by one infinitely smaller.
+    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal and below it by
+    /// one infinitely smaller.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -116,14 +113,14 @@ impl Plane {
     }
 }
 
-/// How much of a quadtree node a silhouette covers.
+/// Coverage of a quadtree node by a silhouette.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
-    /// No sample of the node is covered.
+    /// No sample is covered.
     None,
-    /// Some may be.
+    /// Some samples may be covered.
     Some,
-    /// All are.
+    /// All samples are covered.
     All,
 }
 
@@ -135,22 +132,19 @@ impl Cover {
     }
 }
 
-/// The silhouette of a cube, relative to a quadtree node. It is taken down the
-/// image quadtree: whole quadrants are covered or not, samples are decided by
-/// their centres.
+/// The silhouette of a cube, relative to a quadtree node. On the way down the image quadtree, whole quadrants are covered
+/// or not; samples are decided by their centres.
 #[derive(Debug, Clone)]
 pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
-    /// Of a cube that is not wholly before the eye: a plane perpendicular to an
-    /// axis, and the side on which rays reach the cube. Those on the other side
-    /// reach its mirror image behind the eye.
+    /// Of a cube that is not wholly before the eye: a plane perpendicular to an axis, and the side on which rays reach the
+    /// cube. Those on the other side reach its mirror image behind the eye.
     front: Option<(Plane, Side)>,
 }
 
 impl Silhouette {
-    /// Of a cube whose level is at most that of the finest voxels, with its
-    /// planes. `w_min`: the least depth of its vertices.
+    /// Of a cube at most as deep as the finest voxels. `w_min`: the least depth of its vertices.
     pub(super) fn new<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -160,7 +154,7 @@ impl Silhouette {
     ) -> Self {
         let is_before_eye = dp.is_positive(w_min);
         let side_shift = constants.depth - cube.level;
-        // By axis: what an edge's plane gains when the edge moves one side along it.
+        // By axis: the change of an edge's plane when the edge moves one side along it.
         let across = [0, 1, 2].map(|l| {
             let axis = axis_plane(constants, planes, l);
             axis.map(|v| dp.shl(v, side_shift))
@@ -186,9 +180,8 @@ impl Silhouette {
         Self { edges, front }
     }
 
-    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those
-    /// towards it along an axis on which the eye is outside it. `None` for a cube
-    /// that holds the eye.
+    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those towards it along an axis on which the eye
+    /// is outside it. `None` for a cube that contains the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -220,8 +213,7 @@ impl Silhouette {
         front.map(|(_, plane, side)| (plane, side))
     }
 
-    /// Finds the sides of all planes as far as they can be, and the cover that
-    /// follows from them.
+    /// Finds the sides of all planes, and the resulting cover.
     fn resolve<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
         for edges in &mut self.edges {
@@ -250,8 +242,7 @@ impl Silhouette {
         if all { Cover::All } else { Cover::Some }
     }
 
-    /// The cover of the node, `below` levels above the samples; never
-    /// [`Cover::Some`] for a sample (`below` = 0).
+    /// The cover of the node, `below` levels above the samples; never [`Cover::Some`] for a sample (`below` = 0).
     #[inline]
     pub(super) fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let cover = self.resolve(dp, below);
@@ -301,8 +292,7 @@ fn combine<P: Probe>(
     })
 }
 
-/// The planes of a child, from its parent's: moved by half a side along each
-/// axis whose bit the child's octant has.
+/// The planes of a child: moved by half a side along each axis whose bit the child's octant has.
 pub(super) fn of_child<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -328,7 +318,7 @@ pub(super) fn of_child<P: Probe>(
     planes
 }
 
-/// The planes of a parent at a level, from its child's: undoes [`of_child`].
+/// The planes of a parent at a level: undoes [`of_child`].
 pub(super) fn to_parent<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -348,7 +338,7 @@ pub(super) fn to_parent<P: Probe>(
     }
 }
 
-/// Makes planes relative to the parent of their node, of which that is a quadrant: undoes [`move_to_quadrant`].
+/// Makes planes relative to the parent of their quadrant: undoes [`move_to_quadrant`].
 pub(super) fn move_out_of_quadrant<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -387,8 +377,8 @@ pub(super) fn move_to_quadrant<P: Probe>(
     }
 }
 
-/// The constant of `a x + b y + c` in a quadrant's own coordinates, where the
-/// function is doubled: `2c`, plus `a` in the right half, plus `b` in the lower.
+/// The constant of `a x + b y + c` in a quadrant's own coordinates, where the function is doubled: `2c`, plus `a` in the
+/// right half, plus `b` in the lower.
 #[inline]
 fn constant_in_quadrant<P: Probe>(
     dp: &mut Datapath<P>,

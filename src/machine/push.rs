@@ -1,5 +1,4 @@
-//! Pushing records: those that are before the eye, and whose box has an
-//! unfilled quadtree node (image-order paper, 3.5).
+//! Pushing records: those before the eye whose box has an unfilled quadtree node (image-order paper, 3.5).
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Stage, Word};
@@ -17,7 +16,7 @@ use crate::frame::QuadNode;
 use crate::project::options::OutlineRule;
 
 impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
-    /// Begins a tile of the picture, or all of it: makes the record of the whole object and pushes it.
+    /// Begins a tile, or the picture: makes the record of the whole object and pushes it.
     pub(super) fn push_object<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -25,7 +24,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         fill: &FillStore<'_>,
         tile: QuadNode,
     ) {
-        // A tile begins at level 0, also after another tile's last record.
+        // A tile begins at level 0, also after another tile.
         dp.resume(0);
         fill.begin_tile(dp, tile);
         dp.stage(Stage::Push);
@@ -56,8 +55,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         }
     }
 
-    /// Pushes a record in clip space, if the search for its quadtree node does not reject it. Returns whether it was
-    /// pushed.
+    /// Pushes a record in clip space, unless the search for its quadtree node rejects it. Returns whether it was pushed.
     pub(super) fn push_clip<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -72,9 +70,8 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         self.push_at(dp, job, found, child.cube, || Pose::Clip(clip, planes))
     }
 
-    /// Pushes a record in screen space, where all is before the eye. `coordinates` gives
-    /// the vertices' x and y: selected once more, which costs nothing in
-    /// hardware, since most children are rejected and need not be kept till then.
+    /// Pushes a record in screen space, where everything is before the eye. `coordinates` selects the vertices' x and y:
+    /// twice, because most children are rejected.
     #[inline(always)]
     pub(super) fn push_screen<P: Probe>(
         &mut self,
@@ -113,7 +110,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
             pose: pose(),
         };
         self.watch.see(Event::Made(&record));
-        // Where parents lie on the stack, a new record is in registers.
+        // With parents on the stack, a new record is in registers.
         if job.organisation.stack == StackHolds::Children {
             let address = self.stack.len() as u64;
             dp.write(Memory::Stack, address);
@@ -126,7 +123,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
 }
 
 /// Whether a box whose greatest depth is `w_max` lies behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules
-/// that have one, before the near plane (R7.2). It is counted then.
+/// that have one, before the near plane (R7.2). Counts it.
 pub(super) fn is_behind<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

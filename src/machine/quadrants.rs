@@ -1,10 +1,8 @@
-//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6): the box
-//! against the node's two bisectors (image-order paper, 3.5).
+//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6; image-order paper, 3.5).
 //!
-//! In clip space `x` runs from 0 to `w` across the node, so the sign of
-//! `2x - w` is the side of the bisector. Relative to the far half `x` is `2x - w`,
-//! relative to the near one `2x`. In screen space positions are those in the whole
-//! picture, and are compared with the bisector's.
+//! In clip space `x` runs from 0 to `w` across the node, so the sign of `2x - w` is the side of the bisector. Relative to
+//! the far half `x` is `2x - w`, relative to the near one `2x`. Screen-space positions are relative to the picture, and
+//! are compared with the bisector's.
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -16,16 +14,14 @@ use super::shifts::margin;
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
-/// The halves that a box overlaps along one axis.
 #[derive(Clone, Copy)]
 pub(super) struct Halves {
     pub(super) low: bool,
     pub(super) high: bool,
 }
 
-/// The quadrants (bit `y << 1 | x`) in the given halves along x and y. In
-/// hardware four gates on the comparators' outputs, counted with the 4-bit "and"
-/// that follows.
+/// The quadrants (bit `y << 1 | x`) in the given halves along x and y. In hardware four gates on the comparators' outputs,
+/// counted with the 4-bit "and" that follows.
 #[inline(always)]
 pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
     // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
@@ -50,15 +46,14 @@ pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) ->
     both
 }
 
-/// The only quadrant of a set, if it has just one.
 pub(super) fn only(quadrants: u8) -> Option<u8> {
     quadrants
         .is_power_of_two()
         .then(|| quadrants.trailing_zeros() as u8)
 }
 
-/// The quadrants of its node that a clip-space box overlaps, and its x and y
-/// relative to the far halves, for [`clip_in_quadrant`].
+/// The quadrants of its node that a clip-space box overlaps, and its x and y relative to the far halves, for
+/// [`clip_in_quadrant`].
 pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -71,8 +66,7 @@ pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
     (quadrants(dp, x, y), [far_x, far_y])
 }
 
-/// Clip-space vertices relative to a quadrant of their node: `far`, which
-/// [`of_clip`] returned, in a far half, doubled in a near one.
+/// Clip-space vertices relative to a quadrant of their node: `far`, from [`of_clip`], in a far half, doubled in a near one.
 pub(super) fn clip_in_quadrant<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
@@ -107,8 +101,7 @@ pub(super) fn of_screen<P: Probe>(
     quadrants(dp, x, y)
 }
 
-/// `2x - w` of a clip-space cage, and the halves of the node, `below` levels
-/// above the samples, that its box overlaps.
+/// `2x - w` of a clip-space cage, and the halves of the node, `below` levels above the samples, that its box overlaps.
 fn bisect<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -150,8 +143,7 @@ fn bisect<P: Probe, L: CageCoordinate>(
             halves
         }
         Margin::Gap => {
-            // A sample has one sample point, in its middle: the box holds it if
-            // it overlaps both closed halves.
+            // A sample has one sample point, in its middle: the box contains it if it overlaps both closed halves.
             let span = relative.span(dp);
             let halves = closed_halves(dp, span);
             let margin = w.map(|_| Word::ZERO);
@@ -167,8 +159,8 @@ fn bisect<P: Probe, L: CageCoordinate>(
     (relative, halves)
 }
 
-/// Reports the test of a clip-space box against a bisector. `kind`: whether
-/// the comparisons are closed, and whether both halves must hold the sample.
+/// Reports the test of a clip-space box against a bisector. `kind`: whether the comparisons are closed, and whether both
+/// halves must contain the sample.
 #[inline(always)]
 fn tap_bisector<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -184,7 +176,6 @@ fn tap_bisector<P: Probe, L: CageCoordinate>(
     );
 }
 
-/// The margin `w / 2^places` of each vertex of a cage.
 pub(super) fn margins<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
     let margins = w.map(|w| margin(dp, w, places));
     let places = Short::signed(places, PLACES_BITS);
@@ -201,7 +192,7 @@ fn closed<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, relative: &L, margi
     closed_halves(dp, (low, high))
 }
 
-/// The closed halves that a range overlaps, 0 being the bisector.
+/// The closed halves that a range overlaps; the bisector is 0.
 fn closed_halves<P: Probe>(dp: &mut Datapath<P>, (low, high): (Word, Word)) -> Halves {
     Halves {
         low: !dp.is_positive(low),
@@ -209,8 +200,7 @@ fn closed_halves<P: Probe>(dp: &mut Datapath<P>, (low, high): (Word, Word)) -> H
     }
 }
 
-/// The half-open halves that a screen-space box overlaps: its margin is in its
-/// positions already.
+/// The half-open halves that a screen-space box overlaps: its positions include its margin.
 #[inline(always)]
 fn screen_halves<P: Probe>(
     dp: &mut Datapath<P>,

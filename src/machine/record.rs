@@ -1,4 +1,4 @@
-//! The record: a cube on the machine's stack (image-order paper, 2.4). Data only.
+//! The record: a cube on the machine's stack (image-order paper, 2.4).
 
 use hwmodel::{Short, Signal, WideWord, Wires, Word};
 
@@ -6,8 +6,7 @@ use super::blocks::{ADDRESS_BITS, LEVEL_BITS, NODE_BITS};
 use super::cage::CageCoordinate;
 use crate::frame::QuadNode;
 
-/// An entry of the stack: a cube of object space, where its box is in the
-/// image, and its projected vertices.
+/// An entry of the stack: a cube of object space, the place of its box in the image, and its projected vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<L> {
     pub(super) cube: Cube,
@@ -26,8 +25,7 @@ pub(super) struct Cube {
     pub(super) node: u32,
     /// Octree level, 0 = root.
     pub(super) level: u32,
-    /// Level of the voxel that this is a part of: less than `level` inside a
-    /// solid, else the same.
+    /// Level of the voxel of which this is a part: less than `level` inside a solid, otherwise equal.
     pub(super) voxel_level: u32,
     /// Whether this is a solid voxel or a part of one.
     pub(super) solid: bool,
@@ -37,8 +35,7 @@ pub(super) struct Cube {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImagePlace {
     pub(super) quad: QuadNode,
-    /// Whether the box lies inside the node. If not, it leaves the picture's
-    /// root where it leaves the node.
+    /// Whether the box lies inside the node. If not, it leaves the picture's root where it leaves the node.
     pub(super) inside: bool,
 }
 
@@ -63,24 +60,23 @@ pub(super) struct Child {
 pub(super) enum Pose<L> {
     /// In clip space, exact. Only the rules that draw outlines use the planes.
     Clip(Clip<L>, Planes),
-    /// In screen space, an approximation, under the rules that draw single
-    /// samples (`any`, `center`).
+    /// In screen space, an approximation, under the rules that draw single samples (`any`, `center`).
     Screen(Screen<L>),
 }
 
-/// Vertices in clip space. `x` and `y` are relative to the record's quadtree
-/// node: 0 is its left (upper) edge, `w` its right (lower) one.
+/// Vertices in clip space. `x` and `y` are relative to the record's quadtree node: 0 is its left (upper) edge, `w` its
+/// right (lower) one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clip<L> {
     pub(super) x: L,
     pub(super) y: L,
     pub(super) w: L,
-    /// The least depth of the eight vertices.
+    /// Least depth of the eight vertices.
     pub(super) w_min: Word,
 }
 
-/// Vertices in screen space, and the box around them: samples from the whole
-/// picture's top left, with the format's fraction bits.
+/// Vertices in screen space, and the box around them: samples from the picture's top left, with the format's fraction
+/// bits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Screen<L> {
     pub(super) x: L,
@@ -91,20 +87,18 @@ pub(super) struct Screen<L> {
 /// Least and greatest x, least and greatest y, in screen space.
 pub(super) type Spans = [(Word, Word); 2];
 
-/// Silhouette planes of a cube in clip space (`SPEC.md`, R8),
-/// relative to the quadtree node: functions `a x + b y + c` with `x` and `y`
-/// from 0 to 1 across the node.
+/// Silhouette planes of a cube in clip space (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with
+/// `x` and `y` from 0 to 1 across the node.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Planes {
-    /// By edge direction j: the plane through the eye and the edge that
-    /// leaves the lowest corner along j.
+    /// By edge direction j: the plane through the eye and the edge that leaves the lowest corner along j.
     pub(super) edge: [[WideWord; 3]; 3],
-    /// By axis l: the constant `c` of the plane through the eye that is
-    /// perpendicular to axis l. `a` and `b` are the same for all records.
+    /// By axis l: the constant `c` of the plane through the eye perpendicular to axis l. `a` and `b` are the same for all
+    /// records.
     pub(super) axis_c: [WideWord; 3],
 }
 
-/// The fields one after the other, zeros where the record's pose has none.
+/// The fields one after the other; zeros where the record's pose has none.
 impl<L: CageCoordinate> Wires for Record<L> {
     fn show(&self, to: &mut Vec<Signal>) {
         let (cube, quad) = (&self.cube, &self.place.quad);

@@ -11,11 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack, in at most `most_records`
-    /// turns. Returns whether that was enough.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws the object in a tile, with children on the stack, in at most `most_records` turns. Returns whether that
+    /// was enough. Fails when a word overflows under the trap policy.
     pub(super) fn draw_object(
         &mut self,
         tile: QuadNode,
@@ -35,7 +32,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// Takes the top record off the stack and draws or drops it, or pushes its children.
+    /// Pops the top record and draws or drops it, or pushes its children.
     pub(super) fn turn(&mut self) {
         let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
         let Traversal {
@@ -43,7 +40,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             counts,
             watch,
         } = &mut self.traversal;
-        // A record is worked on where it lies: most have no children to push, and only the others are copied.
+        // The record is processed in place: most have no children to push, and only the others are copied.
         let address = stack.len().wrapping_sub(1) as u64;
         let Some(record) = stack.last_mut() else {
             unreachable!("a turn is a record's, and the stack is empty");
@@ -74,8 +71,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// # Errors
-/// When a word overflowed under the trap policy.
+/// Fails when a word overflowed under the trap policy.
 pub(super) fn check_trap<P: Probe>(dp: &Datapath<P>) -> Result<(), EngineError> {
     dp.trap().map_or(Ok(()), |trap| Err(trap.into()))
 }

@@ -8,9 +8,8 @@ use crate::frame::quadtree::nodes_to;
 /// Counts the turns at each quadtree node.
 #[derive(Debug)]
 pub(super) struct RecordsBySample {
-    /// Level of the samples.
     levels: u32,
-    /// Turns by the address of the quadtree node.
+    /// By address of the quadtree node.
     turns: Vec<u32>,
 }
 
@@ -23,8 +22,8 @@ impl RecordsBySample {
         }
     }
 
-    /// Writes each sample's share: a record counts 1, spread evenly over the
-    /// samples of its node. `shares` holds rows of `width` samples.
+    /// Writes each sample's share: a record counts 1, spread evenly over the samples of its node. `shares` has rows of
+    /// `width` samples.
     pub(super) fn write_shares(&self, width: u32, shares: &mut [f32]) {
         let width = width as usize;
         for (at, share) in shares.iter_mut().enumerate() {

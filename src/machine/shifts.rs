@@ -1,5 +1,4 @@
-//! Shifts by a signed number of places, and sums of them: how the machine
-//! scales a word by a constant without a multiplier.
+//! Shifts by a signed number of places, and sums of them: scaling by a constant without a multiplier.
 
 use hwmodel::{Datapath, Probe, Word};
 
@@ -13,9 +12,8 @@ pub(super) fn shift<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Wor
     }
 }
 
-/// A margin, `a / 2^places`, that is never rounded down: one unit more where
-/// places are lost. For a vertex behind the eye `a` is negative, and rounding
-/// down would narrow the box.
+/// A margin, `a / 2^places`, one unit larger where places are lost: behind the eye `a` is negative, and rounding down
+/// would narrow the box.
 pub(super) fn margin<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Word {
     let part = shift(dp, a, places);
     if places > 0 {
@@ -25,8 +23,7 @@ pub(super) fn margin<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Wo
     }
 }
 
-/// The sum of `a / 2^(places + extra)` over the places in `shifts`, each part
-/// rounded down.
+/// The sum of `a / 2^(places + extra)` over the places in `shifts`, each part rounded down.
 pub(super) fn sum_of_shifts<P: Probe>(
     dp: &mut Datapath<P>,
     a: Word,

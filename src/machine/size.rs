@@ -1,4 +1,4 @@
-//! The size of a record in samples, and the sample that holds its centre (`SPEC.md`, R7).
+//! The size of a record in samples, and the sample that contains its centre (`SPEC.md`, R7).
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -10,13 +10,11 @@ use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
 use crate::project::options::ShiftSum;
 
-/// Whether a clip-space cage is at most `limit` samples wide and high, in a node
-/// `below` levels above the samples.
+/// Whether a clip-space cage is at most `limit` samples wide and high, in a node `below` levels above the samples.
 ///
-/// An edge `E` moves a vertex at `x` (0 to 1 across the node) by
-/// `(E_X - x E_W) / W`. So the size is bounded by the sum over the edges of the
-/// greater of `|E_X|` and `|E_X - E_W|`, divided by the least `W`. Conservative: a
-/// few cages just within the limit are rejected.
+/// An edge `E` moves a vertex at `x` (0 to 1 across the node) by `(E_X - x E_W) / W`. So the size is bounded by the sum
+/// over the edges of the greater of `|E_X|` and `|E_X - E_W|`, divided by the least `W`. Conservative: a few cages just
+/// within the limit are rejected.
 pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
@@ -36,7 +34,7 @@ pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     })
 }
 
-/// Whether edges are at most as long as `most` says, given their length.
+/// Whether edges are at most as long as `most` of their length.
 #[inline(always)]
 pub(super) fn edges_at_most<P: Probe>(
     dp: &mut Datapath<P>,
@@ -64,8 +62,7 @@ fn magnitude<P: Probe>(dp: &mut Datapath<P>, a: Word) -> Word {
     dp.max(a, negated)
 }
 
-/// Whether a screen-space box is at most `limit` wide and high, in units of
-/// screen positions.
+/// Whether a screen-space box is at most `limit` wide and high, in units of screen positions.
 #[inline]
 pub(super) fn screen_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -81,8 +78,8 @@ pub(super) fn screen_at_most<P: Probe, L: CageCoordinate>(
     fits(screen.spans[0]) && fits(screen.spans[1])
 }
 
-/// The sample that holds the centre of a clip-space cage, whose depth is `w`, by
-/// bisection from its quadtree node on; `None` outside the picture's root.
+/// The sample that contains the centre of a clip-space cage, whose depth is `w`, by bisection from its quadtree node;
+/// `None` outside the picture's root.
 pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -121,8 +118,7 @@ pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     Some(quad)
 }
 
-/// The sample that holds the centre of a screen-space cage: its integer bits.
-/// `None` outside the picture's root.
+/// The sample that contains the centre of a screen-space cage: its integer bits. `None` outside the picture's root.
 pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -139,8 +135,7 @@ pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
         if !place.inside && (dp.lt(position, first) || dp.lt(last, position)) {
             return None;
         }
-        // A box of no size may lie on its node's far edge, and a word that
-        // wrapped or saturated may be anywhere.
+        // A box of no size may lie on its node's far edge, and a word that wrapped or saturated may be anywhere.
         let position = dp.min(position, last);
         let position = dp.max(position, first);
         let node = (

@@ -8,8 +8,7 @@
 //!     else: this is the node
 //! ```
 //!
-//! Where a box ends does not depend on what is drawn; only whether it is
-//! rejected does.
+//! The end of the search does not depend on drawn samples; only the rejection does.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -22,8 +21,7 @@ use super::quadrants::{self, margins, only};
 use super::record::{Clip, ImagePlace, Planes, Spans};
 use crate::frame::QuadNode;
 
-/// Searches for the node of a clip-space cage, and makes the cage and its planes
-/// relative to it. `None`: rejected.
+/// Finds the node of a clip-space cage, and makes the cage and its planes relative to it. `None`: rejected.
 pub(super) fn clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -49,8 +47,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
         dp.tap(Block::HalfClip, &(&clip.y, &far[1], lower), &to.y);
         let is_near = inside || near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w);
         if !is_near {
-            // The box leaves the quadrant by so much that its coordinates there
-            // would outgrow the word.
+            // The box leaves the quadrant so far that its coordinates there would outgrow the word.
             break;
         }
         *clip = to;
@@ -62,7 +59,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
     Some(ImagePlace { quad, inside })
 }
 
-/// Searches for the node of a screen-space box. `None`: rejected.
+/// Finds the node of a screen-space box. `None`: rejected.
 #[inline(always)]
 pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
@@ -101,9 +98,8 @@ pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L
     near
 }
 
-/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node.
-/// `None`: it lies outside. The node's edges are the picture's wherever the box
-/// of the parent left it.
+/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node; `None`: outside. The node's edges are
+/// the picture's wherever the parent's box left the picture.
 fn is_inside<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -151,7 +147,7 @@ fn is_inside<P: Probe, L: CageCoordinate>(
     Some(inside)
 }
 
-/// The same of a screen-space box.
+/// The same for a screen-space box.
 fn is_screen_inside<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

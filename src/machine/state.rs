@@ -14,7 +14,7 @@ use crate::frame::{FillVectors, Frame};
 use crate::graph::{GraphView, NodeLayout};
 use crate::project::{FrameSetup, Stats};
 
-/// The inputs of a frame: no step writes them.
+/// The inputs of a frame, constant.
 pub(super) struct Job<'a> {
     pub(super) constants: Constants,
     pub(super) graph: &'a GraphView<'a>,
@@ -25,7 +25,7 @@ pub(super) struct Job<'a> {
     pub(super) organisation: Organisation,
 }
 
-/// The records that wait for their turn, and the counts of all.
+/// The waiting records, and the counts.
 pub(super) struct Traversal<L, W> {
     pub(super) stack: Vec<Record<L>>,
     pub(super) counts: Counts,
@@ -41,8 +41,7 @@ pub(super) struct State<'a, P: Probe, L, W> {
 }
 
 impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
-    /// The state of a frame before the first record: the stack is empty. `fill`
-    /// and `frame` have the set-up's size and are cleared.
+    /// The state before the first record. `fill` and `frame` have the set-up's size and are cleared.
     pub(super) fn new(
         options: MachineOptions,
         graph: &'a GraphView<'a>,

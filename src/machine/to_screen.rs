@@ -1,5 +1,4 @@
-//! The change from clip space to screen space (`SPEC.md`, R5): the one place where
-//! the machine divides, bit by bit, with subtractions and shifts.
+//! The change from clip space to screen space (`SPEC.md`, R5): the only place where the machine divides, bit by bit.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -14,8 +13,7 @@ const INTEGER_BITS: u32 = 4;
 /// `w << OFFSET_SHIFT` is added to a numerator to make it positive.
 const OFFSET_SHIFT: u32 = 2;
 
-/// Whether a record of octree level `level` may change: it is far enough away,
-/// and not too far beyond the picture's edges.
+/// Whether a record of octree level `level` may change: it is far enough away, and not too far beyond the picture's edges.
 pub(super) fn may_change<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -58,9 +56,8 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether the box leaves the picture by no more than the bound on the
-/// deviation allows for: an eighth of the picture's side, or four times its side
-/// where the tolerance is infinite.
+/// Whether the box leaves the picture by no more than the bound on the deviation allows: an eighth of the picture's side,
+/// or four times its side where the tolerance is infinite.
 fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -78,8 +75,7 @@ fn within_guard<P: Probe, L: CageCoordinate>(
         return true;
     }
     [&clip.x, &clip.y].into_iter().all(|x| {
-        // Position and guard times 2^places: nothing is rounded, and the answer
-        // is the same for every node.
+        // Position and guard times 2^places: exact, and the same for every node.
         let from_left = x.zip(&clip.w, |x, w| beyond(dp, x, w, places));
         let (low, _) = from_left.span(dp);
         let to_right = x.zip(&clip.w, |x, w| {
@@ -94,7 +90,7 @@ fn within_guard<P: Probe, L: CageCoordinate>(
     })
 }
 
-/// A positive multiple of `x + w / 2^places`, exact: its sign counts.
+/// A positive multiple of `x + w / 2^places`, exact; only its sign is used.
 fn beyond<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, places: i32) -> Word {
     let (x, w) = if places >= 0 {
         (dp.shl(x, places as u32), w)
@@ -104,8 +100,7 @@ fn beyond<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, places: i32) -> Word
     dp.add(x, w)
 }
 
-/// `floor((x / w + 4) * 2^fraction_bits)`, for `w > 0` and `-4w <= x < 12w`, by
-/// a restoring divide: one step for each integer bit and each fraction bit.
+/// `floor((x / w + 4) * 2^fraction_bits)`, for `w > 0` and `-4w <= x < 12w`, by a restoring divide.
 fn divide<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, fraction_bits: u32) -> Word {
     let offset = dp.shl(w, OFFSET_SHIFT);
     let mut remainder = dp.add(x, offset);

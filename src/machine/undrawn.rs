@@ -1,6 +1,5 @@
-//! The first sample of a box that is not drawn yet, for records across a bisector (`SPEC.md`, R6) and for `any`.
-//!
-//! Unlike the search for the smallest node, this one continues where a box lies across a bisector.
+//! The first undrawn sample of a box, for records across a bisector (`SPEC.md`, R6) and for `any`. This search continues
+//! where a box lies across a bisector, unlike that for the smallest node.
 
 use hwmodel::{Datapath, Probe, Stage};
 
@@ -12,7 +11,7 @@ use super::record::{Clip, Pose, Record, Spans};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
-/// The first sample of a record's box that is not drawn yet.
+/// The first undrawn sample of a record's box.
 #[inline]
 pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -30,10 +29,9 @@ pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
 
 /// A box in the image, relative to a quadtree node.
 trait ImageBox: Copy {
-    /// Results of the test of a node that its quadrants use.
+    /// Results of the test of a node, reused by its quadrants.
     type Tested: Copy;
 
-    /// The quadrants of `quad` that the box overlaps.
     fn quadrants<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
@@ -49,7 +47,7 @@ trait ImageBox: Copy {
         tested: Self::Tested,
     ) -> Self;
 
-    /// The search goes back up by some levels, and from there on in another quadrant.
+    /// The search returns up by some levels, and continues in another quadrant.
     fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32);
 }
 
@@ -82,15 +80,14 @@ fn first_inlined<P: Probe, B: ImageBox>(
                 Err(deepest) => B::climb(dp, deepest - quad.level),
             }
         }
-        // The last one, most often the only one, takes this node's place.
+        // The last one, usually the only one, replaces this node.
         let quadrant = candidates.trailing_zeros() as u8;
         of = of.in_quadrant(dp, quadrant, tested);
         quad = quad.quadrant(quadrant);
     }
 }
 
-/// The first sample of `quad` that a box overlaps and that is not drawn yet; else the level of the last node that was
-/// examined.
+/// The first undrawn sample of `quad` that a box overlaps; otherwise the level of the last examined node.
 fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -123,7 +120,7 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
     }
 }
 
-/// Screen positions are those in the picture, the same for every node.
+/// Screen positions are relative to the picture, equal for all nodes.
 impl ImageBox for Spans {
     type Tested = ();
 

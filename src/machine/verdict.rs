@@ -1,5 +1,4 @@
-//! The drawing rules (`SPEC.md`, R7, with R10, the end of subdivision): whether a
-//! record is drawn, dropped or subdivided.
+//! The drawing rules (`SPEC.md`, R7, with R10, the end of subdivision): whether a record is drawn, dropped or subdivided.
 
 use hwmodel::{Datapath, Probe, Stage};
 
@@ -15,7 +14,7 @@ use super::state::Job;
 use super::undrawn::first_undrawn;
 use crate::project::options::OutlineRule;
 
-/// The next step for a record.
+/// The next step of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// Draw it at the sample of its centre (`any`, `center`).
@@ -24,9 +23,7 @@ pub(super) enum Verdict {
     DrawBox,
     /// Draw it at every sample in its silhouette (the rules that draw outlines).
     DrawSolid,
-    /// Nothing of it can be seen.
     Drop,
-    /// Push its children.
     Subdivide,
 }
 
@@ -53,7 +50,7 @@ pub(super) fn verdict<P: Probe, L: CageCoordinate>(
         }
     };
     let is_last = record.cube.level >= c.level_bound;
-    // Rounded screen positions do not part the vertices of a record so small.
+    // Rounded screen positions cannot separate the vertices of such a small record.
     let mut is_least = || match &record.pose {
         Pose::Clip(..) => false,
         Pose::Screen(screen) => size::screen_at_most(dp, screen, c.least_size_screen),
@@ -78,11 +75,11 @@ pub(super) fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn already, where that is searched for:
+/// Whether all samples that a record may cover are drawn. This is tested:
 ///
-/// - In the organisation that does not read occluded nodes, whether no undrawn sample's ray meets the record.
-/// - Else of a record no larger than a sample across a bisector, where the search for the smallest node stops. Without
-///   this test all parts of a solid along a bisector would be kept until both sides of it are full.
+/// - in the organisation that does not read occluded nodes, by the rays of undrawn samples;
+/// - otherwise for records up to the size of a sample across a bisector, where the search for the smallest node stops.
+///   Without this test all parts of a solid along a bisector would be kept until both its sides are full.
 pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -101,7 +98,7 @@ pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
         }
 }
 
-/// Whether the ray of a sample that is not drawn yet meets a record.
+/// Whether the ray of an undrawn sample meets a record.
 fn is_seen<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -117,8 +114,7 @@ fn is_seen<P: Probe, L: CageCoordinate>(
     canvas.sees(dp, record.place.quad, silhouette).is_ok()
 }
 
-/// Near plane (R7.2): whether a record lies across it and spans so little depth
-/// that it is dropped.
+/// Near plane (R7.2): whether a record lies across it and spans so little depth that it is dropped.
 fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -145,7 +141,7 @@ fn is_in_one_sample<P: Probe, L: CageCoordinate>(
     if !one || crosses_near(dp, c, record) {
         return false;
     }
-    // A box within one sample meets a level of detail of one sample or more.
+    // A box within one sample fulfils a level of detail of one sample or more.
     let lod = c.lod_limit.as_ref();
     let is_coarse = lod.is_some_and(|limit| limit.value() >= c.size_limit.value());
     record.cube.solid || is_coarse
@@ -183,7 +179,7 @@ fn crosses_near<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether a record is no larger than a sample, less twice the tolerance.
+/// Whether a record is at most as large as a sample, less twice the tolerance.
 #[inline(always)]
 fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

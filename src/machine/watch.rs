@@ -1,16 +1,14 @@
-//! Events of whole records, for a [`Watch`]. Single operations, memory accesses and the wires between blocks go to an
-//! [`hwmodel::Probe`] instead.
+//! Events of whole records, for a [`Watch`]. Operations, memory accesses and wires go to an [`hwmodel::Probe`] instead.
 
 use super::cage::CageCoordinate;
 use super::record::Record;
 use crate::frame::QuadNode;
 
-/// An event in the life of a record.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'r, L> {
-    /// The turn of a record begins, whose quadtree node this is.
+    /// The turn of a record begins; with its quadtree node.
     Turn(QuadNode),
-    /// A child was pushed: its place among the eight children in the occlusion order, 0 (nearest) to 7.
+    /// A child was pushed; with its place in the occlusion order, 0 (nearest) to 7.
     Pushed(u8),
     /// A record was made, and has its place in the picture.
     Made(&'r Record<L>),
@@ -18,7 +16,6 @@ pub(super) enum Event<'r, L> {
 
 /// Receives the events of records. The calls compile to nothing for the watch `()`.
 pub(super) trait Watch {
-    /// An event occurred.
     fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>);
 }
 

@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-/// How a voxel's colour depends on where it looks.
+/// Dependence of a voxel's colour on its orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Shading {
-    /// Colours as the file has them.
+    /// The file's colours.
     Flat,
     /// A key light that moves with the camera, over an ambient floor.
     ///
@@ -18,10 +18,10 @@ pub enum Shading {
     Lambert,
 }
 
-/// What is behind the object.
+/// The picture behind the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Background {
-    /// Nothing: transparent pixels.
+    /// Transparent pixels.
     None,
     /// A colour, sRGB.
     Color([u8; 3]),
@@ -34,8 +34,7 @@ impl Default for Background {
 }
 
 impl Background {
-    /// The colour, sRGB; `None` of transparent pixels.
-    #[must_use]
+    /// The colour, sRGB; `None` if transparent.
     pub fn color(self) -> Option<[u8; 3]> {
         match self {
             Self::None => None,
@@ -71,16 +70,16 @@ impl fmt::Display for Background {
     }
 }
 
-/// The key light in the camera's right, up and back: over the left shoulder,
-/// so that the three faces of a box seen from a corner differ in brightness.
+/// The key light in the camera's right, up and back: over the left shoulder, so that the three visible faces of a box
+/// differ in brightness.
 pub const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
-/// Light that comes from everywhere, of 256.
+/// Ambient light, of 256.
 pub const AMBIENT: u32 = 64;
 
-/// Light of a direction: a share of 256.
+/// Light by direction: a share of 256.
 #[derive(Clone, Copy)]
 pub(super) struct Light {
-    /// Towards the key light; `None`: everything is lit in full.
+    /// Direction to the key light; `None`: full light everywhere.
     key: Option<DVec3>,
 }
 
@@ -94,12 +93,12 @@ impl Light {
         }
     }
 
-    /// Whether it depends on where a surface looks.
+    /// Whether it depends on the direction of a surface.
     pub(super) fn is_directed(&self) -> bool {
         self.key.is_some()
     }
 
-    /// The share of 256 of its colour that a surface shows.
+    /// The lit share of a surface's colour, of 256.
     pub(super) fn on(&self, normal: DVec3) -> u32 {
         let Some(key) = self.key else { return 256 };
         let cosine = normal.dot(key).clamp(0.0, 1.0);

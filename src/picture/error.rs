@@ -1,4 +1,4 @@
-//! Why a picture is not made.
+//! Failures of making a picture.
 
 use crate::budget::Shortage;
 
@@ -11,8 +11,7 @@ pub enum ResolveError {
     /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
     #[error("the file index of a voxel is beyond 32 bits")]
     Index,
-    /// A frame of nodes alone does not say which voxel of a node is seen, and
-    /// neither does the graph.
+    /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
     /// The system refuses the memory of the pixels.

@@ -6,7 +6,7 @@ use super::Picture;
 use super::npy::Values;
 use super::rows::{Buffer, Rows};
 
-/// What every stream begins with; a change of the stream changes it too.
+/// Beginning of every stream; changes with the stream's format.
 const STREAM: &[u8] = b"shiftvox picture 1\n";
 
 /// The buffers of the stream, in its order.
@@ -18,25 +18,17 @@ const BUFFERS: [Buffer; 5] = [
     Buffer::Voxel,
 ];
 
-/// The picture's hash: XXH3 with 128 bits and seed 0, as 32 lower-case
-/// hexadecimal digits, most significant first.
+/// The picture's hash: XXH3 with 128 bits and seed 0, as 32 lower-case hexadecimal digits, most significant first.
 ///
-/// The stream, all numbers little-endian: the 19 bytes `shiftvox picture 1\n`;
-/// width and height (u32); then buffer by buffer, each row by row, colour (4
-/// bytes a pixel: red, green, blue, alpha), depth (bits of the f32), node
-/// (i32), normal (bits of 3 f32), voxel (4 i32). Negative zeros count as
-/// zeros, and there is no NaN. Records are not part of it: they say how the
-/// picture was found, not what it shows.
-#[must_use]
+/// The stream, all numbers little-endian: the 19 bytes `shiftvox picture 1\n`; width and height (u32); then buffer by
+/// buffer, each row by row, colour (4 bytes per pixel: red, green, blue, alpha), depth (bits of the f32), node (i32),
+/// normal (bits of 3 f32), voxel (4 i32). Negative zeros are replaced by zeros, and there is no NaN. Records are left out.
 pub fn hash(picture: &Picture) -> String {
     let Ok(hash) = hash_rows(picture);
     hash
 }
 
-/// [`hash`] of a picture that is made some rows at a time.
-///
-/// # Errors
-/// When rows cannot be made.
+/// [`hash`] of a picture that is made in groups of rows. Fails when rows cannot be made.
 pub fn hash_rows<R: Rows>(picture: &R) -> Result<String, R::Error> {
     let mut state = Xxh3::new();
     state.update(STREAM);

@@ -1,4 +1,4 @@
-//! What light comes from each node of a graph, for a rule that blends while it draws.
+//! Light of each node of a graph, for a rule that blends while it draws.
 
 use rayon::prelude::*;
 
@@ -10,14 +10,10 @@ use super::sight::Sight;
 use crate::graph::{Graph, PackedNormal};
 use crate::project::FrameSetup;
 
-/// Linear light by node, 0 to 65535 a channel; nothing where the frame's rule
-/// does not blend.
+/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend.
 ///
-/// A picture that is shaded when it is drawn knows of each sample which face it
-/// sees, and how its ray goes. Here a node has one light for all samples: its
-/// normal is turned towards the camera's plane, and a node without one is lit
-/// as what faces the camera.
-#[must_use]
+/// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
+/// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
     if !setup.options.coverage.blends() {
         return Vec::new();

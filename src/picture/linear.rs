@@ -1,23 +1,22 @@
-//! sRGB bytes and linear light, both ways, each by one look-up.
+//! Conversion between sRGB bytes and linear light, by tables.
 
 use std::sync::LazyLock;
 
 use crate::srgb::to_linear;
 
-/// Numbers that 16 bits of linear light are.
+/// Number of values of 16 bits of linear light.
 const LIGHTS: usize = 1 << 16;
 
-/// Linear light of the sRGB bytes, 16 bits a channel, and back.
+/// Linear light of the sRGB bytes, 16 bits per channel, and back.
 pub struct Linear {
     /// Linear light of each byte, 0..=65535, rising.
     of: [u16; 256],
-    /// For each linear light the byte whose light is nearest. 64 KB, of which
-    /// a picture touches the part of its own brightness.
+    /// For each linear light the byte whose light is nearest. 64 KB, of which a picture uses a part.
     nearest: Box<[u8; LIGHTS]>,
 }
 
 impl Linear {
-    /// The tables, made when they are first wanted.
+    /// The tables, made on first use.
     pub fn tables() -> &'static Self {
         static TABLES: LazyLock<Linear> = LazyLock::new(Linear::new);
         &TABLES
@@ -31,7 +30,7 @@ impl Linear {
         let mut nearest = Box::new([u8::MAX; LIGHTS]);
         let mut from = 0;
         for byte in 0..255usize {
-            // A byte is nearest up to midway to the next; on the middle the brighter counts.
+            // A byte is nearest up to midway to the next; on the middle the brighter one is taken.
             let to = (usize::from(of[byte]) + usize::from(of[byte + 1])).div_ceil(2);
             nearest[from..to].fill(byte as u8);
             from = to;
@@ -39,7 +38,7 @@ impl Linear {
         Self { of, nearest }
     }
 
-    /// Linear light of a colour, 0..=65535 a channel.
+    /// Linear light of a colour, 0..=65535 per channel.
     #[inline]
     pub fn decode(&self, color: [u8; 3]) -> [u32; 3] {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))
@@ -48,11 +47,11 @@ impl Linear {
     /// The colour whose linear light is nearest; of two the brighter.
     #[inline]
     pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
-        // More than full light is full light.
+        // Excess light is full light.
         self.encode_16(light.map(|value| value.min(u32::from(u16::MAX))))
     }
 
-    /// The same of light that is at most full: 16 bits a channel.
+    /// The same for light that is at most full.
     #[inline]
     pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
         light.map(|value| self.nearest[usize::from(value as u16)])

@@ -1,8 +1,7 @@
-//! From samples to a picture: colour, normal, depth; files; the hash.
+//! From samples to a picture: colour, normal, depth; files; the hash. Rules: `spec/picture.md`.
 //!
-//! An engine says which voxel each sample sees and nothing else. What that
-//! looks like is made here, once for every engine, so two engines that agree on
-//! the voxels agree on every byte of the picture. Rules: `spec/picture.md`.
+//! An engine only determines the voxel of each sample. The rest is made here, so two engines that agree on the voxels
+//! agree on every byte of the picture.
 
 mod color;
 mod error;
@@ -33,33 +32,30 @@ pub use shade::Shader;
 /// `depth` where nothing is seen.
 pub const NO_DEPTH: f32 = f32::INFINITY;
 
-/// A finished picture: one entry of each buffer for each pixel, row by row
-/// from the top left.
+/// A finished picture: one entry of each buffer per pixel, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Colour, sRGB, and coverage (0 nothing, 255 all), not premultiplied.
+    /// Colour, sRGB, and coverage (0 to 255), not premultiplied.
     pub rgba: Vec<[u8; 4]>,
-    /// View-axis depth in world units at which the pixel's ray enters the
-    /// voxel; [`NO_DEPTH`] where nothing is seen.
+    /// View-axis depth in world units at which the pixel's ray enters the voxel; [`NO_DEPTH`] without one.
     pub depth: Vec<f32>,
-    /// Unit normal in world directions; zero where nothing is seen.
+    /// Unit normal in world directions; zero without a voxel.
     pub normal: Vec<[f32; 3]>,
-    /// Index, in the file's finest voxels, of the lowest corner of the voxel
-    /// seen, and its level (0 = root); `[0, 0, 0, -1]` where nothing is seen.
+    /// File index of the lowest corner of the visible voxel, in finest voxels, and its level (0 = root);
+    /// `[0, 0, 0, -1]` without a voxel.
     pub voxel: Vec<[i32; 4]>,
-    /// Graph node seen; -1 where nothing is seen.
+    /// Graph node; -1 without a voxel.
     pub node: Vec<i32>,
-    /// Records worked on for the pixel, if the frame counted them.
+    /// Records processed for the pixel, if the frame counted them.
     pub records: Option<Vec<f32>>,
 }
 
 impl Picture {
     /// Pixels that show a voxel at their middle sample.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node >= 0).count()
     }

@@ -1,7 +1,5 @@
-//! `.npy` files, format 1.0: what NumPy's `save` and `load` use.
-//!
-//! Only what pictures need: little-endian `u1`, `i4` and `f4`, C order, up to
-//! three dimensions.
+//! `.npy` files, format 1.0, of NumPy's `save` and `load`: little-endian `u1`, `i4` and `f4`, C order, up to three
+//! dimensions.
 
 /// The numbers of an array.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,36 +15,27 @@ pub enum Values {
 /// An array and its shape, slowest dimension first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
-    /// Lengths: rows, columns, and entries of a pixel where it has several.
+    /// Rows, columns, and entries per pixel if there are several.
     pub shape: Vec<usize>,
-    /// The numbers, row by row.
+    /// Row by row.
     pub values: Values,
 }
 
-/// Why bytes are no array that pictures use.
+/// Why bytes are not a supported array.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NpyError {
-    /// Not the format, or damaged.
     #[error("byte {offset}: expected {expected}, found {found}")]
     Format {
-        /// Where, from the file's beginning.
+        /// From the file's beginning.
         offset: usize,
-        /// What should be there.
         expected: &'static str,
-        /// What is there.
         found: String,
     },
-    /// Numbers of another type.
     #[error("the array's type is `{0}`; expected '|u1', '<i4' or '<f4' in C order")]
     Type(String),
-    /// Shape and length of the file do not fit together.
+    /// Shape and length of the file do not match.
     #[error("the header promises {expected} bytes of numbers, the file has {found}")]
-    Length {
-        /// Bytes that the shape asks for.
-        expected: usize,
-        /// Bytes after the header.
-        found: usize,
-    },
+    Length { expected: usize, found: usize },
 }
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
@@ -54,22 +43,18 @@ const MAGIC: &[u8; 6] = b"\x93NUMPY";
 const PREFIX: usize = 10;
 
 /// Whether a file begins like a `.npy` file.
-#[must_use]
 pub fn is_npy(beginning: &[u8]) -> bool {
     beginning.starts_with(MAGIC)
 }
 
 /// The bytes of a `.npy` file.
-#[must_use]
 pub fn encode(array: &Array) -> Vec<u8> {
     let mut bytes = header(&array.shape, &array.values);
     bytes.extend_from_slice(&array.values.bytes());
     bytes
 }
 
-/// What stands before the numbers of an array in its file: of a shape, and of
-/// numbers of the same type as some.
-#[must_use]
+/// The header of an array's file, of numbers of the same type as `like`.
 pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
     let kind = match like {
         Values::U8(_) => "|u1",
@@ -77,7 +62,7 @@ pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
         Values::F32(_) => "<f4",
     };
     let lengths: Vec<String> = shape.iter().map(ToString::to_string).collect();
-    // A tuple of one keeps its comma.
+    // A tuple of one has a comma.
     let comma = if lengths.len() == 1 { "," } else { "" };
     let mut header = format!(
         "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}{comma}), }}",
@@ -95,10 +80,7 @@ pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
     bytes
 }
 
-/// Reads a `.npy` file's bytes.
-///
-/// # Errors
-/// See [`NpyError`]. Nothing is allocated that the bytes do not justify.
+/// Reads a `.npy` file's bytes. Errors: see [`NpyError`]. Allocates no more than the bytes justify.
 pub fn decode(bytes: &[u8]) -> Result<Array, NpyError> {
     let wrong = |offset, expected, found: &[u8]| NpyError::Format {
         offset,

@@ -1,9 +1,7 @@
-//! The colours of a frame, a row of pixels at a time.
+//! The colours of a frame, one row of pixels at a time.
 //!
-//! What neighbours share is done once: samples that show nothing are found
-//! sixteen at a time, and those of a row that show one node look it up once.
-//! With several samples a pixel their light is added as it comes; what shows
-//! nothing costs nothing until the pixel is mixed.
+//! Work is shared between neighbours: samples without a voxel are found sixteen at a time, and consecutive samples of one
+//! node look it up once. With several samples per pixel their light is added, and mixed once.
 
 use super::ResolveError;
 use super::shade::{Shader, is_turned};
@@ -18,29 +16,28 @@ pub(super) struct Painter<'p, const N: usize> {
     /// The graph's, as plain slices.
     color: &'p [[u8; 3]],
     normal: &'p [PackedNormal],
-    /// None where everything is lit in full.
+    /// None where everything is fully lit.
     shares: Option<&'p Shares>,
-    /// Samples of a pixel along an axis, by their logarithm.
+    /// Logarithm of the samples per pixel along an axis.
     aa: u32,
-    /// A row that shows nothing.
+    /// A row without voxels.
     behind: Vec<[u8; N]>,
 }
 
-/// What the last sample showed, for the next often shows the same: `T` is
-/// made of the node's colour and the share of it that is lit.
+/// The last sample's node, colour and result, since the next often shows the same.
 struct Look<T> {
     node: u32,
     color: [u8; 3],
     packed: PackedNormal,
     facing: Facing,
-    /// Of a node without normal, where the frame does not say it.
+    /// Of a node without normal, if the frame has no voxels.
     place: Option<[i32; 4]>,
     share: u32,
     made: T,
 }
 
 impl<'p, const N: usize> Painter<'p, N> {
-    /// `shares`: those of the shader, or none where everything is lit in full.
+    /// `shares`: those of the shader, or none where everything is fully lit.
     pub(super) fn new(
         frame: &'p Frame,
         shader: &'p Shader<'p>,
@@ -62,7 +59,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// Paints row `y`.
     pub(super) fn row(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
         match (&self.frame.blend, self.aa) {
             (Some(blend), _) => {
@@ -74,7 +70,7 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// One sample a pixel.
+    /// One sample per pixel.
     fn single(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
         if self.shares.is_none() {
             self.flat(y, to);
@@ -90,7 +86,7 @@ impl<'p, const N: usize> Painter<'p, N> {
         })
     }
 
-    /// One sample a pixel, lit in full: a colour that becomes light and a colour again stays the same.
+    /// One sample per pixel, fully lit: colours need no conversion to light and back.
     fn flat(&self, y: u32, to: &mut [[u8; N]]) {
         let width = self.frame.width as usize;
         let nodes = &self.frame.node[y as usize * width..][..width];
@@ -103,9 +99,9 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// Several samples a pixel: the mean of their light.
+    /// Several samples per pixel: the mean of their light.
     fn several(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
-        // Red, green, blue, and how many samples show something.
+        // Red, green, blue, and the number of samples with a voxel.
         let mut sums = vec![[0u32; 4]; to.len()];
         let linear = self.shader.linear;
         let light = |color, share| {
@@ -128,8 +124,7 @@ impl<'p, const N: usize> Painter<'p, N> {
         Ok(())
     }
 
-    /// Calls `put` with each sample of a row that shows something, and with
-    /// what `make` makes of its colour and the share of it that is lit.
+    /// Calls `put` with each sample of a row that shows a voxel, and the result of `make` for its colour and lit share.
     #[inline(always)]
     fn for_samples<T: Copy>(
         &self,
@@ -189,12 +184,11 @@ impl<'p, const N: usize> Painter<'p, N> {
         Ok(())
     }
 
-    /// Looks another node up.
     #[inline(always)]
     fn look_at<T>(&self, look: &mut Look<T>, node: u32, down: f32) {
         let at = node as usize;
         look.node = node;
-        // A share that there is none of, for the colour is another.
+        // An impossible share, since the colour changes.
         look.share = u32::MAX;
         look.color = self.color.get(at).copied().unwrap_or_default();
         let Some(shares) = self.shares else {
@@ -211,7 +205,7 @@ impl<'p, const N: usize> Painter<'p, N> {
         };
     }
 
-    /// Where a node's voxel is, where the frame does not say it.
+    /// The place of a node's voxel, if the frame has no voxels.
     #[cold]
     fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         match self.frame.voxel.is_empty() {
@@ -220,7 +214,7 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// The share of its colour that a sample shows, by the rule itself.
+    /// The lit share of a sample's colour, by the rule itself.
     #[cold]
     fn share_by_rule(
         &self,
@@ -256,12 +250,12 @@ impl<'p, const N: usize> Painter<'p, N> {
             return pixel(self.shader.encode(mean), 255);
         }
         let alpha = ((seen << 8) - seen + half) >> samples_log2;
-        // PNG stores colours that are not premultiplied: the host divides.
+        // PNG stores colours that are not premultiplied, so the host divides.
         let mean = sum.map(|channel| (channel + seen / 2) / seen);
         pixel(self.shader.encode(mean), alpha as u8)
     }
 
-    /// What the samples took of the voxels before them.
+    /// A row of blended samples.
     fn blended(&self, y: u32, blend: &[Blend], to: &mut [[u8; N]]) {
         let width = self.frame.width as usize;
         let side = 1usize << self.aa;
@@ -278,7 +272,7 @@ impl<'p, const N: usize> Painter<'p, N> {
     }
 }
 
-/// Light of which a share of 256 is seen.
+/// The share of 256 of a light.
 #[inline]
 fn lit(light: [u32; 3], share: u32) -> [u32; 3] {
     light.map(|channel| (channel * share) >> 8)
@@ -291,7 +285,7 @@ fn pixel<const N: usize>([r, g, b]: [u8; 3], alpha: u8) -> [u8; N] {
     std::array::from_fn(|i| all[i])
 }
 
-/// What the samples of a pixel took, of 256 each.
+/// Sums of a pixel's blended samples, of 256 each.
 #[derive(Default)]
 struct Blended {
     light: [u64; 3],

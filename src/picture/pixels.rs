@@ -1,7 +1,6 @@
 //! The colours of a finished picture.
 
-/// Colours of a picture as files have them: without an alpha channel where
-/// all pixels are opaque.
+/// Colours of a picture in the form of a file: without an alpha channel if all pixels are opaque.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pixels {
     pub(super) width: u32,
@@ -12,8 +11,6 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// Opaque pixels.
-    #[must_use]
     pub fn opaque(width: u32, height: u32, rgb: Vec<[u8; 3]>) -> Self {
         Self {
             width,
@@ -23,13 +20,12 @@ impl Pixels {
         }
     }
 
-    /// Pixels that may be opaque.
-    #[must_use]
+    /// Pixels that may be transparent.
     pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
         let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
         let mut bytes = rgba.into_flattened();
         if !has_alpha {
-            // In place: a second buffer would be as large as the picture.
+            // In place, because a second buffer would be as large as the picture.
             let pixels = bytes.len() / 4;
             for pixel in 1..pixels {
                 bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
@@ -45,7 +41,6 @@ impl Pixels {
     }
 
     /// Red, green, blue and alpha of each pixel.
-    #[must_use]
     pub fn rgba(&self) -> Vec<[u8; 4]> {
         let (with_alpha, _) = self.bytes.as_chunks::<4>();
         let (opaque, _) = self.bytes.as_chunks::<3>();
@@ -55,7 +50,7 @@ impl Pixels {
         }
     }
 
-    /// Puts red, green, blue and alpha of each pixel at the end of some bytes.
+    /// Appends red, green, blue and alpha of each pixel to some bytes.
     pub fn append_rgba(&self, to: &mut Vec<u8>) {
         if self.has_alpha {
             return to.extend_from_slice(&self.bytes);
@@ -70,7 +65,6 @@ impl Pixels {
     }
 
     /// Pixels across and down.
-    #[must_use]
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }

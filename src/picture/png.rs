@@ -7,7 +7,6 @@ use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Tr
 pub use super::pixels::Pixels;
 pub use png::{DecodingError, EncodingError};
 
-/// Colours of a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     /// Pixels across.
@@ -22,10 +21,7 @@ pub struct Image {
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {
-    /// Writes a PNG file's bytes.
-    ///
-    /// # Errors
-    /// If the picture is empty or its size does not fit its pixels, and those of `to`.
+    /// Writes a PNG file. Fails if the picture is empty or its size does not fit its pixels, and those of `to`.
     pub fn write(&self, to: impl Write) -> Result<(), EncodingError> {
         let mut encoder = Encoder::new(to, self.width, self.height);
         encoder.set_color(match self.has_alpha {
@@ -41,18 +37,15 @@ impl Pixels {
     }
 }
 
-/// The bytes of a PNG file; without an alpha channel if all pixels are opaque.
-///
-/// # Errors
-/// If the picture is empty or its size does not fit its pixels.
+/// The bytes of a PNG file; without an alpha channel if all pixels are opaque. Fails if the picture is empty or its
+/// size does not fit its pixels.
 pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     Pixels::new(width, height, rgba.to_vec()).write(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Pixels across and down, from a PNG file's header; `None` if the bytes are no PNG.
-#[must_use]
+/// Pixels across and down, from a PNG file's header; `None` if the bytes are not a PNG.
 pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?;
     let (width, rest) = header.split_first_chunk()?;
@@ -60,10 +53,7 @@ pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     Some((u32::from_be_bytes(*width), u32::from_be_bytes(*height)))
 }
 
-/// Reads a PNG file's bytes.
-///
-/// # Errors
-/// If they are no PNG, or one of more than 32768 pixels per side.
+/// Reads a PNG file's bytes. Fails if they are not a PNG, or have more than 32768 pixels per side.
 pub fn decode(bytes: &[u8]) -> Result<Image, DecodingError> {
     decode_from(Cursor::new(bytes))
 }

@@ -18,13 +18,9 @@ use crate::project::FrameSetup;
 
 /// Makes the picture of a drawn frame.
 ///
-/// Colours are averaged over all samples of a pixel, in linear light; the other
-/// buffers come from the sample right of and below the pixel's middle (the
-/// pixel's only one without anti-aliasing), records from all samples together.
-///
-/// # Errors
-/// When the frame is not of the set-up's size, or does not say which voxels
-/// are seen, or indices leave `i32`.
+/// Colours are averaged over all samples of a pixel, in linear light. Other buffers show the sample right of and below
+/// the pixel's middle (the pixel's only one without anti-aliasing), records all samples together. Fails when the frame
+/// is not of the set-up's size, or does not determine the visible voxels, or indices leave `i32`.
 pub fn resolve(
     frame: &Frame,
     graph: &Graph,
@@ -50,23 +46,22 @@ pub fn resolve(
     })
 }
 
-/// A drawn frame as a picture that is made as far as it is asked for: see [`resolve`].
+/// A drawn frame as a picture that is made on demand: see [`resolve`].
 pub struct Resolver<'f> {
     frame: &'f Frame,
     shader: Shader<'f>,
     origin_index: [i64; 3],
-    /// Samples of a pixel along an axis, by their logarithm.
+    /// Logarithm of the samples per pixel along an axis.
     aa: u32,
-    /// Made when colours are first wanted; none where everything is lit in full.
+    /// Made on demand; none where everything is fully lit.
     shares: OnceLock<Option<Shares>>,
 }
 
 /// Name of the pixels' memory in messages.
 const PIXELS: &str = "the pixels of a picture";
-/// Pixels that one thread makes sooner than it can wake another.
+/// Pixels that one thread makes faster than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
 
-/// A pixel that is made.
 #[derive(Clone, Copy)]
 struct At {
     x: u32,
@@ -74,10 +69,7 @@ struct At {
 }
 
 impl<'f> Resolver<'f> {
-    /// Makes nothing yet.
-    ///
-    /// # Errors
-    /// When the frame is not of the set-up's size.
+    /// Fails when the frame is not of the set-up's size.
     pub fn new(
         frame: &'f Frame,
         graph: &'f Graph,
@@ -102,10 +94,8 @@ impl<'f> Resolver<'f> {
         })
     }
 
-    /// The colours of some rows: `N` bytes a pixel, red, green, blue, and alpha if `N` is 4.
-    ///
-    /// # Errors
-    /// When the frame does not say which voxels are seen and a colour depends on it.
+    /// The colours of some rows: `N` bytes per pixel, red, green, blue, and alpha if `N` is 4. Fails when a colour
+    /// depends on a voxel that the frame does not determine.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
@@ -113,10 +103,7 @@ impl<'f> Resolver<'f> {
         Ok(pixels)
     }
 
-    /// [`Resolver::colors`] into the caller's pixels, which are as many as those of the rows.
-    ///
-    /// # Errors
-    /// As [`Resolver::colors`].
+    /// [`Resolver::colors`] into the caller's pixels, as many as the rows have. Errors: as [`Resolver::colors`].
     pub fn write_colors<const N: usize>(
         &self,
         rows: Range<u32>,
@@ -131,20 +118,16 @@ impl<'f> Resolver<'f> {
         self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 
-    /// What it is made of.
-    #[must_use]
     pub fn frame(&self) -> &Frame {
         self.frame
     }
 
     /// Whether no pixel can be transparent.
-    #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.shader.background().is_some()
     }
 
     /// Pixels that show a voxel at their middle sample.
-    #[must_use]
     pub fn drawn(&self) -> usize {
         if self.aa == 0 {
             return self.frame.drawn();
@@ -154,7 +137,7 @@ impl<'f> Resolver<'f> {
         (0..height).map(|y| row(y).count()).sum()
     }
 
-    /// A buffer's rows, each pixel as `each` makes it of what it is where nothing is seen.
+    /// Some rows of a buffer. `each` changes a pixel that shows a voxel; others are `nothing`.
     fn fill<T: Copy + Send + Sync>(
         &self,
         rows: Range<u32>,
@@ -170,7 +153,7 @@ impl<'f> Resolver<'f> {
         Ok(pixels)
     }
 
-    /// Does something with each row of pixels, on all threads if there are enough pixels.
+    /// Calls `each` with each row of pixels, on all threads if there are enough pixels.
     fn each_row<T: Send>(
         &self,
         rows: Range<u32>,
@@ -186,8 +169,7 @@ impl<'f> Resolver<'f> {
         rows.try_for_each(|(to, y)| each(y, to))
     }
 
-    /// The sample right of and below a pixel's middle, and its place in the
-    /// frame; none where it shows nothing.
+    /// The sample right of and below a pixel's middle, and its place in the frame; none if it shows nothing.
     fn middle(&self, At { x, y }: At) -> Option<(u32, u32, usize)> {
         let half = (1 << self.aa) >> 1;
         let (x, y) = ((x << self.aa) + half, (y << self.aa) + half);
@@ -195,7 +177,7 @@ impl<'f> Resolver<'f> {
         (self.frame.node[at] != NO_NODE).then_some((x, y, at))
     }
 
-    /// The voxel of a sample that sees one.
+    /// The voxel of a sample that shows one.
     fn voxel_at(&self, at: usize) -> Result<[i32; 4], ResolveError> {
         let voxel = match self.frame.voxel.get(at) {
             Some(&voxel) => Some(voxel),
@@ -291,7 +273,6 @@ impl Rows for Resolver<'_> {
     }
 }
 
-/// The same numbers, one after the other.
 fn flat<T, const N: usize>(items: Vec<[T; N]>) -> Vec<T> {
     items.into_flattened()
 }

@@ -1,5 +1,4 @@
-//! The buffers of a picture, some rows at a time: what files and hashes are
-//! made of, so that no buffer has to be whole in memory.
+//! The buffers of a picture in groups of rows, so that files and hashes need no whole buffer in memory.
 
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -8,52 +7,40 @@ use std::ops::Range;
 use super::Picture;
 use super::npy::Values;
 
-/// A buffer of a picture: `height x width` entries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Buffer {
-    /// View-axis depth, world units; inf where nothing is seen.
-    ///
-    /// Depth: `f32`, world units.
-    Depth,
-    /// Unit normal in world directions.
-    ///
-    /// Unit normal: 3 x `f32`.
-    Normal,
-    /// File index of the voxel seen, and its level; level -1 where nothing is seen.
-    ///
-    /// Voxel's index x, y, z and level: 4 x `i32`.
-    Voxel,
-    /// Graph node; -1 where nothing is seen.
-    ///
-    /// Graph node: `i32`.
-    Node,
-    /// Records worked on for the pixel.
-    ///
-    /// Records worked on: `f32`; zeros where they were not counted, as by [`Renderer`](crate::Renderer).
-    Records,
-    /// Colour and alpha.
-    ///
-    /// Red, green, blue and alpha: 4 x `u8`.
-    Color,
+hwmodel::named! {
+    /// A buffer of a picture: `height x width` entries.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+    pub enum Buffer {
+        /// View-axis depth, world units; inf where nothing is seen.
+        ///
+        /// Depth: `f32`, world units.
+        Depth = "depth",
+        /// Unit normal in world directions.
+        ///
+        /// Unit normal: 3 x `f32`.
+        Normal = "normal",
+        /// File index of the voxel seen, and its level; level -1 where nothing is seen.
+        ///
+        /// Voxel's index x, y, z and level: 4 x `i32`.
+        Voxel = "voxel",
+        /// Graph node; -1 where nothing is seen.
+        ///
+        /// Graph node: `i32`.
+        Node = "node",
+        /// Records worked on for the pixel.
+        ///
+        /// Records worked on: `f32`; zeros where they were not counted, as by [`Renderer`](crate::Renderer).
+        Records = "records",
+        /// Colour and alpha.
+        ///
+        /// Red, green, blue and alpha: 4 x `u8`.
+        Color = "color",
+    }
 }
 
 impl Buffer {
-    /// The name in names of files and of flags.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Voxel => "voxel",
-            Self::Node => "node",
-            Self::Records => "records",
-            Self::Color => "color",
-        }
-    }
-
-    /// Numbers of a pixel.
-    #[must_use]
+    /// Numbers per pixel.
     pub fn entries(self) -> usize {
         match self {
             Self::Depth | Self::Node | Self::Records => 1,
@@ -62,8 +49,7 @@ impl Buffer {
         }
     }
 
-    /// No numbers of the buffer's type.
-    #[must_use]
+    /// An empty list of the buffer's type.
     pub fn none(self) -> Values {
         match self {
             Self::Color => Values::U8(Vec::new()),
@@ -73,24 +59,21 @@ impl Buffer {
     }
 }
 
-/// Pixels that are worth making at once.
+/// Pixels per group.
 const SHARE: u32 = 1 << 17;
 
-/// A picture whose rows can be asked for.
+/// A picture whose rows are made on demand.
 pub trait Rows {
-    /// Why rows may not be made.
+    /// Failure of making rows.
     type Error;
 
     /// Pixels across and down.
     fn size(&self) -> (u32, u32);
 
-    /// Some rows of a buffer.
-    ///
-    /// # Errors
-    /// When they cannot be made.
+    /// Some rows of a buffer. Fails when they cannot be made.
     fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Self::Error>;
 
-    /// All rows from the top, as many at a time as are worth making at once.
+    /// All rows from the top, in groups.
     fn steps(&self) -> impl Iterator<Item = Range<u32>> {
         let (width, height) = self.size();
         let step = (SHARE / width.max(1)).max(1);
@@ -126,7 +109,6 @@ impl Rows for Picture {
 
 impl Values {
     /// The numbers' bytes, least significant first.
-    #[must_use]
     pub fn bytes(&self) -> Cow<'_, [u8]> {
         if cfg!(target_endian = "little") {
             return Cow::Borrowed(match self {

@@ -1,4 +1,4 @@
-//! What a sample looks like: surface, light, and colours in linear light.
+//! The appearance of a sample: surface, light, and colours in linear light.
 
 use glam::DVec3;
 
@@ -9,9 +9,7 @@ use super::{Background, Shading};
 use crate::graph::{Graph, PackedNormal};
 use crate::project::FrameSetup;
 
-/// Shows samples of one frame. What it says of a sample depends on where the
-/// sample is, and not on whether its neighbours are drawn: so it serves
-/// pictures of any number of samples.
+/// Shows samples of one frame. The result for a sample depends on its position, but not on its neighbours.
 pub struct Shader<'g> {
     pub(super) graph: &'g Graph,
     pub(super) sight: Sight,
@@ -21,18 +19,16 @@ pub struct Shader<'g> {
     background: Option<[u32; 3]>,
 }
 
-/// What is seen at a sample.
+/// The visible surface at a sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
-    /// Where the ray meets the voxel.
     pub(super) meeting: Meeting,
     /// Unit normal, world directions.
     pub(super) normal: DVec3,
 }
 
 impl<'g> Shader<'g> {
-    /// The samples of a frame. `setup.levels` says how fine they are.
-    #[must_use]
+    /// The samples of a frame; `setup.levels` is their resolution.
     pub fn new(
         graph: &'g Graph,
         setup: &FrameSetup,
@@ -55,21 +51,17 @@ impl<'g> Shader<'g> {
         }
     }
 
-    /// Linear light, 0..=65535 a channel, of sample `(x, y)` that sees a
-    /// node's voxel, given as in a frame.
-    #[must_use]
+    /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel, given as in a frame.
     pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
         self.light_of(node, &self.surface(x, y, node, voxel))
     }
 
-    /// Linear light of a sample that sees nothing; `None`: it is transparent.
-    #[must_use]
+    /// Linear light of a sample that shows nothing; `None`: transparent.
     pub fn background(&self) -> Option<[u32; 3]> {
         self.background
     }
 
     /// The sRGB colour whose linear light is nearest.
-    #[must_use]
     pub fn encode(&self, light: [u32; 3]) -> [u8; 3] {
         self.linear.encode(light)
     }
@@ -94,9 +86,8 @@ impl<'g> Shader<'g> {
 /// Cosine above which a normal is taken to point away from the eye.
 pub(super) const AWAY: f64 = 0.25;
 
-/// A normal turned to the side from which it is seen. A thin wall has two
-/// sides and one normal; the rounded corners of a solid, whose normals lean
-/// away by a little, keep theirs.
+/// A normal turned to the visible side. A thin wall has two sides and one normal. Normals that lean away only slightly, as
+/// on rounded corners, are kept.
 pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
     if is_turned(normal, ray) {
         -normal
@@ -105,7 +96,6 @@ pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
     }
 }
 
-/// Whether a normal is turned to the side from which it is seen.
 pub(super) fn is_turned(normal: DVec3, ray: DVec3) -> bool {
     normal.dot(ray) > AWAY
 }

@@ -1,13 +1,9 @@
-//! How much of its colour a sample shows, by its node's normal: for most
-//! samples a look-up, a product and two compares.
+//! The lit share of a sample's colour, by its node's normal: for most samples a look-up, a product and two compares.
 //!
-//! There are 65536 packed normals. What the light gives each of them and its
-//! opposite is kept once it was wanted. Which of the two a sample shows is
-//! decided by its ray (`is_turned`): normal times direction against a
-//! quarter of the direction's length. Both are linear along a row or nearly
-//! so, and taken here in `f32`; where they are closer than `f32` can tell,
-//! the rule itself decides. So the answer is always that of
-//! [`Shader::light`](super::Shader::light).
+//! There are 65536 packed normals. The shares of each normal and its opposite are cached. The sample's ray decides between
+//! them (`is_turned`): normal times direction against a quarter of the direction's length. Both are nearly linear along a
+//! row, and computed here in `f32`. Where they are too close for `f32`, the rule itself decides. So the result is always
+//! that of [`Shader::light`](super::Shader::light).
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -18,54 +14,51 @@ use super::shade::AWAY;
 use super::sight::Sight;
 use crate::graph::PackedNormal;
 
-/// Samples of a row that are looked at together.
+/// Samples of a row that are processed together.
 pub(super) const TOGETHER: usize = 16;
 
-/// Packed normals that there are.
+/// Number of packed normals.
 const NORMALS: usize = 1 << 16;
 
-/// How far `f32` may be off here, as a share of the three columns' lengths
-/// together: eight roundings of 2^-24 each in the product and ten in the
-/// length are 1e-6, and this is ten times as much.
+/// Error bound of `f32` here, as a share of the three columns' lengths together: eight roundings of 2^-24 in the product
+/// and ten in the length are 1e-6; this is ten times as much.
 const MARGIN: f32 = 1e-5;
 
 /// Shares by normal, for one frame.
 pub(super) struct Shares {
     light: Light,
-    /// Object direction of a step across the image root, one down, and of its
-    /// corner; of any common length.
+    /// Object direction of a step across the image root, of one down, and of its corner; of any common length.
     columns: [DVec3; 3],
     columns_f32: [Vec3; 3],
-    /// One over the samples across the image root, doubled.
+    /// One divided by the samples across the image root, doubled.
     step: f32,
     margin: f32,
-    /// By packed normal: what its product with the direction grows by across
-    /// and down the image root, what it begins with, and both shares; zeros: not
-    /// made yet. Whoever makes one makes the same; the shares are stored last.
+    /// By packed normal: the change of its product with the direction across and down the image root, its start, and both
+    /// shares; zeros: not made. Every thread computes the same values; the shares are stored last.
     entries: Vec<[AtomicU32; 4]>,
 }
 
-/// What the samples of a row need to know of a normal.
+/// A normal's numbers for the samples of a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Facing {
     /// Normal times direction is `along * u + base`.
     along: f32,
     base: f32,
-    /// Share of 256 of its colour that the normal shows.
+    /// Lit share of the normal's colour, of 256.
     pub(super) front: u32,
     /// The same of its opposite.
     pub(super) back: u32,
 }
 
 impl Facing {
-    /// Always the front, with the whole colour.
+    /// Always the front, fully lit.
     pub(super) const FLAT: Self = Self {
         along: 0.0,
         base: f32::NEG_INFINITY,
         front: 256,
         back: 256,
     };
-    /// For the rule to decide.
+    /// Left to the rule.
     pub(super) const UNKNOWN: Self = Self {
         base: f32::NAN,
         ..Self::FLAT
@@ -74,11 +67,11 @@ impl Facing {
 
 /// Neighbouring samples of a row.
 pub(super) struct Run {
-    /// How far to the right, of the image root.
+    /// Position to the right, of the image root.
     across: [f32; TOGETHER],
-    /// A normal whose product with the direction is above is turned.
+    /// A normal whose product with the direction is above this is turned,
     limit: [f32; TOGETHER],
-    /// Unless it is closer than this.
+    /// unless it is closer than this.
     margin: f32,
 }
 
@@ -101,7 +94,7 @@ impl Shares {
         }
     }
 
-    /// How far down a row of samples is, of the image root.
+    /// Position of a row of samples below the top, of the image root.
     pub(super) fn down(&self, y: u32) -> f32 {
         self.across(y)
     }
@@ -111,7 +104,7 @@ impl Shares {
         (2 * x + 1) as i32 as f32 * self.step
     }
 
-    /// Samples `x` and those after it, in a row that is so far down.
+    /// Samples `x` and those after it, in a row at `down`.
     #[inline]
     pub(super) fn run(&self, x: u32, down: f32) -> Run {
         let [right, low, corner] = self.columns_f32;
@@ -133,9 +126,8 @@ impl Shares {
         run
     }
 
-    /// What the samples of a row need to know of a node's normal.
+    /// A normal's numbers in a row at `down`; none without a normal.
     #[inline]
-    /// None where it is none.
     pub(super) fn facing(&self, packed: PackedNormal, down: f32) -> Option<Facing> {
         let entry = self.entries.get(usize::from(packed.0))?;
         let mut shares = entry[3].load(Ordering::Acquire);
@@ -151,7 +143,7 @@ impl Shares {
         })
     }
 
-    /// Makes the entry of a normal and gives its shares; none where there is no normal.
+    /// Makes the entry of a normal and returns its shares; none without a normal.
     #[cold]
     fn make(&self, packed: PackedNormal, entry: &[AtomicU32; 4]) -> Option<u32> {
         let normal = packed.decode()?;
@@ -167,14 +159,14 @@ impl Shares {
 }
 
 impl Run {
-    /// Where everything is lit in full.
+    /// Of a frame that is fully lit.
     pub(super) const FLAT: Self = Self {
         across: [0.0; TOGETHER],
         limit: [0.0; TOGETHER],
         margin: 0.0,
     };
 
-    /// The share of sample `i` of these; none where the rule has to decide.
+    /// The share of sample `i`; none where the rule decides.
     #[inline]
     pub(super) fn share(&self, i: usize, facing: &Facing) -> Option<u32> {
         let above = facing.along * self.across[i] + facing.base - self.limit[i];

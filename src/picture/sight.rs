@@ -1,14 +1,14 @@
-//! Where a sample's ray meets the voxel that it sees.
+//! The point at which a sample's ray meets its voxel.
 //!
-//! Host arithmetic in f64 with nothing but `+ - * /` and square roots, which
-//! IEEE 754 rounds correctly: the same bits on every machine.
+//! Host arithmetic in f64 with only `+ - * /` and square roots, which IEEE 754 rounds correctly: the same bits on every
+//! computer.
 
 use glam::{DMat3, DVec3};
 
 use crate::project::FrameSetup;
 
-/// A ray that misses a cube by less than this share of the depth is a hit:
-/// `exact` draws on the outline itself, where f64 rounds either way.
+/// A ray that misses a cube by less than this share of the depth counts as a hit: `exact` draws on the outline itself,
+/// where f64 rounds either way.
 const GRAZE: f64 = 1e-9;
 
 /// The quantised view of a frame, in real numbers.
@@ -26,19 +26,19 @@ pub(super) struct Sight {
     axes: [DVec3; 3],
 }
 
-/// What a sample sees of a voxel's cube.
+/// The visible part of a voxel's cube at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
     /// View-axis depth in world units, 0 or more.
     pub(super) depth: f64,
-    /// Outward normal of the face that is seen.
+    /// Outward normal of the visible face.
     pub(super) face: DVec3,
     /// Unit direction of the sample's ray.
     pub(super) ray: DVec3,
 }
 
 impl Sight {
-    /// The view of a frame; the set-up has made sure that it has a volume.
+    /// The view of a frame. A set-up's view has a volume.
     pub(super) fn new(setup: &FrameSetup) -> Self {
         let column = |k: usize| {
             let edge = setup.edge_clip[k];
@@ -46,8 +46,8 @@ impl Sight {
         };
         let to_clip = DMat3::from_cols(column(0), column(1), column(2));
         let to_object = inverse(&to_clip);
-        // Rows of the view: the gradients of X, Y and W over the object. W grows
-        // along the view axis; X and Y carry a share of W, which is taken out.
+        // Rows of the view: the gradients of X, Y and W over the object. W grows along the view axis; the share of W in
+        // X and Y is removed.
         let rows = to_clip.transpose();
         let forward = rows.z_axis.normalize();
         let across = |row: DVec3| (row - forward * row.dot(forward)).normalize();
@@ -68,7 +68,7 @@ impl Sight {
         self.axes
     }
 
-    /// Where the ray of sample `(x, y)` meets a voxel, given as in a frame.
+    /// The meeting of the ray of sample `(x, y)` with a voxel, given as in a frame.
     pub(super) fn meet(&self, x: u32, y: u32, voxel: [i32; 4]) -> Meeting {
         let (corner, side) = self.cube(voxel);
         // The ray is eye + t * direction, where t is the depth W.
@@ -100,7 +100,7 @@ impl Sight {
         }
     }
 
-    /// Unit object direction of a sample's ray, as [`Sight::meet`] has it.
+    /// Unit object direction of a sample's ray, as in [`Sight::meet`].
     pub(super) fn ray(&self, x: u32, y: u32) -> DVec3 {
         self.direction(x, y).normalize_or_zero()
     }
@@ -115,12 +115,11 @@ impl Sight {
             )
     }
 
-    /// Clip vector of a voxel's lowest corner, exact before it is rounded to
-    /// f64, and the voxel's side in finest voxels.
+    /// Clip vector of a voxel's lowest corner, rounded once, and the voxel's side in finest voxels.
     fn cube(&self, voxel: [i32; 4]) -> (DVec3, f64) {
         let [x, y, z, _] = voxel;
         let is_inside = |c: i32| u64::try_from(c).is_ok_and(|c| c < 1 << self.depth);
-        // Either way the exact sum is rounded once, to the nearest `f64`.
+        // Both ways round the exact sum once, to the nearest `f64`.
         let clip = |c: usize| {
             let edge = [self.edge[0][c], self.edge[1][c], self.edge[2][c]];
             if self.is_narrow && is_inside(x) && is_inside(y) && is_inside(z) {
@@ -158,8 +157,8 @@ fn inverse(m: &DMat3) -> DMat3 {
     DMat3::from_cols(bc / determinant, ca / determinant, ab / determinant).transpose()
 }
 
-/// Where a ray enters and leaves the cube from 0 to `side`, and the axis whose
-/// face it enters by: of equal ones the first.
+/// The positions at which a ray enters and leaves the cube from 0 to `side`, and the axis of the face of entry: of equal
+/// ones the first.
 fn slabs(eye: DVec3, direction: DVec3, side: f64) -> (f64, f64, usize) {
     let (mut enter, mut exit, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
     for k in 0..3 {
@@ -180,7 +179,7 @@ fn slabs(eye: DVec3, direction: DVec3, side: f64) -> (f64, f64, usize) {
     (enter, exit, axis)
 }
 
-/// The face most turned to the eye, which is `offset` away from the centre.
+/// The face turned most towards the eye, which is `offset` away from the centre.
 fn facing(offset: DVec3) -> DVec3 {
     let axis = (1..3).fold(0, |best, k| {
         if offset[k].abs() > offset[best].abs() {

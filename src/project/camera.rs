@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct Camera {
     /// Position of the eye, world units.
     pub eye: DVec3,
-    /// A point that is seen in the middle of the picture, world units.
+    /// A point in the middle of the picture, world units.
     pub target: DVec3,
-    /// A direction that is seen pointing up; not along the view axis.
+    /// A direction that points up in the picture; not along the view axis.
     pub up: DVec3,
     /// Vertical field of view, degrees, above 0 and below 180.
     pub fov_degrees: f64,
@@ -42,7 +42,7 @@ pub enum CameraError {
     Size(u32, u32),
 }
 
-/// Most pixels a side.
+/// Most pixels per side.
 pub const MAX_SIDE: u32 = 1 << 15;
 
 /// The camera's axes: orthonormal, right-handed as (right, up, back).
@@ -54,15 +54,12 @@ pub struct Axes {
     pub up: DVec3,
     /// Along the view axis, away from the eye.
     pub forward: DVec3,
-    /// Pixels per unit of slope: half the height over the tangent of half the field of view.
+    /// Pixels per unit of slope: half the height divided by the tangent of half the field of view.
     pub focal_px: f64,
 }
 
 impl Camera {
     /// The camera's axes.
-    ///
-    /// # Errors
-    /// When the camera cannot see: see [`CameraError`].
     pub fn axes(&self) -> Result<Axes, CameraError> {
         if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return Err(CameraError::FieldOfView(self.fov_degrees));
@@ -76,7 +73,7 @@ impl Camera {
         {
             return Err(CameraError::NotFinite);
         }
-        // glam's vectors, in the order of operations that fixes the bits.
+        // The order of operations fixes the bits.
         let forward = self.target - self.eye;
         let scale = 1.0 / length(forward);
         if !(scale.is_finite() && scale > 0.0) {

@@ -1,41 +1,35 @@
-//! The depths from which on a record may change to screen space, or be taken
-//! for a solid: constants of a level, made by the host.
+//! By level, the depths from which a record may change to screen space, or counts as a solid, computed by the host.
 //!
-//! Both follow from how far an affine map of a voxel deviates from its
-//! projection, and how large the projection is; see `SPEC.md`, "The change to
-//! screen space" and "Drawing rules". Everything scales: at twice the depth a
-//! voxel of twice the side looks the same, so one ratio of side to depth
-//! serves all levels.
+//! Both follow from the deviation of an affine map of a voxel from its projection, and the projection's size; see
+//! `SPEC.md`, "The change to screen space" and "Drawing rules". At twice the depth a voxel of twice the side looks the
+//! same, so one ratio of side to depth serves all levels.
 
 use super::options::SCREEN_GUARD_SHIFT;
 
-/// Clip vectors of a finest voxel's edges, and the picture they are seen in.
+/// Clip vectors of a finest voxel's edges, and the size of the picture.
 pub(super) struct Edges {
     /// X and Y in units of the image root times depth, W in voxels.
     pub(super) edge: [[f64; 3]; 3],
-    /// Samples a side of the image root.
+    /// Samples per side of the image root.
     pub(super) root_samples: f64,
 }
 
-/// Where W is in a clip vector.
+/// Index of W in a clip vector.
 const W: usize = 2;
 
 impl Edges {
-    /// How fast a picture position at `x` (0 to 1 across the image root)
-    /// moves along each edge, times the depth, in samples.
+    /// Speed of a picture position at `x` (0 to 1 across the image root) along each edge, times the depth, in samples.
     fn speed(&self, axis: usize, x: f64) -> [f64; 3] {
         self.edge.map(|e| (e[axis] - x * e[W]) * self.root_samples)
     }
 
-    /// The two ends of the range of positions that may change: linear and
-    /// convex functions of the position are greatest there.
+    /// The two ends of the range of positions that may change, where linear and convex functions are greatest.
     fn ends(&self) -> [f64; 2] {
         let guard = libm::ldexp(1.0, -(SCREEN_GUARD_SHIFT as i32));
         [-guard, guard + 1.0]
     }
 
-    /// Sum over the edges of how fast they move a point, the greater of both
-    /// axes and ends.
+    /// Sum over the edges of the speed of a point, the greater of both axes and ends.
     fn total_speed(&self) -> f64 {
         let ends = self.ends();
         let mut most = 0.0f64;
@@ -53,21 +47,21 @@ impl Edges {
         x + y + z
     }
 
-    /// Least depth, in voxels, for a voxel of side 1 that a level of detail of
-    /// at most `limit` samples takes for a solid.
+    /// Least depth, in voxels, at which a voxel of side 1 counts as a solid for a level of detail of at most `limit`
+    /// samples.
     pub(super) fn detail_depth(&self, limit: f64) -> f64 {
         self.total_speed() / limit
     }
 
-    /// Least depth, in voxels, at which a voxel of side 1 may change to
-    /// screen space with a deviation of at most `allowed` samples.
+    /// Least depth, in voxels, at which a voxel of side 1 may change to screen space with a deviation of at most `allowed`
+    /// samples.
     pub(super) fn screen_depth(&self, allowed: f64) -> f64 {
         libm::sqrt(self.total_speed() * self.depth_span() / allowed)
     }
 }
 
-/// Most of a sample by which rounding moves a vertex in screen space: quotients
-/// are rounded down, a corner and three edges, one unit each.
+/// Most samples by which rounding moves a vertex in screen space: quotients are rounded down, a corner and three edges by
+/// one unit each.
 pub(super) fn rounding(screen_frac: u32) -> f64 {
     libm::ldexp(4.0, -(screen_frac as i32))
 }

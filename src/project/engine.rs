@@ -1,4 +1,4 @@
-//! What the engines have in common.
+//! The interface of the engines.
 
 use hwmodel::Trap;
 
@@ -7,9 +7,8 @@ use crate::budget::Shortage;
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 
-/// Children by occlusion order, nearest first, for octant 000: exclusive-or
-/// with the octant bits gives the order for any eye (image-order paper, 3.2). Normative:
-/// the first record to reach a sample draws it.
+/// Children by occlusion order, nearest first, for octant 000: exclusive-or with the octant bits gives the order for any
+/// eye (image-order paper, 3.2). Normative: the first record to reach a sample draws it.
 pub const OCCLUSION_ORDER: [u8; 8] = [7, 6, 5, 3, 4, 2, 1, 0];
 
 /// Why a frame was not finished.
@@ -23,16 +22,12 @@ pub enum EngineError {
     Memory(#[from] Shortage),
 }
 
-/// What an engine counted of one frame: names and numbers, in a fixed order.
+/// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
-/// Draws a frame. The picture depends on the frame set-up and the graph alone.
+/// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// Draws like [`Engine::render`] without counters: work that an engine does
-    /// only for counters is left out, and not timed.
-    ///
-    /// # Errors
-    /// As [`Engine::render`].
+    /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
@@ -42,12 +37,8 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' own colours, as [`Engine::draw`] draws their nodes:
-    /// what a preview shows and what experiments time. `of_node`: colours by
-    /// graph node; `colors` has the size of `setup` and is cleared first.
-    ///
-    /// # Errors
-    /// As [`Engine::render`].
+    /// Draws the samples' unlit colours. `of_node`: colours by graph node; `colors` has the size of `setup` and is
+    /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -60,10 +51,8 @@ pub trait Engine {
         Ok(())
     }
 
-    /// Draws into `frame`, which has the size of `setup` and is cleared first.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished; its contents are then of no use.
+    /// Draws into `frame`, which has the size of `setup` and is cleared first. Fails when the frame cannot be finished;
+    /// its contents then have no meaning.
     fn render(
         &mut self,
         graph: &GraphView<'_>,

@@ -5,14 +5,14 @@ use glam::DVec3;
 use super::Camera;
 use crate::graph::{Graph, MeshBox};
 
-/// Vertical field of view where none is given, degrees.
+/// Vertical field of view by default, degrees.
 pub const DEFAULT_FOV: f64 = 40.0;
-/// Share of the picture that a fitted object fills at most.
+/// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
-/// Nodes examined to find an object's bounds; beyond it they are only enclosed.
+/// Nodes examined to find an object's bounds; others are only enclosed.
 const MAX_VISITS: u32 = 4_000_000;
 
-/// Which world axis is up.
+/// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Up {
@@ -27,18 +27,16 @@ pub enum Up {
 }
 
 impl Up {
-    /// +Y or else +Z.
+    /// +Y or +Z.
     pub fn y_or_z(is_y: bool) -> Self {
         if is_y { Self::Y } else { Self::Z }
     }
 
-    /// The axis that is up in a graph: the mesh's that it was made of, else +Z.
+    /// The vertical axis of a graph: that of its mesh, otherwise +Z.
     pub fn of(graph: &Graph) -> Self {
         Self::y_or_z(graph.placement.mesh.is_some_and(|mesh| mesh.y_up))
     }
 
-    /// The direction that is up.
-    #[must_use]
     pub fn axis(self) -> DVec3 {
         match self {
             Self::Z => DVec3::Z,
@@ -58,20 +56,16 @@ impl Up {
 /// An axis-aligned box in world units, and points in it that enclose the object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
-    /// Lowest corner.
     pub low: DVec3,
-    /// Highest corner.
     pub high: DVec3,
-    /// Points whose hull holds all voxels.
+    /// Points whose hull contains all voxels.
     pub hull: Vec<DVec3>,
 }
 
 impl Bounds {
-    /// The box of a graph's voxels in object coordinates, finest voxels; `None` where there are none.
+    /// The box of a graph's voxels in object coordinates, finest voxels; `None` without voxels.
     ///
-    /// Exact but for graphs with millions of nodes on their outside, whose box
-    /// may then be too large by a few voxels.
-    #[must_use]
+    /// Exact, except for graphs with millions of nodes on their outside, whose box may be too large by a few voxels.
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
         if graph.is_empty() {
             return None;
@@ -83,12 +77,11 @@ impl Bounds {
             visits: 0,
         };
         search.visit(graph.root, 0, [0; 3]);
-        // In a damaged file that was not verified, no list of children may lead anywhere.
+        // In a damaged file that was not verified, the lists of children may lead nowhere.
         (search.low[0] < search.high[0]).then_some((search.low, search.high))
     }
 
-    /// What a camera is fitted to: the mesh that a graph was made of, else its voxels.
-    #[must_use]
+    /// The bounds for a fitted camera: those of the graph's mesh, otherwise of its voxels.
     pub fn of(graph: &Graph) -> Self {
         match &graph.placement.mesh {
             Some(mesh) => Self::of_mesh(mesh),
@@ -97,7 +90,6 @@ impl Bounds {
     }
 
     /// A mesh's box, with its bevels.
-    #[must_use]
     pub fn of_mesh(mesh: &MeshBox) -> Self {
         Self {
             low: mesh.low.into(),
@@ -106,8 +98,7 @@ impl Bounds {
         }
     }
 
-    /// The box of a graph's voxels in world units; the unit cube where there are none.
-    #[must_use]
+    /// The box of a graph's voxels in world units; the unit cube without voxels.
     pub fn of_voxels(graph: &Graph) -> Self {
         let Some((low, high)) = Self::in_voxels(graph) else {
             return Self::of_box(DVec3::ZERO, DVec3::ONE);
@@ -126,8 +117,6 @@ impl Bounds {
         Self { low, high, hull }
     }
 
-    /// A box alone.
-    #[must_use]
     pub fn of_box(low: DVec3, high: DVec3) -> Self {
         let corner = |i: u32| {
             let pick = |bit: u32, k: usize| if i >> bit & 1 == 1 { high[k] } else { low[k] };
@@ -140,9 +129,7 @@ impl Bounds {
         }
     }
 
-    /// The bounds of the object turned all the way around the up axis, so
-    /// that a fitted distance is the same from all sides.
-    #[must_use]
+    /// The bounds of the object revolved around the up axis, so that a fitted distance is the same from all sides.
     pub fn revolved(&self, up: Up) -> Self {
         let centre = (self.low + self.high) / 2.0;
         let axis = up.axis();
@@ -157,7 +144,7 @@ impl Bounds {
             })
             .collect();
         rings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
-        // The widest of each height stands for the others.
+        // Only the widest ring of each height matters.
         rings.dedup_by_key(|ring| ring.0);
         let turns =
             (0..RING_POINTS).map(|i| sin_cos(360.0 * f64::from(i) / f64::from(RING_POINTS)));
@@ -216,7 +203,7 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
         .collect()
 }
 
-/// Looks only at nodes that may widen the box.
+/// Visits only nodes that may enlarge the box.
 struct Search<'g> {
     graph: &'g Graph,
     low: [i64; 3],
@@ -251,7 +238,7 @@ impl Search<'_> {
     }
 }
 
-/// Where a viewer stands around an object, degrees.
+/// Direction from an object to its viewer, degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Direction {
     /// Around the up axis: 0 from the front, 90 from the right.
@@ -268,9 +255,7 @@ impl Direction {
     };
 }
 
-/// The nearest camera in a direction that sees the whole box, then magnified
-/// by `zoom` (the field of view stays, the eye comes nearer).
-#[must_use]
+/// The nearest camera in a direction that sees the whole box, then magnified by `zoom` (the eye comes nearer).
 pub fn fit_camera(
     bounds: &Bounds,
     up: Up,
@@ -284,7 +269,7 @@ pub fn fit_camera(
     let right_of_front = up.axis().cross(up.front());
     let horizontal = up.front() * cos_a + right_of_front * sin_a;
     let towards_eye = horizontal * cos_e + up.axis() * sin_e;
-    // Rises with the elevation, so it is never along the view axis, not even from above.
+    // Rises with the elevation, so it is never along the view axis.
     let camera_up = up.axis() * cos_e - horizontal * sin_e;
     let camera_right = camera_up.cross(towards_eye);
 
@@ -311,12 +296,11 @@ pub fn fit_camera(
     }
 }
 
-/// Rounds to about six decimal digits of `scale`, so that a printed camera is
-/// short and still reads back as the same numbers.
+/// Rounds to about six decimal digits of `scale`, so that a printed camera is short and is read as the same numbers.
 fn tidy(point: DVec3, scale: f64) -> DVec3 {
     let digits = 6 - libm::ceil(libm::log10(scale.max(f64::MIN_POSITIVE))) as i32;
     let round = |x: f64| -> f64 {
-        // A power of ten up to 22 is exact, so x comes out as the f64 nearest to a short decimal.
+        // A power of ten up to 22 is exact, so x becomes the f64 nearest to a short decimal.
         let rounded = match digits {
             0..=22 => libm::round(x * power_of_ten(digits)) / power_of_ten(digits),
             -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),

@@ -1,4 +1,4 @@
-//! From a camera to the integers of a frame, and what engines have in common.
+//! From a camera to the integers of a frame, and the interface of the engines.
 
 pub mod camera;
 mod depths;

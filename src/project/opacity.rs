@@ -1,34 +1,30 @@
-//! What a frame that blends starts from, beyond what every frame does
-//! (`SPEC.md`, section 11).
+//! Constants of a frame that blends (`SPEC.md`, section 11).
 
 use super::FrameSetup;
 
-/// Most bits of a coordinate that directions are taken from.
+/// Most bits of a coordinate for directions.
 const MOST_BITS: u32 = 24;
-/// Bits of a word beyond such a coordinate: sign, the eye's distance, the sum
-/// of three, and its double in a divide.
+/// Bits of a word beyond such a coordinate: sign, the eye's distance, the sum of three, and its double in a divide.
 const HEADROOM_BITS: u32 = 5;
 
 /// Shares of a direction are sixteenths.
 pub const SHARES: i64 = 16;
-/// What a sample lets through before anything is drawn: all.
+/// Transmittance of an empty sample.
 pub const ALL_LEFT: u32 = 256;
-/// A sample that lets no more than this through is opaque enough: what it
-/// would still take is the last voxel's.
+/// Transmittance at which a sample is opaque enough: the last voxel takes the rest.
 pub const OPAQUE_ENOUGH: u32 = 64;
 
-/// The eye, as directions to voxels are taken from it.
+/// The eye, for directions to voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OpacityEye {
-    /// By how many bits coordinates are shifted to the right first.
+    /// Places by which coordinates are shifted right.
     pub shift: u32,
     /// The eye in object coordinates, rounded down, shifted.
     pub at: [i64; 3],
 }
 
 impl FrameSetup {
-    /// The eye, with as many bits as leave a word room for directions.
-    #[must_use]
+    /// The eye, with as many bits as a word has room for.
     pub fn opacity_eye(&self) -> OpacityEye {
         let room = (self.format.bits() - HEADROOM_BITS).min(MOST_BITS);
         let side = 1u64 << self.depth;

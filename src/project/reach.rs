@@ -1,18 +1,17 @@
-//! What follows from a frame's integers: how far they reach, and where its eye is.
+//! Magnitudes of a frame's integers, and its eye.
 
 use hwmodel::Format;
 
 use super::vector::cross;
 
-/// A view as integers of `2^-frac` voxels: clip vectors of the object's lowest
-/// corner and of a finest voxel's edges.
+/// A view as integers of `2^-frac` voxels: clip vectors of the object's lowest corner and of a finest voxel's edges.
 #[derive(Clone, Copy)]
 pub(super) struct Quantised {
     pub(super) origin: [i64; 3],
     pub(super) edge: [[i64; 3]; 3],
 }
 
-/// Largest magnitudes that a frame meets.
+/// Largest magnitudes in a frame.
 pub(super) struct Reach {
     /// Of a coordinate of a clip vector.
     pub(super) position: i128,
@@ -21,8 +20,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// The reach over the object's eight corners; intermediate vertices lie between.
-    /// `None` where it does not fit 127 bits.
+    /// The reach over the object's eight corners; other vertices lie between. `None` beyond 127 bits.
     pub(super) fn of(quantised: &Quantised, depth: u32) -> Option<Self> {
         let origin = quantised.origin.map(i128::from);
         let edge = quantised.edge.map(|e| e.map(i128::from));
@@ -54,8 +52,7 @@ impl Reach {
         Some(reach)
     }
 
-    /// Whether positions leave headroom (bisector tests take `2X - W`, the
-    /// guard `8X + W`, the divide `X + 4W` and `8W`).
+    /// Whether positions leave headroom (bisector tests take `2X - W`, the guard `8X + W`, the divide `X + 4W` and `8W`).
     pub(super) fn position_fits(&self, format: Format, shift: u32) -> bool {
         self.position << shift <= i128::from(format.max()) / 16
     }
@@ -69,7 +66,7 @@ impl Reach {
     }
 }
 
-/// The eye of the quantised view, exactly: where the clip vector is zero.
+/// The eye of the quantised view, where the clip vector is zero.
 pub(super) struct Eye {
     pub(super) floor: [i64; 3],
     pub(super) ceil: [i64; 3],
@@ -77,8 +74,8 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of
-    /// `2^-sub_levels`. `None`: beyond 127 bits; `Some(None)`: no volume.
+    /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of `2^-sub_levels`. `None`: beyond 127 bits;
+    /// `Some(None)`: no volume.
     pub(super) fn solve(quantised: &Quantised, sub_levels: u32) -> Option<Option<Self>> {
         let edge = quantised.edge.map(|e| e.map(i128::from));
         let minus_origin = quantised.origin.map(|c| -i128::from(c));

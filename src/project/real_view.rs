@@ -1,5 +1,4 @@
-//! The view of an object in real numbers, and what is made of it: integers,
-//! and the depths by level at which records change.
+//! The view of an object in real numbers, its quantisation, and the depths by level at which records change.
 
 use hwmodel::Format;
 
@@ -11,7 +10,6 @@ use super::options::{
 use super::reach::{Quantised, Reach};
 use crate::graph::Placement;
 
-/// The view of the object in real numbers.
 pub(super) struct RealView {
     /// Clip vectors of a voxel's edges.
     edge: [[f64; 3]; 3],
@@ -51,8 +49,7 @@ impl RealView {
 
     /// Integers of `2^-frac` voxels, if they fit 64 bits with room.
     ///
-    /// The origin is made from the rounded edges, so that the eye stays where
-    /// the camera has it and only the view's shape is rounded.
+    /// The origin is computed from the rounded edges, so the eye stays in place and only the view's shape is rounded.
     pub(super) fn quantise(&self, frac: u32) -> Option<Quantised> {
         let scale = (1u64 << frac) as f64;
         let mut edge = [[0; 3]; 3];
@@ -69,9 +66,8 @@ impl RealView {
         Some(Quantised { origin, edge })
     }
 
-    /// The most fraction bits, and levels below a finest voxel, with which
-    /// positions fit a word and silhouette planes a wide word, with headroom
-    /// (bisector tests take `2X - W`, the divide `X + 4W` and `8W`).
+    /// The most fraction bits, and levels below a finest voxel, with which positions fit a word and silhouette planes a
+    /// wide word, with headroom.
     pub(super) fn widest_fraction(
         &self,
         depth: u32,
@@ -103,8 +99,8 @@ impl RealView {
         }
     }
 
-    /// Least `W`, by level, at which a record deviates from its screen-space
-    /// cage by at most the tolerance: `SPEC.md`, "The change to screen space".
+    /// Least `W`, by level, at which a record deviates from its screen-space cage by at most the tolerance: `SPEC.md`, "The
+    /// change to screen space".
     pub(super) fn screen_depths(
         &self,
         levels: &Levels,
@@ -122,8 +118,7 @@ impl RealView {
         levels.scaled(self.edges(options).screen_depth(allowed))
     }
 
-    /// Least `W`, by level, at which a node with children is no larger than
-    /// the level of detail, wherever in the picture.
+    /// Least `W`, by level, at which a node with children is no larger than the level of detail, anywhere in the picture.
     pub(super) fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
         match detail_limit(options) {
             Some(limit) => levels.scaled(self.edges(options).detail_depth(limit.value())),
@@ -139,7 +134,7 @@ pub(super) struct Levels {
     /// Deepest level of a record.
     pub(super) bound: u32,
     pub(super) clip_frac: u32,
-    /// Least of all depths below.
+    /// Lower bound of all depths below.
     pub(super) near: i64,
 }
 

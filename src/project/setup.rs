@@ -1,16 +1,12 @@
-//! The host's part of a frame: a camera and a placed object become the
-//! integers that every engine starts from.
+//! The host's part of a frame: a camera and a placed object become the integers from which every engine starts.
 //!
-//! This is the only module that multiplies or divides for the machine. The result is quantised
-//! once; machine, fast engine, oracle and hardware see the same integers, so
-//! *exact* means exact for them. Rules: `SPEC.md`, "Frame set-up".
+//! This is the only module that multiplies or divides for the machine. The result is quantised once; machine, fast engine,
+//! oracle and hardware use the same integers, so *exact* means exact for them. Rules: `SPEC.md`, "Frame set-up".
 //!
-//! Coordinates. A point `u` of the object (finest voxels, `0..=2^depth` a
-//! side) has the clip vector `(X, Y, W) = origin_clip + sum u_k edge_clip[k]`
-//! in units of `2^-clip_frac` finest voxels of depth. `X / W` and `Y / W` are
-//! fractions of the image root: the square of `2^levels` samples whose top
-//! left corner is the picture's. Sample `(i, j)` is at
-//! `((2i + 1) / 2^(levels + 1), (2j + 1) / 2^(levels + 1))`.
+//! Coordinates. A point `u` of the object (finest voxels, `0..=2^depth` per side) has the clip vector
+//! `(X, Y, W) = origin_clip + sum u_k edge_clip[k]` in units of `2^-clip_frac` finest voxels of depth. `X / W` and `Y / W`
+//! are fractions of the image root: the square of `2^levels` samples whose top left corner is the picture's. Sample
+//! `(i, j)` is at `((2i + 1) / 2^(levels + 1), (2j + 1) / 2^(levels + 1))`.
 
 use hwmodel::{Format, FormatError};
 
@@ -22,12 +18,11 @@ use super::reach::{Eye, Quantised, Reach};
 use super::real_view::{Levels, RealView};
 use crate::graph::{MAX_DEPTH, Placement};
 
-/// Fraction bits of screen positions, unless the format or the user sets another number.
+/// Default fraction bits of screen positions, if the format has room.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
-/// Boxes widened by more samples than this may leave their words.
+/// Boxes widened by more samples may leave their words.
 const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
-/// Bits of a word beyond a screen position's fraction and the levels of the
-/// image: sign, guard, and sums of eight vertices.
+/// Bits of a word beyond a screen position's fraction and the levels of the image: sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
 
 /// Why a frame cannot be set up.
@@ -42,7 +37,7 @@ pub enum SetupError {
     /// The object is deeper than coordinates reach.
     #[error("the object has {0} levels, more than {MAX_DEPTH}")]
     Depth(u32),
-    /// Camera and object are out of all proportion.
+    /// The camera is too far away, or its view too narrow.
     #[error(
         "the camera is too far from the object, or its view too narrow, for 64-bit coordinates"
     )]
@@ -70,17 +65,17 @@ pub enum SetupError {
     Setting {
         /// The setting.
         name: &'static str,
-        /// What it may be.
+        /// Allowed values.
         range: &'static str,
-        /// What it was.
+        /// The value.
         value: f64,
     },
 }
 
-/// The recorded input of a frame: all integers that an engine starts from.
+/// The input of a frame: all integers from which an engine starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSetup {
-    /// The requested value.
+    /// The settings of this set-up.
     pub options: SetupOptions,
     /// Samples across; the picture's width times the samples per pixel and axis.
     pub width: u32,
@@ -90,7 +85,7 @@ pub struct FrameSetup {
     pub levels: u32,
     /// Levels of the object: its root has `2^depth` finest voxels a side.
     pub depth: u32,
-    /// Word format; its fraction is the one of screen positions.
+    /// Word format; its fraction is that of screen positions.
     pub format: Format,
     /// Fraction bits of clip vectors.
     pub clip_frac: u32,
@@ -98,7 +93,7 @@ pub struct FrameSetup {
     pub origin_clip: [i64; 3],
     /// Clip vectors of a finest voxel's edges along x, y, z.
     pub edge_clip: [[i64; 3]; 3],
-    /// Whether `edge_clip` as columns has a positive determinant (else negative).
+    /// Whether `edge_clip` as columns has a positive determinant; otherwise it is negative.
     pub positive: bool,
     /// Levels below a finest voxel to which a solid may be subdivided.
     pub sub_levels: u32,
@@ -106,35 +101,31 @@ pub struct FrameSetup {
     pub eye_floor: [i64; 3],
     /// The same, rounded up.
     pub eye_ceil: [i64; 3],
-    /// Least depth `W` at which `any` and `center` draw (`exact` draws all
-    /// that is before the eye), units of `2^-clip_frac` voxels.
+    /// Least depth `W` at which `any` and `center` draw, units of `2^-clip_frac` voxels. `exact` draws everything before
+    /// the eye.
     pub near: i64,
-    /// By octree level, least depth `W` of a record that may change to screen
-    /// space; `i64::MAX`: none may, as under the rules that draw outlines.
+    /// By octree level, least depth `W` of a record that may change to screen space; `i64::MAX`: none may, as under the
+    /// rules that draw outlines.
     pub screen_depth: Vec<i64>,
-    /// By octree level, least depth `W` of a clip-space node with children that
-    /// level of detail takes for a solid; `i64::MAX`: none is.
+    /// By octree level, least depth `W` of a clip-space node with children that level of detail makes a solid;
+    /// `i64::MAX`: none.
     pub lod_depth: Vec<i64>,
-    /// Whether no word of a frame with these integers can overflow.
+    /// Whether no word of the frame can overflow.
     pub has_headroom: bool,
-    /// What a clip-space box is widened by when it is tested against the
-    /// quadtree, in samples, as a shift to the right (0 = one sample): the
-    /// tolerance, rounded up to a power of two; `None`: nothing.
+    /// Widening of a clip-space box in tests against the quadtree, in samples, as a shift to the right (0 = one sample):
+    /// the tolerance, rounded up to a power of two; `None`: nothing.
     pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
-    /// Size, in samples, up to which a node with children is taken for a
-    /// solid; `None`: only leaves are drawn.
+    /// Size, in samples, up to which a node with children becomes a solid; `None`: only leaves are drawn.
     pub lod_limit: Option<ShiftSum>,
-    /// Where the object lies, to name voxels and depths.
+    /// The object's place, to name voxels and depths.
     pub placement: Placement,
 }
 
 impl FrameSetup {
-    /// Quantises a camera's view of a placed object of `2^depth` voxels a side.
-    ///
-    /// # Errors
-    /// When the camera cannot see, the format is invalid, or a setting is out of its range.
+    /// Quantises a camera's view of a placed object of `2^depth` voxels a side. Fails when the camera cannot see, the
+    /// format is invalid, or a setting is out of its range.
     pub fn new(
         camera: &Camera,
         placement: &Placement,
@@ -211,16 +202,12 @@ impl FrameSetup {
         })
     }
 
-    /// The deepest level of a record: the finest voxels' level and the
-    /// levels to which a solid may be subdivided.
-    #[must_use]
+    /// The deepest level of a record: that of the finest voxels plus the levels to which a solid may be subdivided.
     pub fn level_bound(&self) -> u32 {
         self.depth + self.sub_levels
     }
 
-    /// The same frame without level of detail, down to the finest voxels: what
-    /// pictures are measured against.
-    #[must_use]
+    /// The same frame without level of detail, as a reference for measurements.
     pub fn without_detail(&self) -> Self {
         let mut whole = self.clone();
         whole.options.lod_px = 0.0;
@@ -230,7 +217,6 @@ impl FrameSetup {
     }
 
     /// Largest magnitude of a coordinate of a clip vector in the object.
-    #[must_use]
     pub fn position_reach(&self) -> Option<i128> {
         let quantised = Quantised {
             origin: self.origin_clip,
@@ -240,14 +226,12 @@ impl FrameSetup {
     }
 
     /// World depth of one unit of `W`.
-    #[must_use]
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }
 }
 
 /// `ceil(log2)` of the longer side of a picture.
-#[must_use]
 pub fn root_log2(width: u32, height: u32) -> u32 {
     width.max(height).next_power_of_two().trailing_zeros()
 }
@@ -259,7 +243,7 @@ fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
     if tolerance.is_nan() || tolerance < 0.0 {
         return bad("tolerance", "0 samples or more", options.tolerance_px);
     }
-    // Beyond any picture, and within any word: more is what `inf` is for.
+    // More than any picture needs, within any word; `inf` is larger.
     if tolerance.is_finite() && tolerance > 4096.0 {
         return bad(
             "tolerance",

@@ -2,7 +2,6 @@
 
 use std::ops::{Mul, Sub};
 
-/// The cross product.
 pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [
         a[1] * b[2] - a[2] * b[1],

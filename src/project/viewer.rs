@@ -1,38 +1,31 @@
-//! A picture that is kept: drawn anew when the set-up changes, else left as it is.
+//! A picture that is kept, and drawn again only when the set-up changes.
 //!
-//! That an unchanged set-up means an unchanged picture is guaranteed by
-//! ownership, not found by comparing buffers. A [`Viewer`] owns the engine and the
-//! frame, hands the frame out to be read alone, and borrows the graph for as
-//! long as it lives, so that nothing that the picture depends on can change
-//! but the set-up, and two set-ups can be compared.
+//! Ownership guarantees that an unchanged set-up means an unchanged picture. A [`Viewer`] owns the engine and the frame,
+//! lends the frame only for reading, and borrows the graph, so only the set-up can change.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
 use crate::budget::{self, Shortage};
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
 
-/// What a viewer's frame holds of each sample.
+/// Contents of a viewer's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Contents {
-    /// The node alone ([`Frame::nodes_only`]).
+    /// The node only ([`Frame::nodes_only`]).
     Nodes,
     /// Node and voxel.
     #[default]
     Voxels,
-    /// Node, voxel, and the records worked on.
+    /// Node, voxel, and the number of processed records.
     Records,
 }
 
-/// Name of the counter that is 1 where a frame was left as it was.
+/// Name of the counter that is 1 where a frame was kept.
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
-/// An engine, what it draws, and what it drew last.
+/// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
 ///
-/// A viewer that draws with set-up `s` shows what a new engine and a new frame
-/// would show with `s`; the tests hold it to that.
-///
-/// A shown frame cannot be changed, and neither can the graph while there is a
-/// viewer of it:
+/// Neither the shown frame nor the graph can be changed while there is a viewer:
 ///
 /// ```compile_fail,E0596
 /// # use shiftvox::project::Viewer;
@@ -57,10 +50,9 @@ pub struct Viewer<'g, E> {
     engine: E,
     contents: Contents,
     frame: Frame,
-    /// The set-up of what `frame` shows; none before the first drawing, while
-    /// an engine draws, and after one that failed.
+    /// The set-up of `frame`; none before the first drawing, during drawing, and after a failure.
     shown: Option<FrameSetup>,
-    /// The engine's counters of what `frame` shows, if they were requested.
+    /// The engine's counters of `frame`, if they were requested.
     stats: Option<Stats>,
 }
 
@@ -74,15 +66,12 @@ impl<E> std::fmt::Debug for Viewer<'_, E> {
 }
 
 impl<'g, E: Engine> Viewer<'g, E> {
-    /// A viewer of a graph that shows nothing yet. What the engine draws must
-    /// depend on graph and set-up alone, as it does with every engine of this crate.
-    #[must_use]
+    /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
     pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
         Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
     }
 
-    /// [`Viewer::new`] with the memory of a frame of another viewer, from [`Viewer::into_parts`].
-    #[must_use]
+    /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
     pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
         Self {
             graph,
@@ -94,23 +83,18 @@ impl<'g, E: Engine> Viewer<'g, E> {
         }
     }
 
-    /// The engine and the frame, to be used again.
-    #[must_use]
     pub fn into_parts(self) -> (E, Frame) {
         (self.engine, self.frame)
     }
 
-    /// Stores other contents of each sample from the next frame on; nothing is shown until then.
+    /// Changes the contents of samples from the next frame on, and shows nothing until then.
     pub fn store(&mut self, contents: Contents) {
         self.contents = contents;
         self.forget();
     }
 
-    /// Makes the frame that of a set-up. Returns whether it was drawn; if not,
-    /// it shows that already.
-    ///
-    /// # Errors
-    /// As [`Engine::draw`]; nothing is shown then.
+    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. Errors: as [`Engine::draw`];
+    /// nothing is shown then.
     pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
         if self.shows(setup) {
             return Ok(false);
@@ -121,20 +105,14 @@ impl<'g, E: Engine> Viewer<'g, E> {
         Ok(true)
     }
 
-    /// [`Viewer::draw`], with what was counted: [`FRAMES_UNCHANGED`] is last.
-    /// Where nothing was drawn it is 1 and all else is 0, for that was the work.
-    ///
-    /// # Errors
-    /// As [`Engine::render`]; nothing is shown then.
+    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are
+    /// 0. Errors: as [`Engine::render`]; nothing is shown then.
     pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
         self.render_lit(setup, &[])
     }
 
-    /// [`Viewer::render`] with the light of the nodes, for rules that blend:
-    /// the same for the same set-up.
-    ///
-    /// # Errors
-    /// As [`Engine::render`]; nothing is shown then.
+    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. Errors: as
+    /// [`Engine::render`]; nothing is shown then.
     pub fn render_lit(
         &mut self,
         setup: &FrameSetup,
@@ -158,14 +136,12 @@ impl<'g, E: Engine> Viewer<'g, E> {
         Ok(stats)
     }
 
-    /// The picture: of the last set-up that was drawn, or none.
-    #[must_use]
+    /// The picture of the last set-up, if there is one.
     pub fn frame(&self) -> Option<&Frame> {
         self.shown.as_ref().map(|_| &self.frame)
     }
 
     /// Memory of the frame, bytes.
-    #[must_use]
     pub fn frame_bytes(&self) -> u64 {
         let Frame {
             node,
@@ -180,21 +156,18 @@ impl<'g, E: Engine> Viewer<'g, E> {
     }
 
     /// Whether the frame is that of this set-up.
-    #[must_use]
     pub fn shows(&self, setup: &FrameSetup) -> bool {
         self.shown.as_ref() == Some(setup)
     }
 
-    /// Shows nothing any more; the next frame is drawn whatever its set-up.
+    /// Shows nothing; the next frame is drawn in any case.
     pub fn forget(&mut self) {
         self.shown = None;
         self.stats = None;
     }
 
-    /// Makes a frame of the set-up's size, or takes the last one's memory if it has that. Nothing is shown then.
-    ///
-    /// # Errors
-    /// [`Shortage`] if the system refuses the memory.
+    /// Makes a frame of the set-up's size, or reuses the last one's memory. Shows nothing. Errors: [`Shortage`] if the
+    /// system refuses the memory.
     pub fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
         self.forget();
         let (width, height) = (setup.width, setup.height);
@@ -204,7 +177,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
             (None, true) => Contents::Nodes,
         };
         if (self.frame.width, self.frame.height, has) != (width, height, self.contents) {
-            // The old one's memory is free before the new one's is taken.
+            // The old one's memory is freed first.
             self.frame = Frame::nodes_only(0, 0);
             let samples = width as usize * height as usize;
             let has_voxels = self.contents != Contents::Nodes;

@@ -1,47 +1,40 @@
 //! Exact coverage (`SPEC.md`, R8): one sample's ray against axis-aligned cubes.
 //!
-//! # Does the line go through a cube?
+//! # The line and a cube
 //!
-//! Seen along the line, the cube is a hexagon whose sides are parallel to the
-//! three kinds of cube edges; the line goes through the interior exactly when
-//! it is, for each axis, strictly between the outermost two of the four edges
-//! of that axis. The side on which it passes an edge is the sign of
-//! `f_j(u) = det(P(u), edge_j, q)`: `u` the edge's start, `P(u)` its clip
-//! vector, `q` the ray's direction. With `g_k = (edge_k+1 x edge_k+2) . q`
-//! (indices modulo 3)
+//! Seen along the line, the cube is a hexagon whose sides are parallel to the three kinds of cube edges. The line passes
+//! through the interior exactly if it is, for each axis, strictly between the outermost two of the four edges of that
+//! axis. The side on which it passes an edge is the sign of `f_j(u) = det(P(u), edge_j, q)` (Plücker coordinates): `u` the
+//! edge's start, `P(u)` its clip vector, `q` the ray's direction. With `g_k = (edge_k+1 x edge_k+2) . q` (indices modulo 3)
 //!
 //! ```text
 //! f_j(u) = f_j(0) - u_j+1 * g_j+2 + u_j+2 * g_j+1
 //! ```
 //!
-//! so the largest and the smallest of the four are at the corners that the
-//! signs of `g` name, and only these two are examined.
+//! so the largest and the smallest of the four are at the corners given by the signs of `g`. Only these two are examined.
 //!
 //! # Ties (R8.1)
 //!
-//! The ray is thought to be moved by `(e, e^2)` in `(x, y)` for an
-//! infinitesimal `e`. A linear function `a x + b y + c w` of the direction
-//! that is 0 then has the sign of `a`, or of `b` where `a` is 0 as well. Where
-//! both are 0 so is `c`: the function is zero for every ray (an edge through
-//! the eye) and has no sign. `g_k` always has one, as its plane is not zero.
+//! The ray is moved by `(e, e^2)` in `(x, y)` for an infinitesimal `e`. A linear function `a x + b y + c w` of the
+//! direction that is 0 then has the sign of `a`, or of `b` if `a` is 0 as well. If both are 0 so is `c`: the function is
+//! zero for every ray (an edge through the eye) and has no sign. `g_k` always has one, as its plane is not zero.
 
 use super::number::Number;
 use super::ray_frame::RayFrame;
 
-/// The line of one sample.
 pub(super) struct Line<'v, N> {
     view: &'v RayFrame,
     /// `f_j(0)`.
     pub(super) at_origin: [N; 3],
     /// `g_k`.
     slope: [N; 3],
-    /// Whether `g_k` is above 0, ties resolved; it is below otherwise.
+    /// Whether `g_k` is above 0, ties resolved; otherwise below.
     slope_positive: [bool; 3],
     /// Signs of the ray's direction in object space: 1 or -1.
     pub(super) direction: [i32; 3],
 }
 
-/// A cube of the octree, as the line sees it.
+/// A cube of the octree with its line functions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cube<N> {
     /// Lowest corner, finest voxels.
@@ -64,14 +57,13 @@ impl<'v, N: Number> Line<'v, N> {
         }
     }
 
-    /// `slope * 2^levels`: the change of line functions along the side of a
-    /// cube of `2^levels` voxels.
+    /// `slope * 2^levels`: the change of line functions along the side of a cube of `2^levels` voxels.
     pub(super) fn along_side(&self, levels: u32) -> [N; 3] {
         self.slope.map(|g| g.times_power(levels))
     }
 
-    /// The cube that lies `octant` (`x << 2 | y << 1 | z`) sides above `cube`;
-    /// `side` in voxels, `along_side` as from [`Self::along_side`].
+    /// The cube that lies `octant` (`x << 2 | y << 1 | z`) sides above `cube`; `side` in voxels, `along_side` from
+    /// [`Self::along_side`].
     #[inline]
     pub(super) fn neighbour(
         &self,
@@ -98,15 +90,14 @@ impl<'v, N: Number> Line<'v, N> {
         Cube { lo, at_lo }
     }
 
-    /// Whether the ray, from the eye on, goes through the interior of a cube.
+    /// Whether the ray, from the eye on, passes through the interior of a cube.
     #[inline]
     pub(super) fn enters(&self, cube: &Cube<N>, side: i64, along_side: &[N; 3]) -> bool {
         self.goes_forward_to(cube.lo, side) && self.line_crosses(cube, side, along_side)
     }
 
-    /// Plane of the eye (R8.2), of a cube that the line goes through: whether it does so before the
-    /// eye. The eye outside of a slab means that the slab, and so the cube,
-    /// is on one side of it along the line; inside of all three it is in the cube.
+    /// Plane of the eye (R8.2), for a cube on the line: whether it lies before the eye. If the eye is outside of a slab, the
+    /// slab, and so the cube, is on one side of it along the line. If it is inside of all three, it is in the cube.
     #[inline]
     fn goes_forward_to(&self, lo: [i64; 3], side: i64) -> bool {
         (0..3).all(|k| {
@@ -142,7 +133,7 @@ impl<'v, N: Number> Line<'v, N> {
     }
 }
 
-/// Sign of `plane . q` with ties resolved as above; `plane` is evaluated only in a tie.
+/// Sign of `plane . q` with ties resolved; `plane` is evaluated only in a tie.
 #[inline]
 fn sign<N: Number>(value: N, plane: impl FnOnce() -> [i128; 3]) -> i32 {
     match value.sign() {

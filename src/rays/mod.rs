@@ -1,11 +1,9 @@
-//! The exact oracle: for every sample, the nearest solid cell on its ray, of
-//! the graph as level of detail cuts it.
+//! The exact oracle: for every sample, the nearest solid cell on its ray, of the graph as level of detail cuts it.
 //!
-//! It starts from the same integers as every other engine and computes in
-//! integers that cannot overflow, so its picture is the meaning of *exact*.
-//! It is kept plain, to be checked by eye, and shares no code with the other
-//! engines. Drawing rule, cage and tolerance of the set-up are ignored: a
-//! sample shows what its centre sees. Rules: `spec/rays.md`.
+//! It starts from the same integers as every other engine and computes in integers that cannot overflow, so its picture
+//! is the meaning of *exact*. It is simple enough to be checked by reading, and shares no code with the other engines.
+//! Drawing rule, cage and tolerance of the set-up are ignored: a sample shows the voxel at its centre. Rules:
+//! `spec/rays.md`.
 
 mod line;
 mod number;
@@ -27,8 +25,7 @@ use search::Search;
 pub struct Rays;
 
 impl Engine for Rays {
-    /// Never fails. Of `frame.records` it makes the number of nodes whose
-    /// cube was tested against the sample's ray.
+    /// Never fails. `frame.records` is the number of nodes whose cube was tested against the sample's ray.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
@@ -49,25 +46,20 @@ impl Engine for Rays {
     }
 }
 
-/// Single rays of a frame: what [`Rays`] draws, sample by sample,
-/// for pictures of so many samples that no frame would hold them.
+/// Single rays of a frame, as [`Rays`] draws them, for pictures with too many samples for a frame.
 pub struct Caster<'g> {
     graph: &'g GraphView<'g>,
     view: RayFrame,
     is_narrow: bool,
 }
 
-/// Most levels of an image root whose rays can be cast: components of
-/// rays are at most `2^18`.
+/// Most levels of an image root whose rays can be cast: components of rays are at most `2^18`.
 pub const MAX_CASTER_LEVELS: u32 = 17;
 
 impl<'g> Caster<'g> {
-    /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`]
-    /// levels. With more of them than a picture needs (`setup.levels` raised, nothing
-    /// else changed), the samples are those of a finer grid in the same picture.
-    /// They see the graph as the frame's level of detail cuts it; references
-    /// start from [`FrameSetup::without_detail`].
-    #[must_use]
+    /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`] levels. If `setup.levels` is raised and
+    /// nothing else changed, the samples are those of a finer grid in the same picture. They see the graph as the frame's
+    /// level of detail cuts it; references start from [`FrameSetup::without_detail`].
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
         let view = RayFrame::new(setup);
@@ -79,8 +71,7 @@ impl<'g> Caster<'g> {
         }
     }
 
-    /// Graph node and voxel, as a frame stores them, that sample `(x, y)` sees.
-    #[must_use]
+    /// Graph node and voxel, as a frame stores them, of sample `(x, y)`.
     pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, [i32; 4])> {
         if self.is_narrow {
             Search::<i128>::new(self.graph, &self.view, x, y).nearest()
@@ -90,7 +81,7 @@ impl<'g> Caster<'g> {
     }
 }
 
-/// Draws every row, on all threads; returns how many cubes were tested.
+/// Draws every row, on all threads; returns the number of tested cubes.
 fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Frame) -> u64 {
     let width = frame.width as usize;
     if width == 0 {

@@ -1,9 +1,7 @@
-//! The integers that line functions are evaluated in.
+//! The integers of line functions.
 //!
-//! A line function is a plane (three integers of at most 127 bits) times a
-//! ray direction (three integers of at most 2^18). All but the most extreme
-//! views stay within `i128`; [`Wide`] holds the others. Which one a frame
-//! needs is decided once, from the bound in [`super::ray_frame::RayFrame`].
+//! A line function is a plane (three integers of at most 127 bits) times a ray direction (three integers of at most 2^18).
+//! Only the most extreme views leave `i128`; [`Wide`] holds those. [`super::ray_frame::RayFrame`] decides once per frame.
 
 use std::ops::{Add, Sub};
 

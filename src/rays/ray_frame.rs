@@ -1,21 +1,20 @@
-//! A frame's set-up as the oracle uses it: planes through the eye.
+//! A frame's set-up for the oracle: planes through the eye.
 
 use crate::project::FrameSetup;
 
 /// Line functions up to this magnitude, times eight, stay within `i128`.
 const I128_BOUND: i128 = 1 << 123;
 
-/// What all samples of a frame have in common.
+/// Constants of all samples of a frame.
 #[derive(Debug)]
 pub(super) struct RayFrame {
     /// Clip vector of the object's lowest corner.
     origin: [i128; 3],
     /// Clip vectors of a finest voxel's edges.
     edge: [[i128; 3]; 3],
-    /// `edge[k + 1] x edge[k + 2]`: its product with a ray direction is that
-    /// direction's object coordinate `k`, times the edges' determinant.
+    /// `edge[k + 1] x edge[k + 2]`: its product with a ray direction is that direction's object coordinate `k`, times the
+    /// edges' determinant.
     pub(super) normal: [[i128; 3]; 3],
-    /// Sign of the edges' determinant.
     pub(super) determinant_sign: i32,
     /// Levels of the object.
     pub(super) depth: u32,
@@ -26,8 +25,7 @@ pub(super) struct RayFrame {
     /// The eye in units of `2^-sub_levels` voxels, rounded down and up.
     eye_floor: [i64; 3],
     eye_ceil: [i64; 3],
-    /// By octree level, least depth of a node with children that is a solid
-    /// by level of detail; `None`: none is.
+    /// By octree level, least depth of a node with children that level of detail makes a solid; `None`: none.
     lod_depth: Vec<Option<i128>>,
 }
 
@@ -52,15 +50,13 @@ impl RayFrame {
         }
     }
 
-    /// Level of detail (`SPEC.md`, R7.1): whether it takes a node with children for a solid: the
-    /// node of this level whose lowest corner is `lo`.
+    /// Level of detail (`SPEC.md`, R7.1): whether it makes the node of this level whose lowest corner is `lo` a solid.
     pub(super) fn is_solid_by_detail(&self, lo: [i64; 3], level: u32) -> bool {
         let enough = self.lod_depth.get(level as usize).copied().flatten();
         enough.is_some_and(|enough| self.least_depth(lo, level) >= enough)
     }
 
-    /// The least `W` of the eight vertices of a node: `W` is linear, so along
-    /// each axis it is least at one end, whatever the other axes.
+    /// The least `W` of a node's eight vertices: `W` is linear, so it is least at one end of each axis.
     fn least_depth(&self, lo: [i64; 3], level: u32) -> i128 {
         let side = 1i128 << (self.depth - level);
         let mut least = self.origin[2];
@@ -79,9 +75,8 @@ impl RayFrame {
         ]
     }
 
-    /// The plane through the eye and the voxel edge that leaves object point
-    /// `u` along `axis`: the sign of its product with a ray direction is the side
-    /// of the edge the ray passes. Zero where the edge's line goes through the eye.
+    /// The plane through the eye and the voxel edge that leaves object point `u` along `axis`: the sign of its product
+    /// with a ray direction is the side on which the ray passes the edge. Zero if the edge's line contains the eye.
     pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
         let mut point = self.origin;
         for (step, along) in self.edge.iter().zip(u) {
@@ -92,12 +87,11 @@ impl RayFrame {
         cross(point, self.edge[axis])
     }
 
-    /// Plane of the eye (R8.2): on which side of the eye the slab `lo..hi` (voxels) of axis `k` lies:
-    /// 1 where it begins at or above the eye, -1 where it ends at or below
-    /// it, 0 where the eye is inside.
+    /// Plane of the eye (R8.2): the side of the eye on which the slab `lo..hi` (voxels) of axis `k` lies: 1 if it begins at
+    /// or above the eye, -1 if it ends at or below it, 0 if the eye is inside.
     #[inline]
     pub(super) fn side_of_eye(&self, k: usize, lo: i64, hi: i64) -> i32 {
-        // A whole number is >= the eye exactly when it is >= the eye rounded up.
+        // A whole number is >= the eye exactly if it is >= the eye rounded up.
         if lo << self.sub_levels >= self.eye_ceil[k] {
             1
         } else if hi << self.sub_levels <= self.eye_floor[k] {
@@ -107,12 +101,10 @@ impl RayFrame {
         }
     }
 
-    /// Whether every line function of this frame, and every sum made on the
-    /// way to one, stays within `i128`.
+    /// Whether every line function of this frame, and every intermediate sum, fits `i128`.
     ///
-    /// A line function is linear in the object point, so its largest
-    /// magnitude is at a corner of the object; differences of two are at most
-    /// twice that, and a sum adds two differences to a third value.
+    /// A line function is linear in the object point, so it is largest at a corner of the object. Differences of two are
+    /// at most twice that, and a sum adds two differences to a third value.
     pub(super) fn fits_i128(&self) -> bool {
         let side = 1i64 << self.depth;
         (0..8i64).all(|corner| {

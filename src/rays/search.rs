@@ -1,24 +1,19 @@
 //! The solid cell that a ray meets first, by its own order (for R9 of `SPEC.md`); the graph's depth ends cycles (R10).
 //!
-//! # Why the first one found is the nearest
+//! # The first one found is the nearest
 //!
-//! The three planes that part a node into its children are each crossed at
-//! most once by a line, in the sense of its direction along that axis (which
-//! is never 0, ties resolved). Number the children by `rank = octant XOR
-//! start`, where `start` is the octant whose bit is set for each axis along
-//! which the ray runs downwards: crossing a plane turns one bit of the rank
-//! from 0 to 1, and none ever back. Of two children that the line goes
-//! through, the nearer one's rank is therefore a strict subset of the other's
-//! bits, a smaller number. So growing ranks are an order from near to far,
-//! for every line with these direction signs. Children are disjoint cubes
-//! and all cells inside the nearer one lie before those in the other; depth
-//! first in this order, the first solid cell is the nearest.
+//! A line crosses each of the three planes between a node's children at most once, in its direction along that axis (which
+//! is never 0, ties resolved). Number the children by `rank = octant XOR start`, where `start` is the octant whose bit is
+//! set for each axis along which the ray runs downwards: crossing a plane changes one bit of the rank from 0 to 1, never
+//! back. Of two children on the line, the nearer one's rank is therefore a strict subset of the other's bits, a smaller
+//! number. So growing ranks are an order from near to far, for every line with these direction signs. Children are
+//! disjoint cubes and all cells inside the nearer one lie before those in the other. So, depth first in this order, the
+//! first solid cell is the nearest.
 //!
 //! # Level of detail
 //!
-//! A node with children is a solid cell where its least depth is at least the
-//! level's: then it is no larger than the level of detail allows, wherever in
-//! the picture it is seen. Both are whole numbers, so nothing is rounded here.
+//! A node with children is a solid cell if its least depth is at least the level's: then it is no larger than the level of
+//! detail allows, anywhere in the picture. Both are whole numbers, so nothing is rounded here.
 
 use super::line::{Cube, Line};
 use super::number::Number;
@@ -28,7 +23,6 @@ use crate::graph::GraphView;
 /// A node, and its cell as a frame stores it.
 pub(super) type Seen = (u32, [i32; 4]);
 
-/// The search along one ray.
 pub(super) struct Search<'w, N> {
     graph: &'w GraphView<'w>,
     view: &'w RayFrame,
@@ -69,7 +63,7 @@ impl<'w, N: Number> Search<'w, N> {
             .flatten()
     }
 
-    /// The nearest solid cell in `node`, whose cube the ray goes through.
+    /// The nearest solid cell in `node`, whose cube the ray meets.
     fn nearest_within(&mut self, node: u32, level: u32, cube: &Cube<N>) -> Option<Seen> {
         let is_leaf = level == self.view.depth || self.graph.mask(node) == 0;
         if is_leaf || self.view.is_solid_by_detail(cube.lo, level) {

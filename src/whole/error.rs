@@ -1,23 +1,20 @@
-//! Why a file was not written.
+//! Errors of writing files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a file was not written. Whatever stood there before still does.
+/// Why a file was not written. An older file is kept.
 #[derive(Debug, thiserror::Error)]
 pub enum WholeError {
-    /// Something is there already.
     #[error("{0} exists already")]
     Exists(PathBuf),
-    /// The folder is not there, nor the one that it would be in.
+    /// Neither the folder nor the one above it exists.
     #[error("{0}: there is no such folder")]
     NoFolder(PathBuf),
-    /// The operating system refused.
     #[error("{path}: {source}")]
     Io {
         /// The file, or its folder.
         path: PathBuf,
-        /// The system's reason.
         source: io::Error,
     },
 }

@@ -1,12 +1,10 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and
-//! renamed. Files that belong together are renamed when the last of them is written. A file that is
-//! replaced keeps its permissions, and a link to a file stays a link.
+//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. Files that belong
+//! together are renamed when all are written. A replaced file keeps its permissions, and a link to a file stays a link.
 //!
-//! A signal handler must call [`remove_unfinished`] before it ends the program. What a killed or
-//! crashed process left behind is removed by the next one that writes to the folder: such a file is
-//! recognised by its name and by its lock, which ends with the process that held it.
+//! A signal handler must call [`remove_unfinished`] before it ends the program. The files of a killed process are removed
+//! by the next one that writes to the folder. It recognises them by name and by lock, which ends with the process.
 
 mod error;
 mod temporary;
@@ -22,12 +20,9 @@ use error::failed;
 pub use temporary::{FolderLock, TemporaryGuard, remove_unfinished, temporary_folder};
 use temporary::{in_progress, temporary, tidy};
 
-/// Whether a file may be written: to ask before long work.
-///
-/// # Errors
-/// [`WholeError::Exists`] where something is there already and may not be overwritten,
-/// [`WholeError::NoFolder`] where there is no place for it, [`WholeError::Io`] where a folder or a
-/// device is in its place, its name is too long or nothing can be written to its folder.
+/// Checks whether a file may be written, before long work. Errors: [`WholeError::Exists`] if it exists and may not be
+/// overwritten, [`WholeError::NoFolder`] without a folder for it, [`WholeError::Io`] if a folder or a device has its
+/// name, its name is too long or its folder is not writable.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     let path = &check_place(path, overwrite)?;
     let folder = folder_of(path);
@@ -38,7 +33,7 @@ pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     Ok(())
 }
 
-/// The file that is going to be written, where there is a place for it.
+/// The file that will be written, if possible.
 fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     if !overwrite && fs::symlink_metadata(path).is_ok() {
         return Err(WholeError::Exists(path.to_owned()));
@@ -55,10 +50,7 @@ fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     Ok(path)
 }
 
-/// Whether a folder is there, or can be made in the one above it.
-///
-/// # Errors
-/// As [`check_free`].
+/// Checks whether a folder exists, or can be created in the one above it. Errors: as [`check_free`].
 pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
     if folder.is_dir() {
         return Ok(());
@@ -69,15 +61,13 @@ pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
             io::Error::from(io::ErrorKind::NotADirectory),
         ));
     }
-    // One missing folder is created; several are taken for a typing error.
+    // One missing folder is created; several are probably a typing error.
     match folder_of(folder).is_dir() {
         true => Ok(()),
         false => Err(WholeError::NoFolder(folder_of(folder).to_owned())),
     }
 }
 
-/// The folder that a path is in.
-#[must_use]
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -85,7 +75,7 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// The file that a path leads to, also where it is not there yet.
+/// The file to which a path leads, which need not exist.
 fn target(path: &Path) -> PathBuf {
     if let Ok(found) = fs::canonicalize(path)
         && fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
@@ -98,10 +88,7 @@ fn target(path: &Path) -> PathBuf {
     }
 }
 
-/// Makes a folder in one that exists.
-///
-/// # Errors
-/// [`WholeError::NoFolder`] where that does not exist; what the system says.
+/// Creates a folder in an existing one. Errors: [`WholeError::NoFolder`] if that does not exist; the system's errors.
 pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     match fs::create_dir(folder) {
         Ok(()) => Ok(()),
@@ -113,7 +100,7 @@ pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     }
 }
 
-/// A file that is written, but has not got its name yet; gone where it never gets it.
+/// A written file with a temporary name, removed if it is never renamed.
 #[derive(Debug)]
 pub struct Prepared {
     file: NamedTempFile,
@@ -122,12 +109,7 @@ pub struct Prepared {
     guard: TemporaryGuard,
 }
 
-/// Writes a file under a temporary name beside its place.
-///
-/// Its folder is made if it does not exist and the folder above does.
-///
-/// # Errors
-/// See [`WholeError`].
+/// Writes a file under a temporary name beside its place. Its folder is created if the folder above exists.
 pub fn prepare(
     path: &Path,
     overwrite: bool,
@@ -140,7 +122,7 @@ pub fn prepare(
     let (mut file, guard) = temporary(folder, &path).map_err(|e| failed(folder, e))?;
     fill(file.as_file_mut()).map_err(|e| failed(&path, e))?;
     if let Ok(old) = fs::metadata(&path) {
-        // Of another owner's file they cannot always be had; it is replaced all the same.
+        // Impossible for some files of other owners, which are replaced all the same.
         let _ = file.as_file().set_permissions(old.permissions());
     }
     Ok(Prepared {
@@ -151,13 +133,9 @@ pub fn prepare(
     })
 }
 
-/// Gives files their names: all of them, or none where one of them cannot have its name and nothing
-/// stood there before.
-///
-/// # Errors
-/// See [`WholeError`].
+/// Renames files: all of them, or, if one fails, none that is new.
 pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
-    // Not while the program is being ended.
+    // Not while the program is ending.
     let mut list = in_progress();
     let mut kept: Vec<PathBuf> = Vec::new();
     let mut result = Ok(());
@@ -191,7 +169,7 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
             }
         }
     }
-    // What is left takes itself off the list.
+    // The others remove themselves from the list.
     drop(list);
     drop(files);
     result
@@ -199,11 +177,8 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
 
 /// Writes a file under a temporary name beside its place and renames it.
 ///
-/// With `overwrite` an older file is replaced in one step; without, an existing file is an error,
-/// also when it appears while this one is written.
-///
-/// # Errors
-/// See [`WholeError`].
+/// With `overwrite` an older file is replaced in one step; without, an existing file is an error, also if it appears during
+/// the writing.
 pub fn write_with(
     path: &Path,
     overwrite: bool,
@@ -212,10 +187,7 @@ pub fn write_with(
     keep(vec![prepare(path, overwrite, fill)?])
 }
 
-/// As [`write_with`], of bytes that are at hand.
-///
-/// # Errors
-/// See [`WholeError`].
+/// As [`write_with`], for existing bytes.
 pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
     write_with(path, overwrite, |file| file.write_all(bytes))
 }

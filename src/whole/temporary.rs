@@ -1,5 +1,5 @@
-//! Temporary files and folders: listed while they are written, so that a signal handler can remove
-//! them, and locked, so that other processes know which of them were left behind.
+//! Temporary files and folders: listed while they are written, for signal handlers, and locked, so that other processes
+//! recognise abandoned ones.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -10,19 +10,19 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::error::{WholeError, failed};
 
-/// How temporary names begin and end.
+/// Beginning and end of temporary names.
 const PREFIX: &str = ".shiftvox-";
 const SUFFIX: &str = ".tmp";
 /// Most bytes of a file's name that its temporary name repeats; names have at most 255.
 const MOST_NAME: usize = 100;
-/// How often it is tried to remove what is unfinished.
+/// Most attempts to remove an unfinished file.
 const MOST_TRIES: u32 = 100;
 
-/// What this process is writing.
+/// Files in progress of this process.
 pub(super) struct InProgress {
-    /// Temporary files and folders that have not got their names yet.
+    /// Temporary files and folders before renaming.
     unfinished: Vec<PathBuf>,
-    /// Folders that were searched for what other processes left behind.
+    /// Folders that were searched for abandoned files.
     pub(super) tidied: Vec<PathBuf>,
 }
 
@@ -36,13 +36,11 @@ pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
     IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes all that this process has begun to write, then calls `end`, during which no file gets
-/// its name: for signal handlers.
+/// Removes all unfinished files of this process, then calls `end`, during which no file is renamed: for signal handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
-        // Other threads may still put files into a folder; a file may be another user's, about which nothing can be
-        // done.
+        // Other threads may still add files to a folder, and a file may belong to another user.
         for _ in 0..MOST_TRIES {
             let removed = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
             if removed.is_ok() || fs::symlink_metadata(&path).is_err() {
@@ -58,7 +56,7 @@ pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
 pub struct TemporaryGuard(PathBuf);
 
 impl TemporaryGuard {
-    /// Makes a file or a folder and lists it, so that no signal finds it made and not listed.
+    /// Makes and lists a file or a folder, without an interruption by a signal.
     fn around<T: AsRef<Path>>(make: impl FnOnce() -> io::Result<T>) -> io::Result<(T, Self)> {
         let mut list = in_progress();
         let made = make()?;
@@ -75,18 +73,15 @@ impl Drop for TemporaryGuard {
 }
 
 impl InProgress {
-    /// Takes a file off the list, whose lock is held.
+    /// Removes a file from the list.
     pub(super) fn forget(&mut self, guard: TemporaryGuard) {
         self.unfinished.retain(|path| *path != guard.0);
         std::mem::forget(guard);
     }
 }
 
-/// Makes a temporary folder in another, for files that are renamed together. It is removed with its
-/// contents when it is dropped; if the process is killed, by the next one that writes there.
-///
-/// # Errors
-/// What the system says.
+/// Creates a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
+/// dropped; if the process is killed, by the next one that writes there.
 pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();
@@ -103,19 +98,18 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeErr
             };
             return Ok((folder, lock));
         }
-        // Another process took it for one that was left behind, and removed it before it was
-        // locked.
+        // Another process removed it before it was locked.
     }
 }
 
-/// Keeps a temporary folder from being removed by other processes, as long as it lives.
+/// Protects a temporary folder from other processes.
 #[derive(Debug)]
 pub struct FolderLock {
     _guard: TemporaryGuard,
     _lock: Option<File>,
 }
 
-/// A temporary file for a place, locked for as long as it is open.
+/// A temporary file for a place, locked while it is open.
 pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, TemporaryGuard)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let end = (0..=name.len().min(MOST_NAME))
@@ -127,23 +121,21 @@ pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // What any new file gets; the process's mask takes its share.
+        // As for any new file; the process's mask applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     loop {
         let (file, guard) = TemporaryGuard::around(|| builder.tempfile_in(folder))?;
-        // Where the system has no locks, no process removes it either.
+        // Without locks, no process removes it either.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
             return Ok((file, guard));
         }
-        // Another process took it for one that was left behind, and removed it before it was
-        // locked.
+        // Another process removed it before it was locked.
     }
 }
 
-/// Removes what processes that have ended left in a folder, the first time that this one writes to
-/// it.
+/// Removes the abandoned files of other processes in a folder, when this process first writes to it.
 pub(super) fn tidy(folder: &Path) {
     {
         let mut list = in_progress();
@@ -152,7 +144,7 @@ pub(super) fn tidy(folder: &Path) {
         }
         list.tidied.push(folder.to_owned());
     }
-    // What cannot be read or removed stays; it does no harm.
+    // Errors are harmless.
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };

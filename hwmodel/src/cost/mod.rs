@@ -1,11 +1,8 @@
-//! What operations cost in area, time and energy, from tables in which every
-//! row names its source.
+//! Area, delay and energy of operations, from tables in which every row names its source.
 //!
-//! Two tables ship with the crate: `tables/area.toml` (gates, by synthesis
-//! with an open standard-cell library) and `tables/energy.toml` (picojoules,
-//! as published). Rows of a user's own come before both. Nothing is guessed
-//! in silence: a [`Cost`] names the rows that it comes from and whether
-//! it lies between or beyond them, and an operation without rows is an error.
+//! The crate ships `tables/area.toml` (gates, by synthesis with an open standard-cell library) and `tables/energy.toml`
+//! (picojoules, as published). A user's own rows take precedence. A [`Cost`] names its rows and whether it lies between
+//! or beyond them; an operation without rows is an error.
 
 mod rows;
 mod span;

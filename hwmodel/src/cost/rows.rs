@@ -1,10 +1,10 @@
-//! Rows of a cost table, and how they are read.
+//! Rows of a cost table, and their parser.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// What a figure measures.
+/// The quantity of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -22,7 +22,6 @@ pub enum Quantity {
 
 impl Quantity {
     /// The quantity in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Nand2 => "area in NAND2 equivalents",
@@ -34,7 +33,6 @@ impl Quantity {
     }
 
     /// Its unit.
-    #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Nand2 => "NAND2",
@@ -45,7 +43,6 @@ impl Quantity {
     }
 
     /// The key of its figures in a table.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::Nand2 => "nand2",
@@ -57,7 +54,6 @@ impl Quantity {
     }
 
     /// The shipped file that holds such figures.
-    #[must_use]
     pub const fn file(self) -> &'static str {
         match self {
             Self::EnergyPj => "hwmodel/tables/energy.toml",
@@ -66,7 +62,7 @@ impl Quantity {
     }
 }
 
-/// What gates were chosen for.
+/// The goal of a synthesis.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
 )]
@@ -82,7 +78,6 @@ pub enum Goal {
 
 impl Goal {
     /// The goal in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Area => "for small area",
@@ -97,65 +92,65 @@ pub enum CostError {
     /// A file is not TOML, or not a cost table.
     #[error("{file} is no cost table: {message}")]
     Syntax {
-        /// The file's name.
+        /// File name.
         file: String,
-        /// What is wrong, and where.
+        /// Problem and place.
         message: String,
     },
     /// A row makes no sense.
     #[error("{file}, row `{operation}`{}: {problem}", of_bits(*width))]
     Row {
-        /// The file's name.
+        /// File name.
         file: String,
         /// The row's operation.
         operation: String,
         /// The row's width, in bits.
         width: Option<u32>,
-        /// What is wrong.
+        /// Problem.
         problem: &'static str,
     },
-    /// No row at all.
+    /// No row.
     #[error(
         "no {} of `{operation}`, asked for at {width} bits{}: add a row with `{}` to a cost table of your own, or to {}",
         quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
     )]
     Missing {
-        /// What was requested.
+        /// Requested quantity.
         quantity: Quantity,
-        /// Of which operation.
+        /// Requested operation.
         operation: String,
-        /// At which width, in bits.
+        /// Requested width, in bits.
         width: u32,
-        /// Under which goal, if that matters.
+        /// Requested goal, if it matters.
         goal: Option<Goal>,
     },
-    /// Rows, but none near.
+    /// No row is near enough.
     #[error(
         "no {} of `{operation}` near {width} {unit}{}: the largest row has {widest}, and nothing is extrapolated beyond {times} times that; add a row with `{}` to a cost table of your own, or to {}",
         quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
     )]
     TooWide {
-        /// What was requested.
+        /// Requested quantity.
         quantity: Quantity,
-        /// Of which operation.
+        /// Requested operation.
         operation: String,
-        /// At which width (or size), in bits (or bytes).
+        /// Requested width or size, in bits or bytes.
         width: u64,
-        /// Width (or size) of the widest row.
+        /// Width or size of the widest row.
         widest: u64,
         /// `bits` or `bytes`.
         unit: &'static str,
-        /// How many times the widest has an answer.
+        /// Largest accepted multiple of the widest.
         times: u64,
-        /// Under which goal, if that matters.
+        /// Requested goal, if it matters.
         goal: Option<Goal>,
     },
-    /// Operations cannot be costed in the requested way.
+    /// Operations cannot be priced in the requested way. Operations cannot be costed in the requested way.
     #[error(
         "{times} min/max operations of {width} bits in stage {stage} are not spans of eight values (7 min and 7 max each): pairs are for the corner cage"
     )]
     NoSpans {
-        /// How many there are.
+        /// Number of operations.
         times: u64,
         /// Their width, in bits.
         width: u32,
@@ -180,7 +175,7 @@ enum Figure {
     Range([f64; 2]),
 }
 
-/// A row as a file has it.
+/// A row in a file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FileRow {
@@ -198,7 +193,6 @@ struct FileRow {
     energy_pj: Option<Figure>,
 }
 
-/// A file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -222,17 +216,17 @@ pub(super) struct CostRow {
     pub(super) file: String,
 }
 
-/// Which rows belong together: those between which one may interpolate.
+/// Key of the rows between which figures are interpolated.
 pub(super) type Key = (Quantity, String, Option<Goal>);
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub(super) quadratic: Vec<String>,
     pub(super) rows: BTreeMap<Key, Vec<CostRow>>,
 }
 
-/// Largest figure: no sum over a frame leaves what a number holds.
+/// Largest figure, so that sums over a frame stay finite.
 const MAX_FIGURE: f64 = 1e12;
 /// Widest row, bits.
 const MAX_WIDTH: u32 = 1 << 16;

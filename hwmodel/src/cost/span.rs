@@ -2,14 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How the hardware finds a span: the least and the greatest of `n` values.
+/// The hardware of a span: the least and the greatest of `n` values.
 ///
-/// The machine executes `n - 1` minima and `n - 1` maxima. Units that do one
-/// of them each do just that: for the eight vertices of a cage 7 + 7, each a
-/// compare and a select. Taken in pairs, one compare orders two values and
-/// serves both their minimum and their maximum; then the smaller ones go on to
-/// a tree of minima and the larger ones to one of maxima: 4 + 3 + 3 = 10
-/// compares. The selects stay 14: 8 for the pairs, 3 + 3 in the trees.
+/// The machine executes `n - 1` minima and `n - 1` maxima, each a compare and a select: 7 + 7 for the eight vertices of a
+/// cage. In pairs, one compare orders two values and serves both. The smaller ones then enter a tree of minima and the
+/// larger ones one of maxima: 4 + 3 + 3 = 10 compares. There are still 14 selects: 8 for the pairs, 3 + 3 in the trees.
 ///
 /// ```
 /// use hwmodel::cost::MinMaxUnits;
@@ -21,18 +18,16 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum MinMaxUnits {
-    /// Each minimum and each maximum by itself: 7 and 7 for eight values.
+    /// Each minimum and each maximum alone: 7 and 7 for eight values.
     #[default]
     #[cfg_attr(feature = "clap", value(name = "trees"))]
     Each,
-    /// Values in pairs first: 10 compares and 14 selects. Corner cages alone.
+    /// Values in pairs first: 10 compares and 14 selects. Only for corner cages.
     Pairs,
 }
 
 impl MinMaxUnits {
-    /// Compares and selects for the span of `values` values; none for fewer
-    /// than two.
-    #[must_use]
+    /// Compares and selects for the span of `values` values; none for fewer than two.
     pub const fn compares_and_selects(self, values: u64) -> (u64, u64) {
         if values < 2 {
             return (0, 0);
@@ -40,7 +35,7 @@ impl MinMaxUnits {
         let each = 2 * (values - 1);
         match self {
             Self::Each => (each, each),
-            // An odd one out goes into both trees.
+            // An odd one enters both trees.
             Self::Pairs => (each - values / 2, each),
         }
     }

@@ -1,5 +1,4 @@
-//! Sums over a table, line by line: energy of what was counted, area of a
-//! bill of units.
+//! Sums over a table, line by line: energy of counted operations, area of a bill of units.
 
 use std::collections::BTreeMap;
 
@@ -10,29 +9,27 @@ use crate::count::{Accesses, Counter};
 use crate::memory::Widths;
 use crate::{Memory, OpClass, Stage};
 
-/// How shifts by a constant or by a level's number are built.
+/// Implementation of shifts by a constant or by a level's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShiftUnits {
-    /// As wires, by the row `shift_wires`: one shift after another.
+    /// Wires, by the row `shift_wires`: one shift after another.
     #[default]
     Wires,
-    /// As shifters for any number of places, by the rows of `shift_var`.
+    /// Shifters for any number of places, by the rows of `shift_var`.
     Variable,
 }
 
 /// Choices that the counts leave open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub struct Costing {
-    /// How shifts are built.
+    /// Implementation of shifts.
     pub shifts: ShiftUnits,
-    /// How spans are found.
+    /// Implementation of spans.
     pub min_max: MinMaxUnits,
 }
 
-/// The operation of a table that a class is costed as. Logic counts as `xor`,
-/// the dearest of its kind.
-#[must_use]
+/// The operation of a table for a class. Logic is priced as `xor`, its most expensive operation.
 pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     match class {
         OpClass::Add => "add",
@@ -49,36 +46,35 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     }
 }
 
-/// Exclusive ors of the stage *order* for one octant, each with a constant.
-/// Which bits of a result are the octant's, and which their inverses, is fixed:
-/// all eight together are one inversion of the octant.
+/// Exclusive ors of the stage *order* per octant, each with a constant. All eight together are one inversion of the
+/// octant and wires.
 pub const ORDERED_OCTANTS: u64 = 8;
 
-/// So many operations of one kind.
+/// A number of operations of one kind.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Tally {
     /// Operation of the cost table, such as `add` or `float_multiply`.
     pub operation: String,
     /// Width, in bits.
     pub width: u32,
-    /// How many.
+    /// Number of operations.
     pub times: u64,
 }
 
 /// One line of a sum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// What it is for, in words: a unit's or a memory's name, or the operation.
+    /// A unit's or a memory's name, or the operation.
     pub name: String,
     /// Operation of the cost table.
     pub operation: String,
     /// Width, in bits.
     pub width: u32,
-    /// How many operations, accesses or units.
+    /// Number of operations, accesses or units.
     pub times: u64,
-    /// What one costs, with its rows and their source.
+    /// Cost of one, with its rows and their source.
     pub each: Cost,
-    /// What all cost together: `times` times the value.
+    /// `times` times its value.
     pub total: f64,
 }
 
@@ -96,7 +92,7 @@ pub struct Breakdown {
 }
 
 impl Breakdown {
-    /// Adds a line: `times` times what one costs.
+    /// Adds a line of `times` times `each`.
     pub fn push(&mut self, name: &str, operation: &str, width: u32, times: u64, each: Cost) {
         let factor = times as f64;
         self.total += factor * each.value;
@@ -113,7 +109,6 @@ impl Breakdown {
     }
 
     /// The sources of all lines, each once, in order of first use.
-    #[must_use]
     pub fn sources(&self) -> Vec<&str> {
         let mut sources = Vec::new();
         for line in &self.lines {
@@ -124,24 +119,20 @@ impl Breakdown {
         sources
     }
 
-    /// Whether a line's figure lies between or beyond the rows of its table.
-    #[must_use]
+    /// Whether a line's figure is interpolated or extrapolated.
     pub fn is_estimated(&self) -> bool {
         self.lines.iter().any(|line| line.each.is_estimated())
     }
 }
 
-/// What was counted, as operations of a cost table, by operation and width.
+/// Counted operations as operations of a cost table, by operation and width.
 ///
-/// The exclusive ors of the stage *order*, all of them with constants, are
-/// wires and one inversion for every [`ORDERED_OCTANTS`].
-///
-/// With [`MinMaxUnits::Pairs`], minima and maxima of the stages that find
-/// spans (child box, quadtree fit) become compares and selects.
+/// The exclusive ors of the stage *order* are wires and one inversion per [`ORDERED_OCTANTS`]. With
+/// [`MinMaxUnits::Pairs`], minima and maxima of the stages that find spans (child box, quadtree fit) become compares and
+/// selects.
 ///
 /// # Errors
-/// [`CostError::NoSpans`] when those minima and maxima cannot be spans of eight
-/// values, as with the frame cage.
+/// [`CostError::NoSpans`] when those minima and maxima are not spans of eight values, as with the frame cage.
 pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostError> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
     for ((stage, class, bits), times) in counter.sum_by(|cell| (cell.stage, cell.class, cell.bits))
@@ -160,7 +151,7 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
             *sums.entry(("less", bits)).or_default() += times / of_a_span * compares;
             *sums.entry(("select", bits)).or_default() += times / of_a_span * selects;
         } else if (stage, class) == (Stage::Order, OpClass::Logic) {
-            // By eight constants: wires, and the octant's bits inverted once.
+            // Wires, and the octant's bits inverted once.
             *sums.entry(("invert", bits)).or_default() += times.div_ceil(ORDERED_OCTANTS);
         } else {
             let operation = operation_of(class, costing.shifts);
@@ -175,7 +166,7 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
     Ok(sums.into_iter().map(tally).collect())
 }
 
-/// Energy of all operations that were counted, in picojoules.
+/// Energy of all counted operations, in picojoules.
 ///
 /// ```
 /// use hwmodel::cost::{CostTable, Costing, energy_of};
@@ -193,7 +184,7 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
 /// ```
 ///
 /// # Errors
-/// When an operation has no row, or for pairs when there are no spans.
+/// When an operation has no row, or there are no spans for pairs.
 pub fn energy_of(
     counter: &Counter,
     table: &CostTable,
@@ -221,7 +212,7 @@ pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdo
     Ok(sum)
 }
 
-/// What a memory is made of.
+/// The technology of a memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Store {
@@ -234,7 +225,7 @@ pub enum Store {
     Dram,
 }
 
-/// What each memory is made of.
+/// The technology of each memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Stores {
     /// The record stack.
@@ -247,13 +238,12 @@ pub struct Stores {
     pub fill_vector: Store,
     /// Pixels.
     pub pixel: Store,
-    /// What pixels have so far, where voxels are blended.
+    /// Partial sums of pixels where voxels are blended.
     pub accumulator: Store,
 }
 
 impl Stores {
-    /// What a memory is made of.
-    #[must_use]
+    /// The technology of a memory.
     pub const fn of(&self, memory: Memory) -> Store {
         match memory {
             Memory::Stack => self.stack,
@@ -266,8 +256,8 @@ impl Stores {
     }
 }
 
-/// Energy of accesses, in picojoules. `accesses` may be a counter's
-/// (`counter.accesses_by(|cell| cell.memory)`), or what a cache lets through.
+/// Energy of accesses, in picojoules. `accesses` may be a counter's (`counter.accesses_by(|cell| cell.memory)`), or those
+/// that a cache passes on.
 ///
 /// # Errors
 /// When a row is missing, or a memory is far larger than all rows.
@@ -305,13 +295,13 @@ pub fn memory_energy_of(
 /// Units of one kind in a design.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Unit {
-    /// What the unit is for, such as "vertex pool".
+    /// Purpose, such as "vertex pool".
     pub name: String,
     /// Operation of the cost table, such as `midpoint` or `register`.
     pub operation: String,
     /// Width, in bits.
     pub width: u32,
-    /// How many there are.
+    /// Number of units.
     pub count: u64,
 }
 

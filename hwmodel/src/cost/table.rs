@@ -1,4 +1,4 @@
-//! The table: shipped rows, a user's rows over them, and what lies between.
+//! The table: shipped rows, a user's rows over them, and interpolation.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::rows::{CostError, CostRow, Goal, Key, Parsed, Quantity, parse};
 
-/// How a figure comes from its rows.
+/// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fit {
-    /// It stands in a row.
+    /// A row contains it.
     Row,
     /// It lies between two rows (or is scaled to an access of other bits).
     Interpolated,
@@ -18,36 +18,34 @@ pub enum Fit {
     Extrapolated,
 }
 
-/// A figure and where it comes from.
+/// A figure and its origin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// What it measures.
+    /// The quantity.
     pub quantity: Quantity,
     /// The figure, in the quantity's unit; the middle of its range.
     pub value: f64,
     /// Low end of the range.
     pub low: f64,
-    /// High end of the range; the same as `low` where there is none.
+    /// High end of the range.
     pub high: f64,
-    /// How it comes from its rows.
+    /// Relation to the rows.
     pub fit: Fit,
     /// Whether a row derives its figure from another source's, as the row's source states.
     pub derived: bool,
-    /// The rows in words, with the file that has them.
+    /// The rows in words, with their file.
     pub rows: String,
-    /// What these rows name as their source.
+    /// The source of these rows.
     pub source: String,
 }
 
 impl Cost {
-    /// Whether no row has just this figure.
-    #[must_use]
+    /// Whether no row has this figure.
     pub fn is_estimated(&self) -> bool {
         self.fit != Fit::Row
     }
 
     /// Whether it is a range.
-    #[must_use]
     pub fn is_range(&self) -> bool {
         self.low < self.high
     }
@@ -86,12 +84,11 @@ pub struct CostTable {
     quadratic: BTreeSet<String>,
 }
 
-/// A width or size this many times beyond the widest row has no answer.
+/// Largest accepted multiple of the widest row's width.
 const FARTHEST: f64 = 4.0;
 
 impl CostTable {
-    /// A table without rows, for one that is all a user's own.
-    #[must_use]
+    /// A table without rows.
     pub fn empty() -> Self {
         Self {
             rows: BTreeMap::new(),
@@ -102,7 +99,7 @@ impl CostTable {
     /// The tables that ship with the crate.
     ///
     /// # Errors
-    /// None as long as the shipped files are well formed, which a test sees to.
+    /// None, since a test checks the shipped files.
     pub fn load_shipped() -> Result<Self, CostError> {
         Self::empty()
             .with_overrides(
@@ -115,22 +112,18 @@ impl CostTable {
             )
     }
 
-    /// The same table with rows of another over it; `file` is how errors and
-    /// reports call them.
+    /// The same table with rows of another over it; errors and reports call it `file`.
     ///
-    /// They take the place of all rows of the same operation, quantity and
-    /// goal (rows without goal take that of both goals'): figures of two
-    /// origins are never mixed by interpolation.
+    /// They replace all rows of the same operation, quantity and goal (rows without goal replace those of both goals), so
+    /// that figures of two origins are never mixed by interpolation.
     ///
     /// # Errors
-    /// When the text is not TOML or not a cost table, or has a row without
-    /// operation, source or figure, a figure that is negative or not finite,
-    /// or two rows for the same.
+    /// When the text is not TOML or not a cost table, or has a row without operation, source or figure, a figure that is
+    /// negative or not finite, or two equal rows.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
         let Parsed { quadratic, rows } = parse(file, text)?;
         for (quantity, operation, goal) in rows.keys() {
-            // A row without goal answers for both, and the other way about
-            // a goal's own rows come before rows without.
+            // A row without goal replaces both goals' rows.
             let goals = match goal {
                 None => vec![None, Some(Goal::Area), Some(Goal::Delay)],
                 goal => vec![*goal],
@@ -170,11 +163,9 @@ impl CostTable {
 
     /// Any quantity of an operation at a width in bits.
     ///
-    /// Between two rows it is interpolated, linearly or (areas and energies
-    /// of the operations that the table lists as quadratic) linearly in the
-    /// square of the width. Below the narrowest row it goes to zero with the
-    /// width or its square; above the widest it goes on from the last two rows
-    /// up to four times the widest. All of that is marked in [`Cost::fit`].
+    /// Between two rows it is interpolated linearly in the width, or in its square for areas and energies of quadratic
+    /// operations. Below the narrowest row it is proportional; above the widest it is extrapolated from the last two
+    /// rows, up to four times the widest. [`Cost::fit`] says which.
     ///
     /// # Errors
     /// [`CostError::Missing`] or [`CostError::TooWide`].
@@ -213,16 +204,15 @@ impl CostTable {
         Ok(cost(quantity, operation, goal, &weights, fit))
     }
 
-    /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in
-    /// picojoules; `operation` is `sram_read` or `sram_write`.
+    /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in picojoules; `operation` is `sram_read` or
+    /// `sram_write`.
     ///
-    /// Between sizes it is interpolated linearly in the square root of the
-    /// size, as the length of wires; below the smallest row it goes to zero
-    /// with it. It is proportional to the bits.
+    /// It is proportional to the bits, and interpolated linearly in the square root of the size, as the length of wires;
+    /// below the smallest row it is proportional to that root.
     ///
     /// # Errors
-    /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more
-    /// than four times as long and wide as that of the largest row.
+    /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more than four times as long and wide as that of
+    /// the largest row.
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
@@ -233,7 +223,7 @@ impl CostTable {
         let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
             return Err(missing(quantity, operation, bits, None));
         };
-        // As long and wide: as often in either direction.
+        // In either direction.
         let times = FARTHEST * FARTHEST;
         if bytes as f64 > times * largest as f64 {
             return Err(CostError::TooWide {
@@ -257,7 +247,7 @@ impl CostTable {
         Ok(cost(quantity, operation, None, &weights, fit))
     }
 
-    /// Rows of an operation, of the goal or, if there are none, of no goal.
+    /// Rows of an operation and goal or, if there are none, without goal.
     fn rows_of(
         &self,
         quantity: Quantity,
@@ -274,7 +264,6 @@ impl CostTable {
     }
 
     /// All operations that have rows or are listed as quadratic, in order.
-    #[must_use]
     pub fn operations(&self) -> Vec<&str> {
         let of_rows = self.rows.keys().map(|key| key.1.as_str());
         let listed = self.quadratic.iter().map(String::as_str);
@@ -292,8 +281,7 @@ fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) 
     }
 }
 
-/// The rows next to a place, each with its part; rows are in order of place
-/// and there is one at least.
+/// The rows next to a place with their weights. Rows are in order of place.
 fn weigh<'a>(rows: &[(f64, &'a CostRow)], at: f64) -> (Vec<(&'a CostRow, f64)>, Fit) {
     if let Some(&(_, row)) = rows.iter().find(|row| row.0 == at) {
         return (vec![(row, 1.0)], Fit::Row);
@@ -312,7 +300,6 @@ fn weigh<'a>(rows: &[(f64, &'a CostRow)], at: f64) -> (Vec<(&'a CostRow, f64)>, 
     (vec![(low, 1.0 - part), (high, part)], fit)
 }
 
-/// A figure from its rows.
 fn cost(
     quantity: Quantity,
     operation: &str,

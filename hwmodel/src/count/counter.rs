@@ -1,57 +1,48 @@
-//! A probe that counts: operations by class, width, stage and octree level,
-//! accesses by memory, stage and level, records by level.
+//! A probe that counts operations by class, width, stage and octree level, accesses by memory, stage and level, and
+//! records by level.
 //!
-//! An operation is counted by one addition to a place in memory that is nearly
-//! constant when the program is compiled, so that the compiler adds up what stands
-//! in a row. What is not known is the level: there are a few sets of places,
-//! each good for one level at a time, and neighbouring levels, between which a
-//! walk goes to and fro, have sets of their own. Only where a set passes to
-//! another level are its counts added to the tables.
+//! An operation is counted by one addition at a nearly constant address, so the compiler combines neighbouring counts.
+//! Only the level is unknown at compile time. There are a few sets of counts, each for one level at a time;
+//! neighbouring levels have different sets. A set's counts are added to the tables when it changes its level.
 
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
-/// Octree levels that are counted apart, 0..=63; deeper ones count as the last.
+/// Octree levels that are counted separately, 0..=63; deeper ones count as the last.
 pub const LEVELS: usize = 64;
 
 const CLASSES: usize = OpClass::ALL.len();
 const STAGES: usize = Stage::ALL.len();
 const MEMORIES: usize = Memory::ALL.len();
 
-/// Counts that stand together: operations of one stage by class, short
-/// operands of one stage by number of bits, or accesses of one stage by memory.
+/// Counts of one stage: operations by class, short operands by number of bits, or accesses by memory.
 pub(super) type CountRow = [u64; 8];
 
-/// First row, each of one row a stage, of words, of words with their carry, of
-/// wide words, of these with their carry,
+/// First rows, each of one row per stage: words, words with carry, wide words, wide words with carry.
 pub(super) const SIZED: [usize; 4] = [0, STAGES, 2 * STAGES, 3 * STAGES];
-/// of logic on fewer than eight bits, by their number,
+/// Logic on fewer than eight bits, by their number.
 pub(super) const SHORT: usize = 4 * STAGES;
-/// of reads,
 pub(super) const READS: usize = 5 * STAGES;
-/// and of writes.
 pub(super) const WRITES: usize = 6 * STAGES;
 const ROWS: usize = 7 * STAGES;
 
-/// Sets of fresh counts: level `l` counts in set `l % SETS`. More sets are
-/// settled less often and take more of the first-level cache, 6 KB each.
+/// Sets of fresh counts, 6 KB each: level `l` counts in set `l % SETS`.
 pub(super) const SETS: usize = 16;
 
 const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
-/// Counts of operations of a width that is met now and then.
+/// Counts of operations of a rare width.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
     pub(super) bits: u32,
-    /// By level, stage and class; on the heap, for there may be many tables.
+    /// By level, stage and class.
     pub(super) counts: Vec<[[u64; CLASSES]; STAGES]>,
 }
 
 /// Counts of one or more frames.
 ///
-/// What a [`Datapath`](crate::Datapath) reports is counted at the level of the
-/// record that has its turn (0 before the first), which is that of its place;
-/// operations passed to [`Probe::op`] directly go by their level.
+/// The operations of a [`Datapath`](crate::Datapath) are counted at the level of the current record (0 before the
+/// first), operations passed to [`Probe::op`] directly at their own level.
 ///
 /// ```
 /// use hwmodel::count::Counter;
@@ -72,17 +63,17 @@ pub(super) struct Table {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// Counts of each set since it passed to its level; on the heap, for 94 KB moved about would fill small stacks.
+    /// Counts of each set since it changed to its level; on the heap, because 94 KB would fill small stacks.
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
     /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],
-    /// The set that counts now, 0..SETS.
+    /// The current set, 0..SETS.
     set: usize,
     /// Widths of the operands of `SIZED`.
     pub(super) widths: [u32; 4],
     /// By level.
     pub(super) settled: Vec<[CountRow; ROWS]>,
-    /// One for each other width, in the order in which they were met.
+    /// One per other width, in the order of their first use.
     pub(super) tables: Vec<Table>,
     pub(super) records: [u64; LEVELS],
 }
@@ -110,12 +101,11 @@ fn clamped(level: u32) -> usize {
 
 impl Counter {
     /// A counter at zero.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Where in `tables` a width is; a table is made for one not met before.
+    /// The place in `tables` of a width; makes a table for a new one.
     pub(super) fn table_of(&mut self, bits: u32) -> usize {
         let known = self.tables.iter().position(|table| table.bits == bits);
         known.unwrap_or_else(|| {
@@ -137,7 +127,7 @@ impl Counter {
         }
     }
 
-    /// Moves counts of a format's operands into tables, which last longer.
+    /// Moves counts of a format's operands into tables.
     fn keep_widths(&mut self) {
         for set in 0..SETS {
             self.settle(set);
@@ -157,12 +147,11 @@ impl Counter {
 
     #[inline(always)]
     fn count_fresh(&mut self, row: usize, column: usize) {
-        // The remainder changes nothing; it gives the compiler the bound of the
-        // place can be, so that no counting can touch anything else.
+        // The remainder changes nothing; it gives the compiler the bound.
         self.fresh[self.set % SETS][row][column] += 1;
     }
 
-    /// Counts operations whose kind of operand is not known beforehand.
+    /// Counts operations whose kind of operand is not known at compile time.
     #[inline(never)]
     fn count(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let table = self.table_of(bits);
@@ -171,7 +160,6 @@ impl Counter {
     }
 }
 
-/// Adds a row of counts to another, and sets it to zero.
 #[inline(always)]
 fn add_and_clear<const N: usize>(sums: &mut [u64; N], row: &mut [u64; N]) {
     for (sum, count) in sums.iter_mut().zip(row) {

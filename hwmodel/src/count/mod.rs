@@ -1,5 +1,4 @@
-//! Counts of operations, accesses and records: [`Counter`] is the probe that counts, [`OpCount`] and [`AccessCount`]
-//! are what it hands out.
+//! Counts of operations, accesses and records: the probe [`Counter`], and its cells [`OpCount`] and [`AccessCount`].
 
 mod counter;
 mod sums;

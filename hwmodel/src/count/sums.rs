@@ -1,4 +1,4 @@
-//! What a [`Counter`] has counted: cell by cell, and sums.
+//! Sums of a [`Counter`]'s counts.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::counter::{CountRow, Counter, LEVELS, READS, SETS, SHORT, SIZED, WRITES};
 use crate::probe::{Memory, OpClass, Stage};
 
-/// How often operations of one kind were executed at one place.
+/// Number of operations of one kind at one place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct OpCount {
     /// Class of operation.
@@ -19,7 +19,7 @@ pub struct OpCount {
     pub stage: Stage,
     /// Octree level, 0 = root, at most 63.
     pub level: u32,
-    /// How many were executed, at least 1.
+    /// Number of operations, at least 1.
     pub times: u64,
 }
 
@@ -41,7 +41,7 @@ impl AddAssign for Accesses {
     }
 }
 
-/// How often one memory was accessed from one place.
+/// Number of accesses to one memory from one place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AccessCount {
     /// The memory.
@@ -50,39 +50,33 @@ pub struct AccessCount {
     pub stage: Stage,
     /// Octree level, 0 = root, at most 63.
     pub level: u32,
-    /// How often; not both are zero.
+    /// Reads and writes, not both zero.
     pub accesses: Accesses,
 }
 
 impl Counter {
     /// Operations of one class in one stage.
-    #[must_use]
     pub fn ops_at(&self, stage: Stage, class: OpClass) -> u64 {
         self.sum(|cell| cell.stage == stage && cell.class == class)
     }
 
     /// Operations of one class in all stages.
-    #[must_use]
     pub fn ops_of(&self, class: OpClass) -> u64 {
         self.sum(|cell| cell.class == class)
     }
 
     /// All operations.
-    #[must_use]
     pub fn ops(&self) -> u64 {
         self.sum(|_| true)
     }
 
     /// Operations of the cells that a filter selects.
-    #[must_use]
     pub fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
         let cells = self.cells().filter(wanted);
         cells.map(|cell| cell.times).sum()
     }
 
-    /// Operations added up by any key, such as
-    /// `|cell| (cell.class, cell.bits)`; keys without operations are absent.
-    #[must_use]
+    /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`; keys without operations are absent.
     pub fn sum_by<K: Ord>(&self, key: impl Fn(&OpCount) -> K) -> BTreeMap<K, u64> {
         let mut sums = BTreeMap::new();
         for cell in self.cells() {
@@ -92,7 +86,6 @@ impl Counter {
     }
 
     /// Accesses added up by any key; keys without accesses are absent.
-    #[must_use]
     pub fn accesses_by<K: Ord>(&self, key: impl Fn(&AccessCount) -> K) -> BTreeMap<K, Accesses> {
         let mut sums = BTreeMap::<K, Accesses>::new();
         for cell in self.accesses() {
@@ -102,33 +95,29 @@ impl Counter {
     }
 
     /// Reads of one memory.
-    #[must_use]
     pub fn reads(&self, memory: Memory) -> u64 {
         let accesses = self.accesses().filter(|cell| cell.memory == memory);
         accesses.map(|cell| cell.accesses.reads).sum()
     }
 
     /// Writes of one memory.
-    #[must_use]
     pub fn writes(&self, memory: Memory) -> u64 {
         let accesses = self.accesses().filter(|cell| cell.memory == memory);
         accesses.map(|cell| cell.accesses.writes).sum()
     }
 
     /// Records that had their turn.
-    #[must_use]
     pub fn records(&self) -> u64 {
         self.records.iter().sum()
     }
 
-    /// Records that had their turn, by octree level; levels without are left out.
+    /// Records that had their turn, by octree level; levels without records are absent.
     pub fn records_by_level(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
         let levels = (0u32..).zip(self.records);
         levels.filter(|(_, records)| *records > 0)
     }
 
     /// Width of the widest operation, in bits; 0 if there was none.
-    #[must_use]
     pub fn widest(&self) -> u32 {
         self.cells().map(|cell| cell.bits).max().unwrap_or(0)
     }
@@ -143,7 +132,6 @@ impl Counter {
         widths.into_iter().flat_map(|bits| self.cells_of(bits))
     }
 
-    /// Those of one width.
     fn cells_of(&self, bits: u32) -> impl Iterator<Item = OpCount> + '_ {
         let table = self.tables.iter().find(|table| table.bits == bits);
         let sized = SIZED.into_iter().zip(self.widths);
@@ -188,7 +176,7 @@ impl Counter {
         cells.filter(|cell| cell.accesses != Accesses::default())
     }
 
-    /// One row, with what is not settled yet.
+    /// One row, including fresh counts.
     fn row(&self, level: usize, row: usize) -> CountRow {
         let mut sum = self.settled[level][row];
         let set = level % SETS;
@@ -223,8 +211,7 @@ fn add(sums: &mut CountRow, row: &CountRow) {
     }
 }
 
-/// Counters are equal that counted the same; the order in which they met it
-/// does not matter.
+/// Equal counts; the order in which they were made does not matter.
 impl PartialEq for Counter {
     fn eq(&self, other: &Self) -> bool {
         self.records == other.records

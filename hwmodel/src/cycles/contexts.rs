@@ -3,19 +3,18 @@
 use super::simulate::Simulation;
 use super::turn::Workload;
 
-/// Who has a lane, and who wants it.
+/// The holder of a lane, and the contexts that want it.
 #[derive(Debug)]
 pub(super) struct Sharing {
-    /// The context that has it.
     holder: u32,
-    /// Whether that one waits for a cache or a tile, so that another may have the lane.
+    /// Whether the holder waits for a cache or a tile, so that another may have the lane.
     waits: bool,
-    /// Who wants it, since when: in the order of cycles, then of numbers.
+    /// First cycle and number of contexts that want it, in order.
     wanted_by: Vec<(u64, u32)>,
 }
 
 impl Sharing {
-    /// Of a lane whose first context is `first`: it has the lane, and waits for a tile.
+    /// Of a lane whose first context `first` has the lane, and waits for a tile.
     pub(super) fn new(first: u32) -> Self {
         Self {
             holder: first,
@@ -30,7 +29,7 @@ impl<W: Workload> Simulation<'_, W> {
         &mut self.asked.sharing[(context / self.hardware.contexts) as usize]
     }
 
-    /// In this cycle a context begins to wait, unless it does already.
+    /// The holder of a lane begins to wait in this cycle.
     pub(super) fn begins_to_wait(&mut self, context: u32) {
         let sharing = self.sharing(context);
         if sharing.holder == context {
@@ -39,7 +38,7 @@ impl<W: Workload> Simulation<'_, W> {
         }
     }
 
-    /// What a context waits for is there in the cycle `now`: it goes on in the next one, if it has the lane.
+    /// The answer for a context is ready in the cycle `now`: a holder continues in the next one.
     pub(super) fn waits_no_more(&mut self, now: u64, context: u32) {
         let sharing = self.sharing(context);
         if sharing.holder == context {
@@ -52,7 +51,7 @@ impl<W: Workload> Simulation<'_, W> {
         self.asked.lanes.push(context);
     }
 
-    /// Lanes whose holder waits while another wants them, at the end of the cycle `now`.
+    /// Changes holders that wait while others want the lane, at the end of the cycle `now`.
     pub(super) fn give_lanes(&mut self, now: u64) {
         while let Some(context) = self.asked.lanes.pop() {
             let sharing = self.sharing(context);
@@ -66,7 +65,7 @@ impl<W: Workload> Simulation<'_, W> {
             let step = &mut self.contexts[next as usize].step;
             step.away += now + 1 - step.away_from;
             step.wanted += now + 1 - since;
-            // It looks at what it read, or begins its tile.
+            // It inspects its result, or begins its tile.
             let looks = u64::from(step.tile.is_none());
             self.wheel.set(now + 1 + looks, next);
         }

@@ -1,7 +1,6 @@
-//! The description of a hardware: how wide each part of it is.
+//! The description of a hardware design: the width of each part.
 //!
-//! Read from TOML; four descriptions ship in `hwmodel/machines/`, each line
-//! commented: `tiny`, `paper`, `light` and `wide`.
+//! Read from TOML. `hwmodel/machines/` has four commented descriptions: `tiny`, `paper`, `light` and `wide`.
 
 use std::collections::BTreeMap;
 
@@ -10,39 +9,38 @@ use serde::{Deserialize, Serialize};
 use crate::memory::RecordBits;
 use crate::{OpClass, Stage};
 
-/// Most lanes a hardware may have.
+/// Most lanes of a design.
 pub const MAX_LANES: u32 = 256;
-/// Most contexts that a lane may have.
+/// Most contexts of a lane.
 pub const MAX_CONTEXTS: u32 = 64;
-/// Slowest and fastest clock, MHz: a kilohertz and a terahertz.
+/// Range of clocks, MHz.
 const CLOCKS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
-/// Largest of all other numbers: no sum of a turn's times leaves 64 bits.
+/// Largest of all other numbers, so that sums of a turn's times fit 64 bits.
 const MAX_NUMBER: u32 = 1 << 24;
-/// Largest number of things that the simulation keeps one by one.
+/// Most things that the simulation keeps one by one.
 const MAX_KEPT: u32 = 1 << 16;
-/// Largest entry of a cache, bytes: each access looks at all lines it spans.
+/// Largest entry of a cache, bytes.
 const MAX_ENTRY: u32 = 4096;
 /// Shortest line of a cache, bytes.
 const MIN_LINE: u32 = 8;
 
-/// A hardware.
+/// A hardware design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hardware {
-    /// Its name in reports; a line of text.
+    /// Name in reports; one line of text.
     pub name: String,
     /// Clock, MHz; 0.001 to 1,000,000.
     pub clock_mhz: f64,
     /// Copies of the record loop's blocks and stack, 1 to [`MAX_LANES`].
     pub lanes: u32,
-    /// Records that a lane works on in turns, 1 to [`MAX_CONTEXTS`].
+    /// Records in progress per lane, 1 to [`MAX_CONTEXTS`].
     pub contexts: u32,
-    /// Which records may be worked on at once.
+    /// Records that may be in progress at the same time.
     pub independence: Independence,
-    /// Further cycles to take a record from another lane's stack.
+    /// Additional cycles to take a record from another lane's stack.
     pub steal_cycles: u32,
-    /// Whether a turn's steps follow one another as the record loop makes them, with nothing at once:
-    /// rule 12 of [this module's parent](super).
+    /// Whether a turn's steps follow each other as in the record loop: rule 12 of [this module's parent](super).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub sequential: bool,
     /// Classes of operation that take no unit and no time.
@@ -50,23 +48,23 @@ pub struct Hardware {
     pub wires: Vec<OpClass>,
     /// Units of every stage's block, by class of operation.
     pub units: BTreeMap<OpClass, Unit>,
-    /// Units of some stages' blocks where they differ.
+    /// Units of single stages' blocks where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
-    /// What the record loop keeps where. Without: as the image-order paper has it.
+    /// Organisation of the record loop's data; by default that of the image-order paper.
     #[serde(default)]
     pub organisation: Organisation,
     /// The record stack of a lane.
     pub stack: Stack,
-    /// Graph nodes, for all lanes.
+    /// Graph nodes, shared by all lanes.
     pub node_cache: Cache,
-    /// Colours and normals, for all lanes.
+    /// Colours and normals, shared.
     pub attribute_cache: Cache,
-    /// Fill vectors, for all lanes.
+    /// Fill vectors, shared.
     pub fill_vectors: Banks,
-    /// Pixels, for all lanes.
+    /// Pixels, shared.
     pub pixels: Pixels,
-    /// The port to outer memory, for all lanes.
+    /// The port to outer memory, shared.
     #[serde(default)]
     pub outer_memory: OuterMemory,
 }
@@ -75,13 +73,12 @@ pub struct Hardware {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OuterMemory {
-    /// Bytes it moves a cycle; 0, where nothing is said: as many as are wanted.
+    /// Bytes per cycle; 0: no limit.
     pub bytes_per_cycle: u32,
 }
 
 impl OuterMemory {
-    /// Cycles for which so many bits take the port.
-    #[must_use]
+    /// Cycles for which a transfer of so many bits takes the port.
     pub fn cycles(self, bits: u64) -> u64 {
         match self.bytes_per_cycle {
             0 => 0,
@@ -90,32 +87,31 @@ impl OuterMemory {
     }
 }
 
-/// How the record loop's data is organised. The picture under rules of exact coverage is the same whatever this says.
+/// Organisation of the record loop's data. Pictures under rules of exact coverage do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Organisation {
-    /// What lies on the stack.
+    /// Contents of the stack.
     pub stack: StackHolds,
-    /// Whether a node says which of its children are leaves, so that leaves need not be read to be drawn.
+    /// Whether a node marks which of its children are leaves, so that leaves need not be read to be drawn.
     pub leaf_masks: bool,
-    /// Levels of the image quadtree above its tiles, each of which is drawn by a walk of its own; 0: one
-    /// walk for the picture.
+    /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk; 0: one walk per picture.
     pub tile_levels: u32,
-    /// Whether a node two levels above the finest voxels holds all voxels below it as a mask of 64 bits, so that the
-    /// nodes between are not read. Of trees stored level by level; needs `leaf_masks`.
+    /// Whether a node two levels above the finest voxels holds them as a mask of 64 bits, so that the nodes between are
+    /// not read. For trees stored level by level; needs `leaf_masks`.
     pub bricks: bool,
-    /// Whether a record is compared with the samples drawn before its node is read: what is hidden is not read.
+    /// Whether a record is compared with the drawn samples before its node is read, so that occluded nodes are not read.
     /// Only under the rules that draw outlines.
     pub hidden_unread: bool,
-    /// Whether the lowest two levels of fill vectors are held as one word of 16 bits, one a sample.
+    /// Whether the lowest two levels of fill vectors are one word of 16 bits, one per sample.
     pub joined_fill: bool,
-    /// Whether fields of a record and wide words have as many bits as the frame's set-up proves to be enough.
+    /// Whether fields of a record and wide words have only the bits that the frame's set-up proves sufficient.
     pub packed: bool,
 }
 
 impl Organisation {
-    /// What of it there is under a rule that does not draw outlines: vertices can be worked back,
-    /// and what is hidden told, only where both are exact.
+    /// The organisation under a rule that does not draw outlines: without vertices that are recomputed, and without
+    /// occlusion tests.
     #[must_use]
     pub fn without_outlines(self) -> Self {
         let stack = match self.stack {
@@ -130,40 +126,38 @@ impl Organisation {
     }
 }
 
-/// What lies on the stack of a record loop.
+/// Contents of a record loop's stack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackHolds {
-    /// Children: a record that is subdivided pushes all that can be seen, each with its vertices.
+    /// A subdivided record pushes all visible children, each with its vertices.
     #[default]
     Children,
-    /// Parents: a record that is subdivided stays, with a mask of the children that are left. Children are
-    /// made one by one when their turn comes, and only what is subdivided is ever stored.
+    /// A subdivided record stays, with a mask of the remaining children, which are made one by one. Only subdivided
+    /// records are stored.
     Parents,
-    /// The way to a record: of each parent its node and the children that are left. Its vertices, planes and place in
-    /// the picture are worked back from those of the descendant that the walk comes from.
+    /// The path to a record: of each parent its node and the remaining children. Its vertices, planes and place in the
+    /// picture are computed back from those of its descendant.
     Path,
 }
 
 /// Most levels above the tiles of an image.
 pub const MAX_TILE_LEVELS: u32 = 8;
 
-/// Which children of a record may be worked on at once. What is not
-/// independent waits for the whole subtree of the earlier one.
+/// Children of a record that may be in progress at the same time. A dependent one waits for the whole subtree of the
+/// earlier one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {
     /// None: one after the other, depth first.
     None,
-    /// Those of one class of the occlusion order, as the image-order paper has it: the
-    /// nearest; the next three; the next three; the farthest. They never
-    /// occlude one another, but where samples are not claimed by exact rays
-    /// two may claim the same one; then the first to come has it.
+    /// Those of one class of the occlusion order, as in the image-order paper: the nearest; the next three; the next
+    /// three; the farthest. They never occlude each other. Under rules that are not exact, two may claim the same
+    /// sample, and the first keeps it.
     Classes,
-    /// Those whose image nodes are disjoint. What meets in the picture keeps
-    /// the serial order, so that everything comes out as it does serially.
+    /// Those whose image nodes are disjoint. Others keep the serial order, so all results are the serial ones.
     Image,
-    /// Those that either rule lets through.
+    /// Those allowed by either rule.
     Both,
 }
 
@@ -171,11 +165,11 @@ pub enum Independence {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Unit {
-    /// How many; at least 1.
+    /// Number, at least 1.
     pub count: u32,
     /// Cycles from the last operation's last issue cycle to its result.
     pub latency: u32,
-    /// Cycles after which a unit takes its next operation; at least 1.
+    /// Cycles until a unit takes its next operation; at least 1.
     pub interval: u32,
     /// Bits; a wider operation takes `ceil(bits / width)` passes.
     pub width: u32,
@@ -185,28 +179,26 @@ pub struct Unit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stack {
-    /// Records it holds.
+    /// Capacity, records.
     pub entries: u32,
-    /// Accesses it takes a cycle.
+    /// Accesses per cycle.
     pub ports: u32,
     /// Cycles of a read.
     pub latency: u32,
-    /// What becomes of a record beyond the last entry.
+    /// Treatment of a record beyond the last entry.
     pub overflow: StackOverflow,
-    /// Further cycles to take a record that was spilled, until its first bits are there.
+    /// Additional cycles until the first bits of a spilled record are read back.
     pub spill_cycles: u32,
-    /// Bits of the frame's records: what a spilled one moves to outer memory
-    /// and back. Whoever simulates a frame says it; a description need not.
+    /// Bits of the frame's records, for spilling; set by the simulation of a frame.
     #[serde(default)]
     pub record: RecordBits,
 }
 
-/// What becomes of a record for which a stack has no entry.
+/// Treatment of a record for which a stack has no entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackOverflow {
-    /// It is written to outer memory in the background, and read back when
-    /// its turn comes.
+    /// It is written to outer memory in the background, and read back for its turn.
     Spill,
     /// The frame ends with an error.
     Error,
@@ -218,47 +210,47 @@ pub enum StackOverflow {
 pub struct Cache {
     /// Size; a multiple of `ways * line_bytes`.
     pub bytes: u32,
-    /// Lines of a set.
+    /// Lines per set.
     pub ways: u32,
-    /// Bytes of a line; a power of two.
+    /// Bytes per line; a power of two.
     pub line_bytes: u32,
-    /// Bytes of one entry (a node, an attribute).
+    /// Bytes per entry (a node, an attribute).
     pub entry_bytes: u32,
-    /// Accesses it takes a cycle.
+    /// Accesses per cycle.
     pub ports: u32,
     /// Cycles of a hit.
     pub hit_latency: u32,
-    /// Further cycles of a miss.
+    /// Additional cycles of a miss.
     pub miss_latency: u32,
-    /// Misses that may be under way at once.
+    /// Most misses in flight (MSHRs).
     pub misses: u32,
 }
 
-/// A memory of banks; an address lies in bank `address mod banks`.
+/// A banked memory; an address lies in bank `address mod banks`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Banks {
-    /// Banks.
+    /// Number of banks.
     pub banks: u32,
-    /// Reads that a bank takes a cycle.
+    /// Reads per bank and cycle.
     pub read_ports: u32,
-    /// Writes that a bank takes a cycle.
+    /// Writes per bank and cycle.
     pub write_ports: u32,
     /// Cycles of a read; a write takes one.
     pub latency: u32,
 }
 
-/// The way out for pixels: ports into a buffer that drains at a fixed rate at most, by the port to outer memory.
+/// The output of pixels: ports into a buffer that drains, at a limited rate, by the port to outer memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pixels {
-    /// Writes a cycle into the buffer.
+    /// Writes per cycle into the buffer.
     pub write_ports: u32,
-    /// Pixels that the buffer holds.
+    /// Capacity, pixels.
     pub buffer: u32,
-    /// Cycles from one pixel's leaving to the next one's.
+    /// Least cycles between two pixels that leave.
     pub drain_interval: u32,
-    /// Whether pixels leave by a port of their own, and not by that to outer memory.
+    /// Whether pixels leave by their own port.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub own_port: bool,
 }
@@ -272,14 +264,14 @@ pub enum HardwareError {
     /// A number out of its range.
     #[error("hardware description: {field} is {value}; it must be {range}")]
     Range {
-        /// Where, as in the file.
+        /// Its path in the file.
         field: String,
-        /// What is there.
+        /// The value.
         value: String,
-        /// What may be there.
+        /// The allowed values.
         range: String,
     },
-    /// A class of operation that nothing does.
+    /// A class of operation without units that is not wires. A class of operation that nothing does.
     #[error(
         "hardware description: nothing does `{class}`; give it a [units.{class}] \
          or put it into `wires`"
@@ -302,7 +294,7 @@ pub enum HardwareError {
     NoPreset(String),
 }
 
-/// Names and texts of the descriptions that ship.
+/// Names and texts of the shipped descriptions.
 pub const PRESETS: [(&str, &str); 4] = [
     ("tiny", include_str!("../../machines/tiny.toml")),
     ("paper", include_str!("../../machines/paper.toml")),
@@ -314,8 +306,7 @@ impl Hardware {
     /// Reads and checks a description.
     ///
     /// # Errors
-    /// With the line where the text is no description, or with the field, its
-    /// value and its range.
+    /// With the line of a syntax error, or with the field, its value and its range.
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let hardware: Self =
             toml::from_str(text).map_err(|error| HardwareError::Syntax(error.to_string()))?;
@@ -323,10 +314,10 @@ impl Hardware {
         Ok(hardware)
     }
 
-    /// One of those that ship: `tiny`, `paper`, `light`, `wide`.
+    /// A shipped description: `tiny`, `paper`, `light`, `wide`.
     ///
     /// # Errors
-    /// Where there is none of that name.
+    /// When there is none of that name.
     pub fn preset(name: &str) -> Result<Self, HardwareError> {
         let (_, text) = PRESETS
             .iter()
@@ -336,7 +327,6 @@ impl Hardware {
     }
 
     /// The units of a class in a stage's block; `None`: wires.
-    #[must_use]
     pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
         if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
             return Some(*unit);
@@ -347,14 +337,12 @@ impl Hardware {
         self.units.get(&class).copied()
     }
 
-    /// Whether lanes are given tiles, each of which they draw alone: rule 13 of [this module's parent](super).
-    #[must_use]
+    /// Whether lanes draw tiles: rule 13 of [this module's parent](super).
     pub fn hands_out_tiles(&self) -> bool {
         self.sequential && self.organisation.tile_levels > 0
     }
 
-    /// Walks with a stack of their own: lanes or, where tiles are [handed out](Self::hands_out_tiles), contexts.
-    #[must_use]
+    /// Number of stacks: lanes or, with [tiles](Self::hands_out_tiles), contexts.
     pub fn stacks(&self) -> u32 {
         match self.hands_out_tiles() {
             true => self.lanes * self.contexts,
@@ -363,7 +351,6 @@ impl Hardware {
     }
 
     /// Contexts of all lanes.
-    #[must_use]
     pub fn all_contexts(&self) -> u64 {
         u64::from(self.lanes) * u64::from(self.contexts)
     }
@@ -371,7 +358,7 @@ impl Hardware {
     /// Checks every number.
     ///
     /// # Errors
-    /// With the first field that is out of its range.
+    /// With the first field out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
         if self.name.trim().is_empty() || self.name.contains(char::is_control) {
             let name = format!("{:?}", self.name);
@@ -454,7 +441,6 @@ impl Unit {
 
 impl Cache {
     /// Sets.
-    #[must_use]
     pub fn sets(&self) -> u32 {
         self.bytes / (self.ways * self.line_bytes)
     }
@@ -485,9 +471,8 @@ impl Cache {
     }
 }
 
-/// A name as the file has it.
+/// A name in the file's spelling: `MinMax` is `min_max`.
 fn key(of: &impl std::fmt::Debug) -> String {
-    // `MinMax` is `min_max` in the file.
     let mut name = String::new();
     for letter in format!("{of:?}").chars() {
         if letter.is_uppercase() && !name.is_empty() {

@@ -1,7 +1,7 @@
-//! Memories under contention: ports, banks, caches, the way out for pixels.
+//! Memories under contention: ports, banks, caches, the output of pixels.
 //!
-//! Accesses are booked in the order in which their stages start; one is
-//! served after all that were booked before it at the same port.
+//! Accesses are booked in the order in which their visits start. An access is served after those booked before it at
+//! the same port.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -11,8 +11,7 @@ use super::report::{CacheReport, Cause};
 use crate::Memory;
 use crate::memory::PIXEL_BITS;
 
-/// Cycles for which an access takes the port of a sequential hardware's cache: it is looked up, and what is found is
-/// looked at.
+/// Cycles for which an access takes the port of a sequential hardware's cache: lookup, and inspection of the result.
 const LOOK_UP: u64 = 2;
 
 /// An access to a memory.
@@ -23,7 +22,7 @@ pub(super) struct Access {
     pub(super) write: bool,
 }
 
-/// Division by a number that is a power of two more often than not.
+/// Division by a number that is usually a power of two.
 #[derive(Debug, Clone, Copy)]
 struct Divisor {
     number: u64,
@@ -56,7 +55,7 @@ impl Divisor {
     }
 }
 
-/// A port that takes so many accesses a cycle.
+/// A port with a number of accesses per cycle.
 #[derive(Debug, Clone)]
 pub(super) struct Port {
     cycle: u64,
@@ -75,7 +74,7 @@ impl Port {
         }
     }
 
-    /// The first cycle from `at` on in which the port takes one more.
+    /// Books one access in the first free cycle from `at`, and returns that cycle.
     #[inline]
     pub(super) fn book(&mut self, at: u64) -> u64 {
         self.accesses += 1;
@@ -91,7 +90,7 @@ impl Port {
         self.cycle
     }
 
-    /// Takes nothing more before `until`, but one in it.
+    /// Allows no more accesses before `until`, and one fewer in it.
     fn hold(&mut self, until: u64) {
         if until > self.cycle {
             self.cycle = until;
@@ -99,7 +98,7 @@ impl Port {
         }
     }
 
-    /// Least cycles for what it took.
+    /// Least cycles for its accesses.
     pub(super) fn bound(&self) -> u64 {
         self.accesses.div_ceil(u64::from(self.per_cycle))
     }
@@ -126,7 +125,7 @@ impl OuterPort {
         }
     }
 
-    /// Takes a pixel that is written at `at`; neighbours share words. Returns when it has left.
+    /// Takes a pixel that is written at `at`; neighbours share words. Returns the cycle when it has left.
     fn book_pixel(&mut self, at: u64) -> u64 {
         let word = 8 * u64::from(self.of.bytes_per_cycle.max(1));
         let bits = self.pixel_bits + u64::from(PIXEL_BITS);
@@ -135,8 +134,7 @@ impl OuterPort {
         begun + cycles
     }
 
-    /// Takes the port for so many bits, from `at` on or as soon as it is free.
-    /// Returns the first cycle, and how many it takes.
+    /// Takes the free port for so many bits, from `at` at the earliest. Returns the first cycle and the number of cycles.
     #[inline]
     pub(super) fn book(&mut self, at: u64, bits: u64) -> (u64, u64) {
         let cycles = self.of.cycles(bits);
@@ -150,7 +148,7 @@ impl OuterPort {
     }
 }
 
-/// When an access is issued and done, and what it waited for if it did.
+/// Cycles of issue and completion of an access, and the cause of its wait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Served {
     pub(super) issued: u64,
@@ -164,7 +162,7 @@ struct Line {
     ready: u64,
 }
 
-/// A cache: which lines it holds, most recently used first in each set.
+/// A cache: its lines, most recently used first in each set.
 #[derive(Debug)]
 pub(super) struct CacheState {
     of: Cache,
@@ -172,11 +170,11 @@ pub(super) struct CacheState {
     line_bytes: Divisor,
     lines: Vec<Line>,
     pub(super) port: Port,
-    /// When the misses under way are done, oldest at `misses mod slots`.
+    /// Cycles in which the misses in flight are done, oldest at `misses mod slots`.
     slots: Vec<u64>,
     misses: u64,
     delayed: u64,
-    /// Of a sequential hardware: from when on the port is free, and when lines come in, which take it, in order.
+    /// On sequential hardware: the cycle from which the port is free, and the cycles in which incoming lines take it.
     free_at: u64,
     coming_in: VecDeque<Range<u64>>,
 }
@@ -210,7 +208,7 @@ impl CacheState {
         self.look_up(address, issued, outer)
     }
 
-    /// The first cycle from `now` on in which a sequential hardware looks something up.
+    /// The first cycle from `now` in which sequential hardware can look something up.
     pub(super) fn free_from(&mut self, now: u64) -> u64 {
         while self.coming_in.front().is_some_and(|line| line.end <= now) {
             self.coming_in.pop_front();
@@ -224,7 +222,7 @@ impl CacheState {
         free
     }
 
-    /// An access that a sequential hardware issues in a cycle in which its port is free (rule 12).
+    /// An access of sequential hardware in a cycle in which the port is free (rule 12).
     pub(super) fn access_alone(&mut self, address: u64, at: u64, outer: &mut OuterPort) -> Served {
         self.port.accesses += 1;
         let misses = self.misses;
@@ -304,7 +302,6 @@ impl CacheState {
     }
 }
 
-/// Banks with ports for reads and writes.
 #[derive(Debug, Clone)]
 pub(super) struct BanksState {
     banks: Divisor,
@@ -339,7 +336,6 @@ impl BanksState {
         }
     }
 
-    /// All reads and all writes.
     fn accesses(&self) -> (u64, u64) {
         let all = |ports: &[Port]| ports.iter().map(|port| port.accesses).sum();
         (all(&self.reads), all(&self.writes))
@@ -352,12 +348,12 @@ impl BanksState {
     }
 }
 
-/// The way out for pixels.
+/// The output of pixels.
 #[derive(Debug)]
 pub(super) struct PixelsState {
     of: Pixels,
     pub(super) port: Port,
-    /// When the pixels in the buffer leave it, oldest at `writes mod buffer`.
+    /// Cycles in which the buffered pixels leave, oldest at `writes mod buffer`.
     leaving: Vec<u64>,
     last: u64,
 }
@@ -391,7 +387,7 @@ impl PixelsState {
         }
     }
 
-    /// When the last pixel has left.
+    /// Cycle in which the last pixel has left.
     pub(super) fn last(&self) -> u64 {
         self.last
     }
@@ -405,12 +401,12 @@ impl PixelsState {
 /// All memories of a hardware.
 #[derive(Debug)]
 pub(super) struct Memories {
-    /// By lane, or by context.
+    /// Per lane, or per context.
     pub(super) stacks: Vec<Port>,
     stack_latency: u64,
     pub(super) nodes: CacheState,
     pub(super) attributes: CacheState,
-    /// One for all, or one for each stack.
+    /// One for all, or one per stack.
     fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
     pub(super) outer: OuterPort,
@@ -435,18 +431,16 @@ impl Memories {
         }
     }
 
-    /// All reads and all writes of fill vectors.
     pub(super) fn fill_accesses(&self) -> (u64, u64) {
         let all = self.fill.iter().map(BanksState::accesses);
         all.fold((0, 0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
     }
 
-    /// Least cycles for the busiest bank of fill vectors.
     pub(super) fn fill_bound(&self) -> u64 {
         self.fill.iter().map(BanksState::bound).max().unwrap_or(0)
     }
 
-    /// Serves an access from cycle `at` on; `lane`: whose stack, and whose fill vectors where each has its own.
+    /// Serves an access from cycle `at`; `lane`: index of its stack, and of its fill vectors where each has its own.
     #[inline]
     pub(super) fn serve(&mut self, access: Access, at: u64, lane: usize) -> Served {
         match access.memory {
@@ -466,8 +460,8 @@ impl Memories {
                 self.fill[of].access(access, at)
             }
             Memory::Pixel => self.pixels.write(at, &mut self.outer),
-            // Beside the blending block, as wide as an accumulator, with a port
-            // to read and one to write: an access a cycle each, never waited for.
+            // Beside the blending block, as wide as an accumulator, with one port to read and one to write: never
+            // waited for.
             Memory::Accumulator => Served {
                 issued: at,
                 done: at + 1,
@@ -477,8 +471,7 @@ impl Memories {
     }
 }
 
-/// Cycles of an access that waits for nothing, and of one that waits as long
-/// as it ever must when nothing else is under way.
+/// Cycles of an access without any waiting, and with the longest wait alone on the hardware.
 #[derive(Debug, Clone)]
 pub(super) struct Latencies {
     /// By memory, then read or write.
@@ -504,12 +497,12 @@ impl Latencies {
             worst[memory as usize] = 1 + read.max(write);
         }
         for (memory, cache) in caches {
-            // Its own line, and before that the port for as long.
+            // Its own line, and the one before it at the port.
             let moving = hardware
                 .outer_memory
                 .cycles(8 * u64::from(cache.line_bytes));
             worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
-            // It has to have the lane again.
+            // It must get the lane again.
             worst[memory as usize] += u64::from(hardware.hands_out_tiles());
         }
         let moving = match hardware.pixels.own_port {

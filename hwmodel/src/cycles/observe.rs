@@ -1,16 +1,15 @@
-//! What can be watched of a simulation.
+//! Observers of a simulation.
 
 use super::report::Cause;
 use crate::Stage;
 
-/// The number that the workload's start has among the records.
+/// The record number of the workload's start.
 pub const START: u64 = u64::MAX;
 
 /// One record's visit of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VisitSpan {
-    /// The record, in the order in which they had their turns, from 0;
-    /// [`START`] for what comes before them.
+    /// The record, in the order of turns, from 0; or [`START`].
     pub record: u64,
     /// The lane.
     pub lane: u32,
@@ -18,45 +17,42 @@ pub struct VisitSpan {
     pub context: u32,
     /// The stage.
     pub stage: Stage,
-    /// Cycle in which the record came to the stage's block.
+    /// Cycle in which the record arrived at the stage's block.
     pub arrives: u64,
-    /// Cycle in which the block took it.
+    /// Cycle in which it entered the block.
     pub begins: u64,
     /// First cycle in which the block can take the next record.
     pub frees: u64,
-    /// First cycle in which the record can go on.
+    /// First cycle in which the record can continue.
     pub ends: u64,
-    /// Cycles of it for which it waited for a memory, and what for.
+    /// Cycles for which it waited for a memory, and the cause.
     pub stall: Option<(Cause, u64)>,
 }
 
-/// Watches a simulation. Its methods do nothing by default, and where
-/// [`Observer::watches_visits`] is false the first two are not called at all.
+/// Observes a simulation. Its methods do nothing by default.
 pub trait Observer {
-    /// Whether visits and queues are reported to it; the same for all of a simulation.
+    /// Whether [`visit`](Self::visit) and [`queue`](Self::queue) are called; constant during a simulation.
     fn watches_visits(&self) -> bool {
         true
     }
 
-    /// A visit begins; its whole course is known by then. Visits come in the
-    /// order in which they begin.
+    /// A visit of known course, in the order in which they begin.
     fn visit(&mut self, span: &VisitSpan) {
         let _ = span;
     }
 
-    /// How many records lie on a lane's stack from `cycle` on, and how many
-    /// of them are ready.
+    /// The numbers of records on a lane's stack, and of those that are ready, from `cycle` on.
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
         let _ = (cycle, lane, stored, ready);
     }
 
-    /// Every few thousand records: how far it is.
+    /// Progress, every few thousand records.
     fn progress(&mut self, cycle: u64, records: u64) {
         let _ = (cycle, records);
     }
 }
 
-/// Nobody watches.
+/// Observes nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoObserver;
 
@@ -80,7 +76,7 @@ impl<F: FnMut(u64, u64)> Observer for Progress<F> {
     }
 }
 
-/// Both watch.
+/// Both observe.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn watches_visits(&self) -> bool {
         self.0.watches_visits() || self.1.watches_visits()

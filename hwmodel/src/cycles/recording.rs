@@ -1,8 +1,7 @@
-//! What the turns of a frame did, kept to be simulated again on other hardware.
+//! The turns of a frame, recorded to be simulated again on other hardware.
 //!
-//! That is sound where a record finds the same whenever its turn comes: where all that share a part
-//! of the picture come one after the other. Else a turn depends on what hardware it is on,
-//! and [`simulate`](super::simulate) must have the workload itself.
+//! This is valid where the result of a turn does not depend on its time: where all records that share a part of the
+//! picture run one after the other. Otherwise [`simulate`](super::simulate) needs the workload itself.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -11,12 +10,12 @@ use super::hardware::Hardware;
 use super::turn::{CLASSES, Child, STAGES, TurnLog, WIDTHS, Workload};
 use crate::{Memory, OpClass, Probe, Stage, StageLevel, Trap};
 
-/// A probe that is asked for the log of a turn, and told when it ends.
+/// A probe that contains a turn's log and is notified of its end.
 pub trait TurnProbe: Probe {
     /// The log.
     fn turn_log(&mut self) -> &mut TurnLog;
 
-    /// The turn of `item`, or of the start, is over, and left `children`.
+    /// The turn of `item`, or of the start, is over, and made `children`.
     fn ended(&mut self, item: Option<u32>, children: &[Child]);
 }
 
@@ -38,7 +37,7 @@ impl TurnProbe for (TurnLog, Tape) {
     }
 }
 
-/// Operations of a visit that are alike.
+/// Equal operations of a visit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Tally {
     stage: Stage,
@@ -55,7 +54,7 @@ struct RecordedAccess {
     write: bool,
 }
 
-/// Where a turn's parts lie.
+/// Ranges of a turn's parts.
 #[derive(Debug, Clone, Default)]
 struct Turn {
     level: u32,
@@ -64,7 +63,6 @@ struct Turn {
     children: Range<u32>,
 }
 
-/// As an index.
 fn index(range: &Range<u32>) -> Range<usize> {
     range.start as usize..range.end as usize
 }
@@ -74,7 +72,7 @@ fn index(range: &Range<u32>) -> Range<usize> {
 pub struct Recording {
     /// By number; 0 is the start.
     turns: Vec<Turn>,
-    /// Operations of a stage, each different list once.
+    /// Operations of a stage, each distinct list once.
     visits: Vec<Range<u32>>,
     tallies: Vec<Tally>,
     /// The visits of turns.
@@ -85,20 +83,19 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Bytes of memory that it takes, about.
+    /// Approximate size in memory.
     fn bytes(&self) -> usize {
         size_of::<Turn>() * self.turns.len()
             + size_of::<Range<u32>>() * self.visits.len()
-            // Once here and once where they are looked up.
+            // Once here and once in the map.
             + 2 * size_of::<Tally>() * self.tallies.len()
             + size_of::<u32>() * self.visited.len()
             + size_of::<RecordedAccess>() * self.accesses.len()
             + size_of::<Child>() * self.children.len()
     }
 
-    /// The recorded turns as a workload, for a hardware that [`Hardware::check`] finds sound and that is not
-    /// [sequential](Hardware::sequential): the order of a turn's steps is not kept.
-    #[must_use]
+    /// The recorded turns as a workload, for hardware that [`Hardware::check`] accepts and that is not
+    /// [sequential](Hardware::sequential): the order of a turn's steps is not recorded.
     pub fn replay(&self, hardware: &Hardware) -> Replay<'_> {
         Replay {
             recording: self,
@@ -110,23 +107,22 @@ impl Recording {
 /// A probe that records turns.
 #[derive(Debug)]
 pub struct Tape {
-    /// How often, in this turn; by stage, class and width.
+    /// Number of operations in this turn; by stage, class and width.
     times: Box<[[[u32; WIDTHS]; CLASSES]; STAGES]>,
     met: Vec<Tally>,
-    /// Numbers of the visits that there are.
+    /// Numbers of the distinct visits.
     known: HashMap<Box<[Tally]>, u32>,
-    /// Where this turn's accesses begin.
+    /// First access of this turn.
     begun: u32,
     level: u32,
-    /// The turn of each of the workload's items.
+    /// Turn of each of the workload's items.
     numbers: Vec<u32>,
     recording: Recording,
     most_bytes: usize,
 }
 
 impl Tape {
-    /// An empty tape, for a recording of so many bytes at most.
-    #[must_use]
+    /// An empty tape, for a recording of at most so many bytes.
     pub fn new(most_bytes: usize) -> Self {
         Self {
             times: Box::new([[[0; WIDTHS]; CLASSES]; STAGES]),
@@ -143,8 +139,7 @@ impl Tape {
         }
     }
 
-    /// What was recorded; none where it would have been too long.
-    #[must_use]
+    /// The recording; none if it was too long.
     pub fn finish(self) -> Option<Recording> {
         self.is_on().then_some(self.recording)
     }
@@ -231,7 +226,7 @@ impl Tape {
 impl Probe for Tape {
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        // As `TurnLog` has it.
+        // As in `TurnLog`.
         let bits = (bits as usize).min(WIDTHS - 1);
         let sum = &mut self.times[place.stage as usize][class as usize][bits];
         if *sum == 0 {

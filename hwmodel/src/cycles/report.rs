@@ -1,4 +1,4 @@
-//! What a simulation came to.
+//! The report of a simulation.
 
 use serde::Serialize;
 
@@ -8,146 +8,97 @@ use crate::{OpClass, Stage};
 /// Version of the report's fields.
 pub const REPORT_VERSION: u32 = 1;
 
-/// What a record waited for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-pub enum Cause {
-    /// Another record in the stage's block.
-    BlockBusy,
-    /// A port of the stack or of a cache.
-    MemoryPort,
-    /// A bank of the fill vectors.
-    BankConflict,
-    /// A cache miss, its own or one under way.
-    CacheMiss,
-    /// The way out for pixels.
-    PixelPort,
-    /// Being read back from outer memory.
-    StackSpill,
-    /// Being taken from another lane.
-    Steal,
-}
-
-impl Cause {
-    /// All causes, in the order of their discriminants.
-    pub const ALL: [Self; 7] = [
-        Self::BlockBusy,
-        Self::MemoryPort,
-        Self::BankConflict,
-        Self::CacheMiss,
-        Self::PixelPort,
-        Self::StackSpill,
-        Self::Steal,
-    ];
-
-    /// The cause in words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::BlockBusy => "block busy",
-            Self::MemoryPort => "memory port",
-            Self::BankConflict => "bank conflict",
-            Self::CacheMiss => "cache miss",
-            Self::PixelPort => "pixel port",
-            Self::StackSpill => "stack spill",
-            Self::Steal => "steal",
+macro_rules! causes {
+    ($($(#[$doc:meta])* $cause:ident $field:ident = $name:literal,)+) => {
+        named! {
+            /// Why a record waited.
+            #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+            #[serde(rename_all = "snake_case")]
+            #[repr(u8)]
+            pub enum Cause {
+                $($(#[$doc])* $cause = $name,)+
+            }
         }
-    }
+
+        /// Cycles by cause, summed over records.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+        pub struct Stalls {
+            $($(#[$doc])* pub $field: u64,)+
+        }
+
+        impl Stalls {
+            /// Cycles of one cause.
+            pub fn of(&self, cause: Cause) -> u64 {
+                match cause { $(Cause::$cause => self.$field,)+ }
+            }
+
+            #[inline]
+            pub(super) fn add(&mut self, cause: Cause, cycles: u64) {
+                *match cause { $(Cause::$cause => &mut self.$field,)+ } += cycles;
+            }
+        }
+    };
 }
 
-/// Cycles by cause, summed over records.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Stalls {
-    /// See [`Cause::BlockBusy`].
-    pub block_busy: u64,
-    /// See [`Cause::MemoryPort`].
-    pub memory_port: u64,
-    /// See [`Cause::BankConflict`].
-    pub bank_conflict: u64,
-    /// See [`Cause::CacheMiss`].
-    pub cache_miss: u64,
-    /// See [`Cause::PixelPort`].
-    pub pixel_port: u64,
-    /// See [`Cause::StackSpill`].
-    pub stack_spill: u64,
-    /// See [`Cause::Steal`].
-    pub steal: u64,
+causes! {
+    /// Another record in the stage's block.
+    BlockBusy block_busy = "block busy",
+    /// A port of the stack or of a cache.
+    MemoryPort memory_port = "memory port",
+    /// A bank of the fill vectors.
+    BankConflict bank_conflict = "bank conflict",
+    /// A cache miss, its own or one in flight.
+    CacheMiss cache_miss = "cache miss",
+    /// The output of pixels.
+    PixelPort pixel_port = "pixel port",
+    /// Being read back from outer memory.
+    StackSpill stack_spill = "stack spill",
+    /// Being taken from another lane.
+    Steal steal = "steal",
 }
 
 impl Stalls {
-    /// Cycles of one cause.
-    #[must_use]
-    pub fn of(&self, cause: Cause) -> u64 {
-        match cause {
-            Cause::BlockBusy => self.block_busy,
-            Cause::MemoryPort => self.memory_port,
-            Cause::BankConflict => self.bank_conflict,
-            Cause::CacheMiss => self.cache_miss,
-            Cause::PixelPort => self.pixel_port,
-            Cause::StackSpill => self.stack_spill,
-            Cause::Steal => self.steal,
-        }
-    }
-
     /// Cycles of all causes.
-    #[must_use]
     pub fn total(&self) -> u64 {
         Cause::ALL.iter().map(|&cause| self.of(cause)).sum()
-    }
-
-    #[inline]
-    pub(super) fn add(&mut self, cause: Cause, cycles: u64) {
-        *match cause {
-            Cause::BlockBusy => &mut self.block_busy,
-            Cause::MemoryPort => &mut self.memory_port,
-            Cause::BankConflict => &mut self.bank_conflict,
-            Cause::CacheMiss => &mut self.cache_miss,
-            Cause::PixelPort => &mut self.pixel_port,
-            Cause::StackSpill => &mut self.stack_spill,
-            Cause::Steal => &mut self.steal,
-        } += cycles;
     }
 }
 
 /// One stage, over all lanes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct StageReport {
     /// The stage.
     pub stage: Stage,
-    /// Records that came.
+    /// Visits by records.
     pub visits: u64,
-    /// Operations, wires included.
+    /// Operations, including wires.
     pub operations: u64,
-    /// Passes through units: more than operations where words are wider than
-    /// units, none for wires.
+    /// Passes through units: several for an operation wider than a unit, none for wires.
     pub passes: u64,
-    /// Most passes that one visit had, by class in the order of [`OpClass::ALL`]:
-    /// more units than that are never used.
+    /// Most passes of one visit, by class in the order of [`OpClass::ALL`]: the most units that can be used.
     pub most_passes: [u64; OpClass::ALL.len()],
     /// Cycles in which its blocks issued operations.
     pub busy: u64,
-    /// Further cycles in which its blocks waited to issue accesses.
+    /// Additional cycles in which its blocks waited to issue accesses.
     pub held: u64,
-    /// `busy + held` over cycles and lanes, 0 to 1.
+    /// `busy + held` divided by cycles and lanes, 0 to 1.
     pub utilisation: f64,
-    /// Cycles of the records in it if nothing is waited for.
+    /// Cycles of the records in it without any waiting.
     pub alone: u64,
-    /// Cycles of the records in it beyond that, by cause.
+    /// Additional cycles of the records in it, by cause.
     pub stalls: Stalls,
 }
 
-/// What the contexts did; the four sum to `cycles * lanes * contexts`.
+/// Cycles of the contexts; the four sum to `cycles * lanes * contexts`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContextReport {
-    /// Cycles in which a record was worked on, or waited for nothing but its
-    /// own latencies.
+    /// Cycles with a record in progress that waited for at most its own latencies.
     pub working: u64,
     /// Cycles in which a record waited in a stage.
     pub stalled: u64,
-    /// Cycles without a record, while all records left had to wait for others.
+    /// Cycles without a record, while all remaining records had to wait for others.
     pub order_wait: u64,
-    /// Cycles without a record, while there were none left but those worked on.
+    /// Cycles without a record, while all remaining records were in progress.
     pub no_record: u64,
 }
 
@@ -156,70 +107,70 @@ pub struct ContextReport {
 pub struct CacheReport {
     /// Reads.
     pub accesses: u64,
-    /// Reads of lines that were not there.
+    /// Reads of missing lines.
     pub misses: u64,
-    /// Reads of lines that were on their way.
+    /// Reads of lines in flight.
     pub delayed_hits: u64,
-    /// `1 - misses / accesses`; 1 where there were none.
+    /// `1 - misses / accesses`; 1 without accesses.
     pub hit_rate: f64,
-    /// Bytes that the misses brought.
+    /// Bytes of the missing lines.
     pub bytes_in: u64,
 }
 
-/// Stacks, and what must be remembered of order.
+/// Stacks, and the table that keeps the order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StackReport {
     /// Most records on one lane's stack.
     pub deepest: u64,
     /// Most records on all stacks and in all contexts.
     pub most_live: u64,
-    /// Most records at once whose turn is over and some of whose descendants
-    /// are not: each is an entry of the table that keeps the order.
+    /// Most records at once whose turn is over and some of whose descendants are not: entries of the table that keeps
+    /// the order.
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,
-    /// Their bits: written to outer memory once and read from there once.
+    /// Their bits, written to outer memory once and read once.
     pub spilled_bits: u64,
     /// Records taken from another lane.
     pub stolen: u64,
 }
 
-/// A number of cycles below which the frame cannot be.
+/// A lower bound of the frame's cycles.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
-    /// What sets it.
+    /// The resource that sets it.
     pub resource: String,
     /// Cycles.
     pub cycles: u64,
-    /// `cycles` over the frame's, 0 to 1: how busy the resource is.
+    /// `cycles` divided by the frame's, 0 to 1: utilisation of the resource.
     pub share: f64,
 }
 
-/// What limits the frame.
+/// The limit of the frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bottleneck {
-    /// What, as a bound's `resource`; or `latency`, `order`.
+    /// A bound's `resource`, `latency`, `order` or `records`.
     pub resource: String,
     /// Share of the cycles, 0 to 1, for which it was busy.
     pub share: f64,
-    /// The same in words, and what would help.
+    /// The same in words, with a remedy.
     pub sentence: String,
 }
 
-/// What a simulation came to. Cycles are of the hardware's clock.
+/// The result of a simulation. Cycles are of the hardware's clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CycleReport {
     /// [`REPORT_VERSION`].
     pub version: u32,
     /// The hardware's name.
     pub hardware: String,
-    /// Its lanes.
+    /// Number of lanes.
     pub lanes: u32,
-    /// Its contexts per lane.
+    /// Contexts per lane.
     pub contexts: u32,
-    /// Its rule.
+    /// The rule of independence.
     pub independence: Independence,
-    /// Its clock, MHz.
+    /// Clock, MHz.
     pub clock_mhz: f64,
     /// From the first record's first to the last pixel's last cycle.
     pub cycles: u64,
@@ -229,23 +180,21 @@ pub struct CycleReport {
     pub pixels: u64,
     /// `cycles / records`.
     pub cycles_per_record: f64,
-    /// `cycles / pixels` written; 0 where none are.
+    /// `cycles / pixels`; 0 without pixels.
     pub cycles_per_pixel: f64,
-    /// Frames a second at the clock.
+    /// Frames per second at the clock.
     pub frames_per_second: f64,
-    /// Cycles of all turns if nothing is waited for.
+    /// Cycles of all turns without any waiting.
     pub work: u64,
-    /// Cycles of the longest chain of turns that must follow each other, if
-    /// nothing else is waited for: what no number of lanes goes below.
+    /// Cycles of the longest chain of dependent turns without any other waiting: a bound for any number of lanes.
     pub span: u64,
-    /// `work / span`: so many contexts could be kept busy on average.
+    /// `work / span`: the average number of contexts that could be busy.
     pub parallelism: f64,
-    /// Cycles of all turns one after the other, each waiting for all it ever
-    /// must: what no hardware of these parts exceeds.
+    /// Cycles of all turns one after the other with their longest waits: an upper bound.
     pub serial: u64,
     /// By stage, in the order of the record loop.
     pub stages: Vec<StageReport>,
-    /// What the contexts did.
+    /// Cycles of the contexts.
     pub context_cycles: ContextReport,
     /// The node cache.
     pub node_cache: CacheReport,
@@ -255,22 +204,21 @@ pub struct CycleReport {
     pub fill_reads: u64,
     /// Fill vectors written.
     pub fill_writes: u64,
-    /// Cycles for which the port to outer memory was taken: by lines of the
-    /// caches and by spilled records.
+    /// Cycles in which lines of the caches and spilled records took the port to outer memory.
     pub outer_busy: u64,
     /// Stacks.
     pub stack: StackReport,
     /// By resource, tightest first.
     pub bounds: Vec<Bound>,
-    /// What limits the frame.
+    /// The limit of the frame.
     pub bottleneck: Bottleneck,
 }
 
-/// Share of the cycles from which a resource counts as what limits.
+/// Share of the cycles from which a resource counts as the limit.
 const LIMITING: f64 = 0.75;
 
 impl CycleReport {
-    /// Bounds and bottleneck from what is counted.
+    /// Sets bounds and bottleneck.
     pub(super) fn conclude(&mut self, bounds: Vec<(String, u64)>) {
         let cycles = self.cycles.max(1) as f64;
         self.bounds = bounds
@@ -281,7 +229,7 @@ impl CycleReport {
                 share: bound as f64 / cycles,
             })
             .collect();
-        // Stable: equal ones stay in the order in which they were listed.
+        // Stable: equal ones keep their order.
         self.bounds
             .sort_by_key(|bound| std::cmp::Reverse(bound.cycles));
         self.bottleneck = self.find_bottleneck(cycles);
@@ -375,7 +323,6 @@ impl CycleReport {
     }
 }
 
-/// Name of the port to outer memory among the bounds.
+/// Names among the bounds.
 pub(super) const OUTER_PORT: &str = "outer memory port";
-/// Name of the span among the bounds.
 pub(super) const SPAN: &str = "longest chain";

@@ -1,37 +1,36 @@
-//! The same frame on more and more lanes.
+//! The same frame on different numbers of lanes.
 
 use serde::Serialize;
 
 use super::hardware::Hardware;
 use super::report::CycleReport;
 
-/// Lanes of the usual table.
+/// Numbers of lanes of the usual table.
 pub const LANES: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
 
 /// One row of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScalingRow {
-    /// Lanes.
+    /// Number of lanes.
     pub lanes: u32,
     /// Cycles of the frame.
     pub cycles: u64,
-    /// The first row's cycles over this one's.
+    /// The first row's cycles divided by this one's.
     pub speedup: f64,
-    /// `speedup` over lanes as multiples of the first row's: 1 is perfect.
+    /// `speedup` divided by the lanes relative to the first row's: 1 is perfect.
     pub efficiency: f64,
-    /// Records that had their turn: some more than serially, where one is
-    /// worked on before what would have hidden it is drawn.
+    /// Records that had their turn; more than serially, where one begins before its occluder is drawn.
     pub records: u64,
-    /// Work over span.
+    /// Work divided by span.
     pub parallelism: f64,
-    /// What limits.
+    /// The limiting resource.
     pub bottleneck: String,
 }
 
-/// Runs a frame for each number of lanes; all else stays as in `hardware`.
+/// Runs a frame for each number of lanes; all else is as in `hardware`.
 ///
 /// # Errors
-/// As `run` has them.
+/// Those of `run`.
 pub fn scaling<E>(
     hardware: &Hardware,
     lanes: &[u32],

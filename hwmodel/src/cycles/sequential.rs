@@ -1,8 +1,7 @@
-//! Sequential hardware (rules 12 to 14): an access at a time, each in its own cycle, and tiles that are handed out.
-//! `contexts.rs` has who works on a lane.
+//! Sequential hardware (rules 12 to 14): one access per cycle and visit, and tiles. `contexts.rs` shares lanes.
 //!
-//! What several records ask for in the same cycle is served when everything else of that cycle has happened: whoever
-//! came first comes first; of one cycle, nodes before attributes, and the lowest lane first.
+//! Requests of a cycle are served when all its other events are over: the earliest first; of one cycle, nodes before
+//! attributes, and the lowest lane first.
 
 use std::collections::VecDeque;
 
@@ -13,10 +12,10 @@ use super::simulate::{Simulation, SimulationError};
 use super::turn::Workload;
 use crate::Memory;
 
-/// Cycles from when a lane asks for a tile, if no other asks, until it begins it.
+/// Cycles from an uncontended request of a tile until it begins.
 const HAND_OUT: u64 = 1;
 
-/// What is asked for, in the order in which it is served within a cycle.
+/// Kinds of request, in the order in which they are served within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Of {
     Node,
@@ -25,7 +24,7 @@ enum Of {
     Tile,
 }
 
-/// What is asked for in the cycle at hand, and who waits.
+/// The requests of the current cycle, and the waiting contexts.
 #[derive(Debug, Default)]
 pub(super) struct Asked {
     now: Vec<(Of, u32)>,
@@ -34,7 +33,7 @@ pub(super) struct Asked {
     /// The next tile, and the first cycle in which one is handed out.
     tile: u32,
     tile_from: u64,
-    /// Of each lane; and contexts of those where that may change at the end of the cycle at hand.
+    /// Per lane; and contexts of lanes whose holder may change at the end of this cycle.
     pub(super) sharing: Vec<Sharing>,
     pub(super) lanes: Vec<u32>,
 }
@@ -49,41 +48,41 @@ impl Asked {
     }
 }
 
-/// How far a context is in its visit.
+/// Progress of a context in its visit.
 #[derive(Debug, Default)]
 pub(super) struct Step {
     /// The tile that it begins.
     pub(super) tile: Option<u32>,
-    /// Whether its event is the cycle in which what it waits for is there.
+    /// Whether its event is the cycle of the answer that it waits for.
     waits: bool,
-    /// From when on another has the lane; for how many cycles of its visit others had it; in how many of those it
+    /// First cycle in which another has the lane; cycles of the visit in which others had it; those of them in which it
     /// wanted the lane.
     pub(super) away_from: u64,
     pub(super) away: u64,
     pub(super) wanted: u64,
-    /// Whether its visit is under way; the next of the turn's accesses.
+    /// Whether its visit is in progress; the next of the turn's accesses.
     is_begun: bool,
     access: usize,
     begun: u64,
-    /// Whether its next access was asked for: it waits, or is served in its event's cycle.
+    /// Whether its next access was requested: it waits, or is served in its event's cycle.
     has_asked: bool,
     cause: Option<Cause>,
 }
 
 impl<W: Workload> Simulation<'_, W> {
-    /// All lanes ask for tiles.
+    /// All contexts request tiles.
     pub(super) fn ask_for_tiles(&mut self) {
         let contexts = 0..self.contexts.len() as u32;
         self.asked.now.extend(contexts.map(|of| (Of::Tile, of)));
     }
 
-    /// Whether something was asked for that is served before the next event.
+    /// Whether requests must be served before the next event.
     pub(super) fn must_serve(&self, now: u64) -> bool {
         let is_asked = !self.asked.now.is_empty() || !self.asked.lanes.is_empty();
         is_asked && self.wheel.next_at().is_none_or(|next| next > now)
     }
 
-    /// Serves what was asked for in the cycle `now`.
+    /// Serves the requests of the cycle `now`.
     pub(super) fn serve_asked(&mut self, now: u64) {
         let mut asked = std::mem::take(&mut self.asked.now);
         asked.sort_unstable();
@@ -106,7 +105,7 @@ impl<W: Workload> Simulation<'_, W> {
         self.give_lanes(now);
     }
 
-    /// A context without records is given the next tile, one a cycle.
+    /// A context without records receives the next tile, one per cycle.
     fn hand_out(&mut self, now: u64, context: u32) {
         if self.asked.tile == self.workload.tiles() {
             return;
@@ -119,7 +118,7 @@ impl<W: Workload> Simulation<'_, W> {
         self.waits_until(now, at, context);
     }
 
-    /// In the cycle `at` what a context waits for is there.
+    /// The answer for a context is ready in the cycle `at`.
     fn waits_until(&mut self, now: u64, at: u64, context: u32) {
         if at == now {
             self.waits_no_more(now, context);
@@ -129,7 +128,7 @@ impl<W: Workload> Simulation<'_, W> {
         }
     }
 
-    /// An access to a cache, if it is the one that is next there, and the cache is free.
+    /// Serves a cache access, if it is the first in line and the cache is free.
     fn serve_cached(&mut self, now: u64, context: u32, memory: Memory) {
         let (cache, line) = match memory {
             Memory::Node => (&mut self.memories.nodes, 0),
@@ -156,7 +155,7 @@ impl<W: Workload> Simulation<'_, W> {
             self.wheel.set(free, next);
         }
         self.is_served(context, served.cause);
-        // What is there is looked at in that cycle.
+        // The result is inspected in that cycle.
         self.waits_until(now, served.done, context);
     }
 
@@ -167,7 +166,7 @@ impl<W: Workload> Simulation<'_, W> {
         step.cause = Some(cause);
     }
 
-    /// A context's event, unless it comes to a block or is at the end of its turn.
+    /// Handles a context's event, unless it arrives at a block or is at the end of its turn.
     pub(super) fn step_on(
         &mut self,
         now: u64,
@@ -210,7 +209,7 @@ impl<W: Workload> Simulation<'_, W> {
         Ok(())
     }
 
-    /// A visit begins: its accesses are asked for, one after the other.
+    /// Begins a visit: its accesses are requested one after the other.
     pub(super) fn begin_steps(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.step.is_begun = true;
@@ -238,14 +237,14 @@ impl<W: Workload> Simulation<'_, W> {
         }
         of.step.is_begun = false;
         let begun = of.step.begun;
-        // At last the operations that the cycles of looking left.
+        // Finally the operations that the inspecting cycles left.
         let ends = (now + visit.latency).max(begun + 1);
         let cause = of.step.cause.unwrap_or(Cause::MemoryPort);
         let stalled = ends - (begun + visit.alone);
         self.end_visit(context, begun, (ends, ends), (cause, stalled));
     }
 
-    /// A context that hands nothing on: its own next record, or else another tile.
+    /// Gives a context at the end of its turn its own next record, or requests a tile.
     pub(super) fn go_on(
         &mut self,
         now: u64,

@@ -1,4 +1,4 @@
-//! The simulation: contexts, blocks, and which record is next.
+//! The simulation: contexts, blocks, and the choice of the next record.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use crate::Stage;
 use crate::memory::RecordKind;
 
 const NONE: u32 = u32::MAX;
-/// Records from one sign of progress to the next.
+/// Records between two reports of progress.
 const PROGRESS: u64 = 1 << 14;
 
 /// Why a simulation ended early.
@@ -43,7 +43,7 @@ pub enum SimulationError<E> {
 }
 
 impl<E> SimulationError<E> {
-    /// The same error, of a workload whose errors are converted.
+    /// Converts the workload's error.
     pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> SimulationError<F> {
         match self {
             Self::Workload(error) => SimulationError::Workload(convert(error)),
@@ -65,7 +65,7 @@ impl<E> SimulationError<E> {
 #[derive(Debug, Clone, Copy)]
 struct StageBlock {
     free_at: u64,
-    /// Contexts that wait, in order; the first has its event set.
+    /// Waiting contexts, in order; the first has its event set.
     first: u32,
     last: u32,
 }
@@ -76,21 +76,21 @@ pub(super) struct Context {
     pub(super) number: u32,
     pub(super) plan: TurnVisits,
     pub(super) children: Vec<Child>,
-    /// The visit that is next or under way.
+    /// The current or next visit.
     pub(super) visit: usize,
-    /// Of a sequential hardware: how far it is in that.
+    /// On sequential hardware: the progress in it.
     pub(super) step: Step,
     arrived: u64,
     granted: bool,
     pub(super) task: u32,
     record: u64,
-    /// Lane from whose stack the record comes, and further cycles of taking it.
+    /// Lane of the record's stack, and additional cycles of taking it.
     pub(super) from: u32,
     steal: u64,
     spill: u64,
-    /// Whether its record is in screen space.
+    /// Whether the record is in screen space.
     in_screen_space: bool,
-    /// The next in the line of its block.
+    /// The next context in line at its block.
     behind: u32,
 }
 
@@ -100,7 +100,7 @@ pub(super) struct Lane {
     pub(super) ready: VecDeque<u32>,
     /// Records on its stack, ready or not.
     stored: u64,
-    /// Contexts without a record, a bit each.
+    /// Contexts without a record, one bit each.
     pub(super) idle: u64,
 }
 
@@ -123,7 +123,6 @@ pub(super) struct Simulation<'a, W> {
     pub(super) hardware: &'a Hardware,
     pub(super) workload: &'a mut W,
     observer: &'a mut dyn Observer,
-    /// Whether the observer watches visits.
     watched: bool,
     pub(super) wheel: Wheel,
     pub(super) contexts: Vec<Context>,
@@ -142,7 +141,7 @@ pub(super) struct Simulation<'a, W> {
 
 impl<'a, W: Workload> Simulation<'a, W> {
     fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut dyn Observer) -> Self {
-        // Contexts that draw tiles of their own have a stack each: a lane for each as far as records go.
+        // With tiles, contexts have their own stacks: as far as records go, each is a lane.
         let (lanes, contexts) = match hardware.hands_out_tiles() {
             true => (hardware.stacks(), 1),
             false => (hardware.lanes, hardware.contexts),
@@ -234,7 +233,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// The turn of the workload's start, or of a tile's, which has been executed.
+    /// Begins the turn of the workload's start, or of a tile's, which was executed.
     pub(super) fn begin_turn_of_start(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.record = START;
@@ -243,7 +242,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.plan(now, context);
     }
 
-    /// A context's turn has been executed: its visits follow.
+    /// Begins the visits of an executed turn.
     fn plan(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         self.workload.log().take(&mut of.plan);
@@ -264,8 +263,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(now, context);
     }
 
-    /// Idle contexts up to `now`: call before their number or that of the
-    /// waiting records changes.
+    /// Adds idle cycles up to `now`; to be called before the numbers of idle contexts or waiting records change.
     #[inline]
     pub(super) fn account(&mut self, now: u64) {
         let idle = (now - self.accounted) * self.idle;
@@ -277,7 +275,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// A record comes to a block, or to the head of its line.
+    /// A record arrives at a block, or at the head of its line.
     #[inline]
     fn arrive(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
@@ -305,7 +303,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// The head of a block's line goes in when the block is free.
+    /// The head of a block's line enters when the block is free.
     fn grant(&mut self, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
@@ -314,7 +312,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(free_at, context);
     }
 
-    /// A visit begins: its operations are issued, its accesses booked.
+    /// Begins a visit: issues its operations, books its accesses.
     #[inline]
     fn begin(&mut self, now: u64, context: u32) {
         if self.hardware.sequential {
@@ -341,7 +339,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.end_visit(context, now, (frees, ends), (cause, stalled));
     }
 
-    /// It is known when a visit that began in the cycle `begun` frees its block and ends, and how long it was stalled.
+    /// Ends a visit that began in the cycle `begun`, with the cycles in which it frees its block and ends, and its stall.
     #[inline]
     pub(super) fn end_visit(
         &mut self,
@@ -362,7 +360,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
             report.stalls.add(Cause::Steal, of.steal);
             report.stalls.add(Cause::StackSpill, of.spill);
             ends += of.steal + of.spill;
-            // What follows goes to the stack of its own lane.
+            // The rest belongs to its own lane's stack.
             of.from = of.lane;
         }
         self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
@@ -384,7 +382,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(ends, context);
     }
 
-    /// A turn ends: its children lie on the stack, and what waited for it goes on.
+    /// Ends a turn: its children go on the stack.
     fn end_turn(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         self.account(now);
         let of = &mut self.contexts[context as usize];
@@ -414,7 +412,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
             let bits = u64::from(record.of(kind));
             self.totals.stack.spilled_bits += spills * bits;
             for _ in 0..spills {
-                // In the background: nothing waits for it but the port.
+                // In the background: only the port waits for it.
                 let (_, moving) = self.memories.outer.book(now, bits);
                 self.totals.serial += moving;
             }
@@ -454,7 +452,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Tells the observer how many records a lane has, of whose stacks one is `at`.
+    /// Reports the records of a lane that has stack `at`.
     fn tell_queue(&mut self, now: u64, at: usize) {
         let stacks = self.lanes.len() / self.hardware.lanes as usize;
         let lane = at / stacks;
@@ -485,8 +483,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Gives an idle context its next record: its own lane's newest, or the
-    /// oldest of the next lane that has one. There must be one.
+    /// Gives an idle context its next record: its own lane's newest, or the oldest of the next lane that has one.
     pub(super) fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         let lanes = self.lanes.len();
         let lane = self.contexts[context as usize].lane as usize;

@@ -1,9 +1,7 @@
-//! Records that are not finished, what they wait for, and how long the
-//! longest chain is.
+//! Unfinished records, their dependences, and the longest chain.
 //!
-//! A record is *finished* when its turn and those of all its descendants are
-//! over. A child waits for the earlier siblings that it depends on to be
-//! finished. The same times without any contention are kept beside: the span.
+//! A record is *finished* when its turn and those of all its descendants are over. A child waits until the earlier
+//! siblings that it depends on are finished. The same times without contention give the span.
 
 use super::hardware::Independence;
 use super::turn::Child;
@@ -15,24 +13,22 @@ const NO_TASK: u32 = u32::MAX;
 struct Task {
     parent: u32,
     item: u32,
-    /// Among its siblings, nearest first.
+    /// Place among its siblings, nearest first.
     slot: u8,
-    /// Earlier siblings that must be finished first, a bit each.
+    /// Earlier siblings that must be finished first, one bit each.
     waits: u8,
-    /// Its children that are not finished.
+    /// Its unfinished children.
     alive: u8,
     spilled: bool,
     kind: RecordKind,
-    /// Lane on whose stack it lies.
+    /// Lane of its stack.
     lane: u32,
     children: [u32; 8],
-    /// With nothing in the way: when its turn can begin, and when all of it
-    /// that is known so far is over.
+    /// Without contention: the cycles in which its turn can begin, and in which all known parts of it are over.
     begins: u64,
     over: u64,
 }
 
-/// A record about to have its turn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StartedTask {
     pub(super) item: u32,
@@ -46,7 +42,7 @@ pub(super) struct Tasks {
     independence: Independence,
     tasks: Vec<Task>,
     free: Vec<u32>,
-    /// Children left that wait for siblings.
+    /// Children that wait for siblings.
     pub(super) waiting: u64,
     /// Records that had their turn and have unfinished descendants.
     pub(super) open: u64,
@@ -77,7 +73,7 @@ impl Tasks {
         }
     }
 
-    /// The task of the workload's start, or of a tile's.
+    /// The task of the workload's start, or of a tile.
     pub(super) fn root(&mut self) -> u32 {
         self.insert(Task {
             parent: NO_TASK,
@@ -105,7 +101,6 @@ impl Tasks {
         }
     }
 
-    /// Lane on whose stack a task lies.
     #[inline]
     pub(super) fn lane(&self, task: u32) -> u32 {
         self.tasks[task as usize].lane
@@ -118,10 +113,9 @@ impl Tasks {
         a.parent == b.parent && a.slot < b.slot
     }
 
-    /// The end of a turn that would have taken `alone` cycles without
-    /// contention. Its children, all of one kind, lie on the stack of `lane`; `spills`: how
-    /// many of them, the nearest (last pushed) ones, found no entry. Tasks
-    /// that have become ready are appended to `ready`, the one to go last first.
+    /// Ends a turn that would have taken `alone` cycles without contention. Its children, all of one kind, lie on the
+    /// stack of `lane`; the `spills` nearest (last pushed) ones found no entry. Appends tasks that became ready to
+    /// `ready`, the one to run last first.
     #[inline]
     pub(super) fn end(
         &mut self,
@@ -140,7 +134,7 @@ impl Tasks {
             self.finish(task, ready);
             return;
         }
-        // The workload's start is no record.
+        // The workload's start is not a record.
         self.open += u64::from(self.tasks[task as usize].parent != NO_TASK);
         self.most_open = self.most_open.max(self.open);
         for (slot, child) in children.iter().enumerate().rev() {
@@ -173,7 +167,7 @@ impl Tasks {
         }
     }
 
-    /// Finishes a task, and its ancestors of which it was the last.
+    /// Finishes a task, and ancestors without other unfinished descendants.
     fn finish(&mut self, mut task: u32, ready: &mut Vec<u32>) {
         loop {
             let Task {

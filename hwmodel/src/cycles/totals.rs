@@ -1,10 +1,10 @@
-//! What a simulation counts on its way, and the report that it makes of that.
+//! Sums of a simulation, and its report.
 
 use super::hardware::Hardware;
 use super::memories::Memories;
 use super::report::{
     Bottleneck, ContextReport, CycleReport, OUTER_PORT, REPORT_VERSION, SPAN, StackReport,
-    StageReport, Stalls,
+    StageReport,
 };
 use super::tasks::Tasks;
 use super::turn::{CLASSES, STAGES};
@@ -18,7 +18,7 @@ pub(super) struct Totals {
     pub(super) records: u64,
     /// Cycles of all turns alone.
     pub(super) work: u64,
-    /// Cycles, if nothing ever happened at once.
+    /// Cycles without any overlap.
     pub(super) serial: u64,
     /// Cycles of contexts without a record.
     pub(super) idle_cycles: ContextReport,
@@ -29,15 +29,7 @@ impl Totals {
     pub(super) fn new() -> Self {
         let stage = |stage| StageReport {
             stage,
-            visits: 0,
-            operations: 0,
-            passes: 0,
-            most_passes: Default::default(),
-            busy: 0,
-            held: 0,
-            utilisation: 0.0,
-            alone: 0,
-            stalls: Stalls::default(),
+            ..StageReport::default()
         };
         Self {
             stages: Stage::ALL.map(stage).into(),

@@ -8,17 +8,17 @@ use super::hardware::Hardware;
 use super::observe::{Observer, START, VisitSpan};
 use crate::Stage;
 
-/// How much of a simulation is traced.
+/// The traced part of a simulation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TraceLimit {
-    /// Only records below this number, and what comes before them.
+    /// Only records below this number, and the start.
     pub records: u64,
     /// Only visits that begin in these cycles.
     pub cycles: Range<u64>,
 }
 
 impl Default for TraceLimit {
-    /// The first 10,000 records, whenever.
+    /// The first 10,000 records.
     fn default() -> Self {
         Self {
             records: 10_000,
@@ -35,7 +35,7 @@ struct Queue {
     ready: u32,
 }
 
-/// Keeps what a trace shows: about 80 bytes a visit.
+/// Keeps visits for a trace, about 80 bytes each.
 #[derive(Debug)]
 pub struct Recorder {
     limit: TraceLimit,
@@ -46,8 +46,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder with nothing in it.
-    #[must_use]
+    /// An empty recorder.
     pub fn new(limit: TraceLimit) -> Self {
         Self {
             limit,
@@ -57,13 +56,12 @@ impl Recorder {
         }
     }
 
-    /// The visits kept, in the order in which they began.
-    #[must_use]
+    /// The recorded visits, in the order in which they began.
     pub fn visits(&self) -> &[VisitSpan] {
         &self.visits
     }
 
-    /// Stacks from the first to the last visit kept.
+    /// Stacks from the first to the last recorded visit.
     fn queues(&self) -> impl Iterator<Item = &Queue> {
         let begin = self.visits.first().map_or(0, |visit| visit.arrives);
         self.queues
@@ -71,11 +69,11 @@ impl Recorder {
             .filter(move |queue| (begin..=self.end).contains(&queue.cycle))
     }
 
-    /// Writes trace events (JSON) for Perfetto or `chrome://tracing`: lanes are
-    /// processes, contexts are threads, one microsecond is one cycle.
+    /// Writes trace events (JSON) for Perfetto or `chrome://tracing`: lanes are processes, contexts are threads, one
+    /// microsecond is one cycle.
     ///
     /// # Errors
-    /// As `to` has them.
+    /// Those of `to`.
     pub fn write_chrome(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
         write!(
             to,
@@ -140,12 +138,11 @@ impl Recorder {
         writeln!(to, "\n]}}")
     }
 
-    /// Writes a value change dump (IEEE 1364) for GTKWave or Surfer: for each
-    /// lane the records on its stack and which blocks issue, for each context
-    /// stage, record, and whether it waits. One nanosecond is one cycle.
+    /// Writes a value change dump (IEEE 1364) for GTKWave or Surfer: per lane the records on its stack and the issuing
+    /// blocks, per context its stage, record, and whether it waits. One nanosecond is one cycle.
     ///
     /// # Errors
-    /// As `to` has them.
+    /// Those of `to`. As `to` has them.
     pub fn write_vcd(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
         let wires = Wires {
             contexts: hardware.contexts,
@@ -191,7 +188,7 @@ impl Recorder {
         wires: Wires,
         mut to: impl Write,
     ) -> io::Result<()> {
-        // By cycle and wire, the last value set; what ends goes in first.
+        // By cycle and wire, the last value set; ends are inserted first.
         let mut changes: BTreeMap<(u64, u32), (u32, u64)> = BTreeMap::new();
         for visit in &self.visits {
             let [stage, ..] = wires.context(visit.lane, visit.context);
@@ -263,8 +260,7 @@ impl Observer for Recorder {
     }
 
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
-        // Beyond the last visit kept there is nothing to show: as much again
-        // as there are visits is more than enough.
+        // Queues after the last visit are not shown.
         if self.limit.cycles.contains(&cycle) && self.queues.len() <= 4 * self.visits.len() {
             self.queues.push(Queue {
                 cycle,
@@ -279,7 +275,7 @@ impl Observer for Recorder {
 /// A context's stage while it has no record.
 const IDLE: u64 = 15;
 
-/// Numbers of the wires of a dump.
+/// Wire numbers of a dump.
 #[derive(Debug, Clone, Copy)]
 struct Wires {
     contexts: u32,

@@ -1,4 +1,4 @@
-//! What a record's turn does, as the cycle model needs it.
+//! A record's turn, as the cycle model needs it.
 
 use super::hardware::{Hardware, Independence};
 use super::memories::{Access, Latencies};
@@ -6,43 +6,42 @@ use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = Stage::ALL.len();
 pub(super) const CLASSES: usize = OpClass::ALL.len();
-/// Widths of operations that are counted apart; wider ones count as this less one.
+/// Widths that are counted separately; wider ones count as this less one.
 pub(super) const WIDTHS: usize = 128;
 
-/// What is simulated: something that works on records, one turn each. What
-/// a turn costs is known only after it has been executed.
+/// The simulated work: records, one turn each. The cost of a turn is known only after its execution.
 ///
-/// The simulator calls [`Workload::turn`] in the order of simulated time, so
-/// that a record finds things as they are when its turn begins.
+/// The simulator calls [`Workload::turn`] in the order of simulated time, so that a record finds the state at the
+/// beginning of its turn.
 pub trait Workload {
-    /// Why a turn failed.
+    /// Failure of a turn.
     type Error;
 
-    /// Makes the first records. What this does counts as a turn of its own,
-    /// of a record that was on no stack.
+    /// Makes the first records. Counts as a turn of a record that was on no stack.
     ///
     /// # Errors
-    /// As the workload has them.
+    /// Those of the workload.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// A record's turn: what it does goes into the log; the records that it
-    /// leaves go into `children` (empty before), nearest first, at most eight.
+    /// Executes a record's turn, which writes to the log. The new records go into `children` (empty before), nearest
+    /// first, at most eight.
     ///
+    /// # Errors
+    /// Those of the workload.
     /// # Errors
     /// As the workload has them.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Tiles of the picture: on a hardware that [hands them out](Hardware::hands_out_tiles) they take the place of
-    /// [`Self::start`].
+    /// Number of tiles of the picture, which replace [`Self::start`] on hardware that
+    /// [hands them out](Hardware::hands_out_tiles).
     fn tiles(&self) -> u32 {
         0
     }
 
-    /// Begins a tile, one of those from 0 on, and makes its first records, at most eight. A turn of its own, as
-    /// [`Self::start`].
+    /// Begins a tile and makes its first records, at most eight. A turn, as [`Self::start`].
     ///
     /// # Errors
-    /// As the workload has them.
+    /// Those of the workload.
     fn begin_tile(&mut self, _: u32, _: &mut Vec<Child>) -> Result<(), Self::Error> {
         Ok(())
     }
@@ -51,14 +50,14 @@ pub trait Workload {
     fn log(&mut self) -> &mut TurnLog;
 }
 
-/// A record that a turn left.
+/// A new record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
-    /// The workload's number for it.
+    /// The workload's number of it.
     pub item: u32,
-    /// Its place in the occlusion order, 0 (nearest) to 7.
+    /// Place in the occlusion order, 0 (nearest) to 7.
     pub place: u8,
-    /// Its part of the picture, within its parent's.
+    /// Part of the picture, within its parent's.
     pub image_node: ImageNode,
 }
 
@@ -74,9 +73,8 @@ pub struct ImageNode {
 }
 
 impl ImageNode {
-    /// Whether neither region holds the other.
+    /// Whether neither region contains the other.
     #[inline]
-    #[must_use]
     pub fn is_disjoint(self, other: Self) -> bool {
         let (up, down) = (
             other.level.saturating_sub(self.level),
@@ -86,14 +84,12 @@ impl ImageNode {
     }
 }
 
-/// Classes of the occlusion order by place: `{7} {6, 5, 3} {4, 2, 1} {0}` in
-/// the image-order paper's octants.
+/// Classes of the occlusion order by place: `{7} {6, 5, 3} {4, 2, 1} {0}` in the image-order paper's octants.
 const CLASS_OF_PLACE: [u8; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
 
 impl Independence {
-    /// Whether `later` need not wait for `earlier`, its sibling.
+    /// Whether `later` does not wait for its sibling `earlier`.
     #[inline]
-    #[must_use]
     pub fn allows(self, earlier: &Child, later: &Child) -> bool {
         let class = |child: &Child| CLASS_OF_PLACE[usize::from(child.place & 7)];
         let classes = || class(earlier) == class(later);
@@ -107,7 +103,7 @@ impl Independence {
     }
 }
 
-/// Marks a stage whose memories were accessed; the bits below are classes.
+/// Bit of a stage with memory accesses; the bits below are classes.
 const ACCESSED: u16 = 1 << CLASSES;
 
 /// The stages in the order in which a record visits them.
@@ -134,31 +130,31 @@ struct Done {
     passes: u64,
 }
 
-/// The probe of a turn: operations as passes through a hardware's units, and
-/// accesses, by stage. All that a turn does in one stage is one *visit* of it.
+/// The probe of a turn: operations as passes through units, and accesses, by stage. All work of a turn in one stage is
+/// one *visit*.
 #[derive(Debug)]
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
     accesses: [Vec<Access>; STAGES],
-    /// By stage, a bit for each class of operation, and [`ACCESSED`].
+    /// By stage, a bit per class of operation, and [`ACCESSED`].
     met: [u16; STAGES],
     /// Passes of one operation: by stage, class, width.
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
-    /// Octree level of what the turn pushes: one below its record.
+    /// Octree level of pushed records: one below the current record.
     child_level: u32,
     /// Most passes of a visit, by stage and class.
     most_passes: [[u64; CLASSES]; STAGES],
     sequential: bool,
-    /// Of a sequential hardware: the visits that are over, and the stage that the turn is in.
+    /// On sequential hardware: the finished visits, and the current stage.
     over: TurnVisits,
     stage: Stage,
     /// Whether it does work of another stage beside.
     beside: bool,
 }
 
-/// A unit as the log needs it; `count` 0: wires.
+/// A unit's numbers; `count` 0: wires.
 #[derive(Debug, Clone, Copy, Default)]
 struct Issue {
     count: u64,
@@ -168,7 +164,6 @@ struct Issue {
 
 impl TurnLog {
     /// A log for turns on a hardware that [`Hardware::check`] finds sound.
-    #[must_use]
     pub fn new(hardware: &Hardware) -> Self {
         let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
         let mut units = [[Issue::default(); CLASSES]; STAGES];
@@ -205,7 +200,7 @@ impl TurnLog {
         }
     }
 
-    /// The turn goes on in a stage: on a sequential hardware what it did in another is a visit that is over.
+    /// Enters a stage: on sequential hardware this ends the visit of another stage.
     #[inline(always)]
     fn enter(&mut self, stage: Stage) {
         if self.sequential && self.stage != stage {
@@ -233,12 +228,12 @@ impl TurnLog {
         });
     }
 
-    /// Most passes that one visit had for each class of operation, by stage.
+    /// Most passes of one visit by class of operation, by stage.
     pub(super) fn most_passes(&self) -> &[[u64; CLASSES]; STAGES] {
         &self.most_passes
     }
 
-    /// Takes the turn's visits and accesses, and forgets them.
+    /// Moves the turn's visits and accesses to `plan`.
     #[inline]
     pub(super) fn take(&mut self, plan: &mut TurnVisits) {
         plan.visits.clear();
@@ -247,7 +242,7 @@ impl TurnLog {
         plan.worst = 0;
         let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
-        // As `memory::RecordProbe` has it.
+        // As in `memory::RecordProbe`.
         let divides = 1 << OpClass::DivideStep as u16;
         plan.changed_to_screen = changed || self.met[Stage::ToScreen as usize] & divides != 0;
         for stage in ROUND {
@@ -257,7 +252,7 @@ impl TurnLog {
         }
     }
 
-    /// Takes the visits of a turn on a sequential hardware. Returns whether there were divides.
+    /// The same on sequential hardware. Returns whether there were divides.
     fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
         self.end_step(Stage::Pop);
         std::mem::swap(&mut self.over, plan);
@@ -283,7 +278,7 @@ impl TurnLog {
                 let issues = if done.passes <= unit.count {
                     1
                 } else if done.passes <= u64::from(u32::MAX) {
-                    // Division of 32 bits is several times as fast.
+                    // Division of 32 bits is several times faster.
                     u64::from((done.passes as u32).div_ceil(unit.count as u32))
                 } else {
                     done.passes.div_ceil(unit.count)
@@ -300,7 +295,7 @@ impl TurnLog {
         if self.sequential {
             let reads = accesses.iter().filter(|access| !access.write).count() as u64;
             let operated = if sum.operations == 0 { 0 } else { occupied };
-            // Each read takes a cycle of the operations, in which its result is looked at.
+            // Each read takes one of the operations' cycles, to inspect its result.
             latency += operated.max(reads) - reads;
             occupied = 0;
             plan.worst += reads + latency;
@@ -393,15 +388,15 @@ impl Probe for TurnLog {
     }
 }
 
-/// What a turn does in one stage.
+/// Work of a turn in one stage.
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
-    /// Cycles during which its operations are issued, at least 1; 0 on a sequential hardware.
+    /// Cycles in which operations are issued, at least 1; 0 on sequential hardware.
     pub(super) occupied: u64,
-    /// Further cycles until their results are there.
+    /// Additional cycles until the results are ready.
     pub(super) latency: u64,
-    /// Cycles if it waits for nothing.
+    /// Cycles without any waiting.
     pub(super) alone: u64,
     pub(super) accesses: std::ops::Range<usize>,
     pub(super) operations: u64,
@@ -413,12 +408,12 @@ pub(super) struct Visit {
 pub(super) struct TurnVisits {
     pub(super) visits: Vec<Visit>,
     pub(super) accesses: Vec<Access>,
-    /// Cycles if it waits for nothing.
+    /// Cycles without any waiting.
     pub(super) alone: u64,
-    /// Cycles if it waits for all it ever must with nothing else under way.
+    /// Cycles with the longest waits, alone on the hardware.
     pub(super) worst: u64,
-    /// Octree level of its children.
+    /// Octree level of the children.
     pub(super) child_level: u32,
-    /// Whether its record changed to screen space.
+    /// Whether the record changed to screen space.
     pub(super) changed_to_screen: bool,
 }

@@ -1,18 +1,15 @@
-//! Which context has its next event when: a timing wheel.
-//!
-//! Each context has at most one event to come, so that the lists of the wheel
-//! are links between contexts, and nothing is allocated while it turns.
+//! A timing wheel: the next event of each context. Each context has at most one event, so the lists of the wheel are
+//! links between contexts and need no allocation.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Cycles that the wheel holds; what comes later waits in a heap.
+/// Cycles on the wheel; later events wait in a heap.
 const SLOTS: usize = 1024;
 const WORDS: usize = SLOTS / 64;
 const NONE: u32 = u32::MAX;
 
-/// Events in the order of their cycles; those of one cycle in the order in
-/// which they were set.
+/// Events in the order of their cycles, then of setting.
 #[derive(Debug)]
 pub(super) struct Wheel {
     now: u64,
@@ -115,7 +112,7 @@ impl Wheel {
         None
     }
 
-    /// Moves on to a cycle; what has come near is taken out of the heap.
+    /// Moves to a cycle; near events leave the heap.
     #[inline]
     fn advance(&mut self, to: u64) {
         self.now = to;

@@ -1,6 +1,6 @@
-//! A set-associative cache that throws out the least recently used line.
+//! A set-associative cache with LRU replacement.
 
-/// Why three numbers are no cache.
+/// Why three numbers do not make a cache.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum CacheError {
     /// A line has no bytes.
@@ -14,20 +14,19 @@ pub enum CacheError {
         "a cache of {size_bytes} bytes is not made of whole sets of {ways} lines of {line_bytes} bytes"
     )]
     Sets {
-        /// Size requested, in bytes.
+        /// Requested size, bytes.
         size_bytes: u64,
-        /// Ways requested.
+        /// Requested ways.
         ways: u32,
-        /// Line requested, in bytes.
+        /// Requested bytes per line.
         line_bytes: u32,
     },
-    /// The cache is too large to be simulated.
+    /// The cache is too large to be simulated. The cache is too large to be simulated.
     #[error("a cache of {0} lines is too large: at most 2^28")]
     TooLarge(u64),
 }
 
-/// A cache: `size_bytes / (ways * line_bytes)` sets, each of which keeps the
-/// lines used last. A line's set is its number modulo the number of sets.
+/// A cache of `size_bytes / (ways * line_bytes)` sets. A line's set is its number modulo the number of sets.
 ///
 /// ```
 /// use hwmodel::memory::Cache;
@@ -46,13 +45,13 @@ pub struct Cache {
     line_bytes: u64,
     ways: usize,
     sets: u64,
-    /// Lines by set, in each the one used last first; `NONE` where empty.
+    /// Lines by set, most recently used first; `NONE` where empty.
     lines: Vec<u64>,
     hits: u64,
     misses: u64,
 }
 
-/// No line: an access of the last byte of all is out of reach anyway.
+/// An empty place.
 const NONE: u64 = u64::MAX;
 const MAX_LINES: u64 = 1 << 28;
 
@@ -60,8 +59,8 @@ impl Cache {
     /// An empty cache.
     ///
     /// # Errors
-    /// When the size is not a whole number of sets, one at least, or above
-    /// 2^28 lines; when `ways` is not 1 to 65535 or `line_bytes` is 0.
+    /// When the size is not a whole number of sets, at least one, or above 2^28 lines; when `ways` is not 1 to 65535 or
+    /// `line_bytes` is 0.
     pub fn new(size_bytes: u64, ways: u32, line_bytes: u32) -> Result<Self, CacheError> {
         if line_bytes == 0 {
             return Err(CacheError::NoLine);
@@ -91,9 +90,8 @@ impl Cache {
         })
     }
 
-    /// Accesses the line that holds a byte; whether it was there. One that
-    /// was not is brought in, for the one of its set that was used least
-    /// recently.
+    /// Accesses the line of a byte, and returns whether it was present. A missing line replaces the least recently used
+    /// one of its set.
     pub fn access(&mut self, byte_address: u64) -> bool {
         let line = byte_address / self.line_bytes;
         let first = (line % self.sets) as usize * self.ways;
@@ -109,19 +107,16 @@ impl Cache {
     }
 
     /// Accesses that found their line.
-    #[must_use]
     pub fn hits(&self) -> u64 {
         self.hits
     }
 
-    /// Accesses that did not.
-    #[must_use]
+    /// Accesses that did not find their line.
     pub fn misses(&self) -> u64 {
         self.misses
     }
 
-    /// Hits over accesses, 0..=1; `None` before the first access.
-    #[must_use]
+    /// Hits divided by accesses, 0..=1; `None` before the first access.
     pub fn hit_rate(&self) -> Option<f64> {
         let accesses = self.hits + self.misses;
         (accesses > 0).then(|| self.hits as f64 / accesses as f64)

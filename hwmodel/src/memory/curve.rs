@@ -1,7 +1,6 @@
-//! The miss curve of a memory, by stack distances (Mattson et al., "Evaluation
-//! techniques for storage hierarchies", IBM Systems Journal 1970): a fully
-//! associative cache of `c` lines, the least recently used thrown out, has a
-//! line exactly if fewer than `c` other lines were used since its last use.
+//! The miss curve of a memory, by stack distances (Mattson et al., "Evaluation techniques for storage hierarchies", IBM
+//! Systems Journal 1970): a fully associative cache of `c` lines with LRU replacement has a line exactly if fewer than
+//! `c` other lines were used since its last use.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,15 +13,13 @@ pub struct MissPoint {
     pub lines: u64,
     /// Size of the cache, in bytes.
     pub bytes: u64,
-    /// Lines that had to be brought in.
+    /// Lines that were fetched.
     pub misses: u64,
-    /// Misses over accesses, 0..=1; 0 where nothing was accessed.
+    /// Misses divided by accesses, 0..=1; 0 without accesses.
     pub miss_rate: f64,
 }
 
-/// Misses of caches of every size at once, from one pass over the accesses.
-///
-/// Memory grows with the lines touched, not with the accesses.
+/// Misses of caches of all sizes, from one pass over the accesses. Memory grows with the lines touched.
 ///
 /// ```
 /// use hwmodel::memory::MissCurve;
@@ -44,7 +41,7 @@ pub struct MissCurve {
     last: NumberMap<u32>,
     /// Binary indexed tree over times: 1 where a line was last accessed then.
     tree: Vec<u32>,
-    /// Next time, at most the tree's length less one.
+    /// Next time, less than the tree's length.
     now: u32,
     /// Accesses by stack distance.
     distances: Vec<u64>,
@@ -55,8 +52,7 @@ pub struct MissCurve {
 const FIRST_TIMES: usize = 1 << 12;
 
 impl MissCurve {
-    /// An empty curve for lines of `line_bytes` (at least 1, else taken as 1).
-    #[must_use]
+    /// An empty curve for lines of `line_bytes`, at least 1.
     pub fn new(line_bytes: u32) -> Self {
         Self {
             line_bytes: line_bytes.max(1),
@@ -70,13 +66,11 @@ impl MissCurve {
     }
 
     /// Bytes of a line.
-    #[must_use]
     pub fn line_bytes(&self) -> u32 {
         self.line_bytes
     }
 
-    /// Accesses `bytes` bytes (at least one) from an address on: each line
-    /// that they lie in, in order.
+    /// Accesses `bytes` bytes, at least one, from an address: each of their lines, in order.
     pub fn access(&mut self, byte_address: u64, bytes: u64) {
         let line_bytes = u64::from(self.line_bytes);
         let end = byte_address.saturating_add(bytes.saturating_sub(1));
@@ -98,8 +92,7 @@ impl MissCurve {
         let now = self.now;
         self.now += 1;
         if let Some(before) = self.last.insert(line, now) {
-            // Lines accessed since: all that are known less those last
-            // accessed up to `before`, this one included.
+            // Lines accessed since: all known ones less those last accessed up to `before`, including this one.
             let distance = self.last.len() as u64 - u64::from(self.marks_up_to(before));
             self.note(distance as usize);
             self.mark(before, 0u32.wrapping_sub(1));
@@ -134,8 +127,7 @@ impl MissCurve {
         sum
     }
 
-    /// Numbers the last accesses from 0 again, in their order, and leaves
-    /// room for as many as there are lines, at least.
+    /// Numbers the last accesses from 0 again, in their order, and leaves room for at least as many as there are lines.
     fn renumber(&mut self) {
         let mut times: Vec<&mut u32> = self.last.values_mut().collect();
         times.sort_unstable();
@@ -151,36 +143,30 @@ impl MissCurve {
         }
     }
 
-    /// Accesses so far; one that lies across lines counts once for each.
-    #[must_use]
+    /// Number of accesses; one that spans lines counts once per line.
     pub fn accesses(&self) -> u64 {
         self.accesses
     }
 
-    /// Different lines so far: the misses of a cache that holds everything.
-    #[must_use]
+    /// Number of different lines: the misses of a cache that holds everything.
     pub fn distinct_lines(&self) -> u64 {
         self.last.len() as u64
     }
 
     /// Misses of a fully associative cache of so many lines.
-    #[must_use]
     pub fn misses(&self, lines: u64) -> u64 {
         let kept = usize::try_from(lines).unwrap_or(usize::MAX);
         let far = self.distances.iter().skip(kept);
         self.distinct_lines() + far.sum::<u64>()
     }
 
-    /// Accesses by stack distance: entry `d` counts those before which `d`
-    /// other lines were accessed since the same line; first accesses are left out.
-    #[must_use]
+    /// Accesses by stack distance, without first accesses: entry `d` counts those with `d` other lines accessed since the
+    /// same line.
     pub fn distances(&self) -> &[u64] {
         &self.distances
     }
 
-    /// The curve at 1, 2, 4, ... lines, up to the first size that holds every
-    /// line touched.
-    #[must_use]
+    /// The curve at 1, 2, 4, ... lines, up to the first size that holds every line.
     pub fn points(&self) -> Vec<MissPoint> {
         let mut points = Vec::new();
         let mut lines = 1;

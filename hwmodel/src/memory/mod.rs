@@ -1,5 +1,4 @@
-//! Traffic to the machine's memories: bits by kind, what is touched at all,
-//! how full the stack gets, and the misses of every size of cache in one pass.
+//! Traffic to the machine's memories: bits by kind, distinct addresses, depth of the stack, and miss curves.
 
 mod cache;
 mod curve;
@@ -15,8 +14,7 @@ pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, PIXEL_BITS, Widths};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// A map from the number of a line or page. The numbers are the machine's
-/// own, small and dense, so a multiplication spreads them well enough.
+/// A map from the number of a line or page. The numbers are small and dense, so one multiplication spreads them.
 type NumberMap<V> = HashMap<u64, V, BuildHasherDefault<NumberHasher>>;
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,7 +29,7 @@ impl Hasher for NumberHasher {
 
     fn write_u64(&mut self, number: u64) {
         let product = u128::from(self.0 ^ number) * 0x9e37_79b9_7f4a_7c15;
-        // Both ends of the hash are used: by table index and by tag.
+        // Both ends of the hash are used: for the table's index and for the tag.
         self.0 = (product >> 64) as u64 ^ product as u64;
     }
 

@@ -1,35 +1,21 @@
-//! What a record on the stack holds: fewer bits than the widest one, where
-//! less of it is needed.
+//! Kinds of record on the stack, which need different numbers of bits.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
-/// The kinds of record that a stack holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-pub enum RecordKind {
-    /// Its vertices are in clip space.
-    Clip,
-    /// Its vertices are in screen space, as those of all its descendants.
-    Screen,
-    /// A finest voxel: it has no children, so that it needs no vertices.
-    Finest,
-}
-
-impl RecordKind {
-    /// All kinds, in the order of their discriminants.
-    pub const ALL: [Self; 3] = [Self::Clip, Self::Screen, Self::Finest];
-
-    /// The kind in words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Clip => "in clip space",
-            Self::Screen => "in screen space",
-            Self::Finest => "finest voxel",
-        }
+named! {
+    /// The kinds of record that a stack holds.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    #[repr(u8)]
+    pub enum RecordKind {
+        /// Its vertices are in clip space.
+        Clip = "in clip space",
+        /// Its vertices are in screen space, as those of all its descendants.
+        Screen = "in screen space",
+        /// A finest voxel, which needs no vertices.
+        Finest = "finest voxel",
     }
 }
 
@@ -43,14 +29,12 @@ pub struct RecordBits {
     pub screen: u32,
     /// Of [`RecordKind::Finest`].
     pub finest: u32,
-    /// Octree level from which on records are finest voxels; `None`: no rule
-    /// of the frame tells them apart.
+    /// First octree level of finest voxels; `None`: unknown.
     pub finest_level: Option<u32>,
 }
 
 impl RecordBits {
-    /// Records of one kind alone.
-    #[must_use]
+    /// The same bits for all kinds.
     pub const fn uniform(bits: u32) -> Self {
         Self {
             clip: bits,
@@ -61,7 +45,6 @@ impl RecordBits {
     }
 
     /// Bits of a record of a kind.
-    #[must_use]
     pub const fn of(&self, kind: RecordKind) -> u32 {
         match kind {
             RecordKind::Clip => self.clip,
@@ -70,14 +53,12 @@ impl RecordBits {
         }
     }
 
-    /// What a stack's entry must hold.
-    #[must_use]
+    /// Bits of a stack's entry.
     pub fn widest(&self) -> u32 {
         self.clip.max(self.screen).max(self.finest)
     }
 
     /// The kind of a record at an octree level.
-    #[must_use]
     pub fn kind(&self, level: u32, in_screen_space: bool) -> RecordKind {
         match self.finest_level {
             Some(finest) if level >= finest => RecordKind::Finest,
@@ -96,9 +77,8 @@ pub struct RecordAccesses {
     pub writes: u64,
 }
 
-/// A probe that follows what kind each record on the stack is of, from what
-/// the machine does: a record that divides has changed to screen space, and
-/// with it all that it pushes; what it pushes lies one octree level below it.
+/// A probe of the kinds of records on the stack, derived from the machine's work: a record that divides has changed to
+/// screen space with all that it pushes, and pushed records lie one octree level below it.
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};
@@ -125,17 +105,16 @@ pub struct RecordAccesses {
 pub struct RecordProbe {
     bits: RecordBits,
     accesses: [RecordAccesses; RecordKind::ALL.len()],
-    /// By address, the kind of the record that lies there.
+    /// Kind of the record at each address.
     stack: Vec<RecordKind>,
-    /// Level of what is pushed next.
+    /// Level of the next pushed record.
     child_level: u32,
-    /// Whether the record that has its turn is in screen space by now.
+    /// Whether the current record is in screen space.
     in_screen_space: bool,
 }
 
 impl RecordProbe {
-    /// A probe that has seen nothing.
-    #[must_use]
+    /// A probe without records.
     pub fn new(bits: RecordBits) -> Self {
         Self {
             bits,
@@ -147,25 +126,21 @@ impl RecordProbe {
     }
 
     /// Bits of each kind.
-    #[must_use]
     pub fn bits(&self) -> RecordBits {
         self.bits
     }
 
     /// Accesses to records of a kind.
-    #[must_use]
     pub fn of(&self, kind: RecordKind) -> RecordAccesses {
         self.accesses[kind as usize]
     }
 
     /// Bits read, all kinds.
-    #[must_use]
     pub fn read_bits(&self) -> u64 {
         self.sum(|of| of.reads)
     }
 
     /// Bits written, all kinds.
-    #[must_use]
     pub fn written_bits(&self) -> u64 {
         self.sum(|of| of.writes)
     }
@@ -178,7 +153,7 @@ impl RecordProbe {
     }
 }
 
-/// A stack deeper than this has no address: none is.
+/// Deeper addresses are taken as this one.
 const MAX_DEPTH: usize = 1 << 20;
 
 /// Whether an operation shows that its record changes to screen space.

@@ -1,8 +1,8 @@
-//! Which addresses were touched at all.
+//! Sets of touched addresses.
 
 use super::NumberMap;
 
-/// A set of addresses, a bit each in pages of 4096 that are made as needed.
+/// A set of addresses, one bit each in pages of 4096.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Touched {
     pages: NumberMap<Box<[u64; 64]>>,
@@ -21,7 +21,6 @@ impl Touched {
         *word |= bit;
     }
 
-    /// Different addresses so far.
     pub(super) fn distinct(&self) -> u64 {
         self.distinct
     }

@@ -1,17 +1,16 @@
-//! Operations on lanes: several numbers at once, by one instruction where the processor has it.
+//! Operations on lanes: several numbers by one instruction where the processor has it.
 //!
-//! This module holds operations only. Each algorithm is written once, generic over [`Isa`], in the
-//! file of its subject. [`Scalar`] is plain Rust and defines every operation; [`Avx2`] uses AVX2. To
-//! support another instruction set, add a file that implements these traits.
+//! Each algorithm is written once, generic over [`Isa`], in the file of its subject. [`Scalar`] is plain Rust and
+//! defines every operation; [`Avx2`] uses AVX2. Another instruction set is a file that implements these traits.
 //!
-//! An instruction set is a value, which exists only where the processor has the set. Vectors are
-//! made from such a value only, so their methods are safe to call. Two rules keep them fast:
+//! An instruction set is a value that exists only where the processor has the set. Vectors are only made from it, so
+//! their methods are safe. Two rules keep them fast:
 //!
 //! 1. Each large step of the traversal runs in [`Isa::vectorize`], which compiles it for the set.
 //! 2. Functions below it that use lanes are `#[inline(always)]`, so that they are compiled with it.
 //!
-//! Sets may round differently, because AVX2 multiplies and adds in one step. No picture depends on
-//! it: what rounding could decide is decided exactly.
+//! Sets may round differently, because AVX2 multiplies and adds in one step. No picture depends on it: doubtful cases
+//! are decided exactly.
 
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -23,7 +22,6 @@ pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::Avx2;
 
-/// A vector of `N` lanes.
 pub(super) trait Lanes<const N: usize>: Copy + Send + Sync + Debug {
     type Isa;
     type Lane;
@@ -60,17 +58,16 @@ pub(super) trait F32x4: Floats<4, Lane = f32> {
     fn last(self) -> Self;
     /// Sign bits, the first lane's lowest.
     fn signs(self) -> u32;
-    /// Whole parts of the first three, as indices of a table of `N` entries. Numbers outside the
-    /// table become its last index.
+    /// Whole parts of the first three lanes as indices of a table of `N` entries; numbers outside the table become the
+    /// last index.
     fn indices<const N: usize>(self) -> [usize; 3];
     fn values(self) -> [f32; 4];
-    /// The sums of all lanes: of this vector, of the other, and of both again.
+    /// Sums of all lanes: of this vector, of the other, and of both again.
     fn sums(self, other: Self) -> Self;
     /// Whole numbers, of lanes that are whole and small.
     fn whole(self) -> [i32; 4];
 }
 
-/// Eight `f32`.
 pub(super) trait F32x8: Floats<8, Lane = f32> {
     /// The lanes that are at most the other's, one bit each.
     fn at_most(self, other: Self) -> u8;
@@ -110,7 +107,6 @@ pub(super) trait U8x16: Lanes<16, Lane = u8> {
     fn low(self) -> u64;
 }
 
-/// An instruction set.
 pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type F32x4: F32x4<Isa = Self>;
     type F32x8: F32x8<Isa = Self>;
@@ -119,9 +115,8 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type U64x4: U64x4<Isa = Self>;
     type U8x16: U8x16<Isa = Self>;
 
-    /// Runs a step in a function of its own that is compiled for this set. The step is a closure
-    /// marked `#[inline(always)]`, so that it becomes part of that function. Its main arguments are
-    /// passed, not captured, so that the compiler knows that they do not alias.
+    /// Runs a step in its own function, compiled for this set. The step is a closure marked `#[inline(always)]`. Its
+    /// main arguments are passed, not captured, so that the compiler knows that they do not alias.
     fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A));
 
     #[inline(always)]
@@ -132,23 +127,21 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn splat(self, value: f32) -> Self::F32x4 {
         Self::F32x4::splat(self, value)
     }
-    /// Rounded to `f32`.
     fn narrow(self, wide: Self::F64x4) -> Self::F32x4;
     fn join(self, low: Self::F32x4, high: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes in all of eight.
     fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
     fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
-    /// A table's entries at the whole parts of lanes. Numbers outside the table get its last entry.
+    /// A table's entries at the whole parts of lanes; the last entry for numbers outside the table.
     fn look_up<const N: usize>(self, table: &[u64; N], at: Self::F32x8) -> [Self::U64x4; 2];
     /// A vector of eight bytes, and eight more of no meaning.
     fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes one after the other at the places of a mask's bits, and bytes of ones there.
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
-    /// Writes a value to those of 8 x 8 entries that a mask has, eight bits per row, in rows that
-    /// begin `width` apart. Panics unless all entries exist. One check for eight rows: a check for
-    /// each takes a fifth more instructions per voxel.
+    /// Writes a value to those of 8 x 8 entries that a mask has, eight bits per row; rows begin `width` apart. Panics
+    /// unless all entries exist: a check per row would take a fifth more instructions per voxel.
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
-    /// Asks the memory for an entry that will be read soon, if there is such an entry.
+    /// Prefetches an entry, if it exists.
     fn prefetch<T>(self, entries: &[T], at: usize);
 }

@@ -1,4 +1,4 @@
-//! Plain Rust: the meaning of every operation.
+//! Plain Rust: the definition of every operation.
 
 use std::array::from_fn;
 
@@ -63,7 +63,7 @@ fn bits<const N: usize>(holds: impl Fn(usize) -> bool) -> u32 {
     (0..N).fold(0, |bits, i| bits | u32::from(holds(i)) << i)
 }
 
-/// A number's whole part as an index of a table of `N` entries.
+/// A whole part as an index of a table of `N` entries.
 #[inline(always)]
 fn index<const N: usize>(at: f32) -> usize {
     (at as i32 as u32 as usize).min(N - 1)

@@ -1,5 +1,3 @@
-//! AVX2, found at run time.
-
 use std::arch::x86_64::*;
 
 use super::*;
@@ -9,7 +7,6 @@ use super::*;
 pub(in crate::fast) struct Avx2(());
 
 impl Avx2 {
-    /// The set, if the processor has it.
     pub(in crate::fast) fn detect() -> Option<Self> {
         let found = is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("fma")
@@ -59,7 +56,6 @@ lanes! {
     Bytes16([u8; 16] in __m128i, _mm_loadu_si128, _mm_set1_epi8);
 }
 
-/// Methods of one intrinsic.
 macro_rules! methods {
     ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
         #[inline(always)]
@@ -192,7 +188,7 @@ impl I16x16 for Shorts16 {
         avx!({
             let own = _mm256_cmpgt_epi16(limit.0, self.0);
             let next = _mm256_cmpgt_epi16(limit.0, next.0);
-            // Packing goes by halves: their quarters 0 and 2, then 1 and 3.
+            // Packing works by halves: their quarters 0 and 2, then 1 and 3.
             let both = _mm256_packs_epi16(own, next);
             _mm256_movemask_epi8(_mm256_permute4x64_epi64::<0b11_01_10_00>(both)) as u32
         })
@@ -331,7 +327,7 @@ impl Isa for Avx2 {
     }
     #[inline(always)]
     fn prefetch<T>(self, entries: &[T], at: usize) {
-        // Any address may be asked for; nothing is read.
+        // Any address may be prefetched; nothing is read.
         let entry = entries.as_ptr().wrapping_add(at);
         avx!(_mm_prefetch::<_MM_HINT_T0>(entry.cast()));
     }

@@ -2,20 +2,18 @@
 
 use super::record::MAX_RUN;
 
-/// What the program itself takes: code, stacks, what the allocator keeps.
+/// Bytes of the program itself: code, stacks, the allocator's reserve.
 const PROGRAM: u64 = 48 << 20;
-/// Least that a buffered reader of a run is given, bytes.
+/// Least bytes per buffered reader of a run.
 const LEAST_READER: u64 = 64 << 10;
 /// Most runs that are merged at once.
 const MAX_FAN_IN: u64 = 256;
-/// Bytes for each cluster that is worked on: 64 voxels with colour and normal,
-/// up to nine nodes, and the sum.
+/// Bytes per cluster in progress: 64 voxels with colour and normal, up to nine nodes, and the sum.
 const CLUSTER_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
-/// Streams to temporary files that may be open together: four for each of 21
-/// levels, and a few.
+/// Streams that may be open together: four for each of 21 levels, and a few.
 const SPOOLS: u64 = 96;
 
-/// Largest blocks: 128 clusters, 512 voxels a side.
+/// Largest blocks: 128 clusters, or 512 voxels, a side.
 const MAX_BLOCK_SHIFT: u32 = 7;
 
 /// Bytes of a block: its grid, and its clusters if all are there.
@@ -26,30 +24,26 @@ fn block_bytes(shift: u32) -> u64 {
 
 /// Sizes of the buffers of an external build.
 ///
-/// Two buffers of voxels exist while they are pushed (one filled, one
-/// sorted); later the readers of the merge and the halo's buffer; later the
-/// halo's readers, a block and a chunk. Each stage stays within the limit.
+/// First two buffers of voxels exist (one filled, one sorted); later the readers of the merge and the halo's buffer;
+/// later the halo's readers, a block and a chunk. Each stage stays within the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct BufferSizes {
-    /// Voxels in a run.
     pub(super) run_records: usize,
-    /// Bytes for the readers of a merge, all together.
     pub(super) merge_bytes: usize,
-    /// Most runs in a merge.
+    /// Most runs per merge.
     pub(super) fan_in: usize,
     /// Halo records that are sorted at once.
     pub(super) halo_records: usize,
     /// Blocks are `2^block_shift` clusters a side.
     pub(super) block_shift: u32,
-    /// Clusters that are worked on at once.
+    /// Clusters that are processed at once.
     pub(super) chunk_clusters: usize,
     /// Bytes of a stream's buffer; whole items of 1, 2, 3, 4 and 16 bytes.
     pub(super) spool_bytes: usize,
 }
 
 impl BufferSizes {
-    /// Shares out `memory` bytes. Below some megabytes the program itself is
-    /// larger than the limit; then buffers are as small as they can be.
+    /// Divides `memory` bytes. Below some megabytes the program is larger than the limit, and buffers are smallest.
     pub(super) fn new(memory: u64) -> Self {
         let memory = memory - PROGRAM.min(memory / 4);
         let eighth = memory / 8;

@@ -15,7 +15,7 @@ use crate::graph::average::Sum;
 use crate::graph::normals::fill_cluster;
 use crate::graph::{Normals, PackedNormal, Progress, morton};
 
-/// Clusters that a thread takes at once.
+/// Clusters per task of a thread.
 const PART: usize = 64;
 /// Voxels between two calls of [`Progress::advance`].
 const STEP: u64 = 1 << 16;
@@ -23,9 +23,9 @@ const STEP: u64 = 1 << 16;
 /// All voxels in Morton order, and the clusters that they fill.
 #[derive(Debug)]
 pub(super) struct Finest {
-    /// Three bytes a voxel.
+    /// Three bytes per voxel.
     pub(super) color: Spool,
-    /// Own normals, two bytes a voxel, little-endian.
+    /// Own normals, two bytes per voxel.
     own_normal: Spool,
     /// Morton key and Morton word of each cluster.
     clusters: Spool,
@@ -37,7 +37,7 @@ pub(super) struct Finest {
 }
 
 impl Finest {
-    /// Takes all voxels from the merge.
+    /// Reads all voxels from the merge.
     pub(super) fn take(
         mut sorted: Merge,
         depth: u32,
@@ -92,8 +92,7 @@ impl Finest {
         hand_on(key, word, sizes.block_shift, blocks_bits, &mut self.halo)
     }
 
-    /// Estimates normals, averages, and writes the tree. Gives back colours
-    /// and normals of the finest level.
+    /// Estimates normals, averages, and writes the tree. Returns colours and normals of the finest level.
     pub(super) fn finish(
         self,
         tree: &mut TreeWriter,
@@ -138,19 +137,18 @@ impl Finest {
     }
 }
 
-/// Clusters, read a block at a time.
+/// Clusters, read one block at a time.
 struct BlockReader {
     clusters: Spool,
     shift: u32,
     piece: Vec<[u64; 2]>,
     next: usize,
-    /// Where the next piece begins, bytes.
+    /// Byte at which the next piece begins.
     offset: u64,
     piece_clusters: usize,
 }
 
 impl BlockReader {
-    /// The next cluster, which stays the next one.
     fn peek(&mut self) -> io::Result<Option<[u64; 2]>> {
         if self.next == self.piece.len() {
             let left = (self.clusters.len() - self.offset) / 16;
@@ -165,7 +163,7 @@ impl BlockReader {
         Ok(self.piece.get(self.next).copied())
     }
 
-    /// Reads a block's clusters and gives its Morton key; none at the end.
+    /// Reads a block's clusters and returns its Morton key; none at the end.
     fn next(&mut self, block: &mut Vec<[u64; 2]>) -> io::Result<Option<u64>> {
         block.clear();
         let Some([first, _]) = self.peek()? else {
@@ -183,12 +181,10 @@ impl BlockReader {
     }
 }
 
-/// The finest level while it is worked on.
 struct FinestInProgress {
     color: Spool,
     own_normal: Spool,
     normal: Spool,
-    /// Voxels done.
     voxels: u64,
     centre: [f64; 3],
 }
@@ -201,7 +197,7 @@ struct ClusterBatch<'c> {
 }
 
 impl FinestInProgress {
-    /// Works on the next clusters; gives the number of their voxels.
+    /// Processes the next clusters and returns the number of their voxels.
     fn work(
         &mut self,
         clusters: &[[u64; 2]],
@@ -220,7 +216,6 @@ impl FinestInProgress {
         self.color.read(3 * self.voxels, color.as_flattened_mut())?;
         self.own_normal
             .read(2 * self.voxels, bytemuck::cast_slice_mut(&mut normal))?;
-        swap_on_big_endian(&mut normal);
 
         let (mut color_rest, mut normal_rest) = (&color[..], &mut normal[..]);
         let mut parts = Vec::with_capacity(clusters.len().div_ceil(PART));
@@ -243,19 +238,9 @@ impl FinestInProgress {
         for (cluster, nodes) in clusters.iter().zip(nodes.iter().flatten()) {
             tree.push(cluster[0], cluster[1].count_ones(), nodes)?;
         }
-        swap_on_big_endian(&mut normal);
         self.normal.push(bytemuck::cast_slice(&normal))?;
         self.voxels += voxels as u64;
         Ok(voxels as u64)
-    }
-}
-
-/// The file is little-endian.
-fn swap_on_big_endian(normals: &mut [PackedNormal]) {
-    if cfg!(target_endian = "big") {
-        for normal in normals {
-            normal.0 = normal.0.swap_bytes();
-        }
     }
 }
 

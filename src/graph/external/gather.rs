@@ -1,9 +1,7 @@
 //! Voxels as they are pushed, in sorted runs.
 //!
-//! Morton order counts from the lowest corner, which is known only when all
-//! voxels are there. Runs are sorted from the lowest corner so far; most scenes
-//! reach it early, and the few runs for which it was another one are sorted
-//! again at the end.
+//! Morton order counts from the lowest corner, which is known only at the end. Each run is sorted from the lowest
+//! corner so far. Runs with another corner are sorted again at the end; most scenes have few.
 
 use std::io;
 use std::sync::Arc;
@@ -17,7 +15,7 @@ use super::runs::{Merge, Runs};
 use super::scratch::Scratch;
 use crate::graph::{Progress, Voxel};
 
-/// What a thread hands back that has sorted a run and written it.
+/// The buffer and the runs, returned by the thread that sorts and writes a run.
 type Sorted = io::Result<(Vec<u128>, Runs)>;
 
 /// Pushed voxels.
@@ -26,14 +24,14 @@ pub(super) struct Gather {
     sizes: BufferSizes,
     scratch: Arc<Scratch>,
     buffer: Vec<u128>,
-    /// The run before, while it is sorted and written beside the pushing.
+    /// The thread that sorts and writes the previous run.
     running: Option<JoinHandle<Sorted>>,
     /// The corner from which each run is sorted.
     corners: Vec<[i32; 3]>,
     pub(super) min: [i32; 3],
     pub(super) max: [i32; 3],
     pub(super) pushed: u64,
-    /// After a failure nothing more is kept.
+    /// After a failure no more voxels are kept.
     failure: Option<io::Error>,
 }
 
@@ -73,7 +71,7 @@ impl Gather {
         }
     }
 
-    /// Waits for the run before, and gives a thread this one.
+    /// Waits for the previous run, and starts a thread for this one.
     fn spill(&mut self) -> io::Result<()> {
         let (spare, mut runs) = self.waited()?;
         let mut records = std::mem::replace(&mut self.buffer, spare);
@@ -85,7 +83,7 @@ impl Gather {
                 .par_iter_mut()
                 .for_each(|record| *record = placed(*record, corner));
             records.par_sort_unstable();
-            // The last pushed is the first of its equals.
+            // Of equal keys, the last pushed comes first.
             records.dedup_by_key(|record| key(*record));
             runs.add(&records)?;
             records.clear();
@@ -95,7 +93,7 @@ impl Gather {
         Ok(())
     }
 
-    /// What the thread that sorts hands back, or new things if there is none.
+    /// The results of the thread that sorts, or new ones if there is none.
     fn waited(&mut self) -> Sorted {
         match self.running.take() {
             None => Ok((Vec::new(), Runs::new(&self.scratch)?)),
@@ -105,8 +103,7 @@ impl Gather {
         }
     }
 
-    /// All voxels in Morton order from the lowest corner, and the number of
-    /// runs that they were sorted in.
+    /// All voxels in Morton order from the lowest corner, and the number of runs.
     pub(super) fn merged(mut self, progress: &dyn Progress) -> io::Result<(Merge, usize)> {
         if let Some(failure) = self.failure.take() {
             return Err(failure);
@@ -129,10 +126,9 @@ impl Gather {
     }
 }
 
-/// Nothing is written any more once the builder is gone.
+/// Waits, so that nothing is written once the builder is gone.
 impl Drop for Gather {
     fn drop(&mut self) {
-        // Its result is not needed any more.
         let _ = self.waited();
     }
 }

@@ -1,10 +1,8 @@
 //! Blocks of clusters, and the clusters around a block.
 //!
-//! A voxel's normal needs the clusters around its own. Clusters are worked on in
-//! Morton order, a block at a time: a cube of `2^shift` clusters a side, which
-//! is one stretch of that order. The neighbours of a cluster at a block's face
-//! are somewhere else in the order, so such a cluster is handed to the blocks
-//! beside it too: sorted by block, these copies come when their block does.
+//! A voxel's normal needs the clusters around its own. Clusters are processed in Morton order, one block at a time: a
+//! cube of `2^shift` clusters a side, contiguous in that order. Neighbours of a cluster at a block's face are elsewhere
+//! in the order. So copies of such a cluster, sorted by block, are added to the blocks beside its own.
 
 use std::io;
 
@@ -12,13 +10,12 @@ use super::runs::{Merge, Sorter};
 use crate::graph::morton;
 use crate::graph::normals::cluster::{Cluster, Surroundings, put};
 
-/// Bits of a coordinate in a block's grid, one cluster wider on each side.
+/// Bits per coordinate in a block's grid, which is one cluster wider on each side.
 fn slot_bits(shift: u32) -> u32 {
     if shift == 0 { 2 } else { shift + 1 }
 }
 
-/// Hands a cluster to the blocks beside its own; `blocks_bits`: bits of a
-/// block's coordinate, so that none outside the object is given any.
+/// Copies a cluster to the blocks beside its own. `blocks_bits`: bits of a block's coordinate within the object.
 pub(super) fn hand_on(
     cluster_key: u64,
     word: u64,
@@ -63,7 +60,7 @@ pub(super) struct Grid {
     /// Places that are not 0.
     filled: Vec<u32>,
     halo: Merge,
-    /// A copy that was read and is of a later block.
+    /// A copy that was read and belongs to a later block.
     ahead: Option<u128>,
 }
 
@@ -84,7 +81,6 @@ impl Grid {
         (at[0] * side + at[1]) * side + at[2]
     }
 
-    /// A cluster's place in the grid of its block.
     fn place_of(&self, cluster_key: u64) -> usize {
         let within = (1u32 << self.shift) - 1;
         self.place(morton::at(cluster_key).map(|c| (c & within) as usize + 1))
@@ -96,8 +92,7 @@ impl Grid {
         self.filled.push(place as u32);
     }
 
-    /// Takes the next block: its clusters with their Morton words, and what
-    /// other blocks have handed to it.
+    /// Reads the next block: its clusters with their Morton words, and the copies from other blocks.
     pub(super) fn fill(&mut self, block: u64, clusters: &[[u64; 2]]) -> io::Result<()> {
         for place in self.filled.drain(..) {
             self.words[place as usize] = 0;
@@ -119,7 +114,7 @@ impl Grid {
                 self.ahead = Some(copy);
                 return Ok(());
             }
-            // Blocks without a cluster are passed by.
+            // Copies for blocks without clusters are skipped.
             if of == block {
                 let slot = [2, 1, 0].map(|axis| (key >> (axis * bits) & mask) as usize);
                 self.set(self.place(slot), copy as u64);
@@ -127,7 +122,6 @@ impl Grid {
         }
     }
 
-    /// The voxels around a cluster of the block.
     pub(super) fn surroundings(&self, cluster_key: u64) -> Surroundings {
         let side = (1usize << self.shift) + 2;
         let place = self.place_of(cluster_key);

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use super::scratch::{Scratch, Spool};
 use super::tree::LevelArrays;
-use crate::graph::{BuildError, Graph, Placement};
+use crate::graph::{BuildError, Graph, Placement, Store};
 
-/// All that the file is made of.
+/// The contents of the file, level by level.
 pub(super) struct Built {
     pub(super) depth: u32,
-    /// Runs that the voxels were sorted in.
+    /// Sorted runs of voxels.
     pub(super) runs: u64,
     pub(super) levels: Vec<LevelArrays>,
-    /// Nodes of each level.
+    /// Nodes per level.
     pub(super) counts: Vec<u64>,
     /// Of the finest level.
     pub(super) color: Spool,
@@ -38,12 +38,12 @@ impl Built {
         Ok(Graph {
             depth: self.depth,
             root: 0,
-            mask: Vec::new().into(),
-            first: Vec::new().into(),
-            links: Vec::new().into(),
-            color: Vec::new().into(),
-            normal: Vec::new().into(),
-            opacity: Vec::new().into(),
+            mask: Store::default(),
+            first: Store::default(),
+            links: Store::default(),
+            color: Store::default(),
+            normal: Store::default(),
+            opacity: Store::default(),
             level_start,
             voxels: self.counts[self.depth as usize],
             placement,
@@ -64,7 +64,7 @@ impl Built {
     }
 }
 
-/// The levels' parts of each section, gone once handed on.
+/// The levels' parts of each section, freed once written.
 #[derive(Default)]
 pub(super) struct Sections {
     mask: Vec<Spool>,
@@ -74,7 +74,7 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    /// Hands on a section's bytes: `MASK`, `FRST`, `LINK`, `COLR`, `NRML`.
+    /// Writes a section's bytes: `MASK`, `FRST`, `LINK`, `COLR`, `NRML`.
     pub(super) fn hand_on(
         &mut self,
         section: usize,

@@ -1,17 +1,13 @@
 //! Scenes larger than memory: a `.vxg` file built by external sort.
 //!
-//! The file is the one that [`Builder`](super::Builder) and
-//! [`vxg::write`](super::vxg::write()) make of the same voxels, byte for byte.
-//! How, stage by stage (`spec/graph.md` has the figures):
+//! The file is the one that [`Builder`](super::Builder) and [`vxg::write`](super::vxg::write()) make of the same voxels,
+//! byte for byte. The stages (`spec/graph.md` has the figures):
 //!
-//! 1. `gather`: voxels are pushed, sorted in runs as large as memory allows,
-//!    and spilled;
+//! 1. `gather`: voxels are pushed, sorted in runs as large as memory allows, and spilled;
 //! 2. `runs`: the runs are merged in Morton order;
-//! 3. `finest`: the voxels' attributes and the clusters of 4^3 that they fill
-//!    are written, a cluster at the face of its block once more for each block
-//!    beside it (`halo`);
-//! 4. `finest` and `tree`: a block at a time, normals are estimated, and the
-//!    nodes of each level written as they are complete;
+//! 3. `finest`: the voxels' attributes and the clusters of 4^3 that they fill are written, a cluster at the face of its
+//!    block once more for each block beside it (`halo`);
+//! 4. `finest` and `tree`: block by block, normals are estimated, and the nodes of each level written when complete;
 //! 5. `join`: the levels become the sections of the file.
 
 mod buffer_sizes;
@@ -39,20 +35,18 @@ use join::Built;
 use scratch::Scratch;
 use tree::TreeWriter;
 
-/// Bytes of a pushed voxel in a temporary file.
+/// Bytes per pushed voxel in a temporary file.
 const RUN_BYTES: u64 = 16;
-/// Bytes of a voxel in the graph, at the least.
+/// Least bytes per voxel in the graph.
 const GRAPH_BYTES: u64 = 5;
 
-/// How a file is built out of core.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
-    /// Where normals come from.
     pub build: BuildOptions,
-    /// Bytes of memory that the build may take, the program included. Below
-    /// some 64 MB it is not kept to, because the program itself is larger.
+    /// Limit of memory in bytes, including the program. It is exceeded below about 64 MB, because the program itself
+    /// is larger.
     pub memory: u64,
-    /// Folder of the temporary files; about 22 bytes a voxel of a surface.
+    /// Folder of the temporary files; about 22 bytes per voxel of a surface.
     pub temporary: PathBuf,
 }
 
@@ -67,33 +61,25 @@ pub enum ExternalError {
     Disk(#[from] DiskShortage),
     /// A temporary file could not be made, written or read.
     #[error("{}: temporary files: {source}", folder.display())]
-    Temporary {
-        /// Their folder.
-        folder: PathBuf,
-        /// The system's error.
-        source: io::Error,
-    },
+    Temporary { folder: PathBuf, source: io::Error },
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] VxgError),
 }
 
-/// What was built, and what that took.
+/// Sizes of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExternalReport {
-    /// Voxels pushed, repeated ones included.
+    /// Voxels pushed, including repeated ones.
     pub pushed: u64,
-    /// Finest voxels of the graph.
     pub voxels: u64,
-    /// Nodes of the graph.
     pub nodes: u64,
-    /// Bytes of the file.
     pub bytes: u64,
-    /// Sorted runs that the voxels were spilled in.
+    /// Sorted runs of voxels.
     pub runs: u64,
-    /// Most bytes that temporary files took at once, the result not included.
+    /// Most bytes that temporary files took at once, without the result.
     pub temporary_bytes: u64,
-    /// Bytes written to temporary files, all together.
+    /// Bytes written to temporary files in total.
     pub temporary_written: u64,
 }
 
@@ -109,7 +95,6 @@ pub struct ExternalBuilder {
 
 impl ExternalBuilder {
     /// A builder without voxels.
-    #[must_use]
     pub fn new(options: ExternalOptions) -> Self {
         let sizes = BufferSizes::new(options.memory);
         let scratch = Scratch::new(options.temporary.clone());
@@ -122,7 +107,7 @@ impl ExternalBuilder {
         }
     }
 
-    /// Says which mesh the voxels are made of, for fitted cameras.
+    /// Sets the box of the mesh that the voxels are made of, for fitted cameras.
     #[must_use]
     pub fn of_mesh(self, mesh: MeshBox) -> Self {
         Self {
@@ -131,23 +116,18 @@ impl ExternalBuilder {
         }
     }
 
-    /// Voxels pushed so far, repeated ones included.
-    #[must_use]
+    /// Voxels pushed so far, including repeated ones.
     pub fn len(&self) -> u64 {
         self.gather.pushed
     }
 
-    /// Whether no voxel was pushed yet.
-    #[must_use]
+    /// Whether no voxel was pushed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Fails where so many voxels, sorted, or the graph of them take more disk than is free: to ask before they are
-    /// pushed.
-    ///
-    /// # Errors
-    /// [`ExternalError::Disk`].
+    /// Fails where so many voxels, or the graph of them, take more disk than is free. To be called before they are
+    /// pushed. Errors: [`ExternalError::Disk`].
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
         let folder = path.parent().unwrap_or(path);
@@ -155,25 +135,19 @@ impl ExternalBuilder {
         Ok(())
     }
 
-    /// Most voxels that [`expect`](Self::expect) lets pass, as far as temporary files go.
-    #[must_use]
+    /// Most voxels that [`expect`](Self::expect) accepts, as far as temporary files go.
     pub fn most_voxels(&self) -> u64 {
         budget::free_disk(&self.options.temporary).map_or(u64::MAX, |free| free / RUN_BYTES)
     }
 
-    /// Adds a voxel; it replaces an earlier one at the same index. If a
-    /// temporary file cannot be written, [`Self::finish`] returns the error.
+    /// Adds a voxel; it replaces an earlier one at the same index. [`Self::finish`] returns errors of temporary files.
     pub fn push(&mut self, voxel: Voxel) {
         self.gather.push(&voxel);
     }
 
-    /// Builds the graph and writes it to `path`, by a temporary name beside
-    /// it. `placement_world` is as in [`Builder::finish`](super::Builder::finish).
-    ///
-    /// # Errors
-    /// When there are no voxels, too many, or too far apart; when `path`
-    /// exists and `overwrite` is false; when the system refuses. Temporary
-    /// files are gone in any case.
+    /// Builds the graph and writes it to `path`. `placement_world` is as in
+    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart; when
+    /// `path` exists and `overwrite` is false; when the system refuses. Temporary files are removed in any case.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),

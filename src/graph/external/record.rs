@@ -1,4 +1,4 @@
-//! A voxel on its way to its place: 128 bits that sort as they are.
+//! A voxel as 128 bits that sort as they are.
 //!
 //! | bits | while pushed | once placed |
 //! |---|---|---|
@@ -7,39 +7,29 @@
 //! | 39..16 | colour | colour |
 //! | 15..0 | normal | normal |
 //!
-//! So equal keys come with the last pushed first.
+//! Of equal keys, the last pushed comes first.
 
 use crate::graph::build_error::MAX_SIDE;
 use crate::graph::{PackedNormal, Voxel, morton};
 
-/// Most records in a run: their numbers take 24 bits.
+/// Most records per run: their numbers take 24 bits.
 pub(super) const MAX_RUN: usize = 1 << 24;
 
 /// A voxel as it is pushed, the `number`-th of its run.
 pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
-    let mut packed = 0u64;
-    for (axis, index) in (0u32..).zip(voxel.index) {
-        packed |= (u64::from(index as u32) & (MAX_SIDE - 1)) << (axis * morton::MAX_BITS);
-    }
     let latest_first = (MAX_RUN - 1 - number) as u64;
     let [r, g, b] = voxel.color.map(u64::from);
     let normal = u64::from(voxel.normal.unwrap_or(PackedNormal::NONE).0);
     let rest = latest_first << 40 | r << 32 | g << 24 | b << 16 | normal;
-    u128::from(packed) << 64 | u128::from(rest)
+    u128::from(morton::pack(voxel.index)) << 64 | u128::from(rest)
 }
 
-/// With the Morton key from a corner in place of the index.
+/// With the Morton key from a corner instead of the index.
 pub(super) fn placed(record: u128, corner: [i32; 3]) -> u128 {
-    let packed = key(record);
-    // The extent is at most 2^21, so the low bits give the distance.
-    let at = [0, 1, 2].map(|axis| {
-        let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
-        low_bits.wrapping_sub(corner[axis] as u32) & (MAX_SIDE as u32 - 1)
-    });
-    with_key(record, morton::key(at))
+    with_key(record, morton::key_from(key(record), corner))
 }
 
-/// Placed from another corner, which is nowhere above the first.
+/// Placed from another corner, which must not be above the first along any axis.
 pub(super) fn moved(record: u128, from: [i32; 3], to: [i32; 3]) -> u128 {
     let old = morton::at(key(record));
     let at = [0, 1, 2].map(|axis| {
@@ -53,12 +43,11 @@ fn with_key(record: u128, key: u64) -> u128 {
     u128::from(key) << 64 | u128::from(record as u64)
 }
 
-/// The upper half: what records are sorted by.
+/// The upper half: the sorting key.
 pub(super) fn key(record: u128) -> u64 {
     (record >> 64) as u64
 }
 
-/// Colour, red first.
 pub(super) fn color(record: u128) -> [u8; 3] {
     [
         (record >> 32) as u8,
@@ -67,7 +56,6 @@ pub(super) fn color(record: u128) -> [u8; 3] {
     ]
 }
 
-/// Normal.
 pub(super) fn normal(record: u128) -> PackedNormal {
     PackedNormal(record as u16)
 }

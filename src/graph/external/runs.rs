@@ -12,10 +12,8 @@ use super::buffer_sizes::BufferSizes;
 use super::record::key;
 use super::scratch::{Scratch, ScratchFile};
 
-/// Bytes of a record in a file.
 const RECORD_BYTES: u64 = size_of::<u128>() as u64;
 
-/// Where a run lies.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     offset: u64,
@@ -37,12 +35,10 @@ impl Runs {
         })
     }
 
-    /// Number of runs.
     pub(super) fn len(&self) -> usize {
         self.runs.len()
     }
 
-    /// Adds a run.
     pub(super) fn add(&mut self, sorted: &[u128]) -> io::Result<()> {
         let offset = self.file.len();
         self.file.append(bytemuck::cast_slice(sorted))?;
@@ -53,7 +49,7 @@ impl Runs {
         Ok(())
     }
 
-    /// Changes the keys of a run, which must stay distinct, and sorts it anew.
+    /// Changes the keys of a run, which must stay distinct, and sorts it again.
     pub(super) fn rekey(
         &mut self,
         run: usize,
@@ -82,7 +78,7 @@ impl Runs {
             let mut fewer = Self::new(scratch)?;
             let mut block = Vec::new();
             let all = std::mem::take(&mut self.runs);
-            // Neighbours stay neighbours, so later runs stay later ones.
+            // Neighbours are merged, so the order of runs is kept.
             for group in all.chunks(sizes.fan_in) {
                 let offset = fewer.file.len();
                 let mut merge = Merge::new(self.file, group, sizes.merge_bytes)?;
@@ -106,7 +102,6 @@ impl Runs {
     }
 }
 
-/// A run that is read piece by piece.
 #[derive(Debug)]
 struct Reader {
     rest: Run,
@@ -114,11 +109,11 @@ struct Reader {
     next: usize,
 }
 
-/// Several runs as one.
 #[derive(Debug)]
 pub(super) struct Merge {
     file: ScratchFile,
     readers: Vec<Reader>,
+    /// The next record of each reader: its key, then the latest run first.
     /// The next record of each reader: its key, then the latest run first.
     heads: BinaryHeap<Reverse<(u64, Reverse<u32>)>>,
     last: Option<u64>,
@@ -192,7 +187,7 @@ impl Merge {
     }
 }
 
-/// Records that come in any order, sorted within a limit of memory.
+/// Sorts records within a limit of memory.
 #[derive(Debug)]
 pub(super) struct Sorter {
     buffer: Vec<u128>,
@@ -201,7 +196,6 @@ pub(super) struct Sorter {
 }
 
 impl Sorter {
-    /// A sorter that holds `room` records.
     pub(super) fn new(scratch: &Arc<Scratch>, room: usize) -> io::Result<Self> {
         Ok(Self {
             buffer: Vec::new(),
@@ -210,7 +204,6 @@ impl Sorter {
         })
     }
 
-    /// Adds a record.
     pub(super) fn push(&mut self, record: u128) -> io::Result<()> {
         self.buffer.push(record);
         if self.buffer.len() < self.room {

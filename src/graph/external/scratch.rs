@@ -1,5 +1,4 @@
-//! Temporary files: without a name where the system has such files, so that
-//! nothing is left behind even when the program is killed.
+//! Temporary files, without a name where the system has such files: nothing is left behind if the program is killed.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -7,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Where temporary files are made, and how many bytes they take.
+/// Folder and sizes of temporary files.
 #[derive(Debug)]
 pub(super) struct Scratch {
     folder: PathBuf,
@@ -26,17 +25,14 @@ impl Scratch {
         })
     }
 
-    /// Most bytes that temporary files took at once.
     pub(super) fn peak(&self) -> u64 {
         self.peak.load(Ordering::Relaxed)
     }
 
-    /// Bytes written to temporary files, all together.
     pub(super) fn written(&self) -> u64 {
         self.written.load(Ordering::Relaxed)
     }
 
-    /// An empty temporary file.
     pub(super) fn file(self: &Arc<Self>) -> io::Result<ScratchFile> {
         Ok(ScratchFile {
             file: tempfile::tempfile_in(&self.folder)?,
@@ -46,7 +42,7 @@ impl Scratch {
     }
 }
 
-/// A temporary file; gone when dropped.
+/// A temporary file, removed when dropped.
 #[derive(Debug)]
 pub(super) struct ScratchFile {
     file: File,
@@ -55,7 +51,6 @@ pub(super) struct ScratchFile {
 }
 
 impl ScratchFile {
-    /// Length, bytes.
     pub(super) fn len(&self) -> u64 {
         self.bytes
     }
@@ -72,7 +67,7 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Writes over bytes that are there.
+    /// Overwrites existing bytes.
     pub(super) fn replace(&mut self, offset: u64, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.write_all(bytes)?;
@@ -81,7 +76,7 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Reads bytes that are there.
+    /// Reads existing bytes.
     pub(super) fn read(&mut self, offset: u64, into: &mut [u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.read_exact(into)
@@ -94,12 +89,11 @@ impl Drop for ScratchFile {
     }
 }
 
-/// A stream of bytes that is written, then read: a buffer, and a temporary
-/// file once that has overflowed.
+/// A stream of bytes that is written, then read: a buffer, and a temporary file once the buffer was full.
 #[derive(Debug)]
 pub(super) struct Spool {
     buffer: Vec<u8>,
-    /// When to empty the buffer.
+    /// Capacity of the buffer, bytes.
     room: usize,
     file: Option<ScratchFile>,
     scratch: Arc<Scratch>,
@@ -146,7 +140,6 @@ impl Spool {
         Ok(())
     }
 
-    /// Length, bytes.
     pub(super) fn len(&self) -> u64 {
         self.file.as_ref().map_or(0, ScratchFile::len) + self.buffer.len() as u64
     }
@@ -167,8 +160,7 @@ impl Spool {
         Ok(())
     }
 
-    /// Hands on all that was written, in pieces of whole items (of 1, 2, 3, 4
-    /// or 16 bytes), and lets go of it.
+    /// Passes all bytes to `each` in pieces of whole items (of 1, 2, 3, 4 or 16 bytes), and removes them.
     pub(super) fn drain(
         mut self,
         mut each: impl FnMut(&mut [u8]) -> io::Result<()>,

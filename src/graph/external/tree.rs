@@ -1,10 +1,8 @@
 //! The tree's levels, each written as its nodes are closed.
 //!
-//! Clusters come in Morton order. Of the nodes above them, one a level is open
-//! at a time. Nodes of a level are opened, closed and written in one order,
-//! so a node's number within its level is known when it is opened, and the
-//! number of its first child when that is: only the level's first node has to
-//! be added at the end.
+//! Clusters come in Morton order. Of the nodes above them, one per level is open. Nodes of a level are opened, closed
+//! and written in one order, so the numbers of a node and of its first child within their levels are known when the
+//! node is opened: only the first node of the level is added at the end.
 
 use std::io;
 use std::sync::Arc;
@@ -14,7 +12,6 @@ use crate::graph::PackedNormal;
 use crate::graph::average::Sum;
 use crate::graph::build::first_new_level;
 
-/// A finished node without its child list.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FinishedNode {
     pub(super) mask: u8,
@@ -23,7 +20,7 @@ pub(super) struct FinishedNode {
 }
 
 impl FinishedNode {
-    /// A node that shows the average of what was added up.
+    /// A node that shows the average of a sum.
     pub(super) fn new(mask: u8, sum: &Sum) -> Self {
         Self {
             mask,
@@ -33,14 +30,11 @@ impl FinishedNode {
     }
 }
 
-/// What a cluster adds to the tree.
 #[derive(Debug, Clone)]
 pub(super) struct ClusterNodes {
-    /// Which octants hold voxels.
+    /// Octants that contain voxels.
     pub(super) mask: u8,
-    /// A node for each of them.
     pub(super) octants: Vec<FinishedNode>,
-    /// All voxels added up.
     pub(super) sum: Sum,
 }
 
@@ -54,7 +48,7 @@ pub(super) struct LevelArrays {
     pub(super) normal: Spool,
 }
 
-/// A node that may get more children.
+/// A node that may receive more children.
 #[derive(Debug, Clone, Copy, Default)]
 struct Open {
     mask: u8,
@@ -67,7 +61,7 @@ struct Open {
 pub(super) struct TreeWriter {
     depth: u32,
     levels: Vec<LevelArrays>,
-    /// Nodes begun at each level, the finest included.
+    /// Nodes begun per level, including the finest.
     begun: Vec<u64>,
     /// The open node of each level above the clusters.
     open: Vec<Open>,
@@ -93,8 +87,8 @@ impl TreeWriter {
         }
     }
 
-    /// Adds the next cluster: `voxels` of them, in the nodes that it has. An
-    /// object of less than two levels is one octant of one cluster, or a voxel.
+    /// Adds the next cluster with its number of voxels and its nodes. An object of less than two levels is one octant
+    /// of one cluster, or a voxel.
     pub(super) fn push(
         &mut self,
         cluster_key: u64,
@@ -131,8 +125,7 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Closes the nodes above the last cluster that the next is not below, and
-    /// opens its own.
+    /// Closes nodes that do not contain the next cluster, and opens those that do.
     fn open_above(&mut self, cluster_key: u64, cluster_level: usize) -> io::Result<()> {
         let new_level = first_new_level(self.before, cluster_key, cluster_level as u32) as usize;
         if self.before.is_some() {
@@ -153,7 +146,7 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Writes the open nodes of a level and those below, lowest first.
+    /// Writes the open nodes of a level and below, lowest first.
     fn close(&mut self, from: usize) -> io::Result<()> {
         for level in (from..self.open.len()).rev() {
             let Open { mask, first, sum } = self.open[level];
@@ -168,13 +161,13 @@ impl TreeWriter {
     fn write(&mut self, level: usize, node: FinishedNode, first: u64) -> io::Result<()> {
         let to = &mut self.levels[level];
         to.mask.push(&[node.mask])?;
-        // More than 32 bits are refused at the end.
+        // More than 32 bits are rejected at the end.
         to.first.push(&(first as u32).to_ne_bytes())?;
         to.color.push(&node.color)?;
         to.normal.push(&node.normal.0.to_le_bytes())
     }
 
-    /// The levels above the finest, and the number of nodes of each level.
+    /// The levels above the finest, and the number of nodes per level.
     pub(super) fn finish(mut self) -> io::Result<(Vec<LevelArrays>, Vec<u64>)> {
         if self.before.is_some() {
             self.close(0)?;

@@ -1,6 +1,6 @@
-//! Clusters of 4^3 voxels, and the surroundings of 8^3 voxels around one.
+//! Clusters of 4^3 voxels, and the 8^3 voxels around one.
 
-/// The voxels around a cluster, `[z][y]`, bit x; its own are 2 to 5 along each axis.
+/// The voxels around a cluster, `[z][y]`, bit x; the cluster's own are 2 to 5 along each axis.
 pub(in crate::graph) type Surroundings = [[u8; 8]; 8];
 
 /// Occupancy of 4^3 voxels, in two orders.
@@ -21,7 +21,7 @@ impl From<u64> for Cluster {
     }
 }
 
-/// Place in the cluster of each bit of its word.
+/// Place in the cluster of each bit of its Morton word.
 pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     let mut table = [[0; 3]; 64];
     let mut bit = 0;
@@ -36,7 +36,7 @@ pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     table
 };
 
-/// The bits of a cluster by rows: bit `z * 16 + y * 4 + x`.
+/// Converts a cluster's bits from Morton order to rows.
 fn to_rows(word: u64) -> u64 {
     let mut rows = 0u64;
     let mut left = word;
@@ -48,7 +48,7 @@ fn to_rows(word: u64) -> u64 {
     rows
 }
 
-/// Puts one of the 27 clusters around and including a cluster, `(x * 3 + y) * 3 + z`, into its surroundings.
+/// Puts cluster `(x * 3 + y) * 3 + z` of the 27 in and around the surroundings' middle into its place.
 #[inline]
 pub(in crate::graph) fn put(rows: &mut Surroundings, neighbour: usize, cluster_rows: u64) {
     /// First place in the surroundings, first place in the cluster, how many.

@@ -1,22 +1,16 @@
 //! Normals of voxels that have none, from the surface around them.
 //!
-//! Around each voxel, its 5 x 5 x 5 neighbourhood is taken as a heap of mass
-//! (weights 1 2 2 2 1 along each axis). Where the heap lies to one side of
-//! the voxel or fills most of the neighbourhood, as in a solid, the normal
-//! points away from its centre of mass. Elsewhere, as in a wall one voxel
-//! thick, that direction is noise, and the normal is the direction in which
-//! the heap is thinnest (the least axis of its covariance), turned away from
-//! the middle of the object. A wall that thin has two sides, and which one is
-//! *out* does not follow from it: a viewer may turn such a normal towards the eye.
+//! Each voxel's 5 x 5 x 5 neighbourhood is a heap of mass (weights 1 2 2 2 1 along each axis). Where the heap lies to
+//! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. Elsewhere,
+//! as in a wall one voxel thick, the normal is the direction in which the heap is thinnest (the least axis of its
+//! covariance), turned away from the middle of the object. A wall that thin has two sides, so a viewer may turn such a
+//! normal towards the eye.
 //!
-//! A voxel alone in its neighbourhood has none; nor has one whose six faces
-//! are all covered: it cannot be seen, and has no part in the normals of
-//! coarser nodes.
+//! A voxel alone in its neighbourhood has no normal. Neither has one whose six faces are covered: it cannot be seen,
+//! and does not count in the normals of coarser nodes.
 //!
-//! Speed comes from clusters of 4^3 voxels, 64 bits each: the node two levels
-//! above the finest, its children's masks its bits. Its 26 neighbours come
-//! down the tree with it: a child's neighbours are children of its parent's
-//! neighbours. In a cluster, a row of five voxels is an entry of a table.
+//! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest. Its 26 neighbours are
+//! found on the way down the tree, since a child's neighbours are children of its parent's neighbours.
 
 pub(super) mod cluster;
 mod moments;
@@ -28,20 +22,18 @@ use super::{PackedNormal, Progress};
 use cluster::{Cluster, MORTON_TO_XYZ, Surroundings, enclosed, put};
 use moments::Moments;
 
-/// `neighbours` where there is no node.
+/// Entry of `Neighbours` without a node.
 const ABSENT: u32 = u32::MAX;
-/// Nodes of one level around and including a node: `(x * 3 + y) * 3 + z`.
+/// Nodes of one level in and around a node: `(x * 3 + y) * 3 + z`.
 type Neighbours = [u32; 27];
 /// The node itself among its neighbours.
 const SELF: usize = 13;
 /// Most pieces that the work is split into.
 const MAX_PIECES: usize = 4096;
 
-/// What the estimate is made from: a tree stored level by level.
+/// A tree stored level by level, whose normals are estimated.
 pub(super) struct Estimate<'t> {
-    /// [`Graph::mask`](field@super::Graph::mask).
     pub(super) mask: &'t [u8],
-    /// [`Graph::first`](field@super::Graph::first).
     pub(super) first: &'t [u32],
     pub(super) level_start: &'t [u32],
     pub(super) depth: u32,
@@ -65,7 +57,7 @@ impl Estimate<'_> {
         if let Some(cluster_level) = self.depth.checked_sub(2) {
             self.fill_clusters(cluster_level, normals, progress);
         } else {
-            // One cluster holds it all; a smaller object lies in its low corner.
+            // One cluster; a smaller object lies in its low corner.
             let cluster = Cluster::from(self.mask.first().map_or(1, |&mask| u64::from(mask)));
             let mut rows = Surroundings::default();
             put(&mut rows, SELF, cluster.by_rows);
@@ -114,8 +106,7 @@ impl Estimate<'_> {
         Cluster::from(morton)
     }
 
-    /// Nodes of the deepest level, no deeper than the clusters, that has few
-    /// enough of them; in Morton order.
+    /// Nodes of the deepest level, at most that of the clusters, with at most [`MAX_PIECES`]; in Morton order.
     fn pieces(&self, cluster_level: u32) -> (u32, Vec<Piece>) {
         let mut neighbours = [ABSENT; 27];
         neighbours[SELF] = 0;
@@ -144,7 +135,6 @@ impl Estimate<'_> {
         (level, pieces)
     }
 
-    /// Finest voxels below a node.
     fn voxels_below(&self, node: u32, level: u32) -> usize {
         let first_voxel = |mut node: u32| {
             for below in level..self.depth {
@@ -160,7 +150,7 @@ impl Estimate<'_> {
         (first_voxel(node + 1) - first_voxel(node)) as usize
     }
 
-    /// Calls with the corner and the neighbours of each child of a node.
+    /// Calls `call` with the corner and the neighbours of each child of a node.
     #[inline]
     fn for_children(
         &self,
@@ -192,9 +182,8 @@ impl Estimate<'_> {
     }
 }
 
-/// Writes the normals of those of a cluster's voxels that have none; they are
-/// given in Morton order. `corner` is the cluster's and `centre` the middle of
-/// the object, both in finest voxels.
+/// Writes the normals of a cluster's voxels that have none. `normals` are in Morton order; `corner` is the cluster's
+/// and `centre` the object's middle, both in finest voxels.
 pub(super) fn fill_cluster(
     centre: [f64; 3],
     rows: &Surroundings,
@@ -217,8 +206,7 @@ pub(super) fn fill_cluster(
     }
 }
 
-/// For each octant and each of its 27 neighbours: which neighbour of the
-/// parent holds it, and as which octant.
+/// By octant and neighbour: the neighbour of the parent that contains it, and its octant there.
 const CHILD_NEIGHBOURS: [[(u8, u8); 27]; 8] = {
     let mut table = [[(0, 0); 27]; 8];
     let mut octant = 0;
@@ -239,13 +227,11 @@ const CHILD_NEIGHBOURS: [[(u8, u8); 27]; 8] = {
     table
 };
 
-/// A walk over the clusters of a piece, in Morton order.
 struct PieceNormals<'w> {
     estimate: &'w Estimate<'w>,
     cluster_level: u32,
     first_cluster: u32,
     clusters: &'w [Cluster],
-    /// The next voxel of the piece.
     next: usize,
     normals: &'w mut [PackedNormal],
 }

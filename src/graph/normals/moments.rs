@@ -7,24 +7,20 @@ use crate::graph::PackedNormal;
 
 /// Weight of a voxel by its distance along an axis, -2 to 2.
 const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
-/// Mass of half a neighbourhood. A wall of two voxels has it; a flat face
-/// has five eighths of a full one.
+/// Mass of half a neighbourhood. A wall of two voxels has it; a flat face has five eighths of a full one.
 const HALF_MASS: i32 = 8 * 8 * 8 / 2;
 /// Mass of a voxel alone.
 const LONE_MASS: i32 = 2 * 2 * 2;
-/// A centre of mass at least this far off, in voxels, gives the normal by
-/// itself: 0.8 is a flat face, 0.5 a wall of two.
+/// Least distance of the centre of mass, in voxels, at which it determines the normal: 0.8 is a flat face, 0.5 a wall
+/// of two.
 const ONE_SIDED: f64 = 0.6;
-/// Weight of the centre of mass, in voxels, in deciding which side of a
-/// wall is out, against the middle of the object.
+/// Weight of the centre of mass, in voxels, against the object's middle, when choosing the outer side of a wall.
 const OFFSET_SHARE: f64 = 0.25;
 
-/// Bits of a moment where three are in one number: none is beyond 1152, of
-/// squares along two axes of a full neighbourhood.
+/// Bits per moment where three are packed in one number: the largest is 1152.
 const FIELD: u32 = 20;
 
-/// Mass, first and second moments of a row of five voxels, by its bits: three
-/// numbers with signs in one, so that one sum adds up all three.
+/// Packed mass, first and second moment of a row of five voxels, by its bits.
 const ROW_MOMENTS: [i64; 32] = {
     let mut table = [0; 32];
     let mut bits = 0;
@@ -43,8 +39,7 @@ const ROW_MOMENTS: [i64; 32] = {
     table
 };
 
-/// Sums of five numbers, -2 to 2 along an axis, by [`WEIGHT`]; by weight and
-/// place; by weight and the place's square.
+/// Sums of five numbers, at -2 to 2 along an axis, weighted by [`WEIGHT`], times the place to the power of 0, 1 and 2.
 #[inline(always)]
 fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
     let [a, b, c, d, e] = [of(0), of(1), of(2), of(3), of(4)];
@@ -56,7 +51,7 @@ fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
     ]
 }
 
-/// The three moments in one number.
+/// Unpacks three moments.
 #[inline(always)]
 fn fields(sum: i64) -> [i32; 3] {
     let low = |sum: i64| sum << (64 - FIELD) >> (64 - FIELD);
@@ -70,7 +65,7 @@ fn fields(sum: i64) -> [i32; 3] {
     ]
 }
 
-/// Moments of the filled part of a voxel's neighbourhood, about the voxel.
+/// Moments of a voxel's neighbourhood about the voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Moments {
     mass: i32,
@@ -104,7 +99,7 @@ impl Moments {
         }
     }
 
-    /// The normal; `outward`: which side of a thin wall is preferred.
+    /// The normal; `outward`: the preferred side of a thin wall.
     pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
         if self.mass <= LONE_MASS {
             return PackedNormal::NONE;
@@ -121,7 +116,7 @@ impl Moments {
         if direction.length() > 0.02 {
             return PackedNormal::encode(direction);
         }
-        // The hint lies in the wall: either side is as good.
+        // The hint lies in the wall: choose either side.
         let longest = thin
             .into_iter()
             .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
@@ -133,9 +128,8 @@ impl Moments {
 
 /// A projection to the directions of least variance, by columns (symmetric).
 ///
-/// The adjugate of the covariance has the same axes, its largest value at
-/// the covariance's least; squaring it five times leaves hardly anything
-/// else. Where two variances are equally least, it projects to their plane.
+/// The adjugate of the covariance has the same axes, its largest value at the covariance's least; five squarings leave
+/// nearly only that. Where two variances are least, it projects to their plane.
 fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
     // Keeps the adjugate of a straight row of voxels from vanishing.
     const FLOOR: f64 = 1e-3;
@@ -151,7 +145,7 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
     let mut columns = [b.cross(c), c.cross(a), a.cross(b)];
     for squaring in 0..6 {
         let trace = columns[0].x + columns[1].y + columns[2].z;
-        // Variances are above the floor, so the trace is above zero.
+        // Variances are above the floor, so the trace is positive.
         let scale = 1.0 / trace;
         columns = columns.map(|column| column * scale);
         if squaring < 5 {

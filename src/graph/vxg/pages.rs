@@ -1,27 +1,21 @@
-//! How much of a mapped file is in memory, as the system reports (Linux: `/proc/self/smaps`).
+//! Pages of a mapped file in memory, as the system reports them (Linux: `/proc/self/smaps`).
 
 use std::ops::Range;
 
 use crate::graph::{Graph, Store};
 
-/// Pages of the file that a graph is mapped from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MappedPages {
-    /// Bytes of a page.
     pub page_bytes: u64,
-    /// Pages of the mapping: the whole file.
+    /// Pages of the whole file.
     pub mapped: u64,
-    /// Pages of it that this process has in its page table: those touched
-    /// since the file was opened, and those that the system put there along
-    /// with them (Linux: of each 16 pages, those that are in its cache). So it
-    /// bounds what was touched from above, by 16 times at the worst.
+    /// Pages in this process's page table: those touched since the file was opened, and those that the system adds
+    /// with them (Linux: cached pages of the same group of 16).
     pub resident: u64,
 }
 
 impl Graph {
-    /// Pages of the mapped file; none where the graph owns its arrays or the
-    /// system does not report it.
-    #[must_use]
+    /// Pages of the mapped file; none where the graph owns its arrays or the system does not report them.
     pub fn mapped_pages(&self) -> Option<MappedPages> {
         let Store::Mapped(map, _) = &self.color else {
             return None;
@@ -32,7 +26,7 @@ impl Graph {
     }
 }
 
-/// Adds up the parts of a mapping; the system may have split it.
+/// Adds up the parts of a mapping, which the system may have split.
 fn parse(smaps: &str, addresses: Range<u64>) -> Option<MappedPages> {
     let (mut page_bytes, mut resident) = (0, 0);
     let mut inside = false;

@@ -1,5 +1,4 @@
-//! Cages on the way down the octree, without a picture: computed by the
-//! machine's own steps, in the root of the quadtree.
+//! Cages on the way down the octree, computed by the machine's own steps in the root of the quadtree.
 
 use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
@@ -9,8 +8,7 @@ use crate::machine::record::{Clip, ImagePlace, Screen};
 use crate::machine::to_screen;
 use crate::project::FrameSetup;
 
-/// The eight vertices of a voxel, in Morton order, as the machine holds them
-/// relative to the whole picture, in units of the last place.
+/// The eight vertices of a voxel, in Morton order, relative to the whole picture, in units of the last place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Cage {
     /// X, Y, W.
@@ -19,7 +17,6 @@ pub enum Cage {
     Screen([[i64; 8]; 2]),
 }
 
-/// A cage as words.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum CageWords<L> {
     /// X, Y, W.
@@ -28,14 +25,14 @@ pub(super) enum CageWords<L> {
     Screen([L; 2]),
 }
 
-/// Goes down an octree.
+/// A walk down an octree.
 pub(super) struct Descent {
     dp: Datapath<NoProbe>,
     constants: Constants,
 }
 
 impl Descent {
-    /// A descent, and the root's cage, which has not arrived yet.
+    /// A descent, and the root's cage, which has not arrived.
     pub(super) fn new<L: CageCoordinate>(setup: &FrameSetup) -> (Self, CageWords<L>) {
         let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
         let constants = Constants::load(&mut dp, setup);
@@ -44,8 +41,7 @@ impl Descent {
         (Self { dp, constants }, CageWords::Clip(root))
     }
 
-    /// The cage of a voxel of level `level`, changed to screen space where the
-    /// machine lets a record change.
+    /// The cage of a voxel of level `level`, changed to screen space where the machine does so.
     pub(super) fn arrive<L: CageCoordinate>(
         &mut self,
         level: u32,
@@ -80,10 +76,7 @@ impl Descent {
         }
     }
 
-    /// A cage's vertices.
-    ///
-    /// # Errors
-    /// If a word has overflowed on the way.
+    /// Fails if a word has overflowed.
     pub(super) fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
         let dp = &mut self.dp;
         let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);

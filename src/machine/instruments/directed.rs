@@ -1,8 +1,7 @@
-//! Inputs that a frame seldom or never brings, given to the machine's blocks: ends of their ranges, ties, and
-//! random numbers. The probe sees what crosses the blocks' borders, as it does in a frame.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. The probe sees the blocks'
+//! borders, as in a frame.
 //!
-//! Every input is such that no result leaves its word: where a block adds, numbers keep some bits' distance from
-//! the ends of the format; where it does not, they do not.
+//! No result leaves its word: where a block adds, numbers stay some bits below the ends of the format.
 
 use hwmodel::{Probe, Stage, WideWord, Word};
 
@@ -25,7 +24,7 @@ use crate::project::FrameSetup;
 use crate::project::options::SCREEN_GUARD_SHIFT;
 
 impl Machine {
-    /// Gives inputs of `rounds` rounds to the blocks of a frame.
+    /// Gives `rounds` rounds of inputs to the blocks of a frame.
     pub fn show_directed<P: Probe>(
         &mut self,
         graph: &GraphView<'_>,
@@ -71,7 +70,6 @@ impl Machine {
     }
 }
 
-/// All short vectors: there are few.
 fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
     for bits in 0..16u8 {
         let halves = |at: u8| Halves {
@@ -93,7 +91,7 @@ fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
             continue;
         }
         for quadrant in 0..4 {
-            // A sample below which vectors stand as in the row, so that its parent's is updated.
+            // A sample whose vectors are those of the row, so that its parent's is updated.
             let mut parent = root;
             while parent.level + 1 < levels {
                 parent = parent.quadrant(0);
@@ -126,7 +124,6 @@ fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     child_cube(&mut state.dp, &state.job, counts, &cube, octant, &centre);
 }
 
-/// Cages by themselves.
 fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let cage = inputs.cage(state);
     state.dp.stage(Stage::VertexPool);
@@ -135,7 +132,7 @@ fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &
     child_span(&mut state.dp, &cage);
 }
 
-/// X, such that a node's edge, its bisector, or where a box leaves it too far, goes through the vertices, or nearly.
+/// X such that a node's edge, its bisector, or the limit of a box passes through the vertices, or nearly.
 fn beside_an_edge<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,
@@ -162,7 +159,7 @@ fn beside_an_edge<P: Probe, L: CageCoordinate>(
 fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let mut clip = inputs.clip(state);
     [clip.x, clip.y] = [(); 2].map(|()| beside_an_edge(state, inputs, &clip.w));
-    // A fit doubles planes once a level.
+    // A fit doubles planes once per level.
     let mut planes = Planes::default();
     for plane in planes.edge.as_flattened_mut() {
         *plane = WideWord::from_host(inputs.number(8));
@@ -217,7 +214,6 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     });
 }
 
-/// Silhouettes.
 fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let depth = state.job.constants.depth;
     let mut planes = inputs.planes();
@@ -317,7 +313,7 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         true => state.dp.add(doubled, step),
         false => inputs.word(SPARE),
     };
-    // Beyond the node's edges a centre is none of it.
+    // Centres beyond the node's edges are rejected.
     let across = ImagePlace {
         inside: false,
         ..place
@@ -326,7 +322,7 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     let level = inputs.level(state.job.constants.depth) as usize;
     let least = if inputs.flag() { clip.w_min } else { w };
     if inputs.flag() {
-        // The guard's edge goes through the vertices, in the whole picture.
+        // The guard's edge passes through the vertices, in the whole picture.
         let dp = &mut state.dp;
         clip.x = clip.w.map(|w| {
             let part = dp.shr(w, SCREEN_GUARD_SHIFT);

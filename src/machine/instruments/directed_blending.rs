@@ -11,8 +11,8 @@ use crate::machine::constants::BlendEye;
 use crate::machine::state::State;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, SHARES};
 
-/// A voxel of any opacities that is seen along ways, which are not negative, from an eye beside its centre, on the side of
-/// zero; `shift`: of the eye.
+/// A voxel of random opacities, seen along non-negative ways from an eye beside its centre, towards zero; `shift`: of the
+/// eye.
 fn blend_voxel<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,
@@ -22,7 +22,7 @@ fn blend_voxel<P: Probe, L: CageCoordinate>(
     let dp = &mut state.dp;
     for k in 0..3 {
         if inputs.flag() {
-            // Else the whole range: an odd sum loses its half.
+            // Otherwise the whole range: an odd sum loses its half.
             cube.max[k] = cube.min[k];
         }
     }
@@ -39,7 +39,7 @@ fn blend_voxel<P: Probe, L: CageCoordinate>(
         let step = Word::from_host(inputs.number(1) & 1);
         towards_zero(dp, centre[k], step)
     });
-    // Full, just not, half, or any.
+    // Full, almost full, half, or random.
     let mut side = || match inputs.dice.below(6) {
         0..=2 => 15,
         3 => [14, 8, 7][inputs.dice.below(3) as usize],
@@ -49,7 +49,7 @@ fn blend_voxel<P: Probe, L: CageCoordinate>(
     BlendColor::of_voxel(dp, &eye, &eye_floor, &cube, opacity, [0; 3]);
 }
 
-/// A number, and as much beyond it on the side of zero.
+/// Moves a number towards zero by `by`, or beyond.
 fn towards_zero<P: Probe>(dp: &mut Datapath<P>, from: Word, by: Word) -> Word {
     match dp.is_negative(from) {
         true => dp.add(from, by),
@@ -74,7 +74,7 @@ pub(super) fn all_shares<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Blending: ways with ties of their shares or of any size, and samples of which a part of the light is left.
+/// Blending: ways with ties of their shares or of any size, and partly transparent samples.
 pub(super) fn blending<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,
@@ -97,7 +97,7 @@ pub(super) fn blending<P: Probe, L: CageCoordinate>(
         true => all,
         false => inputs.dice.below(all + 1),
     };
-    // As much as leaves a sample just open or just full; all; any.
+    // Leaves a sample just open or just full; opaque; random.
     let enough = left.saturating_sub(u64::from(OPAQUE_ENOUGH)) * all / left.max(1);
     let weight = match inputs.dice.below(4) {
         0 => inputs.dice.below(all + 1),
@@ -108,7 +108,7 @@ pub(super) fn blending<P: Probe, L: CageCoordinate>(
         0 => u64::from(u16::MAX),
         _ => inputs.dice.below(1 << 16),
     });
-    // What a sample has is no more than what it took of the light.
+    // A sample's light is at most its share.
     let most = (all - left) * u64::from(u16::MAX);
     let sums = [(); 3].map(|()| match inputs.dice.below(3) {
         0 => most,

@@ -1,4 +1,4 @@
-//! Numbers, and what the machine makes of numbers, at the ends of ranges, in ties, and at random.
+//! Directed and random inputs: ends of ranges, ties, and random numbers.
 
 use hwmodel::{Probe, WideWord, Word};
 
@@ -9,10 +9,9 @@ use crate::machine::state::State;
 use crate::project::FrameSetup;
 use crate::split_mix::SplitMix;
 
-/// Bits that words keep from the ends of the format where they are added, doubled or halved a few times.
+/// Bits by which words stay below the ends of the format where they are added, doubled or halved a few times.
 pub(super) const SPARE: u32 = 8;
 
-/// Numbers at the ends of ranges, and random ones.
 pub(super) struct Inputs {
     pub(super) dice: SplitMix,
     pub(super) bits: u32,
@@ -20,7 +19,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// For the blocks of a frame; the same each time.
+    /// For the blocks of a frame; reproducible.
     pub(super) fn new(setup: &FrameSetup) -> Self {
         Self {
             dice: SplitMix::new(0),
@@ -29,7 +28,7 @@ impl Inputs {
         }
     }
 
-    /// A number of at most `bits` bits with its sign: an end of the range, next to nothing, or any.
+    /// A number of at most `bits` bits with its sign: an end of the range, near zero, or random.
     pub(super) fn number(&mut self, bits: u32) -> i64 {
         let most = i64::MAX >> (64 - bits);
         let ends = [-most - 1, -most, most, most - 1, -2, -1, 0, 1, 2];
@@ -38,7 +37,7 @@ impl Inputs {
         if let Some(&end) = ends.get(choice) {
             return end;
         }
-        // As many bits as any other number of bits.
+        // Every number of bits is equally frequent.
         let length = 1 + self.dice.below(u64::from(bits)) as u32;
         (self.dice.bits() as i64) >> (64 - length)
     }
@@ -64,7 +63,7 @@ impl Inputs {
         self.dice.below(u64::from(most) + 1) as u32
     }
 
-    /// A coordinate whose numbers are independent of one another.
+    /// A coordinate whose numbers are independent of each other.
     pub(super) fn cage<P: Probe, L: CageCoordinate>(
         &mut self,
         state: &mut State<'_, P, L, ()>,

@@ -1,6 +1,5 @@
-//! Instruments watch the machine, or drive its steps in another way than the
-//! record loop, for the hardware model, experiments and tests. They import the
-//! machine, never the reverse.
+//! Instruments observe the machine, or drive its steps in another way than the record loop, for the hardware model,
+//! experiments and tests. The machine does not import them.
 
 mod descent;
 mod directed;

@@ -1,6 +1,5 @@
-//! Machines with one error each, for tests of the checks that must find it.
-//! The record loop is generic over its cage, so the product has no code for
-//! this.
+//! Machines with one error each, for tests of the checks that must find it. The record loop is generic over its cage, so
+//! the product contains no code for this.
 
 use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 
@@ -15,22 +14,19 @@ use crate::project::{CageKind, EngineError, FrameSetup, Stats};
 /// An error built into the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mutation {
-    /// One unit of the last place too much in one child, cages of a corner and
-    /// edges only.
+    /// One unit of the last place too much in one child, only in cages of a corner and edges.
     UlpInFrames,
-    /// The same in one child, cages of corners only.
+    /// The same, only in cages of corners.
     UlpInCorners,
     /// Edges halved down instead of towards zero.
     HalvesDown,
-    /// Midpoints rounded up.
     MidpointsUp,
-    /// Quotients rounded up.
     QuotientsUp,
     /// Two neighbours of the order array swapped.
     OrderSwapped,
     /// The order array backwards: farthest first.
     OrderReversed,
-    /// No record is too near to be drawn, or to change to screen space at once.
+    /// No record is too near to be drawn, or to change to screen space.
     NearSkipped,
 }
 
@@ -143,8 +139,7 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
     }
 }
 
-/// Evaluates an expression with the cage coordinate that a mutant has for a
-/// set-up's kind of cage.
+/// Evaluates an expression with a mutant's type of cage coordinates.
 macro_rules! with_cage {
     ($mutation:expr, $setup:expr, $coordinate:ident => $body:expr) => {{
         macro_rules! with {
@@ -170,11 +165,11 @@ macro_rules! with_cage {
 pub struct Mutant(pub Mutation);
 
 impl Mutant {
-    /// The frame as the mutant takes it.
+    /// The mutant's version of a set-up.
     fn setup(&self, setup: &FrameSetup) -> FrameSetup {
         let mut setup = setup.clone();
         if self.0 == Mutation::NearSkipped {
-            // Nothing of the object lies so far behind the eye.
+            // The whole object lies before this.
             let reach = setup.position_reach().unwrap_or(i128::MAX);
             let behind_all = i64::try_from(-reach).unwrap_or(i64::MIN);
             for depth in &mut setup.screen_depth {
@@ -187,8 +182,7 @@ impl Mutant {
         setup
     }
 
-    /// Draws a frame of at most `most_records` records, as
-    /// [`Machine::render_within`].
+    /// As [`Machine::render_within`].
     pub fn draw(
         &self,
         graph: &GraphView<'_>,

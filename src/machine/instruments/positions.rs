@@ -1,11 +1,10 @@
-//! Where the machine holds the vertices of many voxels, in real numbers: for
-//! measurements of error.
+//! The machine's vertices of many voxels in real numbers, to measure errors.
 
 use super::descent::{Cage, CageWords, Descent};
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::project::FrameSetup;
 
-/// How a record holds its vertices.
+/// Space of a record's vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Space {
     /// In clip space, where halving is exact.
@@ -21,16 +20,13 @@ pub struct Positions {
     pub level: u32,
     /// The voxel's lowest corner, finest voxels.
     pub corner: [i64; 3],
-    /// How they are held.
     pub space: Space,
-    /// Vertices in Morton order: samples across and down, from the picture's
-    /// top left. `None`: not before the eye.
+    /// Vertices in Morton order: samples across and down, from the picture's top left. `None`: not before the eye.
     pub samples: [Option<[f64; 2]>; 8],
 }
 
-/// Calls `visit` for some voxels and all their ancestors, each once. Voxels are
-/// given as in a frame: lowest corner in finest voxels, and level.
-/// Returns whether all arithmetic stayed within its words.
+/// Calls `visit` for some voxels and all their ancestors, each once. Voxels are given as in a frame: lowest corner in
+/// finest voxels, and level. Returns whether all arithmetic stayed within its words.
 pub fn visit_positions(
     setup: &FrameSetup,
     voxels: &[[i32; 4]],
@@ -59,7 +55,7 @@ fn visit_as<L: CageCoordinate>(
     visitor.node(0, [0; 3], root, paths).is_some()
 }
 
-/// The way from the root to a voxel: octants, three bits each from bit 92 downwards.
+/// The path from the root to a voxel: octants, three bits each from bit 92 downwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct PathToVoxel {
     octants: u128,
@@ -94,8 +90,7 @@ struct Visitor<'v> {
 }
 
 impl Visitor<'_> {
-    /// Visits a voxel and those below it on the ways. `None` if a word
-    /// overflowed.
+    /// Visits a voxel and those below it on the paths. `None` if a word overflowed.
     fn node<L: CageCoordinate>(
         &mut self,
         level: u32,

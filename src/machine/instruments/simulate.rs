@@ -1,9 +1,7 @@
-//! The machine as a workload of the cycle model: one turn at a time, in an
-//! order that a scheduler chooses.
+//! The machine as a workload of the cycle model: one turn at a time, in the order of a scheduler.
 //!
-//! The children that a turn pushes go to the scheduler instead of a stack, each
-//! with its rank in the occlusion order and its quadtree node. Fill vectors are
-//! shared: a turn finds them as the turns before it left them.
+//! The children that a turn pushes go to the scheduler instead of a stack, each with its rank in the occlusion order and
+//! its quadtree node. Fill vectors are shared: a turn finds them as previous turns left them.
 
 use hwmodel::cycles::{
     self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
@@ -29,34 +27,26 @@ use crate::project::{EngineError, FrameSetup, Stats};
 /// The results of a simulated frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulated {
-    /// Cycles, and how they were spent.
     pub cycles: CycleReport,
     /// The machine's counts of the frame, without the stack's depth.
     pub counts: Stats,
 }
 
-/// Why a simulation ended early: the workload is the machine.
+/// Why a simulation ended early.
 pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
-    /// Draws a frame on a simulated hardware, in its [`Organisation`](cycles::Organisation),
-    /// whatever the machine's own: each record has its turn in the
-    /// cycle in which `hardware` gets to it, and finds the fill vectors as they
-    /// are by then.
+    /// Draws a frame on simulated hardware, in the hardware's [`Organisation`](cycles::Organisation). Each record has its
+    /// turn in the cycle in which `hardware` begins it, and finds the fill vectors of that time.
     ///
-    /// Under [`Independence::None`] and [`Image`] the machine does exactly
-    /// what it does serially, whatever the hardware. Under [`Classes`] and
-    /// [`Both`] the picture is the same if no two children of one class draw the
-    /// same sample, as under the exact rule.
+    /// Under [`Independence::None`] and [`Image`] the machine does exactly the serial work on any hardware. Under
+    /// [`Classes`] and [`Both`] the picture is the same if no two children of one class draw the same sample, as under the
+    /// exact rule.
     ///
-    /// [`Independence::None`]: hwmodel::cycles::Independence::None
-    /// [`Image`]: hwmodel::cycles::Independence::Image
-    /// [`Classes`]: hwmodel::cycles::Independence::Classes
-    /// [`Both`]: hwmodel::cycles::Independence::Both
-    ///
-    /// # Errors
-    /// When the hardware's description is not sound, a word overflows under
-    /// the trap policy, or a stack that does not spill is full.
+    /// [`Independence::None`]: hwmodel::cycles::Independence::None [`Image`]: hwmodel::cycles::Independence::Image
+    /// [`Classes`]: hwmodel::cycles::Independence::Classes [`Both`]: hwmodel::cycles::Independence::Both Fails when the
+    /// hardware's description is invalid, a word overflows under the trap policy, or a stack that does not spill is
+    /// full.
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
@@ -73,12 +63,10 @@ impl Machine {
         Ok(simulated)
     }
 
-    /// Draws a frame and records its turns, which are the same on every hardware of the organisation where
-    /// parents lie on the stack: all that share a part of the picture come one after the other, and tiles
-    /// share nothing. No recording: it would take more than `most_bytes`, or children lie on the stack.
-    ///
-    /// # Errors
-    /// As [`Self::simulate`].
+    /// Draws a frame and records its turns. With parents on the stack they are the same on every hardware of the
+    /// organisation: records that share a part of the picture come one after the other, and tiles share nothing.
+    /// `None`: the recording would take more than `most_bytes`, or children lie on the stack. Errors: as
+    /// [`Self::simulate`].
     pub fn record_turns(
         &mut self,
         graph: &GraphView<'_>,
@@ -128,7 +116,7 @@ impl Machine {
             handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
-            // The first is the whole picture, which has no vectors above it.
+            // The first is the whole picture, without vectors above it.
             tiles: vec![TileView::new(QuadNode::ROOT)],
             walks: vec![Walk::default()],
             open: Open::default(),
@@ -146,7 +134,6 @@ impl Machine {
     }
 }
 
-/// Notes the ranks of the children on the stack.
 struct Ranks {
     records: Option<RecordsBySample>,
     pushed: Vec<u8>,
@@ -161,14 +148,13 @@ impl Watch for Ranks {
     }
 }
 
-/// Work that waits for its turn.
 #[derive(Clone, Copy)]
 enum Work<L: CageCoordinate> {
-    /// A node of the image quadtree: its tiles are to be drawn.
+    /// The tiles in a node of the image quadtree.
     Tiles(QuadNode),
     /// A record, where children lie on the stack.
     Record(Record<L>),
-    /// A parent: in registers if it was not stored, else on the stack.
+    /// A parent, in registers or on the stack.
     Parent(Parent<L>),
     /// A parent's path entry on the stack, and the parent's quadtree node.
     Path(PathEntry, QuadNode),
@@ -176,9 +162,8 @@ enum Work<L: CageCoordinate> {
 
 /// The walk that draws a tile.
 struct Walk<L> {
-    /// The record that it comes from.
     last: Option<Record<L>>,
-    /// Its work that waits.
+    /// Number of its waiting work items.
     waiting: u32,
 }
 
@@ -191,35 +176,34 @@ impl<L> Default for Walk<L> {
     }
 }
 
-/// Tiles that are begun and have work left.
+/// Number of tiles in progress.
 #[derive(Default)]
 struct Open {
     now: u64,
     most: u64,
 }
 
-/// The counter of tiles that were under way at once: as many need fill vectors on the chip.
+/// The counter of the most tiles in progress at once: as many need fill vectors on the chip.
 pub const MOST_OPEN_TILES: &str = "most_open_tiles";
 
-/// The machine, and the work that waits for its turn.
+/// The machine, and the waiting work.
 struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     state: State<'a, P, L, Ranks>,
-    /// Work by the scheduler's number of it, with the tile that it belongs to.
+    /// Work by the scheduler's number, with its tile.
     waiting: Vec<(Work<L>, usize)>,
-    /// Numbers of work that are not in use.
+    /// Unused numbers of work.
     free: Vec<u32>,
-    /// Tiles that the hardware gives its lanes, in order.
+    /// Tiles that the hardware hands out, in order.
     handed_out: Vec<QuadNode>,
     /// Each tile's view of the fill vectors above it.
     tiles: Vec<TileView>,
-    /// By tile, its walk.
     walks: Vec<Walk<L>>,
     open: Open,
     /// The tile whose view is in place.
     shown: usize,
 }
 
-/// Places of a stored parent and of its child in the occlusion order: in no class together.
+/// Places of a stored parent and of its child in the occlusion order, of different classes.
 const FIRST_PLACE: u8 = 0;
 const LAST_PLACE: u8 = 7;
 
@@ -258,8 +242,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         });
     }
 
-    /// Hands the records on the stack to the scheduler, nearest first: the last
-    /// that was pushed.
+    /// Gives the records on the stack to the scheduler, the last pushed (nearest) first.
     fn hand_over_records(&mut self, children: &mut Vec<Child>) {
         while let Some(record) = self.state.traversal.stack.pop() {
             let Some(place) = self.state.traversal.watch.pushed.pop() else {
@@ -279,7 +262,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// Begins the tiles of a node of the image quadtree: itself, or its quadrants later.
+    /// Begins the tile of a node of the image quadtree, or its quadrants later.
     fn begin_tiles(&mut self, quad: QuadNode, children: &mut Vec<Child>) {
         if self.state.canvas.fill.peek(quad) == FULL && quad.level > 0 {
             // It lies outside the picture.
@@ -287,7 +270,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
         if quad.level < self.state.tile_levels() {
             for quadrant in 0..4 {
-                // Neither is before another.
+                // Their order does not matter.
                 self.hand_over(Work::Tiles(quad.quadrant(quadrant)), FIRST_PLACE, children);
             }
             return;
@@ -305,7 +288,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
                 } = &mut self.state;
                 traversal.push_object(dp, job, &canvas.fill, quad);
                 if !self.state.traversal.stack.is_empty() {
-                    // The object has no siblings: any rank will do.
+                    // The object has no siblings: any rank is correct.
                     self.state.traversal.watch.pushed.push(FIRST_PLACE);
                 }
                 self.hand_over_records(children);
@@ -318,9 +301,9 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// A parent's turn: its next child that can be seen, and what is left of it.
+    /// A parent's turn: its next visible child, and the rest of the parent.
     fn parent_turn(&mut self, mut parent: Parent<L>, children: &mut Vec<Child>) {
-        // The scheduler has stacks of its own; addresses only distinguish one read from another.
+        // The scheduler has its own stacks; addresses only distinguish reads.
         let address = u64::from(parent.record.cube.level);
         let child = self.state.parent_turn(&mut parent, address);
         self.walks[self.shown].last = Some(parent.record);

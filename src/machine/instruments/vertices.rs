@@ -1,4 +1,4 @@
-//! The machine's vertices on one way down the octree: for checks.
+//! The machine's vertices along one path down the octree, for checks.
 
 use hwmodel::Trap;
 
@@ -7,21 +7,13 @@ use super::descent::Descent;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::project::FrameSetup;
 
-/// The cages of the voxels on the way that `path` leads from the root, octant
-/// by octant, the root's first, as [`FrameSetup::options`] has them. Each is
-/// changed to screen space where the machine would let its record change.
-///
-/// # Errors
-/// If a word overflows. The machine has these vertices relative to a node of the
-/// quadtree, where they are never larger.
+/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the
+/// machine does so. Fails if a word overflows. The machine has these vertices relative to a node of the quadtree, where
+/// they are never larger.
 pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     with_cage!(setup, L => cages_as::<L>(setup, path))
 }
 
-/// As [`cages_along`], in any cage.
-///
-/// # Errors
-/// If a word overflows.
 pub(super) fn cages_as<L: CageCoordinate>(
     setup: &FrameSetup,
     path: &[u8],

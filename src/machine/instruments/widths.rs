@@ -1,14 +1,12 @@
-//! How many bits the numbers of a record need, as a frame's set-up proves it, under the rules that draw outlines; and
-//! how many they really take.
+//! The bits of a record's numbers under the rules that draw outlines: proven from a frame's set-up, and measured.
 //!
 //! The proof. A vertex of any record lies in the object, so its clip vector lies in the hull of the object's eight
-//! corners: that bounds `W`, and `X` and `Y` relative to the whole picture. A box goes down to a quadrant only if it
-//! leaves that by at most half a sample, or by the quadrant's width at most (`near_node`): so relative to any other node
-//! `-W <= X <= 2W`, and no vertex lies behind the eye. Edges are differences of two such numbers.
-//! Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are products of a point of the object with an edge's
-//! direction, greatest at a corner of the object, and the same relative to every node. The edge's end is on the plane, so
-//! `|c| <= 2 (|a| + |b|)`. A plane across an axis is the difference of two planes through edges of
-//! the record, so its `c` is at most twice theirs.
+//! corners. This bounds `W`, and `X` and `Y` relative to the whole picture. A box enters a quadrant only if it leaves
+//! that by at most half a sample, or by the quadrant's width (`near_node`). So relative to any other node `-W <= X <=
+//! 2W`, and no vertex lies behind the eye. Edges are differences of two such numbers. Of a plane `a X + b Y + c W = 0`
+//! through an edge, `a` and `b` are products of a point of the object with an edge's direction, greatest at a corner of
+//! the object, and the same relative to every node. The edge's end is on the plane, so `|c| <= 2 (|a| + |b|)`. A plane
+//! across an axis is the difference of two planes through edges of the record, so its `c` is at most twice theirs.
 
 use std::collections::BTreeMap;
 
@@ -22,92 +20,39 @@ use crate::machine::watch::{Event, Watch};
 use crate::project::vector::cross;
 use crate::project::{CageKind, EngineError, FrameSetup};
 
-/// The numbers of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum RecordNumber {
-    /// Octree node.
-    Node,
-    /// Octree level.
-    Level,
-    /// A coordinate of the lowest vertex in object space.
-    Lowest,
-    /// Of the highest one.
-    Highest,
-    /// Quadtree level.
-    QuadLevel,
-    /// Column or row of the quadtree node.
-    QuadPlace,
-    /// X or Y of a vertex in clip space.
-    ClipXy,
-    /// W of a vertex.
-    ClipW,
-    /// X or Y of an edge.
-    EdgeXy,
-    /// W of an edge.
-    EdgeW,
-    /// The least W of the vertices.
-    LeastW,
-    /// Coefficient a or b of a silhouette plane.
-    PlaneAb,
-    /// Its constant.
-    PlaneC,
-    /// The constant of a plane across an axis.
-    AxisC,
-}
-
-impl RecordNumber {
-    /// All numbers, in the order of their discriminants.
-    pub const ALL: [Self; 14] = [
-        Self::Node,
-        Self::Level,
-        Self::Lowest,
-        Self::Highest,
-        Self::QuadLevel,
-        Self::QuadPlace,
-        Self::ClipXy,
-        Self::ClipW,
-        Self::EdgeXy,
-        Self::EdgeW,
-        Self::LeastW,
-        Self::PlaneAb,
-        Self::PlaneC,
-        Self::AxisC,
-    ];
-
-    /// The number in words.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Node => "octree node",
-            Self::Level => "octree level",
-            Self::Lowest => "lowest vertex",
-            Self::Highest => "highest vertex",
-            Self::QuadLevel => "quadtree level",
-            Self::QuadPlace => "quadtree place",
-            Self::ClipXy => "X, Y",
-            Self::ClipW => "W",
-            Self::EdgeXy => "edge's X, Y",
-            Self::EdgeW => "edge's W",
-            Self::LeastW => "least W",
-            Self::PlaneAb => "plane's a, b",
-            Self::PlaneC => "plane's c",
-            Self::AxisC => "axis plane's c",
-        }
+hwmodel::named! {
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum RecordNumber {
+        Node = "octree node",
+        Level = "octree level",
+        /// A coordinate of the lowest vertex in object space.
+        Lowest = "lowest vertex",
+        Highest = "highest vertex",
+        QuadLevel = "quadtree level",
+        /// Column or row of the quadtree node.
+        QuadPlace = "quadtree place",
+        /// X or Y of a vertex in clip space.
+        ClipXy = "X, Y",
+        ClipW = "W",
+        EdgeXy = "edge's X, Y",
+        EdgeW = "edge's W",
+        LeastW = "least W",
+        /// Coefficient a or b of a silhouette plane.
+        PlaneAb = "plane's a, b",
+        PlaneC = "plane's c",
+        /// The constant of a plane across an axis.
+        AxisC = "axis plane's c",
     }
 }
 
 /// Least and greatest value of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NumberSpan {
-    /// The least value.
     pub least: i128,
-    /// The greatest value.
     pub greatest: i128,
 }
 
 impl NumberSpan {
-    /// One value.
-    #[must_use]
     pub fn of(value: i128) -> Self {
         Self {
             least: value,
@@ -128,7 +73,7 @@ impl NumberSpan {
         Self { least: 0, greatest }
     }
 
-    /// The span that holds both.
+    /// The span that contains both.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -137,8 +82,7 @@ impl NumberSpan {
         }
     }
 
-    /// Bits that hold all of it: two's complement where it goes below 0.
-    #[must_use]
+    /// Bits that hold the span: two's complement if it contains negative values.
     pub fn bits(self) -> u32 {
         let of = |value: i128| i128::BITS - value.leading_zeros();
         match self.least < 0 {
@@ -147,27 +91,22 @@ impl NumberSpan {
         }
     }
 
-    /// Whether it holds all of another.
-    #[must_use]
     pub fn holds(self, other: Self) -> bool {
         self.with(other) == self
     }
 }
 
-/// Spans by number.
 pub type NumberSpans = BTreeMap<RecordNumber, NumberSpan>;
 
-/// Widths, proven from the set-up, of a frame's records and of wide words on the way to them.
+/// Proven widths of a frame's records, and of the wide words in their computation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProvenWidths {
-    /// Spans by number.
     pub numbers: NumberSpans,
     /// Bits of a wide word that holds every plane and every sum of the steps on planes.
     pub wide_bits: u32,
 }
 
-/// The widths that a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
-#[must_use]
+/// The widths that a frame's set-up proves, for a graph of `nodes`; `None` under the rules that do not draw outlines.
 pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     if !setup.options.coverage.draws_outlines() {
         return None;
@@ -263,8 +202,7 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     })
 }
 
-/// The set-up with wide words of the bits that are proven, where that is so. Blending has wide words of its own.
-#[must_use]
+/// The set-up with wide words of the proven bits. Blending keeps its own.
 pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     let mut narrow = setup.clone();
     if !setup.options.coverage.blends()
@@ -275,7 +213,7 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     narrow
 }
 
-/// Adds what a record holds to the spans that were seen.
+/// Adds a record's numbers to spans.
 fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
     let Record { cube, place, pose } = record;
     let mut note = |number, value: i128| {
@@ -322,7 +260,7 @@ fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, reco
     }
 }
 
-/// Least and greatest of all numbers of the records made so far.
+/// Spans of all records made so far.
 struct Seen {
     cage: CageKind,
     spans: NumberSpans,
@@ -337,10 +275,7 @@ impl Watch for Seen {
 }
 
 impl Machine {
-    /// Draws a frame and returns the least and the greatest of each number of its records.
-    ///
-    /// # Errors
-    /// When a word overflows under the trap policy.
+    /// Draws a frame and returns the spans of its records' numbers. Fails when a word overflows under the trap policy.
     pub fn seen_numbers(
         &mut self,
         graph: &GraphView<'_>,
