@@ -1,6 +1,6 @@
 `include "widths.vh"
-// A child's silhouette planes from its parent's. For edge j, with k = j + 1 and l = j + 2 (mod 3): minus the plane across
-// l if the octant has bit k, plus the plane across k if it has bit l, both by half a side. SPEC.md, 8.
+// A child's silhouette planes. With k = j + 1 and l = j + 2 (mod 3), edge j loses the plane across l if the octant has
+// bit k, and gains that across k if it has bit l, by half a side. SPEC.md, 8.
 module child_planes #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0]         edge_x, edge_y, edge_z,
   input  [2*V-1:0]         axis_x, axis_y, axis_z,

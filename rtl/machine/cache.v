@@ -18,7 +18,6 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   localparam TAG = ADDRESS - 3 - SETS_LOG2;
   localparam ORDER = WAYS*WAYS_LOG2;
 
-  // The current request.
   reg                   looking, missing, again;
   reg [ADDRESS-1:0]     at;
   reg [2:0]             filled;
@@ -34,7 +33,6 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   wire [ORDER-1:0]      stored, unused;
   wire [ORDER-1:0]      now = |valid_here ? stored : unused;
 
-  // One memory per way.
   wire last_fill = fill & &filled;
   wire [2+SETS_LOG2:0] look_at = request ? address[2+SETS_LOG2:0] : at[2+SETS_LOG2:0];
   wire [2+SETS_LOG2:0] fill_at = {set, filled};

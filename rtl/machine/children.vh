@@ -77,7 +77,6 @@ task mark_sample;
   end
 endtask
 
-// A visible child.
 task accept;
   state <= PUSH;
 endtask

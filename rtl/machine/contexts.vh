@@ -1,8 +1,6 @@
-// Several contexts take turns. Each has a tile, a stack and fill vectors; `running` has the blocks. While that one waits
-// for a cache or a tile, the context whose answer or tile came first takes over in the next cycle. Ties go to the lowest
-// number.
-//
-// Registers of the others are saved: `KEPT` by the stage, the rest by the parts that use them.
+// Several contexts take turns; `running` has the blocks. While it waits for a cache or a tile, the context whose answer or
+// tile came first takes over in the next cycle. Ties go to the lowest number. Registers of the others are saved: `KEPT`,
+// and by parts of the stage.
 wire [CONTEXTS-1:0] runs = 1 << running;
 reg  [CONTEXTS-1:0] idle, begun;                // others: without a tile; with a tile not begun
 reg  [CONTEXTS-1:0] asks_node, asks_attribute;  // others: not taken yet

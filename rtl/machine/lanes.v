@@ -38,7 +38,6 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, A = OUTER_ADDRESS - 3;
   // Bits per pixel.
   localparam SHOWN = 2*P + N + 3*W + L + 64;
-  // Contexts of all lanes.
   localparam ALL = LANES*CONTEXTS;
 
   // ---------------------------------------------------------------- tiles, row by row

@@ -11,8 +11,8 @@
 // screen space and draws samples; B and C draw outlines of solids. The stack holds children in A and B (`children.vh`),
 // parents in C.
 //
-// The memories fit pictures of 2^PICTURE_LEVELS samples per side, objects of DEPTH levels, records of LEVEL_BOUND levels,
-// node numbers of NODE_WIDTH bits, and 2^OUTER_ADDRESS bytes of off-chip memory.
+// Sizes of the memories: samples per side 2^PICTURE_LEVELS, levels of the object DEPTH and of records LEVEL_BOUND, bits of
+// node numbers NODE_WIDTH, bytes off chip 2^OUTER_ADDRESS.
 //
 // SHARED: a lane of lanes.v. It draws tiles, nodes TILE_LEVELS below the picture's root; caches and ports are outside.
 // CONTEXTS (contexts.vh, stage C): a power of two. Stage C needs two picture levels below TILE_LEVELS.
@@ -43,7 +43,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute,
-  // SHARED, per context: the tile, from `start` on; requests, which stay until taken; answers.
+  // SHARED, per context: the tile, from `start` on; requests, held until taken, and answers.
   input [CONTEXTS*`PLACE_BITS-1:0] tile_x, tile_y,
   output [CONTEXTS-1:0]        node_request, attribute_request,
   output [CONTEXTS*`NODE_BITS-1:0] wanted_node,
@@ -222,7 +222,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   object_cage #(W) cage_y (.corner(origin[W +: W]), .edges(edges[3*W +: 3*W]), .cage(object_y));
   object_cage #(W) cage_w (.corner(origin[0 +: W]), .edges(edges[0 +: 3*W]), .cage(object_w));
 
-  // ---------------------------------------------------------------- is a record full
   wire full;
   filled is_filled (.vector(vector), .full(full));
 
@@ -248,14 +247,12 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   always @*
     for (r = 0; r < 8; r = r + 1)
       there[r] = r_solid | mask[order_used[3*r +: 3]];
-  // Earlier children in the node's list.
   wire [7:0] earlier = mask & ~(8'hff << octant);
   wire [3:0] count = earlier[0] + earlier[1] + earlier[2] + earlier[3] + earlier[4] + earlier[5] + earlier[6];
   wire [CAGE-1:0] child_x, child_y, child_w;
   wire [3*W-1:0] child_min, child_max;
   child_corners #(W) corners (.min(r_min), .max(r_max), .centre(middle), .octant(octant),
     .child_min(child_min), .child_max(child_max));
-  // Depths of the child or the object.
   wire signed [W-1:0] w_low, w_high;
   child_span #(W) span_w (.child(state == OBJECT_BOX ? c_w : child_w), .low(w_low), .high(w_high));
 
@@ -320,7 +317,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       c_quad_level <= c_quad_level + 1'b1;
       c_quad_x <= {c_quad_x[P-2:0], to[0]};
       c_quad_y <= {c_quad_y[P-2:0], to[1]};
-      // Screen positions do not depend on the node.
       if (~c_screen) begin
         c_x <= inner_x;
         c_y <= inner_y;

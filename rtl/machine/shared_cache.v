@@ -24,7 +24,6 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   // Lines in flight: at most one per user.
   localparam E = USERS > 1 ? $clog2(USERS) : 1, ENTRIES = 1 << E;
 
-  // ---------------------------------------------------------------- arbitration
   reg                 looking;              // an access is in its second cycle, or later
   wire                look = |taken;
   wire [USERS-1:0]    unused_first;

@@ -1,5 +1,4 @@
-// Stage A (`--paper`: corners, coverage any, infinite tolerance): the change to screen space, boxes there, and samples of
-// boxes and centres.
+// Stage A (`--paper`): the change to screen space, boxes there, and samples of boxes and centres.
 `include "children.vh"
 `include "search.vh"
 

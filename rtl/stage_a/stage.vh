@@ -4,9 +4,7 @@
 `define MORE_BITS (1 + 4*W)
 // Rest of a stack entry: voxel level, screen-space flag, fields of one of the spaces.
 `define REST_BITS ($clog2(DEPTH + 1) + 1 + 9*W)
-// Lowest levels whose fill vectors are joined to words.
 `define JOINED_LEVELS 0
-// Bits of all fill vectors.
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS)
 `define STACK_LOG2 8
 // Saved registers: there is only one context.

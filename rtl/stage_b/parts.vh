@@ -12,7 +12,6 @@ verdict #(W) rule (.leaf(leaf), .w_min(r_w_min), .has_lod_depth(has_lod_depth), 
 // No search for occluded records: one that is small enough is a voxel (docs/rtl.md, Cycles).
 assign quadrant = only;
 
-// Outlines only draw.
 wire looks = 1'b0;
 wire [5:0] turn_over = next_record;
 task seen;

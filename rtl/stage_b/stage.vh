@@ -4,9 +4,7 @@
 `define MORE_BITS (12*V)
 // Rest of a stack entry: depths, the least depth, planes.
 `define REST_BITS (5*W + MORE)
-// Lowest levels whose fill vectors are joined to words.
 `define JOINED_LEVELS 0
-// Bits of all fill vectors.
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS)
 `define STACK_LOG2 8
 // Saved registers: there is only one context.

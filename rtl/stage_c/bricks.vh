@@ -47,7 +47,6 @@ endfunction
 wire [7:0] c_mask;
 wire [5:0] voxels_before;
 brick_child of_brick (.voxels(voxels), .leaves(leaves), .octant(c_octant), .mask(c_mask), .earlier(voxels_before));
-// The current child's leaves, mask, first.
 wire [47:0] c_of_node = in_brick ? {8'hff, c_mask, first_voxel + voxels_before} :
   is_brick ? {node_word[63:56], children_in(voxels), 4'd0, node_word[55:28]} : node_word[47:0];
 

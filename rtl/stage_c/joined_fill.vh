@@ -65,7 +65,6 @@ always @*
     outside_word[of_word] =
       {c_quad_x, of_word[2], of_word[0]} >= {2'b0, width} | {c_quad_y, of_word[3], of_word[1]} >= {2'b0, height};
 
-// Marks a drawn sample in its word or its vector.
 task mark_sample;
   begin
     marked <= 4'b1111;

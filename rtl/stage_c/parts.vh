@@ -12,7 +12,6 @@ reg  [7:0] leaves;                              // which of the parent's childre
 always @(posedge clk)
   if (state == OBJECT) c_leaf <= root_leaf | depth == 0;
   else if (state == CHILD) c_leaf <= r_level + 1'b1 >= depth | leaves[octant];
-// Level of detail draws nodes that deep.
 wire deep;
 assign lod_look_up = state == OBJECT | state == CHILD, lod_level = state == OBJECT ? {L{1'b0}} : r_level + 1'b1;
 detail_depth #(W) detail (.w_min(c_w_min), .least(lod_depth), .solid(deep));
@@ -103,7 +102,6 @@ wire accepted = (state == CHOOSE | state == FIT & known & ~box_outside) & ~rejec
 reg  worked_back;
 always @(posedge clk) worked_back <= state == UP & r_level - 1'b1 == p_level;
 
-// A child whose box is visible.
 task accept;
   begin
     left <= left_after;
@@ -132,7 +130,6 @@ task go_down;
   else become_parent;
 endtask
 
-// The child replaces its parent.
 task become_parent;
   begin
     {leaves, mask, first} <= c_of_node;

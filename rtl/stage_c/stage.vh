@@ -3,7 +3,6 @@
 `define MORE_BITS (12*V)
 // Lowest levels whose fill vectors are joined to words.
 `define JOINED_LEVELS 3
-// Bits of all fill vectors.
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS + of.fill_words.BITS*of.fill_words.WORDS)
 // One parent per level.
 `define STACK_LOG2 5

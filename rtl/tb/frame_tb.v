@@ -31,7 +31,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
     .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  // ------------------------------------------------ memory: nodes, and their numbers as attributes
   reg [63:0] nodes [0:NODES-1];
   reg [W-1:0] constants [0:`CONSTANTS-1];
   integer wait_for, beat;

@@ -35,7 +35,7 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
     .pixel_node(pixel_node), .pixel_voxel(pixel_voxel), .pixel_level(pixel_level),
     .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  // ------------------------------------------------ memory: nodes, and their numbers as attributes
   reg [63:0] nodes [0:NODES-1];
   reg [W-1:0] constants [0:`CONSTANTS-1];
   integer now, asked, answered, beat, due [0:MOST-1];
