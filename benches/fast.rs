@@ -1,6 +1,4 @@
-//! How long does the fast engine take for a frame, by instruction set? The
-//! instruction sets are the kernels: the walk is the same.
-//! Whole frames: `docs/performance.md`.
+//! Time per frame of the fast engine, by instruction set. Whole frames: `docs/performance.md`.
 //!
 //! ```text
 //! cargo bench --bench fast
@@ -24,8 +22,7 @@ use shiftvox::{Background, Renderer, Scene, Shading, View};
 
 use scenes::graph_of_spec;
 
-/// A generator, and eye and target as parts of its side: the cameras of the
-/// benchmark scenes, one large voxel after another, and a cyclic graph.
+/// A generator, and eye and target as fractions of its side: benchmark scenes, large voxels, and a cyclic graph.
 const SUBJECTS: [(&str, [f64; 3], [f64; 3]); 4] = [
     ("gen:terrain,depth=9", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3]),
     (
@@ -91,7 +88,7 @@ fn frames(criterion: &mut Criterion) {
     }
 }
 
-/// Small pictures in a loop: the frames that `render --repeat` times, a renderer that is kept, and a new one for each.
+/// Small pictures in a loop: frames of `render --repeat`, one renderer, and a new renderer per picture.
 fn small_pictures(criterion: &mut Criterion) {
     let scene = Scene::from(graph_of_spec("gen:menger,depth=4"));
     let camera = shiftvox::Camera::fit(&scene);

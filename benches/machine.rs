@@ -1,13 +1,10 @@
-//! How long does the scalar machine take for a frame, by picture size, and
-//! what does counting cost? Whole frames: `docs/benchmarks.md`.
+//! Time per frame of the scalar machine, by picture size, with and without counting. Whole frames: `docs/benchmarks.md`.
 //!
 //! ```text
 //! cargo bench --bench machine
 //! ```
 //!
-//! Times are the drawing thread's time on a processor where the system reports it
-//! (the machine draws on one thread), so that other work on the machine shows
-//! less; elsewhere they are wall times.
+//! Times are CPU times of the drawing thread where the system reports them, otherwise wall times.
 #![allow(missing_docs, reason = "the functions that criterion makes")]
 
 #[path = "../tests/machine/scenes/mod.rs"]
@@ -32,7 +29,7 @@ use scenes::{cube, graph_of_file, graph_of_spec, shared_data};
 
 const SIZES: [u32; 5] = [64, 128, 256, 512, 1024];
 
-/// A scene and from where it is seen, as parts of its cube's side.
+/// A scene and its camera, as fractions of its cube's side.
 struct Subject {
     name: &'static str,
     graph: Graph,
@@ -94,7 +91,6 @@ fn paper() -> SetupOptions {
     }
 }
 
-/// How long `frames` frames take.
 fn time(frames: u64, mut draw: impl FnMut()) -> Duration {
     let started = Instant::now();
     for _ in 0..frames {
@@ -170,8 +166,8 @@ fn probes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Records a second under the image-order paper's rule, alone and counted: at 512 x 512 for
-/// times, at 128 x 128 for instruction counts.
+/// Records per second under the image-order paper's rule, without and with counting: 512 x 512 for times, 128 x 128 for
+/// instruction counts.
 fn records(criterion: &mut Criterion) {
     for subject in &subjects()[..2] {
         for size in [128, 512] {

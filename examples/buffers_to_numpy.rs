@@ -1,4 +1,4 @@
-//! Depths, normals and voxel indices as arrays of NumPy.
+//! Depths, normals and voxel indices as NumPy arrays.
 
 use shiftvox::{Buffer, Camera, Renderer, Scene};
 

@@ -1,4 +1,4 @@
-//! Three engines, one picture: the fast engine, the machine that cannot multiply, and the exact oracle.
+//! The fast engine, the machine without multiplication and the exact oracle draw the same picture.
 
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         hashes.push(picture.hash()?.to_owned());
     }
     assert!(hashes.iter().all(|hash| *hash == hashes[0]));
-    // The rule of the image-order paper covers every sample that a voxel's box overlaps: another picture.
+    // Coverage `any` draws every sample that a voxel's box overlaps, which gives another picture.
     let any = Renderer::new().coverage(Coverage::Any).hashed(true);
     assert_ne!(any.render(&scene, &camera, 256, 256)?.hash()?, hashes[0]);
     Ok(())

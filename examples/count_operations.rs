@@ -1,4 +1,4 @@
-//! What a picture costs the machine: operations by class and by stage, records by level, and their energy.
+//! Cost of a picture on the machine: operations by class and stage, records by level, and energy.
 
 use hwmodel::cost::{CostTable, Costing, energy_of};
 use shiftvox::{Camera, Renderer, Scene, hwmodel};

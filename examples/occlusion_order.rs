@@ -1,13 +1,12 @@
-//! A property test of the occlusion order on random scenes: whatever the eye sees, the nodes that are visited first
-//! are never hidden by those that are visited later.
+//! A property test on random scenes: nodes visited later never occlude earlier ones.
 //!
-//! The machine draws nodes in the order of `OCCLUSION_ORDER`, exclusive-or the octant of the eye, and never draws a
-//! sample twice. So its picture shows the nearest voxels only if the order is right. The oracle, which casts one exact
-//! ray per sample and knows no order, must show the same voxels.
+//! The machine visits nodes in the order of `OCCLUSION_ORDER`, xor the octant of the eye, and draws each sample once. So
+//! its picture shows the nearest voxels only if the order is right. The oracle casts an exact ray per sample, without an
+//! order, and must show the same voxels.
 
 use shiftvox::{Buffer, Camera, EngineKind, OCCLUSION_ORDER, Renderer, Scene, Voxel};
 
-/// Pseudo-random numbers: a linear congruential generator.
+/// A linear congruential generator.
 struct Dice(u64);
 
 impl Dice {
@@ -38,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let count = 1 + dice.below(400);
         let scene = Scene::from_voxels((0..count).map(|_| voxel(&mut dice)))?;
-        // Eyes around the scene and within it, in all octants of its nodes.
+        // Eyes around and within the scene, in all octants of its nodes.
         let eye = [0; 3].map(|_: i32| dice.near(8.0, 24));
         let camera = Camera::look_at(eye, [0; 3].map(|_: i32| dice.near(8.0, 6)));
         let drawn = machine.render(&scene, &camera.clone().field_of_view(70.0), 48, 48)?;

@@ -1,4 +1,4 @@
-//! Cycles on a hardware of one's own: the shipped `paper` description with other numbers of lanes and contexts.
+//! Cycles of modified hardware: the shipped `paper` description with other numbers of lanes and contexts.
 
 use hwmodel::cycles::Hardware;
 use shiftvox::{Camera, Renderer, Scene, hwmodel};

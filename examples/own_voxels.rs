@@ -1,4 +1,4 @@
-//! Voxels of one's own, from a function of space: a hollow sphere, coloured by direction.
+//! Voxels from a function of space: a hollow sphere, coloured by direction.
 
 use shiftvox::{Camera, Renderer, Scene, Voxel};
 

@@ -55,7 +55,7 @@ NPY = {
     "color": npy(3, b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 7), }", bytes(14)),
 }
 
-# The target's first byte chooses the mark of the format.
+# The target's first byte selects the format's mark.
 BINVOX = b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"
 VOXELS = {"binvox": b"\4" + BINVOX}
 VOXELS |= {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}

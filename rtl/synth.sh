@@ -1,15 +1,15 @@
 #!/bin/sh
-# Area and delay of modules, as the rows of hwmodel/tables/area.toml were made: Yosys, OSU 0.18 um cells. Areas are in
-# NAND2X1 of 24 um2, delays of gates alone. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
+# Area and delay of modules with Yosys and OSU 0.18 um cells, as in hwmodel/tables/area.toml. Areas are in NAND2X1 of
+# 24 um2, delays of gates only. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
 #
-#   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each, without memories; PARAMETERS sets others
-#                        ("-chparam LANES 4"); NETLIST=FILE writes the cells of the last;
-#                        BOXES=machine: without that one, too
-#   synth.sh machine     the whole machine without its memories, for the bundled tree at 64 x 64 unless PARAMETERS says
-#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stages B and C:
-#                        parts_exact.txt) and of what connects them, their sum, and the same in one piece; minutes
+#   synth.sh MODULE...   prints `module,nand2,registers_nand2,delay_ps` of each, without memories. PARAMETERS overrides
+#                        parameters ("-chparam LANES 4"), NETLIST=FILE writes the cells of the last module,
+#                        BOXES=machine leaves that module out, too
+#   synth.sh machine     prints `stage,part,nand2,registers_nand2` of the whole machine without memories: the parts of
+#                        parts.txt (B and C: parts_exact.txt), the rest, their sum, and the machine in one piece.
+#                        Default PARAMETERS: the bundled tree at 64 x 64. Takes minutes
 #
-# Modules are stage A's; STAGE=stage_b or stage_c: those of exact coverage in the place of those of the same name.
+# Modules are those of stage A. STAGE=stage_b or stage_c replaces them by those of exact coverage.
 set -e
 cd "$(dirname "$0")"
 lib=${LIBERTY:-/usr/share/qflow/tech/osu018/osu018_stdcells.lib}
@@ -31,7 +31,7 @@ read="read_verilog -sv $include ${DEFINES:-} $(echo "$files" | grep -v -x -F "$b
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
 cells="dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge; stat -liberty $lib"
 
-# synthesize COMMANDS: runs Yosys; what it prints is in $log
+# synthesize COMMANDS: runs Yosys with its output in $log
 synthesize() {
   yosys -p "$1" > "$log" 2>&1 || { tail -5 "$log" >&2; exit 1; }
 }
@@ -43,7 +43,7 @@ whole_machine() {
   esac
   widths="-chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND $bound -chparam DEPTH 8 -chparam NODE_WIDTH 21"
   parameters=${PARAMETERS:-$widths}
-  # Constants are passed on before the parts are cut out, and nothing else is.
+  # Only constants are propagated before the parts are cut out.
   read="$read
     hierarchy -top machine $parameters; proc; flatten; opt_expr; opt_clean; memory; opt_clean; rename -top machine"
   cut=$(awk '!/^#/ { list = ""
@@ -52,7 +52,7 @@ whole_machine() {
   own='select -set own machine/c:* machine/c:*flatten* %d; select -set sums machine/t:$add machine/t:$sub machine/t:$neg
     select -set shifts machine/t:$shl machine/t:$shr machine/t:$shift machine/t:$shiftx
     submod -name part_sums @own @sums %i; submod -name part_shifters @own @shifts %i'
-  # Cutting loses no cell and counts none twice: all parts together have as many as before.
+  # Cutting must keep the number of cells.
   synthesize "$read; stat; $cut
     $own
     stat; synth -top machine; $cells"

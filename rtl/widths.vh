@@ -1,4 +1,4 @@
-// Widths in bits, for all modules; a tool's -D sets others. Generated headers define them before.
+// Widths in bits. A tool's -D or a generated header overrides those with `ifndef.
 `ifndef WORD_BITS
   `define WORD_BITS 32
 `endif
@@ -6,13 +6,13 @@
 `ifndef FRACTION_BITS
   `define FRACTION_BITS 16
 `endif
-// A level of the octree or of the image quadtree.
+// Octree or quadtree level.
 `define LEVEL_BITS 6
-// A quadtree node's column or row.
+// Column or row of a quadtree node.
 `define PLACE_BITS 20
-// An octree node.
+// Octree node.
 `define NODE_BITS 32
-// A number of a silhouette plane: twice a word, at most 64.
+// Number of a silhouette plane: twice a word, at most 64.
 `ifndef WIDE_BITS
   `define WIDE_BITS 64
 `endif

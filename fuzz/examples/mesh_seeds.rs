@@ -1,7 +1,6 @@
 //! Writes small seed files for the targets `far` and `tvx` into corpus/; run in fuzz/.
 //!
-//! Each is built and stored by the program of a few triangles, and is at most
-//! 4 kB long, behind a byte that says what the target does with it.
+//! The program builds each from a few triangles. A first byte selects what the target does with it, in at most 4 kB.
 
 #[allow(dead_code)]
 #[path = "../../crates/mesh/tests/sealed/seal.rs"]
@@ -49,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let data = far::build(&mesh, &options, &Silent)?;
         let bytes = far::store::encode(&data)?;
-        // A file that is right already is not changed by being put right.
+        // Sealing does not change a correct file.
         assert_eq!(sealed::far(bytes.clone(), true).as_ref(), Some(&bytes));
         store("far", name, &bytes)?;
     }

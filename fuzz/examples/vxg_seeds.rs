@@ -1,7 +1,6 @@
 //! Writes small seed files for the target `vxg` into corpus/vxg; run in fuzz/.
 //!
-//! Each is a file of the current format, stored by the program and checked,
-//! or a few bytes of which the target composes one.
+//! Each is a file stored by the program, or a few bytes from which the target composes one.
 
 #[path = "../fuzz_targets/vxg_file.rs"]
 mod vxg_file;
@@ -32,7 +31,7 @@ fn cyclic() -> Result<Graph, Box<dyn Error>> {
     Ok(graph.build()?)
 }
 
-/// Depth, root, counts of level entries, masks, links and nodes, then the arrays.
+/// Depth, root, counts of level entries, masks, links and nodes; then the arrays.
 const COMPOSED: [(&str, &[u8]); 4] = [
     ("leaf", &[0, 0, 0, 0, 0, 1, 7]),
     ("tree", &[1, 0, 3, 1, 0, 3, 0, 1, 3, 9, 1, 5, 6, 7]),

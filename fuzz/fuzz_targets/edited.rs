@@ -1,5 +1,5 @@
-//! Edits fields of sound `.vxg`, `.far` and `.tvx` files, puts lengths and checksums right, and draws what is accepted.
-//! Eight bytes choose the file, and eight more each edit: `crates/mesh/tests/sealed/`.
+//! Edits fields of sound `.vxg`, `.far` and `.tvx` files, corrects lengths and checksums, and draws accepted files. Eight
+//! bytes select the file, and eight more each edit: `crates/mesh/tests/sealed/`.
 #![no_main]
 #![allow(clippy::unwrap_used)]
 

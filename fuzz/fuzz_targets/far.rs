@@ -1,5 +1,5 @@
-//! Any bytes as a `.far` file: refused, or read, checked and drawn. The first byte chooses whether lengths and
-//! checksums are made right first, so that the fields and the data behind them are reached.
+//! Any bytes as a `.far` file: rejected, or read, checked and drawn. The first byte selects whether lengths and checksums
+//! are corrected first, which reaches the data behind them.
 
 #![no_main]
 
@@ -32,7 +32,7 @@ fuzz_target!(|bytes: &[u8]| {
     let forward = glam::DVec3::Z;
     let opacities = [Opacity::None, Opacity::Scalar, Opacity::Six];
     let mut viewer = FarViewer::new(&file);
-    // From far, where voxels show, and from near, where triangles do.
+    // From afar voxels are visible, from near triangles.
     for (distance, voxel_px) in [(300.0, 16.0), (0.6, 1.0)] {
         let view = RasterCamera {
             eye: (low + high) / 2.0 - forward * distance * size,
@@ -50,7 +50,7 @@ fuzz_target!(|bytes: &[u8]| {
             culling: choice & 64 == 0,
             ..ViewOptions::default()
         };
-        // Whatever is in it: a picture or a refusal; of what is not damaged, the same with and without culling.
+        // A picture or an error. Culling does not change the picture of a sound file.
         let drawn = viewer.draw(&view, &options);
         let other = ViewOptions {
             culling: !options.culling,

@@ -1,4 +1,4 @@
-//! Any bytes as `.glb` or `.gltf`: a mesh or an error, never a panic, never memory that the file does not justify.
+//! Any bytes as `.glb` or `.gltf`: a mesh or an error, without panics or unjustified memory.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -6,7 +6,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
 fuzz_target!(|bytes: &[u8]| {
-    // The first byte chooses: JSON alone, or JSON and a buffer in a binary file.
+    // The first byte selects JSON only, or JSON and a buffer in a binary file.
     let Some((&choice, rest)) = bytes.split_first() else {
         return;
     };
@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
     let result = if choice & 1 == 0 {
         read(rest, MeshFormat::Gltf, "fuzz", &Nothing, &options, &Silent)
     } else {
-        // The second byte, times 16, cuts the rest into the two.
+        // The second byte times 16 is the length of the JSON.
         let cut = rest.first().map_or(0, |&b| usize::from(b) * 16);
         let (json, buffer) = rest.split_at(cut.clamp(1, rest.len().max(1)).min(rest.len()));
         let json = json.get(1..).unwrap_or_default();

@@ -1,5 +1,4 @@
-//! A glTF document that is composed of the bytes: read as what it shows, or, where it was damaged afterwards, read or
-//! refused.
+//! A glTF document composed from bytes is read correctly. If it was damaged afterwards, it is read or rejected.
 #![no_main]
 
 #[path = "../../crates/mesh/tests/mesh/gltf_bytes.rs"]

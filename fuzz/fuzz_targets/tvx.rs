@@ -1,5 +1,5 @@
-//! Any bytes as a `.tvx` file: refused, or read, checked and drawn. The first byte chooses whether lengths,
-//! checksums and the box are made right first, so that the fields and the data behind them are reached.
+//! Any bytes as a `.tvx` file: rejected, or read, checked and drawn. The first byte selects whether lengths, checksums and
+//! the box are corrected first, which reaches the data behind them.
 
 #![no_main]
 
@@ -28,7 +28,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let _ = file.verify();
     for grid in (0..file.grids()).map(|number| file.grid(number)) {
-        // What levels show adds up: the last shows every primitive and no voxel.
+        // The last level shows every primitive and no voxel.
         let rows = grid.levels().rows();
         let last = rows.last().copied();
         assert_eq!(last.map(|row| (row.primitives, row.voxels, row.surfels)), Some((file.primitives().len() as u64, 0, 0)));
@@ -66,7 +66,7 @@ fuzz_target!(|bytes: &[u8]| {
             light: None,
             background: None,
         };
-        // A picture or a refusal.
+        // A picture or an error.
         let _ = draw(&file, &view, &options);
     }
 });

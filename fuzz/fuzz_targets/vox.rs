@@ -1,11 +1,11 @@
-//! Any bytes as `.vox`: a scene or an error, never a panic, never memory that the file does not justify.
+//! Any bytes as `.vox`: a scene or an error, without panics or unjustified memory.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OutOfBounds, ReadOptions, read_voxels_from};
 
-/// Most voxels that are wanted.
+/// Limit of voxels.
 const MOST: u64 = 1 << 20;
 
 fuzz_target!(|data: (u8, &[u8])| {
@@ -24,7 +24,7 @@ fuzz_target!(|data: (u8, &[u8])| {
         most_voxels: MOST,
         ..ReadOptions::default()
     };
-    // The magic and the main chunk are given, so that no run is lost on guessing them.
+    // Magic and main chunk are given, so that no run has to guess them.
     let mut bytes = b"VOX \x96\0\0\0MAIN\0\0\0\0".to_vec();
     bytes.extend((rest.len() as u32).to_le_bytes());
     bytes.extend(rest);

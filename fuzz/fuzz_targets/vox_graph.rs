@@ -1,14 +1,14 @@
-//! A `.vox` whose scene graph shares nodes: a few bytes can place a model without end, which bytes at random never do. It is
-//! read for what it comes to, or refused, within the voxels that are wanted.
+//! A `.vox` whose scene graph shares nodes, so that a few bytes can place a model endlessly. It is read within the limit of
+//! voxels, or rejected.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{ReadOptions, read_voxels_from};
 
-/// Most voxels that are wanted.
+/// Limit of voxels.
 const MOST: u64 = 1 << 16;
-/// Most nodes, shapes included.
+/// Limit of nodes, shapes included.
 const NODES: usize = 64;
 
 /// Bytes, then zeros.
@@ -40,7 +40,7 @@ fn text(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// A node; children have higher numbers, unless a byte says that they need not.
+/// A node. Children have higher numbers, unless a byte allows others.
 fn node(file: &mut Vec<u8>, number: usize, nodes: usize, models: usize, choices: &mut Choices<'_>) {
     let mut content = numbers(&[number as u32, 0]);
     let child = |choices: &mut Choices<'_>| match choices.byte() {

@@ -1,5 +1,4 @@
-//! Any bytes as a voxel file of any format: voxels or an error, never a panic, never memory that the file does not
-//! justify.
+//! Any bytes as a voxel file of any format: voxels or an error, without panics or unjustified memory.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +7,7 @@ use shiftvox::scene::{FORMATS, Format, ReadOptions, read_voxels_from};
 
 fuzz_target!(|data: (u8, &[u8])| {
     let (choice, rest) = data;
-    // The mark is given, so that no run is lost on guessing it.
+    // The format's mark is given, so that no run has to guess it.
     let marks: Vec<&[u8]> = FORMATS.iter().flat_map(Format::voxel_marks).copied().collect();
     let bytes = [marks[usize::from(choice) % marks.len()], rest].concat();
     let mut count = 0u64;

@@ -1,8 +1,7 @@
-//! Reads bytes as a `.vxg` file and walks what comes of them: a graph or an error, never a panic.
+//! Reads bytes as a `.vxg` file and walks the graph: a graph or an error, never a panic.
 //!
-//! The first byte chooses among three ways from the others to a file, because
-//! nothing behind a checksum would be reached by chance: the file itself, the file with
-//! checksums that fit, or a few bytes of which a file is composed.
+//! Chance never passes a checksum. So the first byte selects one of three ways: the other bytes are the file, the file
+//! before its checksums are corrected, or choices that compose one.
 #![no_main]
 
 mod vxg_file;
@@ -15,10 +14,10 @@ use std::path::PathBuf;
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::{Graph, MergeBy, Silent, merge, vxg};
 
-/// Cells that are looked at; a cyclic graph may have more than anyone can wait for.
+/// Limit of visited cells; a cyclic graph may have endlessly many.
 const CELLS: usize = 200;
 
-/// Looks at a graph as a picture does, be it sound or not, and merges it.
+/// Walks a graph, sound or not, as a picture does, and merges it.
 fn exercise(graph: &Graph) -> Graph {
     for cell in graph.voxels().take(CELLS) {
         let attributes = (graph.color_of(cell.node), graph.normal_of(cell.node));
@@ -28,9 +27,9 @@ fn exercise(graph: &Graph) -> Graph {
     merge(graph, MergeBy::ShapeAndAttributes, &Silent).0
 }
 
-/// What holds for a graph that reading has accepted. Storing it validates it.
+/// Checks an accepted graph. Storing validates it.
 fn check_sound(graph: &Graph, bytes: &[u8], composed: bool) {
-    // There is one way to store a graph; only reserved parts of the header may differ.
+    // Storing is unique, except for reserved parts of the header.
     let mut again = Vec::new();
     assert!(vxg::write_to(graph, &mut again).is_ok());
     let from = if composed { 0 } else { 512 };
@@ -72,7 +71,7 @@ fuzz_target!(|data: &[u8]| {
     if let Ok(graph) = &owned {
         check_sound(graph, &bytes, sound.is_some());
     }
-    // The lazy way, which accepts damaged contents: a file for one input in four.
+    // Lazy reading accepts damaged contents. It is tested with one input in four.
     if choice & 0b1100 == 0 {
         let Ok((path, mut file)) = temporary_file() else {
             return;
@@ -83,7 +82,7 @@ fuzz_target!(|data: &[u8]| {
         let opened = vxg::open(&path);
         assert_eq!(vxg::verify(&path).is_ok(), owned.is_ok());
         assert!(opened.is_ok() || owned.is_err());
-        // A sound one has been looked at.
+        // A sound one has been checked above.
         if let (Ok(graph), Err(_)) = (opened, owned) {
             black_box((graph.validate().is_ok(), graph.count_voxels()));
             exercise(&graph);
@@ -93,11 +92,11 @@ fuzz_target!(|data: &[u8]| {
     }
 });
 
-/// A file of this process in the folder for temporary files.
+/// This process's temporary file.
 fn temporary_file() -> std::io::Result<(PathBuf, File)> {
     let name = format!("shiftvox-fuzz-{}.vxg", std::process::id());
     let path = std::env::temp_dir().join(name);
-    // Never truncated: a map of the one before may still be there.
+    // Never truncated: the previous file may still be mapped.
     let _ = std::fs::remove_file(&path);
     let file = File::create(&path)?;
     Ok((path, file))

@@ -1,5 +1,5 @@
-//! A second writer of `.vxg` files, after `spec/graph.md` alone: it stores any
-//! arrays, sound or not, with lengths and checksums that fit.
+//! A second writer of `.vxg` files, from `spec/graph.md`. It stores any arrays, sound or not, with correct lengths and
+//! checksums.
 
 use shiftvox::graph::{Graph, PackedNormal, Placement};
 use xxhash_rust::xxh3::xxh3_64;
@@ -8,7 +8,7 @@ const HEADER_BYTES: usize = 512;
 const SECTION_TABLE: usize = 128;
 const ENTRY_BYTES: usize = 32;
 const LEVEL_START: usize = 288;
-/// The level table ends here; what follows is reserved.
+/// End of the level table; the rest is reserved.
 const LEVEL_END: usize = LEVEL_START + 4 * 32;
 const CHECKSUM: usize = 504;
 const TAGS: [(&[u8; 4], u32); 5] = [
@@ -19,7 +19,7 @@ const TAGS: [(&[u8; 4], u32); 5] = [
     (b"NRML", 2),
 ];
 
-/// Sets the file's length and the checksums that its contents should have.
+/// Corrects the file's length and checksums.
 pub fn seal(bytes: &mut [u8]) {
     if bytes.len() < HEADER_BYTES {
         return;
@@ -45,7 +45,7 @@ fn u64_at(bytes: &[u8], at: usize) -> usize {
     u64::from_le_bytes(eight) as usize
 }
 
-/// The file of a graph, whatever is wrong with the graph.
+/// The file of a graph, sound or not.
 pub fn file_of(graph: &Graph) -> Vec<u8> {
     let numbers = |of: &[u32]| of.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>();
     let contents = [
@@ -93,20 +93,20 @@ pub fn file_of(graph: &Graph) -> Vec<u8> {
     bytes
 }
 
-/// A small graph of a few bytes, mostly unsound; zeros follow where they end.
+/// A small graph from a few bytes, mostly unsound. Missing bytes are zeros.
 ///
-/// Six bytes say depth, root, and how many level entries, masks, links and
-/// nodes there are; then come those arrays, a byte an entry.
+/// Six bytes are depth, root, and the numbers of level entries, masks, links and nodes. The arrays follow, one byte per
+/// entry.
 pub fn graph_of(bytes: &[u8]) -> Graph {
     let mut bytes = bytes.iter().copied();
     let mut next = || bytes.next().unwrap_or(0);
-    // The last few stand for numbers near the largest.
+    // The highest few mean numbers near the largest.
     let number = |byte: u8| match byte {
         0..250 => u32::from(byte),
         _ => u32::MAX - u32::from(255 - byte),
     };
     let [depth, root, levels, masks, links, nodes] = std::array::from_fn(|_| next());
-    // Few nodes show as much as many, and sooner.
+    // Small graphs suffice and are faster.
     let (masks, links, nodes) = (masks % 64, links % 128, nodes % 64);
     let mut numbers = |count: u8| (0..count).map(|_| number(next())).collect::<Vec<_>>();
     let level_start = numbers(levels);
@@ -131,8 +131,7 @@ pub fn graph_of(bytes: &[u8]) -> Graph {
         voxels: 0,
         placement: Placement::default(),
     };
-    // What no fuzzer guesses: the count that a file must state. It is the last
-    // thing to be checked, and only then do the level entries bound the counting.
+    // No fuzzer guesses the count that a file must state. It is checked last, when level entries bound the counting.
     if graph
         .validate()
         .is_err_and(|invalid| invalid.array == "voxels")

@@ -1,10 +1,10 @@
-"""A picture of voxels from an array, and what can be read from its buffers."""
+"""A picture of voxels from an array, and its buffers."""
 
 import numpy as np
 
 import shiftvox
 
-# A torus of voxels, coloured by place.
+# A torus, coloured by position.
 index = np.stack(np.meshgrid(*[np.arange(-24, 25)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 ring = np.hypot(np.hypot(index[:, 0], index[:, 1]) - 16, index[:, 2])
 index = index[(ring > 6) & (ring < 8)].astype(np.int32)

@@ -4,7 +4,7 @@
     scene = shiftvox.Scene.open("tree.vox")
     picture = shiftvox.render(scene, size=512, samples=2)
     picture.save_png("tree.png")
-    nearest = picture.depth.min()      # arrays of NumPy: rgba, depth, normals, voxels, nodes
+    nearest = picture.depth.min()      # NumPy arrays: rgba, depth, normals, voxels, nodes
 """
 
 import hashlib
@@ -39,7 +39,7 @@ def _refused(told):
 
 
 def _kept(path, folder):
-    """Moves a scene's file into a folder. Its name is made of its content: the same scene has the same one again."""
+    """Moves a scene's file into a folder, under a name derived from its content."""
     with open(path, "rb") as file:
         content = hashlib.blake2b(digest_size=8)
         while piece := file.read(1 << 20):
@@ -55,7 +55,7 @@ def _run(command, scenes, options, parse):
         raise _refused(f"{command!r} is no command, such as \"info\" or \"bench quality\"")
     if words[0] in ("completions", "man"):
         raise _refused(f"{words[0]}: it prints no JSON")
-    # Results name their scenes: the file of one that is in memory stays beside them.
+    # Results name scene files, so that of a `Scene` object stays beside them.
     results = options.get("results")
     beside = None if results is None else os.path.dirname(os.path.abspath(results))
     if beside is not None:
@@ -64,7 +64,6 @@ def _run(command, scenes, options, parse):
         names = []
         for number, scene in enumerate(scenes):
             if isinstance(scene, Scene):
-                # A command knows scenes by their files.
                 path = os.path.join(folder, f"scene-{number}.vxg")
                 scene.save(path)
                 scene = path if beside is None else _kept(path, beside)
@@ -77,14 +76,13 @@ def _run(command, scenes, options, parse):
 
 
 def run(command, *scenes, **options):
-    """Run a command of the program and return what it prints with --json.
+    """Run a command of the program and return its --json output.
 
     `run("bench quality", "gen:wires,depth=5", size=48, runs=1)`; keywords are the flags that
     `shiftvox COMMAND --help` lists, with underscores for dashes. Scenes are files, generators, or
     `Scene` objects.
 
-    Raises `Error`; its `exit_code` is what the program would have ended with. Commands without JSON (man,
-    completions) are refused.
+    Raises `Error` with the program's `exit_code`, also for commands without JSON (man, completions).
     """
     return _run(command, scenes, options, json.loads)
 
@@ -92,24 +90,23 @@ def run(command, *scenes, **options):
 def model(scene="bundled", **options):
     """Operations, cycles, memory, area and energy of one frame on the light hardware, as a dictionary.
 
-    `model("bundled", size=128, hw="paper")["simulated"]["cycles"]["cycles"]` are the cycles of a frame; energies are
+    `model("bundled", size=128, hw="paper")["simulated"]["cycles"]["cycles"]` are the cycles of a frame. Energies are
     in pJ, areas in NAND2 equivalents. Keywords are the flags of `shiftvox model`.
     """
     return run("model", scene, **options)
 
 
 def hardware(name="light"):
-    """The TOML text of a hardware design: one that ships (tiny, paper, light, wide), or a file's."""
+    """The TOML text of a shipped hardware design (tiny, paper, light, wide) or of a file."""
     return documents(["model", "--print-hw", "--hw", os.fspath(name)])
 
 
 def explore(*scenes, space="bundled", points=None, results=None, **options):
-    """Many hardware designs, and those that no other beats in time, area, energy and wrong samples.
+    """Measure many hardware designs, and find those that are Pareto-optimal in time, area, energy and wrong samples.
 
-    Returns a list of dictionaries in the order of measurement: one of kind "space" for each scene, one of
-    kind "point" for each design, one of kind "front" for each scene. `points` are numbers, such as "0..9";
-    `results` is a file to which points are appended and from which those are taken that it has. A scene that is a
-    `Scene` object is kept beside it, as scene-HASH.vxg, because results name their scenes.
+    Returns a list of dictionaries in the order of measurement. Their kinds are "space" (one per scene), "point" (one
+    per design) and "front" (one per scene). `points` are numbers, such as "0..9". `results` is a file: new points are
+    appended, and points in it are not measured again. A `Scene` object is kept beside it as scene-HASH.vxg.
     """
     options = {"explore": space, "points": points, "results": results, **options}
     return _run("model", scenes, options, lambda text: [json.loads(line) for line in text.splitlines()])

@@ -1,10 +1,10 @@
-"""The best designs of a space too large to measure whole: Optuna's multi-objective search.
+"""Optuna's multi-objective search, for spaces of designs too large to measure completely.
 
     pip install ./python optuna
     python optuna_search.py bundled --size 64 --trials 60
 
-Minimised together: time, area and energy of a frame, and its wrong samples. Several of these processes work on one
-study with `--study sqlite:///study.db`, on one computer; a database server does for more.
+It minimises time, area and energy of a frame, and its wrong samples. Several processes on one computer share a study with
+`--study sqlite:///study.db`. Several computers need a database server.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import optuna
 
 import shiftvox
 
-# The axes: keys of a description of hardware, and `bits`, the width of a word.
+# Axes: keys of descriptions of hardware, and `bits`, the width of a word.
 SPACE = {
     "bits": [24, 28, 32, 36],
     "contexts": [2, 4, 6, 8],
@@ -27,7 +27,7 @@ SPACE = {
 
 
 def figures(scene, values, **options):
-    """Time in ms, area in NAND2, energy in pJ and wrong samples of one design; nothing where it cannot draw."""
+    """Time in ms, area in NAND2, energy in pJ and wrong samples of one design; None if it cannot draw."""
     lines = [f"{key} = {str(value).lower()}" for key, value in values.items()]
     with tempfile.TemporaryDirectory() as folder:
         space = os.path.join(folder, "point.toml")
@@ -40,7 +40,7 @@ def figures(scene, values, **options):
 
 
 def search(scene, trials, space=SPACE, study=None, seed=None, **options):
-    """A study; its `best_trials` are the designs that no other one found beats."""
+    """A study, whose `best_trials` are Pareto-optimal among the designs that were tried."""
     study = optuna.create_study(
         study_name=f"shiftvox {scene}",
         storage=study,

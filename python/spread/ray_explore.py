@@ -3,8 +3,8 @@
     pip install ./python ray
     python ray_explore.py bundled --size 64 --results out/      # on the cluster's head, or alone on one machine
 
-Each task measures some points and appends each to a file of its own as soon as it is there. Ray starts the
-tasks of a worker that died again; they go on where their file ends. The folder must be one that all workers see.
+Each task measures some points and appends each to its own file at once. Ray restarts the tasks of a worker that died;
+they resume at the end of their file. All workers must see the folder.
 """
 
 import argparse
@@ -31,7 +31,7 @@ def explore(scene, folder, per_task=8, **options):
         files.append(folder / f"{points}.jsonl")
         tasks.append(measure.remote(scene, points, str(files[-1]), options))
     ray.get(tasks)
-    # Such files, one after the other, are one: with it nothing is measured again.
+    # Concatenated, the files are one, from which the front follows without measurements.
     together = folder / "all.jsonl"
     together.write_text("".join(file.read_text() for file in files))
     return shiftvox.explore(scene, results=together, **options)

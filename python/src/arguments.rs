@@ -1,4 +1,4 @@
-//! Arguments: numbers and arrays of any type that holds the values, and words. Errors name the argument.
+//! Arguments: words, and numbers and arrays of any type that holds the values. Errors name the argument.
 
 use numpy::{Element, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyOverflowError;
@@ -41,7 +41,7 @@ pub(crate) fn up(word: &str) -> PyResult<Up> {
     one_of("up", word, &AXES)
 }
 
-/// Reads a whole number. One that 64 bits do not hold becomes the largest: it is out of every range too.
+/// Reads a whole number. One beyond 64 bits becomes the largest, which is out of every range, too.
 pub(crate) fn whole(number: &Bound<'_, PyAny>) -> PyResult<i64> {
     number.extract().or_else(|error: PyErr| {
         let is_too_large = error.is_instance_of::<PyOverflowError>(number.py());
@@ -55,7 +55,7 @@ pub(crate) fn count(what: &str, number: i64) -> PyResult<u32> {
         .map_err(|_| Error::new_err(format!("{what}: a number from 0 to {}", u32::MAX)))
 }
 
-/// Pixels across and down: one number for a square.
+/// Pixels across and down; one number means a square.
 pub(crate) fn size(size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
     let square = size.extract().map(|side: u32| [side, side]);
     square
@@ -71,13 +71,13 @@ pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
     Ok([byte(red)?, byte(green)?, byte(blue)?])
 }
 
-/// A kind of numbers that rows are read as.
+/// A type of numbers in rows.
 pub(crate) trait Entry: Element + Copy {
-    /// Its name in NumPy.
+    /// Name in NumPy.
     const NAME: &'static str;
-    /// Kinds of NumPy's types that are converted.
+    /// Kinds of NumPy types that are converted.
     const KINDS: &'static str;
-    /// Lowest and highest whole number; none where all are taken.
+    /// Lowest and highest whole number, or `None` for any.
     const RANGE: Option<[i128; 2]>;
 }
 
@@ -105,7 +105,7 @@ impl Entry for u8 {
     const RANGE: Option<[i128; 2]> = Some([0, 255]);
 }
 
-/// Rows of an array, or of what NumPy makes an array of, that must have three columns.
+/// Rows of an array, or of a value that NumPy converts to one. It must have three columns.
 pub(crate) fn rows_of_three<T: Entry>(
     what: &str,
     array: &Bound<'_, PyAny>,

@@ -4,13 +4,12 @@ use pyo3::prelude::*;
 
 use crate::scene::Scene;
 
-/// Where a scene is seen from. Cannot be pickled: make it where it is used.
+/// A view of a scene. Cannot be pickled: make it where it is used.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Camera {
     pub(crate) camera: Kind,
 }
 
-/// The library's two kinds of cameras.
 #[derive(Clone)]
 pub(crate) enum Kind {
     Fitted(shiftvox::FittedCamera),
@@ -19,10 +18,10 @@ pub(crate) enum Kind {
 
 #[pymethods]
 impl Camera {
-    /// A camera that sees all of a scene. Angles in degrees: azimuth around the up axis (0 the front, 90 the right),
-    /// elevation above the horizon, fov the vertical field of view. zoom: magnification, above 0.
+    /// A camera that sees the whole scene. Angles are in degrees: azimuth around the up axis (0 front, 90 right),
+    /// elevation above the horizon, vertical field of view (fov). The magnification `zoom` is above 0.
     ///
-    /// `render` raises `Error` for a zoom or a field of view that is out of range.
+    /// `render` raises `Error` for a zoom or field of view out of range.
     #[staticmethod]
     #[pyo3(signature = (scene, *, azimuth=None, elevation=None, zoom=1.0, fov=None))]
     fn fit(
@@ -47,10 +46,10 @@ impl Camera {
         }
     }
 
-    /// A camera at `eye` that has `target` in the middle; three numbers each, world units. up: a direction, (0, 0, 1)
-    /// unless given. fov: the vertical field of view, degrees.
+    /// A camera at `eye`, aimed at `target`, three numbers each, world units. The direction `up` is (0, 0, 1) by
+    /// default, and `fov` the vertical field of view in degrees.
     ///
-    /// `render` raises `Error` where eye and target are one, and for an up along the view.
+    /// `render` raises `Error` if eye and target coincide, or up is parallel to the view.
     #[staticmethod]
     #[pyo3(signature = (eye, target, *, up=None, fov=None))]
     fn look_at(eye: [f64; 3], target: [f64; 3], up: Option<[f64; 3]>, fov: Option<f64>) -> Self {

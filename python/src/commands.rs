@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::pool::on_all_threads;
 use crate::refused;
 
-/// What the program prints for a command line with --json. The `exit_code` of an `Error` is the program's.
+/// The program's output for a command line with --json. An `Error` has the program's `exit_code`.
 #[pyfunction]
 pub(crate) fn documents(py: Python<'_>, words: Vec<OsString>) -> PyResult<String> {
     let printed = on_all_threads(py, || shiftvox_cli::documents(words))?;

@@ -1,6 +1,5 @@
-//! The Python package: scenes, cameras and pictures as objects, buffers as NumPy arrays, experiments
-//! as dictionaries. Comments of what Python sees are its docstrings; the stubs (`shiftvox/_core.pyi`)
-//! repeat them for editors.
+//! The Python package. Comments of Python's objects become their docstrings, and the stubs (`shiftvox/_core.pyi`) repeat
+//! them for editors.
 
 mod arguments;
 mod camera;
@@ -18,11 +17,10 @@ create_exception!(
     shiftvox,
     Error,
     PyException,
-    "What shiftvox refuses or cannot do, in the words of the program. Errors of `run`, `model`, `hardware` and \
-     `explore` have an `exit_code`: what the program would have ended with."
+    "An error with the program's message. Errors of `run`, `model`, `hardware` and `explore` have its `exit_code`."
 );
 
-/// An error of the library, with its words.
+/// A Python error with the message of one of the library.
 fn refused(error: impl std::fmt::Display) -> PyErr {
     Error::new_err(error.to_string())
 }

@@ -1,4 +1,4 @@
-//! Pictures: their buffers move into NumPy arrays, nothing is copied.
+//! Pictures, whose buffers move into NumPy arrays without copies.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,23 +15,23 @@ use crate::pool::on_all_threads;
 use crate::scene::Scene;
 use crate::{Error, refused};
 
-/// A finished picture. The arrays are its buffers: nothing is copied, and each access gives the same array. Cannot be
+/// A finished picture. The arrays are its buffers, without copies; each access returns the same array. Cannot be
 /// pickled; its arrays can.
 #[pyclass(frozen, get_all, module = "shiftvox")]
 pub(crate) struct Picture {
     /// uint8 (height, width, 4): red, green, blue in sRGB, and alpha, not premultiplied.
     rgba: Py<PyAny>,
-    /// float32 (height, width): along the view axis, world units; infinity where nothing is seen.
+    /// float32 (height, width), along the view axis, world units. Infinity for background.
     depth: Py<PyAny>,
-    /// float32 (height, width, 3): unit length, world directions; zero where nothing is seen.
+    /// float32 (height, width, 3), unit length, world directions. Zero for background.
     normals: Py<PyAny>,
-    /// int32 (height, width, 4): index of the voxel seen, and its level (0 the root); (0, 0, 0, -1) where nothing is.
+    /// int32 (height, width, 4): index of the visible voxel, and its level (0 the root). (0, 0, 0, -1) for background.
     voxels: Py<PyAny>,
-    /// int32 (height, width): the node of the graph seen; -1 where nothing is.
+    /// int32 (height, width): the visible node of the graph. -1 for background.
     nodes: Py<PyAny>,
-    /// What the engine counted, by name.
+    /// Counters of the engine, by name.
     counters: BTreeMap<&'static str, u64>,
-    /// Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer. None unless all buffers were
+    /// Hash of all buffers as drawn: 32 hexadecimal digits, the same on every computer. None unless all buffers were
     /// requested.
     hash: Option<String>,
     /// Pixels across.
@@ -40,7 +40,7 @@ pub(crate) struct Picture {
     height: u32,
 }
 
-/// The buffers that can be requested, by the names of a picture's attributes.
+/// Buffers by the names of a picture's attributes.
 const BUFFERS: [(&str, Buffer); 4] = [
     ("depth", Buffer::Depth),
     ("normals", Buffer::Normal),
@@ -48,7 +48,7 @@ const BUFFERS: [(&str, Buffer); 4] = [
     ("nodes", Buffer::Node),
 ];
 
-/// A buffer as an array that owns it, of `entries` numbers per pixel.
+/// A buffer as an array that owns it, with `entries` numbers per pixel.
 fn array(
     py: Python<'_>,
     values: Values,
@@ -76,7 +76,7 @@ fn array(
 
 #[pymethods]
 impl Picture {
-    /// Write the colours as a PNG, replacing what is there. Raises `Error` where the system refuses.
+    /// Write the colours as a PNG, replacing an existing file. Raises `Error` if the system refuses.
     fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let rgba: PyReadonlyArray<'_, u8, _> = self
             .rgba
@@ -104,18 +104,22 @@ impl Picture {
     }
 }
 
-/// Draw a scene, by default with a fitted camera, 512 x 512. Other Python threads run meanwhile.
+/// Draw a scene, by default with a fitted camera at 512 x 512 pixels. Other Python threads run meanwhile.
 ///
-/// size: pixels, one number or (width, height). samples: 1, 2 or 4 along each axis of a pixel. engine: "fast",
-/// "machine" (the counted words of the hardware) or "rays" (the oracle). coverage: "exact" (the default), "alpha",
-/// "center" or "any". lod: size in pixels up to which nodes are drawn as one voxel. tolerance: pixels, of the
-/// coverages center and any. cage: "frame" (the default) or "corners". bits, frac: width of a word, 16 to 64, and its
-/// fraction. paper: the rules of the image-order paper, which set coverage, tolerance and cage. background: three
-/// numbers, 0 to 255 in sRGB; or transparent, not both. threads: up to 1024, 0 for all; never changes the picture.
-/// buffers: those to compute besides the colours, of "depth", "normals", "voxels" and "nodes"; all unless given. A picture
-/// has None for the others.
+/// - size: pixels, one number or (width, height).
+/// - samples: 1, 2 or 4 along each axis of a pixel.
+/// - engine: "fast", "machine" (counts operations in the hardware's words) or "rays" (the oracle).
+/// - coverage: "exact" (default), "alpha", "center" or "any".
+/// - lod: size in pixels up to which nodes are drawn as one voxel.
+/// - tolerance: pixels, for coverages center and any.
+/// - cage: "frame" (default) or "corners".
+/// - bits, frac: width of a word, 16 to 64, and its fraction.
+/// - paper: the rules of the image-order paper, which set coverage, tolerance and cage.
+/// - background: three numbers, 0 to 255 in sRGB; excludes transparent.
+/// - threads: up to 1024, 0 for all; the picture is the same.
+/// - buffers: of "depth", "normals", "voxels" and "nodes", by default all. Others are None in the picture.
 ///
-/// Raises `Error` for settings that are out of range or exclude each other, and where a word overflows.
+/// Raises `Error` for settings out of range or in conflict, and for overflow of a word.
 #[pyfunction]
 #[pyo3(signature = (scene, camera=None, size=None, *, samples=1, engine="fast", coverage=None, lod=None,
     tolerance=None, cage=None, bits=64, frac=None, paper=false, shaded=true, background=None, transparent=false,

@@ -1,10 +1,9 @@
-//! Meshes of arrays, as a file that the library reads.
+//! Meshes from arrays, as a file that the library reads.
 
 use pyo3::prelude::*;
 
 use crate::Error;
 
-/// A binary PLY file of a mesh.
 pub(crate) fn ply(
     positions: &[[f64; 3]],
     colors: &[[u8; 3]],

@@ -1,4 +1,4 @@
-//! The threads that work is spread over.
+//! The thread pool.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,17 +7,16 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::refused;
 
-/// Bytes of stack of a thread: as much as a program's first thread has.
+/// Bytes of stack per thread, as many as a program's first thread has.
 const STACK: usize = 8 << 20;
 
-/// The pool, and the process whose threads it has.
+/// The pool and its process.
 ///
-/// A child made by `fork` inherits a pool without its threads and would wait for them for ever, as it would in
-/// Rayon's global pool. It makes a pool of its own instead. Only a thread that holds the GIL locks this, and `fork`
-/// is called by such a thread, so that no child inherits it locked.
+/// A child made by `fork` inherits a pool without its threads, as with Rayon's global pool, and would wait for ever. So it
+/// makes its own. Only a thread that holds the GIL locks this, and such a thread calls `fork`, so no child inherits a lock.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// The pool of this process, made when it is first asked for.
+/// The pool of this process, made on first use.
 fn pool(_holds_the_gil: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
@@ -28,12 +27,12 @@ fn pool(_holds_the_gil: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     }
     let new = ThreadPoolBuilder::new().stack_size(STACK).build();
     let new = Arc::new(new.map_err(refused)?);
-    // Not dropped: that would wake threads that are not there.
+    // Dropping it would wake threads that do not exist.
     std::mem::forget(pool.replace((process, Arc::clone(&new))));
     Ok(new)
 }
 
-/// Does work on all threads, while other Python threads run.
+/// Works on all threads, while other Python threads run.
 pub(crate) fn on_all_threads<T: Send>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send,

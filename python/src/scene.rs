@@ -12,8 +12,8 @@ use crate::ply::ply;
 use crate::pool::on_all_threads;
 use crate::{Error, refused};
 
-/// A graph of voxels. World units are those of the file; a voxel of index i fills [i, i + 1) along each axis unless
-/// the file says another size and place. Cannot be pickled: give other processes the name of a file.
+/// A graph of voxels. World units are those of the file. A voxel of index i fills [i, i + 1) along each axis, unless
+/// the file sets another size and place. Cannot be pickled: pass the name of a file to other processes.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Scene {
     pub(crate) scene: shiftvox::Scene,
@@ -28,7 +28,7 @@ fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOpt
     })
 }
 
-/// A colour for each of `rows`, or grey.
+/// One colour per row, or grey.
 fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(colors) = colors else {
         return Ok(vec![[200; 3]; rows]);
@@ -54,11 +54,11 @@ fn made(
 
 #[pymethods]
 impl Scene {
-    /// Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is voxelised
-    /// with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: as `coverage="alpha"` blends them.
-    /// `up`: another axis than the format's custom.
+    /// Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is
+    /// voxelised with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: for `coverage="alpha"`.
+    /// `up`: the up axis, by default the format's.
     ///
-    /// Raises `Error` where the file is missing, damaged, unknown or too large.
+    /// Raises `Error` for a file that is missing, damaged, unknown or too large.
     #[staticmethod]
     #[pyo3(signature = (path, *, depth=9, opacities=false, up=None))]
     fn open(
@@ -74,14 +74,14 @@ impl Scene {
 
     /// A generated scene, such as "terrain,depth=7,seed=1"; spec/generators.md lists them.
     ///
-    /// Raises `Error` where no generator has the name, or a parameter is wrong.
+    /// Raises `Error` for an unknown generator or a wrong parameter.
     #[staticmethod]
     fn generate(py: Python<'_>, specification: &str) -> PyResult<Self> {
         made(py, || shiftvox::Scene::generate(specification))
     }
 
-    /// A scene of voxels: indices (N, 3), any integers of 32 bits, and colours (N, 3), integers 0 to 255 in sRGB; grey
-    /// without. Of rows with the same index the last one counts.
+    /// A scene of voxels. Indices (N, 3) are 32-bit integers, and colours (N, 3) are integers 0 to 255 in sRGB, by
+    /// default grey. Of rows with the same index the last counts.
     ///
     /// Raises `Error` for other shapes and numbers, for no rows, and for voxels more than 2**21 apart.
     #[staticmethod]
@@ -104,10 +104,10 @@ impl Scene {
         made(py, || Ok(shiftvox::Scene::from_voxels(voxels)?.with_up(up)))
     }
 
-    /// A mesh, voxelised as `open` does it: positions (V, 3), any numbers; triangles (T, 3), integers: rows of
-    /// positions; colours (V, 3), integers 0 to 255 in sRGB; grey without.
+    /// A mesh, voxelised as by `open`. Positions (V, 3) are any numbers, triangles (T, 3) rows of positions, and
+    /// colours (V, 3) integers 0 to 255 in sRGB, by default grey.
     ///
-    /// Raises `Error` for other shapes and numbers, for no triangles, and for a corner that is no row of positions.
+    /// Raises `Error` for other shapes and numbers, for no triangles, and for a corner that is not a row of positions.
     #[staticmethod]
     #[pyo3(signature = (positions, triangles, colors=None, *, depth=9, opacities=false, up=None))]
     fn from_mesh(
@@ -127,7 +127,7 @@ impl Scene {
         made(py, || options.from_bytes(&bytes, "the mesh"))
     }
 
-    /// Write a .vxg file, replacing what is there. Raises `Error` where the system refuses.
+    /// Write a .vxg file, replacing an existing one. Raises `Error` if the system refuses.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         on_all_threads(py, || self.scene.save_vxg(path))?.map_err(refused)
     }
@@ -138,13 +138,13 @@ impl Scene {
         self.scene.voxels()
     }
 
-    /// Levels below the root: the cube around the voxels has 2**depth of them a side.
+    /// Levels below the root: the cube around the voxels has 2**depth voxels per side.
     #[getter]
     fn depth(&self) -> u32 {
         self.scene.depth()
     }
 
-    /// Bytes of the graph, in memory or in the file that it is mapped from.
+    /// Bytes of the graph, in memory or in its mapped file.
     #[getter]
     fn bytes(&self) -> u64 {
         self.scene.bytes()

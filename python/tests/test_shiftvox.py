@@ -1,4 +1,4 @@
-"""The package against the program's own pictures and figures."""
+"""The package against pictures and figures of the program."""
 
 import ast
 import inspect
@@ -48,10 +48,10 @@ def test_arrays_are_the_buffers():
     assert picture.nodes.shape == (48, 64)
     assert np.shares_memory(picture.depth, picture.depth)
     assert picture.rgba is picture.rgba
-    # Not a copy: what is written is there when the picture is asked again.
+    # Not a copy: a write is visible on the next access.
     picture.depth[0, 0] = 7
     assert picture.depth[0, 0] == 7
-    # Owned by the array that was moved in, not by a copy of it.
+    # The base is the array that was moved in.
     assert picture.rgba.base is not None and picture.rgba.base.size == picture.rgba.size
     seen = picture.nodes >= 0
     assert seen.any() and not seen.all()
@@ -78,7 +78,7 @@ def test_voxels_of_an_array():
     assert picture.rgba[16, 16].tolist() == [255, 0, 0, 255]
     assert picture.rgba[0, 0, 3] == 0
     assert picture.voxels[16, 16, :3].tolist() == [0, 0, 0]
-    # Rows that are not contiguous are read as they are.
+    # Rows need not be contiguous.
     wide = np.zeros((2, 6), dtype=np.int32)
     wide[:, ::2] = index
     assert shiftvox.Scene.from_numpy(wide[:, ::2], color).voxels == 2
@@ -193,7 +193,7 @@ def test_a_child_by_fork_draws_after_its_parent_drew():
 
 
 def public():
-    """All that a user may call or read, by its name."""
+    """Public names and their objects."""
     for name in shiftvox.__all__:
         thing = getattr(shiftvox, name)
         yield name, thing
@@ -245,7 +245,7 @@ def test_the_model_is_the_programs(tmp_path):
     theirs = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
     assert ours["simulated"]["cycles"]["cycles"] == theirs["simulated"]["cycles"]["cycles"] > 0
     assert ours["cost"] == theirs["cost"]
-    # A scene that is in memory.
+    # A scene in memory.
     scene = shiftvox.Scene.generate("menger,depth=2")
     assert shiftvox.model(scene, size=32, hw="paper")["record_bits"] == theirs["record_bits"]
     with pytest.raises(shiftvox.Error, match="nothing.toml") as refused:
@@ -273,7 +273,7 @@ def test_exploration_of_a_scene_in_memory_goes_on(tmp_path):
     ]
     assert explored[1][:3] == explored[0][:3]
     assert [line["kind"] for line in map(json.loads, results.read_text().splitlines())] == ["space"] + 3 * ["point"]
-    # By its file the exploration goes on too.
+    # The exploration also resumes with the scene's file.
     (kept,) = tmp_path.glob("scene-*.vxg")
     written = results.read_text()
     assert shiftvox.explore(kept, size=16, points="0..2", results=results) == explored[1]

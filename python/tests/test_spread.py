@@ -1,4 +1,4 @@
-"""Explorations on Ray, with Optuna and as a Slurm array: what one machine finds."""
+"""Explorations on Ray, with Optuna and as a Slurm array give the results of one machine."""
 
 import json
 import os
@@ -59,7 +59,7 @@ def test_a_cluster_of_two_workers_finds_the_same_front(tmp_path, space):
     killed = []
     folder = tmp_path / "results"
     watcher = threading.Thread(target=kill_a_worker_that_has_written, args=(folder, killed))
-    # Workers import this module by its folder.
+    # Workers import the module from its folder.
     path = f"{SPREAD}:{os.environ.get('PYTHONPATH', '')}"
     ray.init(num_cpus=2, include_dashboard=False, runtime_env={"env_vars": {"PYTHONPATH": path}})
     try:
@@ -88,7 +88,7 @@ def test_a_search_finds_designs_of_the_space(space):
     for trial in study.trials:
         point = light[key(trial.params)]
         assert trial.values[0] == point["time_ms"] and trial.values[2] == point["energy_pj"]["value"]
-    # With most of the eight points seen, what it calls best is what is best among them.
+    # Its best trials are Pareto-optimal among the points that it has seen.
     seen = {key(trial.params) for trial in study.trials}
     figures = lambda p: (p["time_ms"], p["area_nand2"]["value"], p["energy_pj"]["value"], p["wrong_samples"])
     beats = lambda a, b: a != b and all(x <= y for x, y in zip(a, b))
@@ -96,7 +96,7 @@ def test_a_search_finds_designs_of_the_space(space):
     assert {key(trial.params) for trial in study.best_trials} == best
 
 
-# Of the 16 points the last task of 6 has 4.
+# With 6 per task, the last task has 4 of the 16 points.
 @pytest.mark.parametrize("per_task, tasks", [(8, 2), (6, 3)])
 def test_an_array_of_slurm_is_one_exploration(tmp_path, space, per_task, tasks):
     program = ROOT / "target" / "release" / "shiftvox"
@@ -107,7 +107,7 @@ def test_an_array_of_slurm_is_one_exploration(tmp_path, space, per_task, tasks):
     env.update(SPACE=space, SIZE="32", PER_TASK=str(per_task))
     for task in range(tasks):
         task_env = {**env, "SLURM_ARRAY_TASK_ID": str(task)}
-        # As Slurm does it, twice: a requeued task finds its work done.
+        # Twice, as after a requeue: the second time all work is done.
         for _ in range(2):
             subprocess.run(["sh", SPREAD / "explore.sbatch", SCENE, folder], check=True, env=task_env)
     files = list(folder.glob("*.jsonl"))

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// A screen-space box against the edges of a node, along one axis. SPEC.md, 6.
+// A screen-space box against a node's edges, on one axis. SPEC.md, 6.
 module border_screen #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   input signed [W-1:0]     low, high,
   input [`PLACE_BITS-1:0]  node,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The middle of a cage, one coordinate: of its first and last vertex, rounded down. SPEC.md, 7.
+// A cage's centre, one coordinate: the middle of its first and last vertex, rounded down. SPEC.md, 7.
 module cage_centre #(parameter W = `WORD_BITS) (
   input [8*W-1:0] cage,
   output [W-1:0]  centre);

@@ -1,6 +1,5 @@
 `include "widths.vh"
-// The centre of a cube in object space: (min + max) >> 1, the sum with its carry. SPEC.md, 2.
-// Three words, x highest.
+// A cube's centre in object space, with the sum's carry. SPEC.md, 2. Three words, x highest.
 module centre #(parameter W = `WORD_BITS) (
   input  [3*W-1:0] min, max,
   output [3*W-1:0] centre);

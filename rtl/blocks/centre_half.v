@@ -1,5 +1,5 @@
 `include "widths.vh"
-// In which half of a node a centre lies, and where there. SPEC.md, 4.
+// The half of a node that holds a centre, and the centre relative to it. SPEC.md, 4.
 module centre_half #(parameter W = `WORD_BITS) (
   input  signed [W-1:0] value, w,
   output                right,

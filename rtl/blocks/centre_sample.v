@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The sample that holds a screen-space centre, along one axis, brought into its node. SPEC.md, 7.
+// The sample that holds a screen-space centre, clamped to its node, on one axis. SPEC.md, 7.
 module centre_sample #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   input signed [W-1:0]     centre,
   input [`PLACE_BITS-1:0]  node,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Is a record deep enough to change to screen space? SPEC.md, 5.
+// Is a record deep enough for screen space? SPEC.md, 5.
 module change_depth #(parameter W = `WORD_BITS) (
   input signed [W-1:0] w_min, least,
   output               deep);

@@ -1,13 +1,12 @@
 `include "widths.vh"
-// Does a box leave its node by so little, along one axis, that it may change to screen space? SPEC.md, 5.
-// At all vertices x + w / 2^places >= 0 and (w - x) + w / 2^places >= 0. Position and guard are
-// multiplied by 2^places, so that nothing is rounded. Vertex 0 is the highest word of a cage.
+// May a box change to screen space: x and w - x at least -w / 2^places at all vertices, on one axis? SPEC.md, 5.
+// Positions or the width shift left, so nothing is rounded.
 module change_guard #(parameter W = `WORD_BITS) (
   input [8*W-1:0]    x, w,
   input signed [7:0] places,
   output             enclosed);
-  wire [7:0] up   = places[7] ? 8'd0 : places;    // how far positions go left
-  wire [7:0] down = places[7] ? -places : 8'd0;   // or else the width
+  wire [7:0] up   = places[7] ? 8'd0 : places;
+  wire [7:0] down = places[7] ? -places : 8'd0;
   wire [7:0] beyond_left, beyond_right;
   genvar i;
   generate

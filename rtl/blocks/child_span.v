@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The least and the greatest of a cage's eight vertices, one coordinate: trees of three levels. SPEC.md, 4.
+// Least and greatest of a cage's eight vertices, one coordinate: trees of three levels. SPEC.md, 4.
 module child_span #(parameter W = `WORD_BITS) (
   input  [8*W-1:0]        child,
   output signed [W-1:0]   low, high);

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One coordinate of a child's eight vertices, selected from the pool.
+// One coordinate of a child's eight vertices, from the pool.
 module child_vertices #(parameter W = `WORD_BITS) (
   input  [27*W-1:0] pool,
   input  [2:0]      octant,
@@ -7,7 +7,7 @@ module child_vertices #(parameter W = `WORD_BITS) (
   genvar v;
   generate
     for (v = 0; v < 8; v = v + 1) begin : vertex
-      // From lowest to highest vertex of the pool that this one may be, along z, y, x.
+      // The first of eight pool vertices. Octant bits select along z, y, x.
       localparam AT = 9*(v/4) + 3*(v/2%2) + v%2;
       wire [4*W-1:0] z, y;
       genvar i;

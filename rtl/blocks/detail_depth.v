@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Is a node, by its depth, within the level of detail? SPEC.md, 7.
+// Is a node deep enough for level of detail to draw it? SPEC.md, 7.
 module detail_depth #(parameter W = `WORD_BITS) (
   input signed [W-1:0] w_min, least,
   output               solid);

@@ -1,6 +1,5 @@
 `include "widths.vh"
-// Counts the steps of a divide: four integer steps, then one for each fraction bit.
-// `start` loads the dividers; they step from the next cycle on, and `last` marks the last step.
+// Counts a divide's steps: four integer steps, then one per fraction bit. They begin in the cycle after `start`.
 module divide_control (
   input                    clk, start,
   input  [`LEVEL_BITS-1:0] fraction_bits,

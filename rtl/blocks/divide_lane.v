@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One quotient x / w + 4, a bit a cycle, for w > 0 and -4 w <= x < 12 w. SPEC.md, 5.
+// Quotient x / w + 4, one bit per cycle, for w > 0 and -4 w <= x < 12 w. SPEC.md, 5.
 module divide_lane #(parameter W = `WORD_BITS) (
   input              clk, load, step,
   input      [1:0]   place,

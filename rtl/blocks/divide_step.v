@@ -1,6 +1,5 @@
 `include "widths.vh"
-// One step of a restoring divide. An integer step takes divisor << place away if it fits; a fraction
-// step doubles the remainder first, with place 0. SPEC.md, 5.
+// One step of a restoring divide. Fraction steps double the remainder first, at place 0. SPEC.md, 5.
 module divide_step #(parameter W = `WORD_BITS) (
   input  [W-1:0] remainder, divisor,
   input  [1:0]   place,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Bits set in a fill vector. SPEC.md, 6.
+// Sets bits of a fill vector. SPEC.md, 6.
 module fill_update (
   input  [3:0] vector, bits,
   output [3:0] after,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Is all of a quadtree node drawn? SPEC.md, 6.
+// Is a quadtree node full? SPEC.md, 6.
 module filled (
   input  [3:0] vector,
   output       full);

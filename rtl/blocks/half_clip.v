@@ -1,6 +1,5 @@
 `include "widths.vh"
-// One coordinate of a cage relative to a half of its node: 2 x in the near one, `far` (2 x - w) in the
-// far one. SPEC.md, 4.
+// One coordinate of a cage relative to a half of its node; `far` is 2 x - w. SPEC.md, 4.
 module half_clip #(parameter W = `WORD_BITS) (
   input  [8*W-1:0] x, far,
   input            right,

@@ -1,7 +1,6 @@
 `include "widths.vh"
-// One coordinate of the paper's pool: the 3 x 3 x 3 vertices of eight children, by 4 midpoints along
-// x, 6 along y, 9 along z. Midpoints are rounded down, so the order counts. SPEC.md, 4.
-// Vertex 9 i + 3 j + k of the pool is its word of that number, from the lowest.
+// One coordinate of the vertex pool: 3 x 3 x 3 vertices of eight children, the lowest word first, at 9 i + 3 j + k.
+// Midpoints round down, so their order x, y, z matters. SPEC.md, 4.
 module midpoints #(parameter W = `WORD_BITS) (
   input  [8*W-1:0]  parent,
   output [27*W-1:0] pool);
@@ -12,7 +11,7 @@ module midpoints #(parameter W = `WORD_BITS) (
       midpoint = sum[W:1];
     end
   endfunction
-  // [i in 0..3][j, k corners]; [i][j in 0..3][k corner].
+  // Indices [i of 3][j, k of 2] and [i, j of 3][k of 2].
   wire [12*W-1:0] along_x;
   wire [18*W-1:0] along_y;
   genvar i, j, k;

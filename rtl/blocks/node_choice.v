@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Overlapped quadrants and a node's fill vector to: rejected, or the one quadrant to go on in. SPEC.md, 6.
+// Rejects a box whose overlapped quadrants are full, or selects its only quadrant. SPEC.md, 6.
 module node_choice (
   input  [3:0] overlapped, vector,
   output       rejected, single,

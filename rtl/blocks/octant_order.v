@@ -1,6 +1,5 @@
 `include "widths.vh"
-// The octant in which a centre is seen from the eye, and the children, nearest first. SPEC.md, 9.
-// child: eight octants of three bits, the nearest highest.
+// The octant in which the eye sees a centre, and the octants of all children, the nearest highest. SPEC.md, 9.
 module octant_order #(parameter W = `WORD_BITS) (
   input  [3*W-1:0] centre, eye_floor,
   output [2:0]     octant,

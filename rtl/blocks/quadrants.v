@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Halves along both axes to quadrants, bit y << 1 | x. SPEC.md, 6.
+// Overlapped quadrants, bit y << 1 | x, from halves along both axes. SPEC.md, 6.
 module quadrants (
   input        low_half_x, high_half_x, low_half_y, high_half_y,
   output [3:0] overlapped);

@@ -1,6 +1,6 @@
 `include "widths.vh"
-// Is a clip-space record no larger than `most`, along one axis of the picture? SPEC.md, 7.
-// The sum over the edges k of max(|edge_x_k|, |edge_x_k - edge_w_k|) bounds its size.
+// Is a clip-space record at most `most` large, on one axis? SPEC.md, 7.
+// The sum of max(|x|, |x - w|) over its edges bounds its size.
 module size_clip #(parameter W = `WORD_BITS) (
   input [3*W-1:0]      edge_x, edge_w,
   input signed [W-1:0] most,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Is a screen-space box no larger than a limit, along one axis? SPEC.md, 7.
+// Is a screen-space box at most `limit` large, on one axis? SPEC.md, 7.
 module size_screen #(parameter W = `WORD_BITS) (
   input signed [W-1:0] low, high, limit,
   output               fits);

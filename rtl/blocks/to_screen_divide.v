@@ -1,5 +1,5 @@
 `include "widths.vh"
-// A divider by itself, as the vectors have it: a start, and 4 + fraction_bits cycles later the quotient.
+// A divider alone, as in the vectors. The quotient follows `start` by 4 + fraction_bits cycles.
 module to_screen_divide #(parameter W = `WORD_BITS) (
   input                    clk, start,
   input  [W-1:0]           x, w,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One coordinate of all children's vertices: the pool with its wires to each child. SPEC.md, 4.
+// One coordinate of all children's vertices, wired from the pool. SPEC.md, 4.
 module vertex_pool #(parameter W = `WORD_BITS) (
   input  [8*W-1:0] parent,
   output [8*W-1:0] child_000, child_001, child_010, child_011,

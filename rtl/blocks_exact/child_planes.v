@@ -1,6 +1,6 @@
 `include "widths.vh"
-// A child's silhouette planes from its parent's: for edge j, k = j + 1, l = j + 2 (mod 3), less the plane
-// across l where the octant has bit k, plus the one across k where it has bit l, by half a side. SPEC.md, 8.
+// A child's silhouette planes. With k = j + 1 and l = j + 2 (mod 3), edge j loses the plane across l if the octant has
+// bit k, and gains that across k if it has bit l, by half a side. SPEC.md, 8.
 module child_planes #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0]         edge_x, edge_y, edge_z,
   input  [2*V-1:0]         axis_x, axis_y, axis_z,

@@ -1,6 +1,6 @@
 `include "widths.vh"
-// The least and the greatest of a cage's vertices, one coordinate: the corner and all edges on one side
-// of it. SPEC.md, 4. A cage: the corner, highest, and the edges along x, y, z.
+// Least and greatest vertex of a cage, one coordinate: its corner plus all negative or positive edges. SPEC.md, 4.
+// Cage: the corner, highest, then edges along x, y, z.
 module child_span #(parameter W = `WORD_BITS) (
   input  [4*W-1:0] child,
   output [W-1:0]   low, high);

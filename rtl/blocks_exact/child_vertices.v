@@ -1,10 +1,10 @@
 `include "widths.vh"
-// One coordinate of a child's cage, selected from the pool.
+// One coordinate of a child's cage, from the pool.
 module child_vertices #(parameter W = `WORD_BITS) (
   input  [11*W-1:0] pool,
   input  [2:0]      octant,
   output [4*W-1:0]  child);
-  // Corners of octants with bit z, then with bit y, too; the octant's.
+  // Corners, selected by octant bit z, then y.
   wire [4*W-1:0] z;
   wire [2*W-1:0] y;
   genvar i;

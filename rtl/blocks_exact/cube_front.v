@@ -1,6 +1,6 @@
 `include "widths.vh"
-// From which side rays reach a cube that is not before the eye: the first axis along which the eye is
-// outside it, and the side of the plane across that axis. SPEC.md, 8. Three words, x highest.
+// For a cube not wholly in front of the eye: the first axis along which the eye is outside, and the side of the plane
+// across it from which rays arrive. SPEC.md, 8. Three words, x highest.
 module cube_front #(parameter W = `WORD_BITS) (
   input  [3*W-1:0] min, max, eye_floor, eye_ceil,
   input            positive,

@@ -1,6 +1,6 @@
 `include "widths.vh"
-// The planes of a cube's twelve edges: of edges along j, k = j + 1, l = j + 2 (mod 3), number 0 as it is, 1
-// moved by a side along k, 2 along l, 3 along both. SPEC.md, 8.
+// Planes of a cube's twelve edges. Of four along j, 0 is given, 1 is moved by a side along k = j + 1, 2 along l = j + 2,
+// 3 along both (mod 3). SPEC.md, 8.
 module cube_planes #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0]         edge_x, edge_y, edge_z,
   input  [2*V-1:0]         axis_x, axis_y, axis_z,

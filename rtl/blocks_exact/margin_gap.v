@@ -1,5 +1,5 @@
 `include "widths.vh"
-// What boxes are narrowed by: half a sample, of each number of the cage, negative. SPEC.md, 6.
+// A box's negative margin: half a sample per number of the cage. SPEC.md, 6.
 module margin_gap #(parameter W = `WORD_BITS) (
   input [4*W-1:0]         w,
   input [`LEVEL_BITS-1:0] below,

@@ -1,6 +1,5 @@
 `include "widths.vh"
-// One coordinate of what all children are made of: their corners, octant 0 highest, by seven adds, and the edges that
-// they share, halved towards zero. SPEC.md, 4.
+// One coordinate of the pool: all children's corners, octant 0 highest, and their edges, halved towards zero. SPEC.md, 4.
 module midpoints #(parameter W = `WORD_BITS) (
   input  [4*W-1:0]  parent,
   output [11*W-1:0] pool);

@@ -1,6 +1,6 @@
 `include "widths.vh"
-// What edges' planes gain when a cube's edge moves by 2^places along an axis: the plane across that axis,
-// shifted. SPEC.md, 8. Planes: a, b, c, a highest.
+// Change of planes when a cube's edge moves 2^places along an axis: the plane across that axis, shifted. SPEC.md, 8.
+// Planes: a, b, c, a highest.
 module moved_planes #(parameter V = `WIDE_BITS) (
   input  [2*V-1:0]         axis_ab,
   input  [V-1:0]           axis_c,

@@ -1,12 +1,12 @@
 `include "widths.vh"
-// Sides of a cube's planes to: 0 no sample of the node is covered, 1 some may be, 2 all are. SPEC.md, 8.
-// Sides: four of two bits by direction of the edges.
+// A node's coverage, from the sides of a cube's planes: 0 none, 1 perhaps some, 2 all. SPEC.md, 8.
+// Sides: four of two bits per edge direction.
 module plane_cover (
   input  [7:0] side_x, side_y, side_z,
   input        front,
   input  [1:0] front_side, wanted,
   output [1:0] cover_code);
-  // Of a direction: both sides there; no side, and none open.
+  // Bit 0: planes on both sides. Bit 1: all on one side.
   function [1:0] passes(input [7:0] side);
     reg positive, negative, open;
     integer i;

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The constant of a plane a x + b y + c in a quadrant's own coordinates. SPEC.md, 8. Planes: a highest.
+// The constant of a plane a x + b y + c in a quadrant's coordinates. SPEC.md, 8. Planes: a highest.
 module plane_quadrant #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0] plane,
   input  [1:0]     quadrant,

@@ -1,6 +1,6 @@
 `include "widths.vh"
-// On which side of a plane a node's samples are: 0 both, 1 positive, 2 negative, 3 the plane is none. Of a
-// sample its middle counts, moved right by an infinitesimal and down by one infinitely smaller. SPEC.md, 8.
+// Side of a plane on which a node's samples lie: 0 both, 1 positive, 2 negative, 3 no plane. SPEC.md, 8.
+// A sample counts by its middle, moved right by an infinitesimal and down by one infinitely smaller.
 module plane_side #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0] plane,
   input            sample,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Two planes added, or the second taken away, number by number.
+// Adds two planes, or subtracts the second.
 module plane_sum #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0] plane, gain,
   input            less,

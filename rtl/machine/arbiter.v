@@ -1,12 +1,11 @@
-// First come, first served; of those that come in one cycle, the lowest number.
-//
-// Who asks keeps asking until it is granted, in a cycle with `enable`. `first` is the one that is next, granted or not.
+// Grants requests in order of arrival; within a cycle, the lowest number first. A request stays until its grant, which
+// needs `enable`. `first` is next, granted or not.
 module arbiter #(parameter N = 4) (
   input               clk, reset, enable,
   input  [N-1:0]      request,
   output reg [N-1:0]  first,
   output [N-1:0]      grant);
-  // Who asked before this cycle, and was not granted; of two such, whether the lower number came first.
+  // Earlier requests without a grant; per pair, whether the lower number came first.
   reg [N-1:0]   waiting;
   reg [N*N-1:0] lower_first;
   reg [N*N-1:0] lower_now;

@@ -1,9 +1,9 @@
 `include "widths.vh"
-// A cache of words of 64 bits in lines of eight, set-associative, least recently used goes first.
+// A set-associative LRU cache of 64-bit words in lines of eight.
 //
-// A request is answered in the next cycle on a hit: `ready` with `word`, until the next request. On a
-// miss the line is asked for (`fetch` for one cycle), comes as eight words in order (`fill`), is looked
-// up again in the cycle after the last, and `ready` follows. Requests are at least two cycles apart.
+// A hit is `ready` with `word` in the next cycle, until the next request. A miss raises `fetch` for one cycle. Its line
+// arrives as eight words in order (`fill`) and is looked up again in the cycle after the last; `ready` follows. Requests
+// are at least two cycles apart.
 module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                       clk, reset,
   input                       request,
@@ -18,15 +18,14 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   localparam TAG = ADDRESS - 3 - SETS_LOG2;
   localparam ORDER = WAYS*WAYS_LOG2;
 
-  // What was asked for, and how far it is.
   reg                   looking, missing, again;
   reg [ADDRESS-1:0]     at;
   reg [2:0]             filled;
   wire [SETS_LOG2-1:0]  set = at[3 +: SETS_LOG2];
   wire [TAG-1:0]        tag = at[ADDRESS-1 -: TAG];
 
-  // By set, the ways in order of use, the last used lowest, 0 to WAYS - 1 before the first use; by set and
-  // way, whether there is a line: registers, since a reset clears them all at once.
+  // Per set, the ways in order of use, the last used lowest, initially 0 to WAYS - 1. Valid bits are registers, because
+  // reset clears all at once.
   wire look = request | again;
   reg                   looked;      // in the cycle before
   reg [SETS*WAYS-1:0]   valid;
@@ -34,7 +33,6 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   wire [ORDER-1:0]      stored, unused;
   wire [ORDER-1:0]      now = |valid_here ? stored : unused;
 
-  // Tags and words, a memory of each way.
   wire last_fill = fill & &filled;
   wire [2+SETS_LOG2:0] look_at = request ? address[2+SETS_LOG2:0] : at[2+SETS_LOG2:0];
   wire [2+SETS_LOG2:0] fill_at = {set, filled};

@@ -1,6 +1,4 @@
-// Children on the stack, each with all that its turn needs: stages A and B.
-//
-// The record that is drawn or subdivided is the one that was popped.
+// Stages A and B: children wait on the stack with all their data. The popped record is drawn or subdivided.
 assign t_level = r_level, t_voxel_level = r_voxel_level, t_quad_level = r_quad_level, t_node = r_node;
 assign t_quad_x = r_quad_x, t_quad_y = r_quad_y, t_min = r_min, t_max = r_max, t_w_min = r_w_min, t_more = r_more;
 assign asked_level = r_quad_level, asked_x = r_quad_x, asked_y = r_quad_y;
@@ -8,7 +6,7 @@ assign lod_look_up = state == FILLED, lod_level = r_level;
 assign node_place = r_node;
 
 // ---------------------------------------------------------------- the stack
-// Numbers as wide as the machine's greatest ones. The stage packs the rest.
+// Fields have the width of their greatest values. The stage packs the rest.
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
 localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
 localparam REST = `REST_BITS;
@@ -33,7 +31,7 @@ assign {p_solid, p_inside, p_level, p_quad_level, p_node, p_quad_x, p_quad_y, p_
 function [W-1:0] corner_word(input [CORNER-1:0] v);
   corner_word = v;
 endfunction
-// Of the rest.
+// The stage's part.
 wire [L-1:0]     p_voxel_level;
 wire [CAGE-1:0]  p_w;
 wire [W-1:0]     p_w_min;
@@ -42,14 +40,14 @@ memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.cl
   .read(state == POP), .write(state == PUSH & ~stack_full),
   .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
-// ---------------------------------------------------------------- the verdict, by a module of the stage
-localparam LOOK = VERDICT;                      // looks at the node that was read
+// ---------------------------------------------------------------- verdict
+localparam LOOK = VERDICT;                      // takes the node's word
 wire solid;
 wire [7:0]   mask_read = node_word[39:32];
 wire leaf = ~r_solid & (r_level >= depth | mask_read == 0);
 
 // ---------------------------------------------------------------- children, the farthest first
-localparam POOL_BITS = `POOL_WORDS*W;         // one coordinate of what all children have
+localparam POOL_BITS = `POOL_WORDS*W;         // one coordinate of the pool
 wire [POOL_BITS-1:0] pool_x_now, pool_y_now, pool_w_now;
 reg  [POOL_BITS-1:0] pool_x, pool_y, pool_w;
 midpoints #(W) midpoints_x (.parent(r_x), .pool(pool_x_now));
@@ -79,7 +77,6 @@ task mark_sample;
   end
 endtask
 
-// A child that can be seen.
 task accept;
   state <= PUSH;
 endtask

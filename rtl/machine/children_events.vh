@@ -1,4 +1,4 @@
-// Events of a stack of children, and of its fill vectors.
+// Events of a stack of children and of its fill vectors.
 if (`WALK.state == `WALK.POP) $fwrite(events, "%0d 0 %0d\n", `TILE, `WALK.top);
 if (`WALK.state == `WALK.PUSH) $fwrite(events, "%0d 1 %0d %h %h\n", `TILE, `WALK.stacked,
   {`WALK.c_solid, `WALK.c_inside, `WALK.c_screen, `WALK.c_level, `WALK.c_voxel_level, `WALK.c_quad_level,

@@ -1,4 +1,4 @@
-// States of stages with children on the stack.
+// States of a stack of children.
 POPPED: begin
   r_solid <= p_solid;
   r_inside <= p_inside;

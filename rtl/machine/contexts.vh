@@ -1,13 +1,10 @@
-// Several contexts in turns: each has a tile, a stack and fill vectors of its own; one of them, `running`, has the
-// blocks. While that waits for a cache or for a tile, one that has its answer may have them: who has wanted them
-// longest, of those of one cycle the lowest number. It goes on in the next cycle; no cycle is lost.
-//
-// What a context has in registers (`KEPT` of the stage, and what parts of it keep themselves) stays in others
-// meanwhile, and its request with its cache.
+// Several contexts take turns; `running` has the blocks. While it waits for a cache or a tile, the context whose answer or
+// tile came first takes over in the next cycle. Ties go to the lowest number. Registers of the others are saved: `KEPT`,
+// and by parts of the stage.
 wire [CONTEXTS-1:0] runs = 1 << running;
-reg  [CONTEXTS-1:0] idle, begun;                // of the others: without a tile; given one, not begun
-reg  [CONTEXTS-1:0] asks_node, asks_attribute;  // of the others: not taken yet
-reg  [CONTEXTS-1:0] answered;                   // what it asked for is there, and was not looked at
+reg  [CONTEXTS-1:0] idle, begun;                // others: without a tile; with a tile not begun
+reg  [CONTEXTS-1:0] asks_node, asks_attribute;  // others: not taken yet
+reg  [CONTEXTS-1:0] answered;                   // its answer arrived, and was not read
 wire                has_no_tile = state == IDLE | state == DONE;
 wire                looks_at_answer = state == LOOK | state == SHOW;
 wire                starts = |(start & runs);
@@ -18,10 +15,10 @@ wire [CONTEXTS-1:0] unused_first, next_runs;
 wire                switches = |next_runs;
 reg  [BITS_OF_CONTEXT-1:0] next_running;
 wire                next_begins = |(next_runs & (begun | start));
-// Where it goes on when it has the blocks again.
+// Its state on return.
 wire [5:0]          state_then = state == NODE ? LOOK : state == ATTRIBUTE ? SHOW : state;
 generate
-  // An error of whoever builds it: a module that there is not.
+  // Invalid parameters: an undefined module stops the build.
   if (CONTEXTS > 1 && (SHARED == 0 || `HAS_CONTEXTS == 0 || CONTEXTS != 1 << CONTEXT_LOG2)) begin : refused
     contexts_are_a_power_of_two_in_lanes_of_stage_c error();
   end
@@ -77,6 +74,6 @@ always @(posedge clk)
     end
   end
 
-// For testbenches: a node, its attributes are asked for, once.
+// For testbenches: one cycle per request.
 wire asked_node = state == NODE & (node_taken | switches);
 wire asked_attribute = state == ATTRIBUTE & (attribute_taken | switches);

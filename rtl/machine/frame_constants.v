@@ -1,6 +1,5 @@
 `include "widths.vh"
-// The frame's constants. The host writes them, a word at a time, before it starts the frame; the
-// numbers of the registers are those of docs/rtl.md.
+// Constants of the frame, written by the host before it. docs/rtl.md numbers the registers.
 module frame_constants #(parameter W = `WORD_BITS) (
   input                         clk,
   input                         write,
@@ -12,7 +11,7 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output reg [`LEVEL_BITS-1:0]  level_bound,   // of records
   output reg [`LEVEL_BITS-1:0]  sub_levels,    // below the finest voxels
   output reg [`PLACE_BITS-1:0]  width, height, // samples
-  output reg                    coarse,        // level of detail takes all within a sample for solids
+  output reg                    coarse,        // level of detail draws all within a sample
   output [3*W-1:0]              origin,        // clip vector of the object's lowest corner: X, Y, W
   output [9*W-1:0]              edges,         // of its edges: X along x, y, z; Y; W
   output [3*W-1:0]              eye_floor,     // the eye in object space, rounded down
@@ -21,8 +20,7 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output reg                    root_leaf,     // the object's node has no children
   output reg signed [W-1:0]     near, near_crossing,
   output reg signed [W-1:0]     size_limit, lod_limit, least_size, // screen-space sizes
-  // By octree level: the least depth of a node that level of detail takes for a solid, if there is one;
-  // in the cycle after `look_up`.
+  // Per octree level, a cycle after `look_up`: the least depth at which level of detail draws a node.
   input                         look_up,
   input  [`LEVEL_BITS-1:0]      of_level,
   output                        has_lod_depth,
@@ -41,7 +39,7 @@ module frame_constants #(parameter W = `WORD_BITS) (
       assign edges[(8 - i)*W +: W] = vector[3 + i];
     end
   endgenerate
-  // All ones above the greatest depth: no node of the level is a solid by its depth.
+  // The greatest word: no node of the level.
   wire [W-1:0] found;
   memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[7:6] == 1),
     .address(look_up ? of_level : address[5:0]), .data_in(data), .data_out(found));

@@ -1,19 +1,18 @@
 `include "widths.vh"
 `include "stage.vh"
-// Machines side by side, the lanes, each with several contexts, which draw a tile of the picture at a time, with a
-// stack and fill vectors of their own. They share two caches, the port to the memory outside, and that of pixels.
-// docs/rtl.md has their cycles.
+// Lanes: machines side by side with several contexts each, which draw tiles of the picture. They share two caches, the
+// memory port and the pixel port.
 //
-//     every cycle: the context that has waited longest for a tile begins the next one, row by row
+// The context that has waited longest for a tile begins the next one, row by row. Ties go to the lowest lane and context,
+// and to nodes before attributes.
 //
-// Only for rules under which the picture does not depend on the order of records: stages B and C; contexts: stage C.
-// The picture has at least 2^TILE_LEVELS samples a side, rounded up to a power of two. Whoever waits longest is served
-// first; of those that came in one cycle, the lowest lane and context, and nodes before attributes.
+// Only stages B and C, whose picture does not depend on the order of records; several contexts only in stage C. The
+// picture has at least 2^TILE_LEVELS samples per side, rounded up to a power of two.
 module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10,
                STACK_LOG2 = `STACK_LOG2, NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2,
                DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
   input                        clk, reset,
-  // The host, as of one machine: all lanes have the same constants.
+  // Host, as of one machine.
   input                        constant_write,
   input [7:0]                  constant_address,
   input [W-1:0]                constant_data,
@@ -21,15 +20,14 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   output                       busy,
   output reg                   done,
   output reg                   failed,
-  // Memory: `fetch` stays until it is taken, in a cycle with `fetch_ready`. Lines come in that order, each as eight
-  // words with `fill`, which cannot be refused.
+  // Memory: `fetch` stays until `fetch_ready`. Lines arrive in that order, each as eight words with `fill`.
   output                       fetch,
   input                        fetch_ready,
   output                       fetch_attribute,
   output [`NODE_BITS-4:0]      fetch_line,
   input                        fill,
   input [63:0]                 fill_word,
-  // Pixels: `pixel` stays until it is taken, in a cycle with `pixel_ready`.
+  // Pixels: `pixel` stays until `pixel_ready`.
   output                       pixel,
   input                        pixel_ready,
   output [`PLACE_BITS-1:0]     pixel_x, pixel_y,
@@ -38,9 +36,8 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute);
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, A = OUTER_ADDRESS - 3;
-  // Of a pixel.
+  // Bits per pixel.
   localparam SHOWN = 2*P + N + 3*W + L + 64;
-  // Contexts of all lanes, a lane's together.
   localparam ALL = LANES*CONTEXTS;
 
   // ---------------------------------------------------------------- tiles, row by row
@@ -77,7 +74,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
       end
       if (running & ~busy) {running, done} <= 2'b01;
     end
-  // A lane says so until it begins another tile, maybe of the next frame.
+  // A lane's flag stays until its next tile, perhaps of the next frame, so only its rise counts.
   reg [LANES-1:0] failed_before;
   always @(posedge clk) begin
     failed_before <= lane_failed;
@@ -93,7 +90,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   genvar i, j;
   generate
     for (i = 0; i < LANES; i = i + 1) begin : lane
-      localparam FIRST = i*CONTEXTS;          // of its contexts
+      localparam FIRST = i*CONTEXTS;          // its first context
       wire [CONTEXTS*P-1:0] tile_x, tile_y;
       wire [CONTEXTS*N-1:0] node;
       for (j = 0; j < CONTEXTS; j = j + 1) begin : walks
@@ -130,7 +127,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
     end
   endgenerate
 
-  // ---------------------------------------------------------------- caches, and the port of both
+  // ---------------------------------------------------------------- caches and their port
   wire         node_fetch, attribute_fetch;
   wire [A-4:0] node_line, attribute_line;
   wire [1:0]   next, fetched;               // nodes, attributes
@@ -139,7 +136,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   assign fetch = |next;
   assign fetch_attribute = next[1];
   assign fetch_line = next[1] ? attribute_line : node_line;
-  // Of the lines on their way, the oldest lowest: whether they are of attributes. One a context and cache at most.
+  // Lines in flight, the oldest lowest: 1 for attributes. At most one per context and cache.
   reg [2*ALL:0]       kinds;              // a one above the youngest
   reg [2:0]             filled;
   wire                  last_fill = fill & &filled;

@@ -1,56 +1,49 @@
 `include "widths.vh"
 `include "stage.vh"
-// The machine, one lane, one record at a time. docs/rtl.md has its states and its cycles.
+// One lane, one record at a time. docs/rtl.md has its ports, states and cycles.
 //
 //     push the object
-//     pop a record; drop it if its node of the picture is full
-//     read its octree node; draw it, drop it, or else
-//     make its children, the farthest first; fit each; push those that can be seen
+//     pop a record; drop it if its picture node is full
+//     read its octree node; draw it, drop it, or
+//     make its children, the farthest first; fit each; push the visible ones
 //
-// What a stage has of its own stands in its folder: `stage.vh` the widths of its records, `parts.vh` the
-// registers and blocks that this file does not have, `steps.vh` their states. Stage A changes records to screen
-// space and draws samples; stages B and C draw the silhouettes of solids. Stages A and B have children on their
-// stack (`children.vh`), stage C the way to a parent.
+// A stage adds `stage.vh` (widths), `parts.vh` (registers and blocks) and `steps.vh` (states). Stage A changes records to
+// screen space and draws samples; B and C draw outlines of solids. The stack holds children in A and B (`children.vh`),
+// parents in C.
 //
-// Outside are the memory of nodes and attributes, behind one port that moves a line of eight words, and
-// the memory of pixels. The host writes the frame's constants, then sets `start` for a cycle.
+// Sizes of the memories: samples per side 2^PICTURE_LEVELS, levels of the object DEPTH and of records LEVEL_BOUND, bits of
+// node numbers NODE_WIDTH, bytes off chip 2^OUTER_ADDRESS.
 //
-// Built for pictures of at most 2^PICTURE_LEVELS samples a side, and objects of at most DEPTH levels, of
-// which records go LEVEL_BOUND levels down, with numbers of nodes of NODE_WIDTH bits, in a memory of
-// 2^OUTER_ADDRESS bytes: what the machine's own memories need.
-//
-// SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
-// of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
-// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns. Stage C needs at least
-// two levels of the picture below TILE_LEVELS.
-// BRICKS: of stage C; it can have frames whose nodes are laid out with bricks (bricks.vh).
+// SHARED: a lane of lanes.v. It draws tiles, nodes TILE_LEVELS below the picture's root; caches and ports are outside.
+// CONTEXTS (contexts.vh, stage C): a power of two. Stage C needs two picture levels below TILE_LEVELS.
+// BRICKS (bricks.vh, stage C): frames may use bricks.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                  NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0,
                  CONTEXTS = 1, BRICKS = 0) (
   input                        clk, reset,
-  // The host.
+  // Host.
   input                        constant_write,
   input [7:0]                  constant_address,
   input [W-1:0]                constant_data,
   input [CONTEXTS-1:0]         start,
   output [CONTEXTS-1:0]        busy,
   output                       done,
-  output reg                   failed,          // the stack had no room: the picture is of no use
-  // Memory: a line of eight words of 64 bits, of nodes or of attributes.
+  output reg                   failed,          // full stack: the picture is useless
+  // Memory: lines of eight 64-bit words.
   output                       fetch,
   output                       fetch_attribute,
   output [`NODE_BITS-4:0]      fetch_line,
   input                        fill,
   input [63:0]                 fill_word,
-  // Pixels: which sample, the node that it shows, the voxel's lowest corner and level, its attributes.
+  // Pixels: sample, node, the voxel's lowest corner and level, attributes.
   output                       pixel,
   output [`PLACE_BITS-1:0]     pixel_x, pixel_y,
   output [`NODE_BITS-1:0]      pixel_node,
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute,
-  // Where it is SHARED, of each context: the tile, from `start` on; requests, which stay until they are taken; answers.
+  // SHARED, per context: the tile, from `start` on; requests, held until taken, and answers.
   input [CONTEXTS*`PLACE_BITS-1:0] tile_x, tile_y,
   output [CONTEXTS-1:0]        node_request, attribute_request,
   output [CONTEXTS*`NODE_BITS-1:0] wanted_node,
@@ -58,7 +51,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   input                        shared_pixel_taken,
   input [CONTEXTS*64-1:0]      shared_node_word, shared_attribute_word);
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, V = `WIDE_BITS;
-  // One coordinate of a record's vertices, and what else it has in the picture.
+  // Bits of one coordinate of a cage, and of the stage's own fields of a record.
   localparam CAGE = `CAGE_WORDS*W, MORE = `MORE_BITS;
 
   // ---------------------------------------------------------------- constants of the frame
@@ -75,17 +68,17 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     POPPED = 8, FILLED = 9, OPEN = 10, NODE = 11, VERDICT = 12, WALK = 13, WALKED = 14, BACK = 15, CENTRE = 16,
     ORDER = 17, POOL = 18, CHILD = 19, DRAWN = 20, ATTRIBUTE = 21, SHOW = 22, PIXEL = 23, MARK = 24, ABOVE = 25,
     SET = 26, DONE = 27, ROOT = 28;
-  // Those of the stage are numbers from 32 on.
+  // Those of the stage begin at 32.
   reg [5:0] state;
   assign done = state == DONE;
 
-  // ---------------------------------------------------------------- whose turn it is
+  // ---------------------------------------------------------------- the running context
   localparam CONTEXT_LOG2 = $clog2(CONTEXTS), BITS_OF_CONTEXT = CONTEXT_LOG2 == 0 ? 1 : CONTEXT_LOG2;
   reg [BITS_OF_CONTEXT-1:0] running;
   reg [P-1:0]  tile_x_now, tile_y_now;
   reg [63:0]   node_word_now, attribute_word_now;
 
-  // ---------------------------------------------------------------- the record that has its turn
+  // ---------------------------------------------------------------- the current record
   reg              r_solid, r_inside;
   reg [L-1:0]      r_level, r_voxel_level, r_quad_level;
   reg [N-1:0]      r_node;
@@ -95,7 +88,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   reg signed [W-1:0] r_w_min;
   reg [MORE-1:0]   r_more;
 
-  // The child in the making. While a record's samples are searched, its box and a node of the picture.
+  // The current child; during a search, the record's box and a picture node.
   reg              c_solid, c_inside;
   reg [L-1:0]      c_level, c_voxel_level, c_quad_level;
   reg [N-1:0]      c_node;
@@ -105,7 +98,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   reg signed [W-1:0] c_w_min;
   reg [MORE-1:0]   c_more;
 
-  // The one of the two that is drawn or subdivided, as the stage has it; and a node of the picture that may be full.
+  // The one that is drawn or subdivided, and the picture node of the full test, by the stage.
   wire [L-1:0]     t_level, t_voxel_level, t_quad_level, asked_level;
   wire [N-1:0]     t_node;
   wire [P-1:0]     t_quad_x, t_quad_y, asked_x, asked_y;
@@ -113,14 +106,13 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire signed [W-1:0] t_w_min;
   wire [MORE-1:0]  t_more;
 
-  // ---------------------------------------------------------------- memories on the chip
-  reg [STACK_LOG2:0] stacked;                   // entries of the stack, which the stage has
+  // ---------------------------------------------------------------- on-chip memories
+  reg [STACK_LOG2:0] stacked;                   // entries on the stage's stack
   wire stack_full = stacked[STACK_LOG2];
   wire [STACK_LOG2-1:0] top = stacked[STACK_LOG2-1:0] - 1'b1;
 
-  // Fill vectors of the tile, level by level, row by row, without the levels that a stage has in another memory. The
-  // first of a level is 0101..01, as many ones as levels. Behind them those of the nodes above the tile.
-  // Of a tile of one level nothing is joined.
+  // The tile's fill vectors by level and row, without joined levels, then those of nodes above the tile. Level n starts
+  // at 0101..01 with n ones. A tile of one level joins nothing.
   localparam VECTOR_LEVELS = PICTURE_LEVELS - TILE_LEVELS - `JOINED_LEVELS,
     LAST_VECTORS = `JOINED_LEVELS != 0 && VECTOR_LEVELS < 1 ? 1 : VECTOR_LEVELS;
   localparam TILE_WORDS = ((1 << (2*LAST_VECTORS + 2)) - 1) / 3;
@@ -135,10 +127,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         + ((y & ~({P{1'b1}} << (level - TILE_LEVELS))) << (level - TILE_LEVELS))
         + (x & ~({P{1'b1}} << (level - TILE_LEVELS)));
   endfunction
-  wire [3:0] vector, vector_there;              // of the node asked for; what this memory has of it
-  wire       known;                             // without a read
-  wire       elsewhere;                         // in the stage's memory
-  wire [L-1:0] last_level;                      // that has vectors, or words of the stage
+  wire [3:0] vector, vector_there;              // of the requested node; as stored here
+  wire       known;                             // no read needed
+  wire       elsewhere;                         // stored by the stage
+  wire [L-1:0] last_level;                      // with vectors or words
   reg  [3:0] marked;                            // what is written next
   wire       marked_all;
   reg  [3:0] outside_picture;
@@ -154,7 +146,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .address({{CONTEXT_LOG2{1'b0}}, fill_address} << CONTEXT_LOG2 | running),
     .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
 
-  // A new frame's vectors: a quadrant is full from the start if its first sample is beside the picture.
+  // Initial vectors: quadrants whose first sample is outside the picture are full.
   integer q;
   reg [P:0] first_x, first_y;
   always @*
@@ -166,11 +158,11 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         first_y = first_y + (q[1] ? 1 << (levels - c_quad_level) >> 1 : 0);
       end
       outside_picture[q] = first_x >= {1'b0, width} | first_y >= {1'b0, height};
-      // Above the tile all is full but the way to it.
+      // Above the tile, only the path to it is not full.
       if (c_quad_level < TILE_LEVELS)
         outside_picture[q] = q != {below_y[0], below_x[0]};
     end
-  // The tile's first node on a level, or the one above it.
+  // The tile's first node on a level, or its ancestor.
   function [P-1:0] way(input [P-1:0] of_tile, input [L-1:0] level);
     reg [P+TILE_LEVELS-1:0] shifted;
     begin
@@ -188,7 +180,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire        node_taken, node_ready, attribute_taken, attribute_ready, pixel_taken;
   wire [63:0] node_word, attribute_word;
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
-  wire [N-1:0] node_place;                      // of the word that is read of it, as the stage has them
+  wire [N-1:0] node_place;                      // of its word, by the stage
   generate
     if (SHARED) begin : shared
       assign node_taken = |(shared_node_taken & runs), attribute_taken = |(shared_attribute_taken & runs);
@@ -230,12 +222,11 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   object_cage #(W) cage_y (.corner(origin[W +: W]), .edges(edges[3*W +: 3*W]), .cage(object_y));
   object_cage #(W) cage_w (.corner(origin[0 +: W]), .edges(edges[0 +: 3*W]), .cage(object_w));
 
-  // ---------------------------------------------------------------- is a record full
   wire full;
   filled is_filled (.vector(vector), .full(full));
 
   // ---------------------------------------------------------------- children
-  // Of the record that is subdivided: which children it has, and where they begin.
+  // Children of the subdivided record, and the first one's number.
   reg [7:0]   mask;
   reg [N-1:0] first;
   wire [3*W-1:0] centre_now;
@@ -245,46 +236,43 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [23:0] order_now;
   octant_order #(W) order_of (.centre(middle), .eye_floor(eye_floor), .octant(octant_now), .child(order_now));
   reg  [23:0] order;                            // the nearest highest
-  // Children by their place in the order, the farthest (place 7) lowest: which there are, which are left,
-  // and are after the next one had its turn. The stage says which that is.
+  // Children, the farthest lowest: left, existing, and left after the next one, which the stage selects.
   reg  [7:0] left;
   reg  [7:0] there;
   reg  [2:0] octant;
   reg  [7:0] left_after;
   wire       any_left;
-  wire [23:0] order_used;                       // `order`, or what is about to be
+  wire [23:0] order_used;                       // `order`, or its next value
   integer r;
   always @*
     for (r = 0; r < 8; r = r + 1)
       there[r] = r_solid | mask[order_used[3*r +: 3]];
-  // Children before this one in the node's list.
   wire [7:0] earlier = mask & ~(8'hff << octant);
   wire [3:0] count = earlier[0] + earlier[1] + earlier[2] + earlier[3] + earlier[4] + earlier[5] + earlier[6];
   wire [CAGE-1:0] child_x, child_y, child_w;
   wire [3*W-1:0] child_min, child_max;
   child_corners #(W) corners (.min(r_min), .max(r_max), .centre(middle), .octant(octant),
     .child_min(child_min), .child_max(child_max));
-  // The least and greatest depth, of the child or of the object.
   wire signed [W-1:0] w_low, w_high;
   child_span #(W) span_w (.child(state == OBJECT_BOX ? c_w : child_w), .low(w_low), .high(w_high));
 
   wire lod_look_up;                             // of the depth of a level
   wire [L-1:0] lod_level;
 
-  // ---------------------------------------------------------------- a box down the picture's quadtree
+  // ---------------------------------------------------------------- fit: a box down the image quadtree
   reg  fresh;                                   // the node's edges are not tested yet
   wire box_outside_now, box_enclosed, box_near, rejected, single;
   wire [3:0] overlapped;
   wire [1:0] only;
   wire [CAGE-1:0] inner_x, inner_y;
-  wire [1:0] quadrant;                          // to go on in
+  wire [1:0] quadrant;                          // to continue in
   wire box_outside = fresh & ~c_inside & box_outside_now;
   node_choice choice (.overlapped(overlapped), .vector(vector), .rejected(rejected), .single(single),
     .quadrant(only));
   wire inside_now = c_inside | fresh & box_enclosed;
   wire goes_down = single & c_quad_level < levels & (inside_now | c_screen | box_near);
 
-  // A search down the quadtree: by level the quadrants that are left.
+  // A search down the quadtree: quadrants left per level.
   reg  [4*(PICTURE_LEVELS + 1)-1:0] waiting;
   wire [3:0] open = ~vector;
   reg  [L-1:0] back_level;                      // the deepest level that has some left
@@ -320,16 +308,15 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   assign pixel_level = t_voxel_level;
   assign pixel_attribute = attribute_word;
 
-  // ---------------------------------------------------------------- what comes next
+  // ---------------------------------------------------------------- next state
   wire [5:0] next_record = stacked == 0 ? DONE : POP;
-  wire [5:0] next_child = any_left ? CHILD : next_record;    // after this one had its turn
+  wire [5:0] next_child = any_left ? CHILD : next_record;
 
   task go_to_quadrant(input [1:0] to);
     begin
       c_quad_level <= c_quad_level + 1'b1;
       c_quad_x <= {c_quad_x[P-2:0], to[0]};
       c_quad_y <= {c_quad_y[P-2:0], to[1]};
-      // Screen positions are those in the picture, whatever the node.
       if (~c_screen) begin
         c_x <= inner_x;
         c_y <= inner_y;
@@ -348,7 +335,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     end
   endtask
 
-  // A node whose vector is there: the box goes on in a quadrant, or belongs here.
+  // The node's vector is known: reject the box, continue in a quadrant, or accept it.
   task choose;
     if (rejected) begin
       left <= left_after;
@@ -361,7 +348,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       accept;
   endtask
 
-  // ---------------------------------------------------------------- the stage's own; other contexts
+  // ---------------------------------------------------------------- stage and contexts
   `include "parts.vh"
   `include "contexts.vh"
   localparam KEPT = 6 + `KEPT_BITS, WAITING = 4*(PICTURE_LEVELS + 1);
@@ -472,7 +459,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= ROOT;
           else
             draw_on;
-        // Of a picture of one sample: is it full? Elsewhere the vector above is read meanwhile.
+        // Only for a picture of one sample. Others read the vector above in this cycle.
         ROOT: draw_on;
         ABOVE: state <= SET;
         SET: begin

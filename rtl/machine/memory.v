@@ -1,4 +1,4 @@
-// A memory of one port, read in a cycle: what is asked for in one cycle is there in the next.
+// A single-port memory. Data follows `read` by one cycle.
 module memory #(parameter BITS = 4, WORDS = 16, ADDRESS = 4) (
   input                  clk, read, write,
   input  [ADDRESS-1:0]   address,

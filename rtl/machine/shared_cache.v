@@ -1,14 +1,12 @@
 `include "widths.vh"
-// A cache for several users, which are contexts of lanes: words of 64 bits in lines of eight, set-associative, least
-// recently used goes first.
+// A set-associative LRU cache for several users (contexts of lanes): 64-bit words in lines of eight.
 //
-// A user's request is `taken` when it is that one's turn, and looked up. On a hit the user is `ready` in the next
-// cycle, with its word, which stays until its next request. Else it is `ready` when its line is there; until then
-// others are served, and who wants a word of a line that is on its way waits for it, too. An access takes
-// two cycles, so that memories of one port are enough: one reads, the other writes the order of use, or takes a
-// miss to the outside, for as long as that is not `fetch_taken`. No access begins while a line comes in.
+// Requests are `taken` in order of arrival. After a hit the user is `ready` in the next cycle, and its word stays until its
+// next request. After a miss it is `ready` when the line arrives. Meanwhile others are served, and a request to a line in
+// flight merges with that miss.
 //
-// Lines come in the order in which they were fetched: eight words in order (`fill`) each.
+// An access takes two cycles, so that single-port memories suffice: one reads, the other writes the order of use or sends
+// the miss, until `fetch_taken`. No access begins while a line arrives. Lines arrive in order, as eight words (`fill`).
 module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                     clk, reset,
   input  [USERS-1:0]        request,
@@ -23,10 +21,9 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   localparam WAYS = 1 << WAYS_LOG2, SETS = 1 << SETS_LOG2;
   localparam TAG = ADDRESS - 3 - SETS_LOG2;
   localparam ORDER = WAYS*WAYS_LOG2;
-  // Lines on their way: one a user at most.
+  // Lines in flight: at most one per user.
   localparam E = USERS > 1 ? $clog2(USERS) : 1, ENTRIES = 1 << E;
 
-  // ---------------------------------------------------------------- whose turn it is
   reg                 looking;              // an access is in its second cycle, or later
   wire                look = |taken;
   wire [USERS-1:0]    unused_first;
@@ -44,7 +41,7 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   wire [SETS_LOG2-1:0] set = at[3 +: SETS_LOG2];
   wire [TAG-1:0]      tag = at[ADDRESS-1 -: TAG];
 
-  // ---------------------------------------------------------------- lines on their way, the oldest at `oldest`
+  // ---------------------------------------------------------------- lines in flight
   reg [ADDRESS-4:0]   entry_line [0:ENTRIES-1];
   reg [WAYS_LOG2-1:0] entry_way [0:ENTRIES-1];
   reg [E-1:0]         oldest;
@@ -87,7 +84,7 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
     .data_out(stored));
 
   // ---------------------------------------------------------------- answers
-  // Whether the line that was hit is on its way: the last one of that number and way.
+  // Is the hit line in flight? Its last entry counts.
   reg         on_its_way;
   reg [E-1:0] entry;
   integer k;

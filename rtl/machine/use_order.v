@@ -1,5 +1,4 @@
-// Of the ways of a set, in order of use with the last used lowest: the one that has the line, or where none has the
-// least recently used; and the order after its use.
+// LRU, the last used lowest: the way that has the line, or the least recently used one, and the order after its use.
 module use_order #(parameter WAYS_LOG2 = 2, WAYS = 1 << WAYS_LOG2, ORDER = WAYS*WAYS_LOG2) (
   input [ORDER-1:0]         now,
   input [WAYS-1:0]          has_line,
@@ -13,7 +12,6 @@ module use_order #(parameter WAYS_LOG2 = 2, WAYS = 1 << WAYS_LOG2, ORDER = WAYS*
       if (has_line[now[k*WAYS_LOG2 +: WAYS_LOG2]]) place = k;
   end
   assign way = now[place*WAYS_LOG2 +: WAYS_LOG2];
-  // That way comes first, those before it move on by one.
   always @* begin
     used = now;
     used[0 +: WAYS_LOG2] = way;

@@ -1,6 +1,6 @@
 `include "widths.vh"
 `include "stage.vh"
-// One coordinate of a clip-space cage relative to the node above: undoes what half_clip did, exactly.
+// One coordinate of a clip-space cage relative to the node above: the exact inverse of half_clip.
 module whole_clip #(parameter W = `WORD_BITS) (
   input  [`CAGE_WORDS*W-1:0] x, w,
   input                      right,

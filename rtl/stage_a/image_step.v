@@ -1,13 +1,13 @@
 `include "widths.vh"
-// A box against a node of the image quadtree: its edges, its bisectors, and the box relative to each
-// half. In clip space boxes are relative to the node; in screen space to the picture. SPEC.md, 6.
+// A box against a picture node: edges, bisectors, and the box relative to each half. Boxes are relative to the node in clip
+// space, to the picture in screen space. SPEC.md, 6.
 module image_step #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   input                    screen,
   input [8*W-1:0]          x, y, w,
   input [4*W-1:0]          spans,             // x low, x high, y low, y high
   input [`PLACE_BITS-1:0]  node_x, node_y,
   input [`LEVEL_BITS-1:0]  below,
-  input [1:0]              quadrant,          // y << 1 | x: where to go
+  input [1:0]              quadrant,          // y << 1 | x
   output                   outside, enclosed,
   output [3:0]             overlapped,
   output [8*W-1:0]         inner_x, inner_y,  // relative to the quadrant, in clip space

@@ -1,6 +1,5 @@
 `include "widths.vh"
-// One coordinate of the object's eight vertices, of its lowest corner and its edges along x, y, z. Vertex 0
-// is the highest word.
+// One coordinate of the object's eight vertices, vertex 0 highest, from its lowest corner and edges.
 module object_cage #(parameter W = `WORD_BITS) (
   input  [W-1:0]   corner,
   input  [3*W-1:0] edges,

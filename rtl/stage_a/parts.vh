@@ -1,16 +1,14 @@
-// Stage A: the machine of the image-order paper (`--paper`: corners, coverage any, infinite tolerance). What it has
-// in machine.v: the change to screen space, boxes there, samples drawn where a box or a centre is.
+// Stage A (`--paper`): the change to screen space, boxes there, and samples of boxes and centres.
 `include "children.vh"
 `include "search.vh"
 
-// Of a record: whether it is in screen space, and its box there, x low, x high, y low, y high.
+// A record's screen-space flag and box: x low, x high, y low, y high.
 wire             r_screen = r_more[4*W], c_screen = c_more[4*W];
 wire [4*W-1:0]   r_spans = r_more[4*W-1:0], c_spans = c_more[4*W-1:0];
 wire [MORE-1:0]  object_more = {MORE{1'b0}}, inner_more = c_more;
 wire [MORE-1:0]  child_more = r_screen ? {1'b1, x_low, x_high, y_low, y_high} : {MORE{1'b0}};
 
-// The rest of an entry of the stack. What only one of the poses has shares its bits: in screen space w and w_min are
-// 0, in clip space the box.
+// The rest of a stack entry. The box shares bits with w and w_min, which are 0 in screen space.
 localparam VOXEL_LEVEL = $clog2(DEPTH + 1);
 wire                   p_screen;
 wire [VOXEL_LEVEL-1:0] p_voxel;
@@ -24,11 +22,11 @@ assign p_more = p_screen ? {1'b1, p_pose[5*W +: 4*W]} : {MORE{1'b0}};
 
 localparam CHANGE = 32, DIVIDE = 33, MOVE = 34, MIDDLE = 35, HALVE = 36, DRAW = 37;
 
-// ---------------------------------------------------------------- does a record change to screen space
+// ---------------------------------------------------------------- change to screen space
 wire deep, guarded;
 wire [1:0] guard;
 change_depth #(W) is_deep (.w_min(r_w_min), .least(near), .deep(deep));
-// Four pictures, at the root of the quadtree; below it no box leaves its node by more than its width.
+// Four widths at the root. Below it, boxes leave their node by at most one.
 change_guard #(W) guard_x (.x(r_x), .w(r_w), .places(-8'sd2), .enclosed(guard[0]));
 change_guard #(W) guard_y (.x(r_y), .w(r_w), .places(-8'sd2), .enclosed(guard[1]));
 assign guarded = r_inside | r_quad_level != 0 | &guard;
@@ -38,18 +36,18 @@ wire [8*W-1:0] screen_x, screen_y;
 to_screen #(W, F) change (.clk(clk), .start(state == CHANGE & changes), .x(r_x), .y(r_y), .w(r_w),
   .below(levels - r_quad_level), .node_x(r_quad_x), .node_y(r_quad_y), .last(divided),
   .screen_x(screen_x), .screen_y(screen_y));
-// The box of what changed, or of a child there.
+// Box of the changed record or of a screen-space child.
 wire signed [W-1:0] x_low, x_high, y_low, y_high;
 child_span #(W) span_x (.child(state == MOVE ? screen_x : child_x), .low(x_low), .high(x_high));
 child_span #(W) span_y (.child(state == MOVE ? screen_y : child_y), .low(y_low), .high(y_high));
 wire behind = ~(state == CHILD & r_screen) & w_high < near;
 
-// ---------------------------------------------------------------- a box against a node of the picture
+// ---------------------------------------------------------------- fit
 image_step #(W, F) box (.screen(c_screen), .x(c_x), .y(c_y), .w(c_w), .spans(c_spans), .node_x(c_quad_x),
   .node_y(c_quad_y), .below(levels - c_quad_level), .quadrant(quadrant), .outside(box_outside_now),
   .enclosed(box_enclosed), .overlapped(overlapped), .inner_x(inner_x), .inner_y(inner_y), .near(box_near));
 
-// ---------------------------------------------------------------- the verdict
+// ---------------------------------------------------------------- verdict
 // A solid in screen space at the bound is drawn untested.
 wire untested = r_level >= level_bound;
 wire draw_box, draw_centre, subdivide, look_hidden;
@@ -74,14 +72,14 @@ wire signed [W-1:0] half_x, half_y;
 centre_half #(W) half_of_x (.value(m_x), .w(m_w), .right(right), .inner(half_x));
 centre_half #(W) half_of_y (.value(m_y), .w(m_w), .right(lower), .inner(half_y));
 
-// ---------------------------------------------------------------- samples that are drawn
-reg to_draw;                                    // a sample that is found is drawn; else the record is not hidden
+// ---------------------------------------------------------------- drawing
+reg to_draw;                                    // draw the sample that is found; else it shows that the record is visible
 wire [5:0] found_sample = to_draw ? DRAW : CENTRE;
 wire draw_read = state == DRAW | state == WALK;
 wire [L-1:0] draw_level = c_quad_level;
 wire [P-1:0] draw_x = c_quad_x, draw_y = c_quad_y;
 
-// A record that is not full.
+// After the full test.
 task take_up;
   begin
     to_draw <= r_screen & r_solid & untested;
@@ -92,7 +90,7 @@ task take_up;
   end
 endtask
 
-// After its verdict.
+// After the verdict.
 task judge;
   if (draw_box) begin
     to_draw <= 1;

@@ -1,5 +1,5 @@
-// The search for an undrawn sample in a box, down the quadtree of the picture: to draw it, or to know that a record is
-// not hidden. The other stages have none: B never makes it (docs/rtl.md, Cycles), C looks for a sample in a silhouette.
+// Searches a box for an undrawn sample, to draw it or to know that the record is visible. Stage B never does this
+// (docs/rtl.md, Cycles); C searches an outline.
 wire [3:0] found = overlapped & open;
 wire [3:0] chosen_from = state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
 assign quadrant = state != WALKED & state != BACK ? only :

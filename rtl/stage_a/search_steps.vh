@@ -1,4 +1,3 @@
-// States of the search.
 WALK: state <= WALKED;
 WALKED:
   if (c_quad_level == levels & |open)

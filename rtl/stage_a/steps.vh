@@ -1,4 +1,3 @@
-// Stage A's states.
 `include "children_steps.vh"
 `include "search_steps.vh"
 CHANGE: state <= changes ? DIVIDE : r_solid ? VERDICT : NODE;

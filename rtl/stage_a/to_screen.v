@@ -1,7 +1,6 @@
 `include "widths.vh"
-// The change of a record to screen space: sixteen dividers, one for each vertex and coordinate; then
-// quotients are moved to the node's place in the picture. SPEC.md, 5.
-// `start` loads; the results stand from the cycle after `last` on.
+// Changes a record to screen space: sixteen dividers, one per vertex and coordinate, then the move to the node's place.
+// Results are valid from the cycle after `last`. SPEC.md, 5.
 module to_screen #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   input                    clk, start,
   input  [8*W-1:0]         x, y, w,
@@ -14,7 +13,7 @@ module to_screen #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   wire [1:0] place;
   divide_control control (.clk(clk), .start(start), .fraction_bits(fraction_bits), .step(step),
                           .place(place), .fraction(fraction), .last(last));
-  // The node's left edge, less the 4 that quotients have too much.
+  // The node's edge, less the 4 added by the dividers.
   wire [W-1:0] column = node_x, row = node_y;
   wire [W-1:0] left = (column - 4) << below << F;
   wire [W-1:0] top  = (row - 4) << below << F;

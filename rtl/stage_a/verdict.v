@@ -1,6 +1,6 @@
 `include "widths.vh"
-// The drawing rule `any`: what is done with a record whose node was read. SPEC.md, 7.
-// One of the outputs is set, or none: the record is dropped.
+// Drawing rule `any` for a record whose node was read. SPEC.md, 7. At most one of draw_box, draw_centre and subdivide is
+// set; without one, the record is dropped.
 module verdict #(parameter W = `WORD_BITS) (
   input                    screen, solid_before, leaf, in_node,
   input [`LEVEL_BITS-1:0]  level, quad_level,

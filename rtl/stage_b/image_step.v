@@ -1,10 +1,9 @@
 `include "widths.vh"
-// A box against a node of the image quadtree: its edges, its bisectors, and the box relative to each half.
-// Only samples' centres count. SPEC.md, 6.
+// A box against a picture node: edges, bisectors, and the box relative to each half. Only sample centres count. SPEC.md, 6.
 module image_step #(parameter W = `WORD_BITS) (
   input [4*W-1:0]          x, y, w,
   input [`LEVEL_BITS-1:0]  below,
-  input [1:0]              quadrant,          // y << 1 | x: where to go
+  input [1:0]              quadrant,          // y << 1 | x
   output                   outside, enclosed,
   output [3:0]             overlapped,
   output [4*W-1:0]         inner_x, inner_y,  // relative to the quadrant

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One coordinate of the object's cage: its lowest corner and its edges along x, y, z, as the host computed them.
+// One coordinate of the object's cage: corner and edges from the host.
 module object_cage #(parameter W = `WORD_BITS) (
   input  [W-1:0]   corner,
   input  [3*W-1:0] edges,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The frame's constants of silhouette planes: registers 128 on, two for each number, its low bits first.
+// Constants of silhouette planes: registers from 128 on, two per number, low bits first.
 module plane_constants #(parameter W = `WORD_BITS, V = `WIDE_BITS) (
   input            clk,
   input            write,

@@ -1,17 +1,15 @@
 `include "widths.vh"
-// The silhouette of a cube down the image quadtree: planes of its twelve edges, and of a cube that is not wholly
-// before the eye the plane through the eye on whose one side rays reach it. SPEC.md, 8.
+// A cube's silhouette down the image quadtree: planes of its twelve edges, and one through the eye unless the cube is
+// wholly in front of the eye. SPEC.md, 8.
 //
-// Two sets of constants: those of the node that was divided last, from which those of a quadrant are made, and
-// of the node that is looked at. `a` and `b` are the same in all nodes. A plane whose side is known in the divided node
-// stays as it was there, so that its number does not outgrow the word; so the sides are kept by level.
-//
-// CONTEXTS have all of that in turns: on `switch` it goes on with what is kept of the `next` one.
+// There are two sets of constants: `of_divided` of the node divided last, from which its quadrants derive, and `here`. `a`
+// and `b` are the same in all nodes. A plane whose side is known keeps its constant, so that it fits the word; therefore
+// sides are kept per level. On `switch` all this is saved, and that of context `next` restored.
 module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10, CONTEXTS = 1, CONTEXT = 1) (
   input                        clk,
   input                        switch,
   input [CONTEXT-1:0]          running, next,
-  // Of a record's cube; the node looked at is the record's.
+  // Start with a record's cube and node.
   input                        load,
   input [9*V-1:0]              edge_abc,    // along x, y, z
   input [6*V-1:0]              axis_ab,
@@ -19,12 +17,12 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
   input [`LEVEL_BITS-1:0]      side,        // log2 of the cube's side
   input [3*W-1:0]              min, max, eye_floor, eye_ceil,
   input                        positive, before_eye,
-  // The node looked at is divided; a quadrant of it is looked at; back from a quadrant to the node above.
+  // Divide the current node, move to a quadrant, or climb to the node above.
   input                        divide, move, climb,
   input [`LEVEL_BITS-1:0]      level,
   input [1:0]                  quadrant,    // into which, or out of which
   output reg [`LEVEL_BITS-1:0] divided,     // level of the divided node
-  input                        sample,      // the node looked at is one
+  input                        sample,      // the current node is one
   output [1:0]                 coverage);      // of it: 0 none, 1 some, 2 all
   localparam PLANES = 13;                   // the last is the plane through the eye
 
@@ -47,7 +45,7 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
   reg has_front;
   reg [1:0] wanted;                                        // side of the plane through the eye
   reg [2*PLANES-1:0] sides;                                // in the divided node
-  reg [2*PLANES*(PICTURE_LEVELS + 1)-1:0] sides_of_level;  // in those divided on the way to it
+  reg [2*PLANES*(PICTURE_LEVELS + 1)-1:0] sides_of_level;  // in its divided ancestors
   wire [2*PLANES-1:0] sides_above = sides_of_level[2*PLANES*(divided - 1'b1) +: 2*PLANES];
   wire [2*PLANES-1:0] sides_here;
   genvar i;

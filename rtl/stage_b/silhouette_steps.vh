@@ -1,4 +1,4 @@
-// States of stages B and C: a silhouette down the image quadtree. What is looked at alone is not changed.
+// States of stages B and C: a silhouette down the image quadtree. A search does not change the child's node.
 SOLID: begin
   waiting <= 0;
   whole <= 0;

@@ -1,7 +1,6 @@
-// The silhouette of the record that has its turn, down the image quadtree, and what records have for it: stages B and
-// C.
+// Stages B and C: the current record's silhouette down the image quadtree.
 //
-// Of a record: the planes of its edges along x, y, z, and c of the planes across the axes.
+// Per record: planes of its edges along x, y, z, and c of the planes across the axes.
 wire             r_screen = 1'b0, c_screen = 1'b0;
 wire [6*V-1:0]   axis_ab;
 wire [3*V-1:0]   root_axis_c;
@@ -31,21 +30,21 @@ generate
   end
 endgenerate
 
-// ---------------------------------------------------------------- a box against a node of the picture
+// ---------------------------------------------------------------- fit
 wire behind = w_high <= 0;
 image_step #(W) box (.x(c_x), .y(c_y), .w(c_w), .below(levels - c_quad_level), .quadrant(quadrant),
   .outside(box_outside_now), .enclosed(box_enclosed), .overlapped(overlapped), .inner_x(inner_x),
   .inner_y(inner_y), .near(box_near));
 
-// ---------------------------------------------------------------- samples that are covered
-reg [L-1:0] s_level;                            // the node looked at
+// ---------------------------------------------------------------- covered samples
+reg [L-1:0] s_level;                            // the current node
 reg [P-1:0] s_x, s_y;
-reg         whole;                              // it lies in one all of whose samples are covered,
-reg [L-1:0] whole_level;                        // of this level
+reg         whole;                              // all samples of an ancestor are covered,
+reg [L-1:0] whole_level;                        // on this level
 wire [1:0]  side_coverage;
 wire [1:0]  coverage = whole ? 2'd2 : side_coverage;
 wire        sample = s_level == levels;
-// A node whose vector is there, which is to be divided; not a sample that is drawn.
+// A node to divide, whose vector is known; no sample to draw.
 wire        looked = state == COVERED | state == COVER & known & coverage != 0 & ~(sample & ~looks);
 wire        divides = looked & coverage == 1;
 wire [L-1:0] divided;
@@ -61,7 +60,7 @@ wire        draw_read = state == COVER & coverage != 0;
 wire [L-1:0] draw_level = s_level;
 wire [P-1:0] draw_x = s_x, draw_y = s_y;
 
-// Where to go on: in a quadrant of the node just read, or of the deepest that has some left.
+// Continue in a quadrant of the node just read, or of the deepest with some left.
 wire [3:0]  rest = looked ? open : waiting[4*back_level +: 4];
 wire [1:0]  next = rest[0] ? 2'd0 : rest[1] ? 2'd1 : rest[2] ? 2'd2 : 2'd3;
 wire [L-1:0] next_in = looked ? s_level : back_level;
@@ -76,7 +75,7 @@ task next_quadrant;
   end
 endtask
 
-// After a node that is not divided, or a sample.
+// After an undivided node or a sample.
 task draw_on;
   if (~back_any)
     state <= turn_over;
@@ -89,7 +88,7 @@ task draw_on;
   end
 endtask
 
-// A node of which samples are covered has quadrants that are not full: it is itself in one that is not.
+// The node has quadrants that are not full, because it lies in one.
 task divide_node;
   if (looks & coverage == 2)
     seen;

@@ -1,3 +1,2 @@
-// Stage B's states.
 `include "children_steps.vh"
 `include "silhouette_steps.vh"

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// The drawing rule `exact`: a record whose node was read is drawn if it is a solid, else subdivided. SPEC.md, 7.
+// Drawing rule `exact` for a record whose node was read: draw a solid, subdivide others. SPEC.md, 7.
 module verdict #(parameter W = `WORD_BITS) (
   input                    leaf,
   input signed [W-1:0]     w_min,

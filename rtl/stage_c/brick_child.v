@@ -1,5 +1,5 @@
-// Of a brick's child: which children it has, and how many voxels of the brick lie before them. A brick's bits: a byte
-// for each child; a leaf, whose byte is all ones, has no voxels of its own.
+// A brick's child: its mask, and the number of the brick's voxels before it. A brick has a byte per child. A leaf's byte is
+// all ones, and it has no voxels of its own.
 module brick_child (
   input  [63:0]    voxels,
   input  [7:0]     leaves,

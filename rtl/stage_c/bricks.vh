@@ -1,7 +1,6 @@
-// Bricks, if it is built with them (BRICKS): a node two levels above the finest voxels is two words, of the voxels
-// below it, a byte for each child, and then of where children and voxels begin. Its children are not read: their masks
-// are its bytes, and their children begin where so many voxels lie before them. The frame says whether its nodes are
-// laid out so, and which is the first brick; numbers of nodes are those of a memory without bricks.
+// Bricks (BRICKS): a node two levels above the finest voxels has two words, a byte of voxels per child, then its first
+// child and voxel. Its children are not read: the bytes are their masks, and counting earlier voxels gives their first
+// one. The frame sets whether nodes are laid out so, and the first brick. Node numbers are those without bricks.
 reg         laid_out;
 reg [N-1:0] first_brick;
 always @(posedge clk)
@@ -12,17 +11,17 @@ always @(posedge clk)
       default: ;
     endcase
 wire has_bricks = BRICKS != 0 & laid_out;
-// The child that has its turn is one, or a child of one, which is then the record that is subdivided.
+// The current child is a brick, or the child of a brick, which is then the subdivided record.
 wire is_brick = has_bricks & c_level + 2'd2 == depth;
 wire in_brick = has_bricks & c_level + 1'b1 == depth;
 
-// ---------------------------------------------------------------- its words, one after the other
+// ---------------------------------------------------------------- its two words
 reg  second;
 wire reads_voxels = state == READ & node_ready & is_brick & ~second;
 assign node_place = is_brick ? {c_node[N-2:0], 1'b0} - first_brick + second : c_node;
-reg [63:0]  voxels;                             // of the brick that is subdivided, or is being read
+reg [63:0]  voxels;                             // of the brick that is subdivided or read
 reg [N-1:0] first_voxel;
-reg [2:0]   c_octant;                           // of the child that has its turn
+reg [2:0]   c_octant;                           // of the current child
 wire [63:0]           p_voxels;
 wire [NODE_WIDTH-1:0] p_first_voxel;
 reg [64+N:0] brick_kept [0:CONTEXTS-1];
@@ -40,7 +39,7 @@ always @(posedge clk)
     if (state == CHILD) c_octant <= octant;
   end
 
-// ---------------------------------------------------------------- which children there are, and where they begin
+// ---------------------------------------------------------------- children
 function [7:0] children_in(input [63:0] bits);
   children_in = {|bits[63:56], |bits[55:48], |bits[47:40], |bits[39:32], |bits[31:24], |bits[23:16], |bits[15:8],
     |bits[7:0]};
@@ -48,12 +47,11 @@ endfunction
 wire [7:0] c_mask;
 wire [5:0] voxels_before;
 brick_child of_brick (.voxels(voxels), .leaves(leaves), .octant(c_octant), .mask(c_mask), .earlier(voxels_before));
-// Of the child that has its turn: leaves, mask, first.
 wire [47:0] c_of_node = in_brick ? {8'hff, c_mask, first_voxel + voxels_before} :
   is_brick ? {node_word[63:56], children_in(voxels), 4'd0, node_word[55:28]} : node_word[47:0];
 
 // ---------------------------------------------------------------- on the stack
-// Of a brick its voxels; of another node its mask in their place.
+// A brick's voxels, or another node's mask.
 localparam OF_NODE = BRICKS != 0 ? 64 + NODE_WIDTH + 8 : 16;
 wire [OF_NODE-1:0] r_of_node, p_of_node;
 wire [7:0] p_mask, p_leaves;

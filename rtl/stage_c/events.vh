@@ -1,5 +1,4 @@
-// Events of a stack with the way to parents: of a parent the children that are left, the nearest lowest, its levels, and
-// whether its box lies inside; then records in registers, new ones and those worked back; fill vectors and words.
+// Events of a stack of parents, of new and recomputed records, and of fill vectors.
 if (`WALK.state == `WALK.POPPED) $fwrite(events, "%0d 0 %0d %h\n", `TILE, `WALK.stacked,
   {nearest_lowest(`WALK.p_left), 6'd0 | `WALK.p_level, 6'd0 | `WALK.p_quad_level, `WALK.p_inside});
 if (`WALK.state == `WALK.PUSH) $fwrite(events, "%0d 1 %0d %h\n", `TILE, `WALK.stacked,

@@ -1,6 +1,6 @@
-// Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, a bit a sample. The word
-// read last stays in a register as long as a record has its turn.
-wire         joined = levels >= TILE_LEVELS + 2;  // the tile has as many levels
+// Fill vectors of stage C: the lowest three levels are words of 16 bits, one per sample. The last word stays in a register
+// during a record's turn.
+wire         joined = levels >= TILE_LEVELS + 2;  // the tile has these levels
 wire [L-1:0] word_level = levels - 2'd2;
 assign last_level = joined ? word_level : levels;
 wire of_drawn = state == COVER | state == COVERED;
@@ -8,7 +8,7 @@ wire of_drawn = state == COVER | state == COVERED;
 assign elsewhere = joined & fill_level >= word_level;
 wire [L-1:0] below_word = fill_level - word_level;
 wire [P-1:0] word_x = fill_x >> below_word, word_y = fill_y >> below_word;
-// In the tile, row by row, as many columns as it has.
+// Row by row in the tile.
 localparam WORD_ADDRESS = 2*(PICTURE_LEVELS - TILE_LEVELS - 2) + CONTEXT_LOG2, WORDS = 32'd1 << WORD_ADDRESS;
 wire [L-1:0] columns_log2 = word_level - TILE_LEVELS;
 wire [P-1:0] row_in_tile = word_y & ~({P{1'b1}} << columns_log2);
@@ -20,7 +20,7 @@ memory #(.BITS(16), .WORDS(WORDS), .ADDRESS(WORD_ADDRESS)) fill_words (.clk(clk)
   .read(fill_read & elsewhere & ~known), .write(fill_write & elsewhere), .address(word_address),
   .data_in(state == CLEAR ? outside_word : written), .data_out(word_there));
 
-// The register: which word, and what was written to it since.
+// The register: a word's place, and its value once written.
 reg          has_word, is_written, marks_word, judged;
 reg  [P-1:0] has_x, has_y;
 reg  [15:0]  written;
@@ -39,7 +39,7 @@ always @(posedge clk)
       has_word <= 1;
       is_written <= 0;
     end
-    // A turn begins, also with the child after one that was drawn or hidden.
+    // A turn begins, also after a drawn or occluded child.
     if (state == OBJECT | state == POP | state == OPEN | state == CENTRE | state == CHILD & judged) has_word <= 0;
     if (state == SOLID) judged <= 1;
     if (state == CHILD | state == CENTRE) judged <= 0;
@@ -51,21 +51,20 @@ always @(posedge clk)
     if (state == MARK) marks_word <= 0;
   end
 
-// The vector of a node in the word: of its quadrants' samples; of its samples; of itself.
+// The vector of a node of 16, 4 or 1 samples.
 wire [3:0] quarter = word[4*{fill_y[0], fill_x[0]} +: 4];
 wire [3:0] around = word[4*{fill_y[1], fill_x[1]} +: 4];
 assign vector = ~elsewhere ? vector_there :
   below_word == 0 ? {&word[15:12], &word[11:8], &word[7:4], &word[3:0]} :
   below_word == 1 ? quarter : {4{around[{fill_y[0], fill_x[0]}]}};
 
-// Of a new picture: samples beside it. Bits: row and column of the quadrant, of the sample in that.
+// Initially set: samples outside the picture. Bits: row and column of the quadrant, then of the sample.
 integer of_word;
 always @*
   for (of_word = 0; of_word < 16; of_word = of_word + 1)
     outside_word[of_word] =
       {c_quad_x, of_word[2], of_word[0]} >= {2'b0, width} | {c_quad_y, of_word[3], of_word[1]} >= {2'b0, height};
 
-// A sample is drawn: its bit in the word, or its vector.
 task mark_sample;
   begin
     marked <= 4'b1111;

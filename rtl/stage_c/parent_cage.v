@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One coordinate of a parent's cage, from that of its child in an octant: undoes what grown_cage did.
+// One coordinate of a parent's cage: the inverse of grown_cage.
 module parent_cage #(parameter W = `WORD_BITS) (
   input  [4*W-1:0] child,
   input  [2:0]     octant,

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// A parent's silhouette planes, from those of its child in an octant: undoes what child_planes did. SPEC.md, 8.
+// A parent's silhouette planes: the inverse of child_planes. SPEC.md, 8.
 module parent_planes #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0]         edge_x, edge_y, edge_z,
   input  [2*V-1:0]         axis_x, axis_y, axis_z,

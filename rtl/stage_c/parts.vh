@@ -1,11 +1,10 @@
-// Stage C: exact coverage with frame cages as stage B, and the organisation of the best exact hardware. A record that
-// is subdivided stays in registers; a child is made when its turn comes, the nearest first. If samples of it can be
-// seen, its node is read, and it takes its parent's place; if children of that are left, the way to it goes to the
-// stack: where it is worked back from is the record that was in registers last.
+// Stage C: exact coverage as in stage B, organised as the best exact hardware. The subdivided record stays in registers.
+// Its children are made one at a time, the nearest first. A child with an undrawn sample is read and replaces its parent,
+// which goes to the stack if it has children left. A pop computes the parent back from the last record in registers.
 `include "silhouettes.vh"
 `include "joined_fill.vh"
 
-// ---------------------------------------------------------------- the record that has its turn: a child that was made
+// ---------------------------------------------------------------- the current record: a child
 assign t_level = c_level, t_voxel_level = c_level, t_quad_level = c_quad_level, t_node = c_node;
 assign t_quad_x = c_quad_x, t_quad_y = c_quad_y, t_min = c_min, t_max = c_max, t_w_min = c_w_min, t_more = c_more;
 reg  c_leaf;                                    // it has no children
@@ -13,11 +12,10 @@ reg  [7:0] leaves;                              // which of the parent's childre
 always @(posedge clk)
   if (state == OBJECT) c_leaf <= root_leaf | depth == 0;
   else if (state == CHILD) c_leaf <= r_level + 1'b1 >= depth | leaves[octant];
-// Level of detail: a node that deep is drawn.
 wire deep;
 assign lod_look_up = state == OBJECT | state == CHILD, lod_level = state == OBJECT ? {L{1'b0}} : r_level + 1'b1;
 detail_depth #(W) detail (.w_min(c_w_min), .least(lod_depth), .solid(deep));
-// Its silhouette is to be drawn; else one undrawn sample of it is looked for.
+// Draw its silhouette, or search it for an undrawn sample.
 reg  draws;
 wire looks = ~draws;
 wire [5:0] turn_over = |(left & there) ? CHILD : next_record;
@@ -60,8 +58,8 @@ grown_cage #(W) grown_x (.parent(r_x), .octant(octant), .child(child_x));
 grown_cage #(W) grown_y (.parent(r_y), .octant(octant), .child(child_y));
 grown_cage #(W) grown_w (.parent(r_w), .octant(octant), .child(child_w));
 
-// ---------------------------------------------------------------- the way back
-// Out of a quadrant, to the node of the picture above it.
+// ---------------------------------------------------------------- back to the parent
+// From a quadrant to the node above.
 wire [CAGE-1:0] outer_x, outer_y;
 wire [MORE-1:0] outer_more;
 whole_clip #(W) outer_of_x (.x(r_x), .w(r_w), .right(r_quad_x[0]), .outer(outer_x));
@@ -75,7 +73,7 @@ generate
       .quadrant({r_quad_y[0], r_quad_x[0]}), .outer_c(outer_more[e*V +: V]));
   end
 endgenerate
-// Up, to the parent, of which it is the child in an octant: a bit of its lowest corner.
+// From a child to its parent. Bits of the lowest corner give the octant.
 wire [L-1:0] octant_bit = depth + sub_levels - r_level;
 wire [2:0]   in_parent = {r_min[2*W + octant_bit], r_min[W + octant_bit], r_min[octant_bit]};
 wire [CAGE-1:0] parent_x, parent_y, parent_w;
@@ -99,12 +97,11 @@ generate
   end
 endgenerate
 
-// ---------------------------------------------------------------- for testbenches: what was just made
+// ---------------------------------------------------------------- for testbenches
 wire accepted = (state == CHOOSE | state == FIT & known & ~box_outside) & ~rejected & ~goes_down;
 reg  worked_back;
 always @(posedge clk) worked_back <= state == UP & r_level - 1'b1 == p_level;
 
-// A child that can be seen, by its box.
 task accept;
   begin
     left <= left_after;
@@ -113,7 +110,7 @@ task accept;
   end
 endtask
 
-// What is on the stack is not full.
+// After the full test.
 task take_up;
   begin
     {mask, leaves, left} <= {p_mask, p_leaves, p_left};
@@ -123,7 +120,7 @@ task take_up;
   end
 endtask
 
-// An undrawn sample of the child was found; then its node is known.
+// The child has an undrawn sample. In a brick its node is known.
 task seen;
   if (in_brick) go_down;
   else state <= NODE;
@@ -133,12 +130,11 @@ task go_down;
   else become_parent;
 endtask
 
-// The child takes its parent's place.
 task become_parent;
   begin
     {leaves, mask, first} <= c_of_node;
     left <= 8'hff;
-    // No solid is subdivided, so what the machine has for parts of one is not used.
+    // Solids are never subdivided.
     r_solid <= 0;
     r_node <= c_node;
     r_voxel_level <= c_level;

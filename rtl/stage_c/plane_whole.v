@@ -1,6 +1,5 @@
 `include "widths.vh"
-// The constant of a plane a x + b y + c in the coordinates of the node above: undoes what plane_quadrant did. Planes: a
-// highest.
+// A plane's constant in the coordinates of the node above: the inverse of plane_quadrant. Planes: a highest.
 module plane_whole #(parameter V = `WIDE_BITS) (
   input  [3*V-1:0] plane,
   input  [1:0]     quadrant,

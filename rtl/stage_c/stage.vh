@@ -1,17 +1,15 @@
-// Widths of stage C's records: a corner and three edges, and silhouette planes.
+// Widths of stage C's records: a corner and three edges, silhouette planes.
 `define CAGE_WORDS 4
 `define MORE_BITS (12*V)
-// Lowest levels of fill vectors that are not in the memory of vectors, but joined to words.
+// Lowest levels whose fill vectors are joined to words.
 `define JOINED_LEVELS 3
-// All fill vectors, in bits, of a machine.
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS + of.fill_words.BITS*of.fill_words.WORDS)
-// Log2 of the stack's entries: a parent on each level.
+// One parent per level.
 `define STACK_LOG2 5
-// What a context that waits has in registers, and its bits: a parent, the child in the making, how far they are.
+// Saved registers of a waiting context: a parent, its child, and their progress.
 `define HAS_CONTEXTS 1
 `define KEPT stacked, r_inside, r_level, r_quad_level, r_quad_x, r_quad_y, r_min, r_max, r_x, r_y, r_w, r_more, \
   c_inside, c_level, c_quad_level, c_node, c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_more, \
   middle, leaves, mask, first, order, left, s_level, s_x, s_y, whole, whole_level, draws
 `define KEPT_BITS (STACK_LOG2 + 6*L + 6*P + 2*N + 16*W + 6*CAGE + 2*MORE + 53)
-// Registers of constants.
 `define CONSTANTS 164

@@ -1,4 +1,3 @@
-// Stage C's states.
 `include "silhouette_steps.vh"
 VERDICT: begin
   draws <= deep;

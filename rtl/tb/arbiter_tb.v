@@ -1,5 +1,4 @@
-// Random requests to an arbiter, some of them new in the cycle after a grant; prints how often it served another than
-// the one who came first.
+// Random requests, some of them right after a grant; counts grants out of order.
 module arbiter_tb #(parameter N = 4);
   reg clk = 0, reset = 1, enable = 0;
   reg [N-1:0] request = 0;

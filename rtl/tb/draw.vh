@@ -1,4 +1,4 @@
-// Reads the frame, opens files, writes the constants and starts what draws.
+// Reads the frame, opens files, writes constants, starts the machine.
 $readmemh("frame.constants.hex", constants);
 $readmemh("frame.nodes.hex", nodes);
 pixels = $fopen("pixels.txt");

@@ -1,4 +1,4 @@
-// What every testbench that draws a frame has: it counts cycles and writes down pixels; draw.vh begins.
+// Common to testbenches of frames: counts cycles and writes pixels.
 integer events, pixels, i, cycles, most, nothing;
 reg has_events;
 function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);

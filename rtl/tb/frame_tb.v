@@ -1,16 +1,14 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame: writes the constants, starts the machine, answers its memory port, writes down what
-// happens. It runs in a folder that `shiftvox model --vectors` wrote under the stage's rules, of whose files it reads
-// frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
-// the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
-// Icarus Verilog) makes frame.vcd.
+// Draws a frame in a folder that `shiftvox model --vectors` wrote under the stage's rules. Reads frame.constants.hex and
+// frame.nodes.hex, writes pixels.txt and, with +events, events.txt, and prints the cycles. +most=N limits them, +states
+// prints cycles per state, +wave (Icarus Verilog) writes frame.vcd.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
                   NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;
-  // Cycles from the request of a line to its first word.
+  // Cycles from a request to the first word.
   localparam LATENCY = 50;
-  // Nodes that there is room for, records on the stack.
+  // Capacities of memory and stack.
   localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
@@ -33,7 +31,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
     .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  // ------------------------------------------------ memory: nodes, and their numbers as attributes
   reg [63:0] nodes [0:NODES-1];
   reg [W-1:0] constants [0:`CONSTANTS-1];
   integer wait_for, beat;

@@ -1,5 +1,5 @@
 `include "stage.vh"
-// Prints the bits of the memories of several lanes, as memories_tb.v those of one machine.
+// Prints the memory bits of several lanes, like memories_tb.v.
 module lanes_memories_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = 30,
                            DEPTH = LEVEL_BOUND, NODE_WIDTH = 32, BRICKS = 0);
   reg clk, reset, constant_write, start, fetch_ready, fill, pixel_ready;
@@ -25,7 +25,7 @@ module lanes_memories_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, P
     $display("attribute cache, tags: %0d",
       dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_tags.BITS*dut.attribute_cache.ways[0].of_tags.WORDS
       + dut.attribute_cache.of_order.BITS*dut.attribute_cache.of_order.WORDS + $bits(dut.attribute_cache.valid));
-    // The model has none: the depths of level of detail, a word a level, in each lane.
+    // Not in the model: depths of level of detail, a word per level and lane.
     $display("levels of detail: %0d", LANES*dut.lane[0].walk.constants.lod.BITS*dut.lane[0].walk.constants.lod.WORDS);
   end
 endmodule

@@ -1,13 +1,13 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame with several lanes, as frame_tb.v does with one machine; the memory takes another request while it
-// answers, a line every eight cycles. Events have the number of their tile before them.
+// Draws a frame with several lanes, like frame_tb.v. The memory takes a request every eight cycles and has several in
+// flight. Each event begins with its tile.
 module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
                   DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `lanes` has them
   localparam W = `WORD_BITS;
-  // Cycles from the request of a line to its first word, and of a line.
+  // Cycles from a request to the first word; per line.
   localparam LATENCY = 52, LINE = 8;
-  // Nodes that there is room for, records on a stack, lines on their way.
+  // Capacities: memory, stack, lines in flight.
   localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2, MOST = 64;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
@@ -35,7 +35,7 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
     .pixel_node(pixel_node), .pixel_voxel(pixel_voxel), .pixel_level(pixel_level),
     .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  // ------------------------------------------------ memory: nodes, and their numbers as attributes
   reg [63:0] nodes [0:NODES-1];
   reg [W-1:0] constants [0:`CONSTANTS-1];
   integer now, asked, answered, beat, due [0:MOST-1];

@@ -1,6 +1,6 @@
 `include "stage.vh"
-// Prints the bits of the machine's memories, under the names that the model has for them. The bits by which
-// a cache knows that a line is there are registers; they count with the tags, as the model counts them.
+// Prints the bits of the machine's memories under the model's names. A cache's valid bits are registers; they count with
+// the tags, as in the model.
 module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEVEL_BOUND, NODE_WIDTH = 32,
                      BRICKS = 0);
   reg clk, reset, constant_write, start, fill;
@@ -24,7 +24,7 @@ module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEV
     $display("attribute cache, tags: %0d",
       dut.own.attribute_cache.WAYS*dut.own.attribute_cache.ways[0].of_tags.BITS*dut.own.attribute_cache.ways[0].of_tags.WORDS
       + dut.own.attribute_cache.of_order.BITS*dut.own.attribute_cache.of_order.WORDS + $bits(dut.own.attribute_cache.valid));
-    // The model has none: the depths of level of detail, a word a level.
+    // Not in the model: depths of level of detail, a word per level.
     $display("levels of detail: %0d", dut.constants.lod.BITS*dut.constants.lod.WORDS);
   end
 endmodule

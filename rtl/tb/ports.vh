@@ -1,5 +1,4 @@
-// Writes down what `WALK, a machine, does in a cycle: the tile that it draws, the port, and what crosses it. The stage
-// has its stack and fill vectors.
+// Events of `WALK, a machine, in one cycle. The stage adds those of its stack and fill vectors.
 `include "events.vh"
 if (`WALK.asked_node) $fwrite(events, "%0d 4 %0d\n", `TILE, `WALK.node_place);
 if (`WALK.asked_attribute) $fwrite(events, "%0d 5 %0d\n", `TILE, `WALK.t_node);
