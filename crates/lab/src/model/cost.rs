@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
-use shiftvox::frame::quadtree::nodes_to;
+use super::range::Range;
 use shiftvox::project::FrameSetup;
 
 /// The tables, and the choices that counts leave open.
@@ -43,20 +43,13 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    /// All of it, pJ: value, and the ends of its range.
+    /// The sum, pJ.
     #[must_use]
-    pub fn total(&self) -> (f64, f64, f64) {
+    pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
-        parts.iter().fold((0.0, 0.0, 0.0), |sum, part| {
-            (sum.0 + part.total, sum.1 + part.low, sum.2 + part.high)
-        })
+        let parts = parts.into_iter().map(Range::from);
+        parts.fold(Range::default(), |sum, part| sum + part)
     }
-}
-
-/// Bits of the fill vectors of a picture: four for each node of its quadtree.
-#[must_use]
-pub fn fill_vector_bits(setup: &FrameSetup) -> u64 {
-    4 * nodes_to(setup.levels) as u64
 }
 
 /// Bits of a hardware's stacks.

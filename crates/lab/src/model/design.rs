@@ -1,7 +1,6 @@
 //! The light hardware's figures for a frame that was counted and simulated.
 
 use hwmodel::cycles::{CycleReport, Hardware};
-use hwmodel::memory::Widths;
 
 use super::ModelError;
 use super::area::{self, DesignArea, LightFrame};
@@ -14,8 +13,6 @@ use shiftvox::project::FrameSetup;
 /// What a frame costs on the light hardware, and what that hardware is.
 #[derive(Debug, Clone)]
 pub struct LightDesign {
-    /// Bits that accesses move.
-    pub widths: Widths,
     /// Energy and traffic.
     pub cost: FrameCost,
     /// Area.
@@ -49,7 +46,6 @@ impl LightDesign {
             cost: cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?,
             area: area::light(used, hardware, prices)?,
             clock: clock::check(&counted.counter, hardware, prices)?,
-            widths,
         })
     }
 }

@@ -1,11 +1,11 @@
-//! What every design must move to draw a frame from a graph in a node format, whatever it computes: the price of that
-//! is a floor under its energy.
+//! A lower bound on the energy of every design that draws a frame from a graph in a given node format. Every design must
+//! move:
 //!
-//! - the lines that hold the attributes of the voxels that are seen;
-//! - the lines that hold the nodes above them: without them nobody knows that they are there, and where;
+//! - the lines that hold the attributes of the visible voxels;
+//! - the lines that hold the nodes above them, which tell that they exist and where;
 //! - the pixels.
 //!
-//! Each line once, as with a cache that forgets nothing. Arithmetic and memories on the chip cost nothing here.
+//! Each line is fetched once, as by a cache of unlimited size. Arithmetic and memories on the chip cost nothing here.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,6 @@ use hwmodel::cycles::Hardware;
 use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
 
-use super::caches::{self, CacheRow};
 use super::cost::{OuterTraffic, outer_energy};
 use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
@@ -93,9 +92,7 @@ pub fn floor(
     let lines = |lines: usize, cache: &hwmodel::cycles::Cache| {
         8 * u64::from(cache.line_bytes) * lines as u64
     };
-    let price = |traffic: OuterTraffic| {
-        outer_energy(&traffic, table).map(|sum| Range::new((sum.total, sum.low, sum.high)))
-    };
+    let price = |traffic: OuterTraffic| outer_energy(&traffic, table).map(|sum| Range::from(&sum));
     let none = OuterTraffic::default();
     let nodes_pj = price(OuterTraffic {
         node_bits: lines(nodes.len(), &hardware.node_cache),
@@ -118,73 +115,6 @@ pub fn floor(
         pixels_pj,
         energy_pj: nodes_pj + attributes_pj + pixels_pj,
     })
-}
-
-/// Whether half of the ray caster's energy can be had with a node cache of one size.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct HalfRow {
-    /// Size of the node cache, bytes.
-    pub bytes: u32,
-    /// Half of the ray caster's energy, pJ.
-    pub half_pj: Range,
-    /// The floor under every design's energy, pJ.
-    pub floor_pj: Range,
-    /// What the light hardware takes, of the ray caster's energy.
-    pub light_share: f64,
-    /// What the floor alone takes of it.
-    pub floor_share: f64,
-    /// Whether the floor is above the half, at the low and at the high price of outer memory.
-    pub is_impossible: bool,
-}
-
-/// The floor beside the table over sizes of the node cache.
-#[must_use]
-pub fn halves(rows: &[CacheRow], floor: &Floor) -> Vec<HalfRow> {
-    rows.iter()
-        .map(|row| {
-            let (ray, floor_pj) = (row.best.energy_pj, floor.energy_pj);
-            let half_pj = ray.times(0.5);
-            HalfRow {
-                bytes: row.bytes,
-                half_pj,
-                floor_pj,
-                light_share: row.light.energy_pj.value / ray.value,
-                floor_share: floor_pj.value / ray.value,
-                is_impossible: floor_pj.low > half_pj.low && floor_pj.high > half_pj.high,
-            }
-        })
-        .collect()
-}
-
-/// What the table says of half of the ray caster's energy.
-#[must_use]
-pub fn sentence(rows: &[HalfRow], floor: &Floor) -> String {
-    let uj = |range: Range| range.value / 1e6;
-    let sizes = |impossible: bool| -> String {
-        let of = rows.iter().filter(|row| row.is_impossible == impossible);
-        let all: Vec<String> = of.map(|row| caches::size(row.bytes)).collect();
-        all.join(", ")
-    };
-    let mut text = format!(
-        "Every design must move {:.0} uJ: attributes of what is seen {:.0}, the nodes above it {:.0}, pixels {:.0}",
-        uj(floor.energy_pj),
-        uj(floor.attributes_pj),
-        uj(floor.nodes_pj),
-        uj(floor.pixels_pj),
-    );
-    if rows.iter().any(|row| row.is_impossible) {
-        text += &format!(
-            ". That alone is more than half of the ray caster's energy with node caches of {}",
-            sizes(true)
-        );
-    }
-    if rows.iter().any(|row| !row.is_impossible) {
-        text += &format!(
-            ". It leaves room for half of the ray caster's energy with node caches of {}",
-            sizes(false)
-        );
-    }
-    text + "."
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{Machine, MachineOptions, Simulated, narrowed};
 use shiftvox::picture::{Shading, lights};
-use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
+use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 use shiftvox::rays::Rays;
 
 /// What was counted while a frame was drawn.
@@ -147,24 +147,6 @@ pub fn count_operations(
     Ok((frame, counter, stats))
 }
 
-/// Draws a frame and counts what its operations and area are priced by.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
-pub fn count_priced(
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    organisation: Organisation,
-    overflow: Overflow,
-) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
-    let setup = &*in_words(setup, organisation);
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let probes = (Counter::new(), ShiftProbe::new());
-    let mut machine = machine(overflow, organisation);
-    let (stats, (counter, shifts)) = machine.render_probed(graph, setup, &mut frame, probes)?;
-    Ok((frame, counter, shifts, stats))
-}
-
 /// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
 ///
 /// # Errors
@@ -229,6 +211,23 @@ pub fn replay(
     let mut workload = turns.replay(&hardware);
     let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
     Ok(report.map_err(|error| error.map(EngineError::from))?)
+}
+
+/// The view against which errors are measured: 64 bits, the exact rule.
+///
+/// # Errors
+/// When the camera sees nothing.
+pub fn true_setup(
+    graph: &Graph,
+    camera: &Camera,
+    base: &SetupOptions,
+) -> Result<FrameSetup, ModelError> {
+    let options = SetupOptions {
+        aa_log2: base.aa_log2,
+        ..SetupOptions::default()
+    };
+    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
+    Ok(setup)
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.

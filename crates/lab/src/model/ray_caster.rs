@@ -1,11 +1,11 @@
 //! For comparison: a ray caster in floating point, drawing the same view with
 //! the same node format and caches, counted and priced by the same tables.
 
+use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
 use hwmodel::cycles::{self, Hardware, HardwareError};
 use hwmodel::memory::{Cache, PIXEL_BITS};
-use hwmodel::{Memory, cycles::Bound};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::ModelError;
 use super::area::{self, DesignArea};
@@ -44,20 +44,12 @@ pub struct RayCasterReport {
 }
 
 /// Energy of a frame whose rays come in an order.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnergy {
     /// The order.
     pub order: RayOrder,
     /// Energy, pJ.
     pub energy_pj: f64,
-}
-
-impl RayCasterReport {
-    /// What takes longest, if all else costs no time.
-    #[must_use]
-    pub fn bottleneck(&self) -> Option<&Bound> {
-        self.cycles.bounds.first()
-    }
 }
 
 /// A frame's rays, cast in one order beside caches of several sizes.
@@ -162,7 +154,7 @@ pub fn price(
         attribute_misses: run.attribute_misses,
         orders: vec![OrderEnergy {
             order: run.order,
-            energy_pj: cost.total().0,
+            energy_pj: cost.total().value,
         }],
         cost,
         cycles: ray_cycles::cycles(&counts, misses, &traffic, rays, hardware),
@@ -215,7 +207,7 @@ pub fn cheapest(
     for run in runs {
         let report = price(run, at, hardware, rays, prices)?;
         orders.extend(report.orders.iter().copied());
-        let energy = |report: &RayCasterReport| report.cost.total().0;
+        let energy = |report: &RayCasterReport| report.cost.total().value;
         if best
             .as_ref()
             .is_none_or(|best| energy(&report) < energy(best))

@@ -16,9 +16,10 @@ use shiftvox::project::vector::cross;
 use shiftvox::project::{CageKind, EngineError, FrameSetup};
 
 /// A field of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RecordField {
     /// Its name.
+    #[serde(rename = "field")]
     pub name: &'static str,
     /// Its bits, all parts of it together.
     pub bits: u32,
@@ -27,7 +28,7 @@ pub struct RecordField {
 }
 
 /// When a record has a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum FieldPresence {
     /// Always.
     Always,

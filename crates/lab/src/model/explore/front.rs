@@ -5,7 +5,6 @@ use serde::Serialize;
 
 use super::PointFigures;
 use super::lines::PointLine;
-use crate::error::dominated;
 
 /// What points are compared by; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -118,9 +117,12 @@ pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     able.sort_by(|a, b| compare(&standing(a.1), &standing(b.1)).then(a.0.point.cmp(&b.0.point)));
     able.dedup_by(|later, first| standing(first.1) == standing(later.1));
     let standings: Vec<[f64; 4]> = able.iter().map(|(_, of)| standing(of)).collect();
-    let beaten = dominated(&standings);
-    let unbeaten = able.into_iter().zip(beaten).filter(|(_, beaten)| !beaten);
-    let kept: Vec<_> = unbeaten.map(|(point, _)| point).collect();
+    let is_beaten = |own: &[f64; 4]| standings.iter().any(|other| dominates(other, own));
+    let unbeaten = able
+        .iter()
+        .zip(&standings)
+        .filter(|(_, own)| !is_beaten(own));
+    let kept: Vec<_> = unbeaten.map(|(point, _)| *point).collect();
     let standing_out = standing_out(&kept);
     let with_exchanges = |&(line, figures): &(&PointLine, &PointFigures)| FrontPoint {
         line: line.clone(),
@@ -131,6 +133,12 @@ pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
             .collect(),
     };
     kept.iter().map(with_exchanges).collect()
+}
+
+/// Whether `a` is nowhere worse than `b`, and somewhere better.
+fn dominates(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    let pairs = || a.iter().zip(b);
+    pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b)
 }
 
 /// The points that are worth a choice: the slowest goes first where another is left in its stead.

@@ -32,7 +32,7 @@ impl PointLine {
             scene: scene.to_owned(),
             point: point.number,
             values: values
-                .map(|(key, value)| (key.clone(), serde_json::json!(value)))
+                .map(|(key, value)| (key.clone(), in_json(value)))
                 .collect(),
             outcome,
         }
@@ -51,6 +51,14 @@ impl PointLine {
     #[must_use]
     pub fn to_json(&self) -> String {
         kind_first("point", &serde_json::json!(self))
+    }
+}
+
+/// A value of a space in JSON, which has no infinity.
+fn in_json(value: &toml::Value) -> Value {
+    match value.as_float() {
+        Some(number) if number.is_infinite() => "inf".into(),
+        _ => serde_json::json!(value),
     }
 }
 
