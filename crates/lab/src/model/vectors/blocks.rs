@@ -1,468 +1,506 @@
-//! What each block is: its name, its wires, what it does, in words.
+//! The blocks: ports, function and place in `SPEC.md`, and the frames that have them.
 
-use hwmodel::{SignalKind, Stage};
+use hwmodel::Stage;
 
-use super::blending;
-use super::description::{Description, OBJECT};
-use super::ports::{BIT, LEVEL, Ports, WIDE, WORD};
 use shiftvox::machine::Block;
 use shiftvox::project::FrameSetup;
 
-const TWO: SignalKind = SignalKind::Unsigned(2);
-const THREE: SignalKind = SignalKind::Unsigned(3);
-const FOUR: SignalKind = SignalKind::Unsigned(4);
-const NODE: SignalKind = SignalKind::Unsigned(20);
-const PLACES: SignalKind = SignalKind::Signed(8);
-
-const X: &str = "X (or Y) of the vertices, relative to the quadtree node";
-const W: &str = "W of the vertices";
-const BELOW: &str = "levels from the quadtree node to the samples";
-const SIDE: &str = "0 not all on one side, 1 positive, 2 negative, 3 the plane is none";
-const COVER: &str = "0 no sample of the node is covered, 1 some may be, 2 all are";
-const OUTSIDE: &str = "no part of the box is within the node";
-const WITHIN: &str = "all of the box is";
-const PLANE: &str = "a, b, c of the edge's plane a x + b y + c";
-const NORMAL: &str = "a, b of the plane perpendicular to the axis";
-const AXIS_C: &str = "c of the plane perpendicular to the axis";
-
-const OCTANTS: [&str; 8] = ["000", "001", "010", "011", "100", "101", "110", "111"];
-
-/// Planes of the three edges, and what moves them.
-fn planes(ports: Ports) -> Ports {
-    let ports = ["x", "y", "z"].iter().fold(ports, |ports, axis| {
-        ports.each(&format!("edge_{axis}"), &["a", "b", "c"], WIDE, PLANE)
-    });
-    let ports = ["x", "y", "z"].iter().fold(ports, |ports, axis| {
-        ports.each(&format!("axis_{axis}"), &["a", "b"], WIDE, NORMAL)
-    });
-    ports.each("axis", &["x_c", "y_c", "z_c"], WIDE, AXIS_C)
+/// A block as the manifest describes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Description {
+    /// Its name, and that of its file.
+    pub name: &'static str,
+    /// The stages that contain it.
+    pub stages: &'static [Stage],
+    /// Its section of `SPEC.md`.
+    pub section: &'static str,
+    /// Its function.
+    pub function: &'static str,
+    /// Its inputs: see [`Ports::new`](super::Ports::new).
+    pub inputs: &'static str,
+    /// Its outputs.
+    pub outputs: &'static str,
 }
 
-/// Describes a block of a frame.
+const SIZE: &[Stage] = &[Stage::OnePixel, Stage::Filled, Stage::ToScreen];
+const FIT: &[Stage] = &[Stage::QuadtreeFit];
+const DRAW: &[Stage] = &[Stage::Draw];
+const BLEND: &[Stage] = &[Stage::Blend];
+
+const fn of(
+    name: &'static str,
+    stages: &'static [Stage],
+    section: &'static str,
+    [inputs, outputs]: [&'static str; 2],
+    function: &'static str,
+) -> Description {
+    Description {
+        name,
+        stages,
+        section,
+        function,
+        inputs,
+        outputs,
+    }
+}
+
+/// Planes of three edges, and the planes across the axes by which they move.
+macro_rules! planes {
+    () => {
+        "edge_x:3v edge_y:3v edge_z:3v axis_x:2v axis_y:2v axis_z:2v axis_x_c:v axis_y_c:v axis_z_c:v "
+    };
+}
+
+/// Describes a block.
 #[must_use]
-#[expect(clippy::too_many_lines, reason = "one entry for each block")]
-pub fn describe(block: Block, setup: &FrameSetup) -> Description {
-    let ports = || Ports::new(setup.options.cage);
-    let made = Description::new;
-    let bit = |name: &str, meaning| ports().one(name, BIT, meaning);
-    let border = || {
-        ports()
-            .one("outside", BIT, OUTSIDE)
-            .one("enclosed", BIT, WITHIN)
-    };
-    let halves = |ports: Ports| {
-        ports
-            .one("low_half", BIT, "the left (upper) half is overlapped")
-            .one("high_half", BIT, "the right (lower) half is")
-    };
-    let clip = |ports: Ports| ports.cage("x", X).cage("w", W);
-    let screen_box = || {
-        ports()
-            .one(
-                "low",
-                WORD,
-                "least position of the box, samples with the format's fraction",
-            )
-            .one("high", WORD, "greatest position")
-            .one("node", NODE, "the quadtree node's column (or row)")
-            .one("below", LEVEL, BELOW)
-    };
-    let corners = |ports: Ports| ports.axes("min", WORD, OBJECT).axes("max", WORD, OBJECT);
+#[expect(clippy::too_many_lines, reason = "one entry per block")]
+pub const fn describe(block: Block) -> Description {
     match block {
-        Block::Filled => made(
+        Block::Filled => of(
             "filled",
             &[Stage::Filled],
             "6",
+            ["vector:u4", "full:u1"],
             "full = all four bits of the vector are set",
-            ports().one("vector", FOUR, "fill vector of the record's quadtree node"),
-            bit("full", "the record is done"),
         ),
-        Block::ChangeDepth => made(
+        Block::ChangeDepth => of(
             "change_depth",
             &[Stage::ToScreen],
             "5",
+            ["w_min:w least:w", "deep:u1"],
             "deep = w_min >= least",
-            ports().one("w_min", WORD, "least W of the vertices").one(
-                "least",
-                WORD,
-                "T of the record's octree level",
-            ),
-            bit("deep", "far enough to change to screen space"),
         ),
-        Block::ChangeGuard => made(
+        Block::ChangeGuard => of(
             "change_guard",
             &[Stage::ToScreen],
             "5",
-            "enclosed = at all vertices x + (w >> places) >= 0 and (w - x) + (w >> places) >= 0, nothing rounded; places < 0: w shifted left",
-            clip(ports()).one(
-                "places",
-                PLACES,
-                "part of the width by which the box may leave the node, as a shift",
-            ),
-            bit(
-                "enclosed",
-                "the box leaves the picture by little enough, along this axis",
-            ),
+            ["x:c w:c places:s8", "enclosed:u1"],
+            "enclosed = at all vertices x + (w >> places) >= 0 and (w - x) + (w >> places) >= 0, nothing rounded; \
+             places < 0: w shifted left",
         ),
-        Block::ToScreenDivide => made(
+        Block::ToScreenDivide => of(
             "to_screen_divide",
             &[Stage::ToScreen],
             "5",
+            ["x:w w:w fraction_bits:u6", "quotient:w"],
             "quotient = floor((x + 4 w) * 2^fraction_bits / w), for w > 0 and -4 w <= x < 12 w",
-            ports()
-                .one("x", WORD, "X (or Y) of a vertex")
-                .one("w", WORD, "W of the vertex, positive")
-                .one("fraction_bits", LEVEL, "steps after the four integer steps"),
-            ports().one(
-                "quotient",
-                WORD,
-                "x / w + 4 with so many fraction bits, rounded down",
-            ),
         ),
-        Block::DetailDepth => made(
+        Block::DetailDepth => of(
             "detail_depth",
             &[Stage::OnePixel],
             "7",
+            ["w_min:w least:w", "solid:u1"],
             "solid = w_min >= least",
-            ports().one("w_min", WORD, "least W of the vertices").one(
-                "least",
-                WORD,
-                "depth from which on no node of the level is larger than the level of detail",
-            ),
-            bit("solid", "the node is drawn as a solid"),
         ),
-        Block::SizeLimit => made(
+        Block::SizeLimit => of(
             "size_limit",
-            &[Stage::OnePixel, Stage::Filled, Stage::ToScreen],
+            SIZE,
             "7",
+            ["w_min:w below:u6", "most:w"],
             "most = sum of w_min >> (s + below) over the shifts s of constant size_shifts; shifts below zero go left",
-            ports()
-                .one("w_min", WORD, "least W of the vertices")
-                .one("below", LEVEL, BELOW),
-            ports().one("most", WORD, "extent of one sample at the least depth"),
         ),
-        Block::SizeClip => made(
+        Block::SizeClip => of(
             "size_clip",
-            &[Stage::OnePixel, Stage::Filled, Stage::ToScreen],
+            SIZE,
             "7",
+            ["edge_x:3w edge_w:3w most:w", "fits:u1"],
             "fits = sum over k of max(|edge_x_k|, |edge_x_k - edge_w_k|) <= most",
-            ports()
-                .axes("edge_x", WORD, "X (or Y) of the edge")
-                .axes("edge_w", WORD, "W of the edge")
-                .one("most", WORD, "from size_limit"),
-            bit("fits", "no larger than a sample along this axis"),
         ),
-        Block::SizeScreen => made(
+        Block::SizeScreen => of(
             "size_screen",
-            &[Stage::OnePixel, Stage::Filled, Stage::ToScreen],
+            SIZE,
             "7",
+            ["low:w high:w limit:w", "fits:u1"],
             "fits = high - low <= limit",
-            ports()
-                .one("low", WORD, "least position of the box")
-                .one("high", WORD, "greatest position")
-                .one("limit", WORD, "a size in the same units"),
-            bit("fits", "no larger along this axis"),
         ),
-        Block::Centre => made(
+        Block::Centre => of(
             "centre",
             &[Stage::Centre],
             "2",
+            ["min:3w max:3w", "centre:3w"],
             "centre = (min + max) >> 1, the sum with its carry",
-            corners(ports()),
-            ports().axes("centre", WORD, OBJECT),
         ),
-        Block::OctantOrder => made(
+        Block::OctantOrder => of(
             "octant_order",
             &[Stage::Order],
             "9",
+            ["centre:3w eye_floor:3w", "octant:u3 child:8u3"],
             "octant bit k = eye_floor_k < centre_k, x highest; child_i = octant XOR {7,6,5,3,4,2,1,0}[i]",
-            ports()
-                .axes("centre", WORD, OBJECT)
-                .axes("eye_floor", WORD, "the eye, rounded down"),
-            ports()
-                .one("octant", THREE, "where the centre is above the eye")
-                .list("child", 8, THREE, "the i-th nearest child"),
         ),
-        Block::VertexPool => made(
+        Block::VertexPool => of(
             "vertex_pool",
             &[Stage::VertexPool],
             "4",
+            [
+                "parent:c",
+                "child_000:c child_001:c child_010:c child_011:c child_100:c child_101:c child_110:c child_111:c",
+            ],
             "corners: midpoints (a + b) >> 1 along x, then y, then z; frame: edges (e + sign) >> 1, corners by seven adds",
-            ports().cage("parent", "one coordinate of the record's cage"),
-            OCTANTS.iter().fold(ports(), |ports, octant| {
-                ports.cage(
-                    &format!("child_{octant}"),
-                    "the same coordinate of a child's cage",
-                )
-            }),
         ),
-        Block::ChildPlanes => made(
+        Block::ChildPlanes => of(
             "child_planes",
             &[Stage::VertexPool],
             "8",
-            "for edge j, k = j+1, l = j+2 (mod 3): less axis_l << half where the octant has bit k, plus axis_k << half where it has bit l",
-            planes(ports())
-                .one(
-                    "half",
-                    LEVEL,
-                    "half the record's side in finest voxels, as a shift",
-                )
-                .one("octant", THREE, "which child, x highest"),
-            ["x", "y", "z"].iter().fold(ports(), |ports, axis| {
-                ports.each(&format!("child_edge_{axis}"), &["a", "b", "c"], WIDE, PLANE)
-            }),
+            [
+                concat!(planes!(), "half:u6 octant:u3"),
+                "child_edge_x:3v child_edge_y:3v child_edge_z:3v",
+            ],
+            "for edge j, k = j+1, l = j+2 (mod 3): less axis_l << half where the octant has bit k, plus axis_k << half \
+             where it has bit l",
         ),
-        Block::ChildCorners => made(
+        Block::ChildCorners => of(
             "child_corners",
             &[Stage::ChildBox],
             "1",
+            [
+                "min:3w max:3w centre:3w octant:u3",
+                "child_min:3w child_max:3w",
+            ],
             "along k: centre to max where the octant has bit k, else min to centre",
-            corners(ports()).axes("centre", WORD, OBJECT).one(
-                "octant",
-                THREE,
-                "which child, x highest",
-            ),
-            ports()
-                .axes("child_min", WORD, OBJECT)
-                .axes("child_max", WORD, OBJECT),
         ),
-        Block::ChildSpan => made(
+        Block::ChildSpan => of(
             "child_span",
             &[Stage::ChildBox],
             "4",
+            ["child:c", "low:w high:w"],
             "low = the least of the eight vertices, high = the greatest",
-            ports().cage("child", "one coordinate of a child's cage"),
-            ports()
-                .one("low", WORD, "least vertex")
-                .one("high", WORD, "greatest vertex"),
         ),
-        Block::MarginGrow => made(
+        Block::MarginGrow => of(
             "margin_grow",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
+            ["w:c places:s8", "margin:c"],
             "each number of the cage: (w >> places) + 1 for places > 0, else w << -places",
-            ports().cage("w", W).one(
-                "places",
-                PLACES,
-                "tolerance as a part of the node's width, as a shift",
-            ),
-            ports().cage("margin", "what the box is widened by"),
         ),
-        Block::MarginGap => made(
+        Block::MarginGap => of(
             "margin_gap",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
+            ["w:c below:u6", "margin:c"],
             "each number of the cage: -(w >> below)",
-            ports().cage("w", W).one("below", LEVEL, BELOW),
-            ports().cage(
-                "margin",
-                "what the box is widened by: negative, it is narrowed",
-            ),
         ),
-        Block::BorderClip => made(
+        Block::BorderClip => of(
             "border_clip",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
-            "outside = x + margin < 0 at all vertices or x - w - margin > 0 at all; enclosed = not outside, x - margin >= 0 and x - w + margin <= 0 at all (wider: > 0 and < 0)",
-            clip(ports())
-                .cage("margin", "what the box is widened by")
-                .one(
-                    "wider",
-                    BIT,
-                    "the box is widened: it must lie strictly within",
-                ),
-            border(),
+            ["x:c w:c margin:c wider:u1", "outside:u1 enclosed:u1"],
+            "outside = x + margin < 0 at all vertices or x - w - margin > 0 at all; enclosed = not outside, x - margin >= 0 \
+             and x - w + margin <= 0 at all (wider: > 0 and < 0)",
         ),
-        Block::BisectorClip => made(
+        Block::BisectorClip => of(
             "bisector_clip",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
-            "relative = 2 x - w; closed: low_half = min(relative - margin) <= 0, high_half = max(relative + margin) >= 0; else low_half = min(relative) < 0, high_half = max(relative) > 0 or not low_half; sample: both, or neither",
-            clip(ports())
-                .cage("margin", "what the box is widened by")
-                .one("closed", BIT, "boxes hold their borders")
-                .one("sample", BIT, "a sample's centre is tested, not a bisector"),
-            halves(ports().cage("relative", "coordinates relative to the right half")),
+            [
+                "x:c w:c margin:c closed:u1 sample:u1",
+                "relative:c low_half:u1 high_half:u1",
+            ],
+            "relative = 2 x - w; closed: low_half = min(relative - margin) <= 0, high_half = max(relative + margin) >= 0; \
+             else low_half = min(relative) < 0, high_half = max(relative) > 0 or not low_half; sample: both, or neither",
         ),
-        Block::NearNode => made(
+        Block::NearNode => of(
             "near_node",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
+            ["x:c w:c", "near:u1"],
             "near = x + w >= 0 and x - 2 w <= 0 at all vertices",
-            clip(ports()),
-            bit(
-                "near",
-                "the box leaves the node by at most its width, along this axis",
-            ),
         ),
-        Block::HalfClip => made(
+        Block::HalfClip => of(
             "half_clip",
-            &[Stage::QuadtreeFit],
+            FIT,
             "4",
+            ["x:c far:c right:u1", "inner:c"],
             "inner = far where right is set, else 2 x",
-            ports()
-                .cage("x", X)
-                .cage("far", "2 x - w, from bisector_clip")
-                .one("right", BIT, "the right (lower) half is next"),
-            ports().cage("inner", "coordinates relative to that half"),
         ),
-        Block::PlaneQuadrant => made(
+        Block::PlaneQuadrant => of(
             "plane_quadrant",
             &[Stage::QuadtreeFit, Stage::Draw],
             "8",
+            ["plane:3v quadrant:u2", "inner_c:v"],
             "inner_c = 2 c + (quadrant bit 0 ? a : 0) + (quadrant bit 1 ? b : 0)",
-            ports()
-                .each("plane", &["a", "b", "c"], WIDE, "of a x + b y + c")
-                .one("quadrant", TWO, "y << 1 | x"),
-            ports().one("inner_c", WIDE, "c in the quadrant's coordinates"),
         ),
-        Block::BorderScreen => made(
+        Block::BorderScreen => of(
             "border_screen",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
-            "with left = node << (below + F), right = (node + 1) << (below + F): outside = high < left or low > right; enclosed = not outside, low >= left and high <= right",
-            screen_box(),
-            border(),
+            ["low:w high:w node:u20 below:u6", "outside:u1 enclosed:u1"],
+            "with left = node << (below + F), right = (node + 1) << (below + F): outside = high < left or low > right; \
+             enclosed = not outside, low >= left and high <= right",
         ),
-        Block::BisectorScreen => made(
+        Block::BisectorScreen => of(
             "bisector_screen",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
-            "with c = (2 node + 1) << (below + F - 1), rounded down: low_half = low < c, high_half = high > c or not low_half",
-            screen_box(),
-            halves(ports()),
+            ["low:w high:w node:u20 below:u6", "low_half:u1 high_half:u1"],
+            "with c = (2 node + 1) << (below + F - 1), rounded down: low_half = low < c, high_half = high > c or not \
+             low_half",
         ),
-        Block::Quadrants => made(
+        Block::Quadrants => of(
             "quadrants",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
+            [
+                "low_half_x:u1 high_half_x:u1 low_half_y:u1 high_half_y:u1",
+                "overlapped:u4",
+            ],
             "bit y << 1 | x of overlapped = half x across (0 low, 1 high) and half y down are overlapped",
-            ports()
-                .one("low_half_x", BIT, "the left half is overlapped")
-                .one("high_half_x", BIT, "the right half is")
-                .one("low_half_y", BIT, "the upper half is")
-                .one("high_half_y", BIT, "the lower half is"),
-            ports().one("overlapped", FOUR, "quadrants that the box overlaps"),
         ),
-        Block::NodeChoice => made(
+        Block::NodeChoice => of(
             "node_choice",
-            &[Stage::QuadtreeFit],
+            FIT,
             "6",
+            [
+                "overlapped:u4 vector:u4",
+                "rejected:u1 single:u1 quadrant:u2",
+            ],
             "rejected = no overlapped quadrant is open; single = exactly one is overlapped; quadrant = its number, or 0",
-            ports()
-                .one("overlapped", FOUR, "quadrants that the box overlaps")
-                .one("vector", FOUR, "the node's fill vector"),
-            ports()
-                .one("rejected", BIT, "the record is hidden")
-                .one("single", BIT, "the box goes to one quadrant")
-                .one("quadrant", TWO, "which one"),
         ),
-        Block::CageCentre => made(
+        Block::CageCentre => of(
             "cage_centre",
-            &[Stage::Draw],
+            DRAW,
             "7",
+            ["cage:c", "centre:w"],
             "corners: (vertex 0 + vertex 7) >> 1; frame: corner + ((edge_x + edge_y + edge_z) >> 1)",
-            ports().cage("cage", "one coordinate of a cage"),
-            ports().one("centre", WORD, "the same of the centre"),
         ),
-        Block::CentreHalf => made(
+        Block::CentreHalf => of(
             "centre_half",
-            &[Stage::Draw],
+            DRAW,
             "4",
+            ["value:w w:w", "right:u1 inner:w"],
             "right = 2 value - w >= 0; inner = 2 value - w where right, else 2 value",
-            ports()
-                .one("value", WORD, "X (or Y) of the centre, relative to a node")
-                .one("w", WORD, "W of the centre"),
-            ports()
-                .one("right", BIT, "the centre is in the right (lower) half")
-                .one("inner", WORD, "relative to that half"),
         ),
-        Block::CentreSample => made(
+        Block::CentreSample => of(
             "centre_sample",
-            &[Stage::Draw],
+            DRAW,
             "7",
+            ["centre:w node:u20 below:u6", "sample:w"],
             "sample = centre >> F, brought into node << below ... ((node + 1) << below) - 1",
-            ports()
-                .one("centre", WORD, "position of the centre")
-                .one("node", NODE, "the quadtree node's column (or row)")
-                .one("below", LEVEL, BELOW),
-            ports().one("sample", WORD, "column (or row) of the sample drawn"),
         ),
-        Block::CubePlanes => made(
+        Block::CubePlanes => of(
             "cube_planes",
-            &[Stage::Draw],
+            DRAW,
             "8",
-            "for edge j, k = j+1, l = j+2 (mod 3): plane 0 = edge_j, 1 = 0 less axis_l << side, 2 = 0 plus axis_k << side, 3 = 1 plus axis_k << side",
-            planes(ports()).one(
-                "side",
-                LEVEL,
-                "the cube's side in finest voxels, as a shift",
-            ),
-            ["x", "y", "z"].iter().fold(ports(), |ports, axis| {
-                (0..4).fold(ports, |ports, i| {
-                    ports.each(&format!("plane_{axis}{i}"), &["a", "b", "c"], WIDE, PLANE)
-                })
-            }),
+            [
+                concat!(planes!(), "side:u6"),
+                "plane_x0:3v plane_x1:3v plane_x2:3v plane_x3:3v plane_y0:3v plane_y1:3v plane_y2:3v plane_y3:3v \
+                 plane_z0:3v plane_z1:3v plane_z2:3v plane_z3:3v",
+            ],
+            "for edge j, k = j+1, l = j+2 (mod 3): plane 0 = edge_j, 1 = 0 less axis_l << side, 2 = 0 plus axis_k << side, \
+             3 = 1 plus axis_k << side",
         ),
-        Block::CubeFront => made(
+        Block::CubeFront => of(
             "cube_front",
-            &[Stage::Draw],
+            DRAW,
             "8",
-            "the first axis with eye_ceil <= min (upwards) or max <= eye_floor; side = 1 where upwards equals positive, else 2; none: all zero",
-            corners(ports())
-                .axes("eye_floor", WORD, "the eye, rounded down")
-                .axes("eye_ceil", WORD, "the eye, rounded up")
-                .one("positive", BIT, "the sign of the determinant of the edges"),
-            ports()
-                .one("found", BIT, "the eye is outside the cube along some axis")
-                .one("axis", TWO, "0 x, 1 y, 2 z")
-                .one("side", TWO, SIDE),
+            [
+                "min:3w max:3w eye_floor:3w eye_ceil:3w positive:u1",
+                "found:u1 axis:u2 side:u2",
+            ],
+            "the first axis with eye_ceil <= min (upwards) or max <= eye_floor; side = 1 where upwards equals positive, \
+             else 2; none: all zero",
         ),
-        Block::PlaneSide => made(
+        Block::PlaneSide => of(
             "plane_side",
-            &[Stage::Draw],
+            DRAW,
             "8",
-            "low, high = c + the least, greatest of a x + b y over the node: a = b = c = 0 or low = high = 0: 3; low >= 0: 1; high <= 0: 2; sample: the first of 2c + a + b, a, b that is not zero: > 0: 1, < 0: 2; else 0",
-            ports()
-                .each("plane", &["a", "b", "c"], WIDE, "of a x + b y + c")
-                .one("sample", BIT, "the node is a sample"),
-            ports().one("side", TWO, SIDE),
+            ["plane:3v sample:u1", "side:u2"],
+            "low, high = c + the least, greatest of a x + b y over the node: a = b = c = 0 or low = high = 0: 3; low >= 0: \
+             1; high <= 0: 2; sample: the first of 2c + a + b, a, b that is not zero: > 0: 1, < 0: 2; else 0",
         ),
-        Block::PlaneCover => made(
+        Block::PlaneCover => of(
             "plane_cover",
-            &[Stage::Draw],
+            DRAW,
             "8",
-            "0: along some axis no plane is 0 and not both 1 and 2 are there, or front_side is neither 0 nor wanted; 2: along all axes both 1 and 2, and front_side = wanted or no front; else 1. Front last",
-            ["x", "y", "z"]
-                .iter()
-                .fold(ports(), |ports, axis| {
-                    ports.list(&format!("side_{axis}"), 4, TWO, SIDE)
-                })
-                .one("front", BIT, "the cube has a front plane")
-                .one("front_side", TWO, SIDE)
-                .one("wanted", TWO, "the side on which rays reach the cube"),
-            ports().one("cover_code", TWO, COVER),
+            [
+                "side_x:4u2 side_y:4u2 side_z:4u2 front:u1 front_side:u2 wanted:u2",
+                "cover_code:u2",
+            ],
+            "0: along some axis no plane is 0 and not both 1 and 2 are there, or front_side is neither 0 nor wanted; 2: \
+             along all axes both 1 and 2, and front_side = wanted or no front; else 1. Front last",
         ),
-        Block::FillUpdate => made(
+        Block::FillUpdate => of(
             "fill_update",
             &[Stage::FillUpdate],
             "6",
+            ["vector:u4 bits:u4", "after:u4 full:u1"],
             "after = vector OR bits; full = all four bits are set",
-            ports().one("vector", FOUR, "the node's fill vector").one(
-                "bits",
-                FOUR,
-                "quadrants that are full by now",
-            ),
-            ports().one("after", FOUR, "written back").one(
-                "full",
-                BIT,
-                "the parent's bit is to be set",
-            ),
         ),
-        Block::BlendWay => blending::way(),
-        Block::BlendShares => blending::shares(),
-        Block::BlendCounts => blending::counts(),
-        Block::BlendWeight => blending::weight(),
-        Block::BlendSample => blending::sample(),
+        Block::BlendWay => of(
+            "blend_way",
+            BLEND,
+            "11",
+            ["min:w max:w eye:w shift:u6", "way:w"],
+            "way = |((min + max) >> 1 >> shift) - eye|, the first sum with its carry",
+        ),
+        Block::BlendShares => of(
+            "blend_shares",
+            BLEND,
+            "11",
+            ["way:3w", "share:3u5"],
+            "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but \
+             at most 16 - share_x, share_z = 16 - share_x - share_y",
+        ),
+        Block::BlendCounts => of(
+            "blend_counts",
+            BLEND,
+            "11",
+            ["share:3u5", "count:3u5"],
+            "with n = the square root of the sum of the squares, to the nearest: count = share^2 / n to the nearest, halves \
+             up",
+        ),
+        Block::BlendWeight => of(
+            "blend_weight",
+            BLEND,
+            "11",
+            [
+                "opacity_x:2u4 opacity_y:2u4 opacity_z:2u4 high:3u1 count:3u5",
+                "weight:u9",
+            ],
+            "with a = the second number of the opacity where high is set, else the first: weight = 256 where an axis has a = \
+             15, else the sum of (a + (a >> 3)) count",
+        ),
+        Block::BlendSample => of(
+            "blend_sample",
+            BLEND,
+            "11",
+            [
+                "left:u9 weight:u9 light:3u16 sum:3u24",
+                "rest:u9 after:3u24 first:u1 full:u1",
+            ],
+            "with m = (left weight + 128) >> 8: full = left - m <= 64, and then m = left; rest = left - m; after = sum + m \
+             light; first = left is 256",
+        ),
+    }
+}
+
+/// The meaning of a port. Ports of several numbers have them in the order x, y, z; a, b, c; or of the vertices.
+#[must_use]
+pub(super) fn meaning(block: &str, port: &str) -> &'static str {
+    match (block, port) {
+        ("blend_weight", "high") => "the eye is on the high side of each axis",
+        ("blend_way" | "blend_shares", "way") => "d of each axis",
+        ("blend_sample", "full") => "opaque enough: the fill bit is to be set",
+        ("blend_sample", "after") => "C of red, green, blue, written back",
+        ("fill_update", "full") => "the parent's bit is to be set",
+        ("plane_side" | "bisector_clip", "sample") => "the node is a sample",
+        ("centre_sample", "centre") => "position of the centre",
+        ("cage_centre", _) => "one coordinate of a cage, or of its centre",
+        ("child_planes" | "cube_planes", name)
+            if name.contains("edge") || name.starts_with("plane") =>
+        {
+            "a, b, c of an edge's plane a x + b y + c"
+        }
+        ("child_planes" | "cube_planes", "axis_x" | "axis_y" | "axis_z") => {
+            "a, b of the plane perpendicular to the axis"
+        }
+        ("child_planes" | "cube_planes", name) if name.starts_with("axis") => {
+            "c of the plane perpendicular to the axis"
+        }
+        ("cube_planes", "side") => "the cube's side in finest voxels, as a shift",
+        ("vertex_pool", _) => "one coordinate of a cage: the record's or a child's",
+        (_, "min" | "max" | "centre" | "child_min" | "child_max") => {
+            "object coordinates, units of a finest voxel shifted by the levels below it"
+        }
+        (_, "eye_floor") => "the eye, rounded down",
+        (_, "eye_ceil") => "the eye, rounded up",
+        (_, "x" | "edge_x") => "X (or Y) relative to the quadtree node",
+        (_, "w" | "edge_w") => "W",
+        (_, "w_min") => "least W of the vertices",
+        (_, "least") => "depth from which on the output is set",
+        (_, "margin") => "the margin by which the box is widened; negative, it is narrowed",
+        (_, "places") => "a part of the node's width, as a shift",
+        (_, "below") => "levels from the quadtree node to the samples",
+        (_, "fraction_bits") => "steps after the four integer steps",
+        (_, "quotient") => "x / w + 4 with so many fraction bits, rounded down",
+        (_, "most") => "extent of one sample at the least depth",
+        (_, "low" | "high") => "least and greatest position, or vertex",
+        (_, "limit") => "a size in the same units",
+        (_, "node") => "the quadtree node's column (or row)",
+        (_, "octant") => "a child or a direction, x highest",
+        (_, "child") => "the children, nearest first; or one coordinate of a child's cage",
+        (_, "vector") => "fill vector of the quadtree node",
+        (_, "bits") => "quadrants that are full by now",
+        (_, "overlapped") => "quadrants that the box overlaps",
+        (_, "quadrant") => "y << 1 | x",
+        (_, "outside") => "no part of the box is within the node",
+        (_, "enclosed") => "all of the box is within the node, or leaves it by little enough",
+        (_, "closed") => "boxes hold their borders",
+        (_, "wider") => "the box is widened: it must lie strictly within",
+        (_, "low_half" | "low_half_x" | "low_half_y") => "the left (upper) half is overlapped",
+        (_, "high_half" | "high_half_x" | "high_half_y") => "the right (lower) half is overlapped",
+        (_, "relative" | "far") => "coordinates relative to the right (lower) half",
+        (_, "right") => "the right (lower) half",
+        (_, "inner") => "coordinates relative to that half",
+        (_, "plane") => "a, b, c of a x + b y + c",
+        (_, "inner_c") => "c in the quadrant's coordinates",
+        (_, "half") => "half the record's side in finest voxels, as a shift",
+        (_, "positive") => "the sign of the determinant of the edges",
+        (_, "found") => "the eye is outside the cube along some axis",
+        (_, "axis") => "0 x, 1 y, 2 z",
+        (_, "side" | "side_x" | "side_y" | "side_z" | "front_side") => {
+            "0 not all on one side, 1 positive, 2 negative, 3 there is no plane"
+        }
+        (_, "front") => "the cube has a front plane",
+        (_, "wanted") => "the side on which rays reach the cube",
+        (_, "cover_code") => "0 no sample of the node is covered, 1 some may be, 2 all are",
+        (_, "share") => "u of each axis, sixteenths",
+        (_, "count") => "v of each axis: the weight of the side, sixteenths",
+        (_, "opacity_x" | "opacity_y" | "opacity_z") => {
+            "the voxel's opacity from the low and the high side"
+        }
+        (_, "weight") => "w: 256 lets nothing through",
+        (_, "eye") => "the eye, shifted already",
+        (_, "shift") => "k of the section",
+        (_, "left" | "rest") => "T: the share of light that the sample still lets through",
+        (_, "light") => "linear light of the voxel: red, green, blue",
+        (_, "sum") => "C of red, green, blue: the light of the sample so far",
+        (_, "first") => "the first voxel that the sample takes",
+        (_, "after") => "written back",
+        _ => "see the function",
+    }
+}
+
+/// The reason why a frame has no rows of a block, if its rules exclude it.
+#[must_use]
+pub(super) fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
+    const NOT_EXACT: &str = "only coverages exact and alpha have it";
+    const IS_EXACT: &str = "coverages exact and alpha do not have it";
+    let exact = setup.options.coverage.draws_outlines();
+    let changes = setup.screen_depth.iter().any(|&w| w != i64::MAX);
+    match block {
+        Block::ChangeDepth
+        | Block::ChangeGuard
+        | Block::ToScreenDivide
+        | Block::SizeScreen
+        | Block::BorderScreen
+        | Block::BisectorScreen
+        | Block::CentreSample => match (exact, changes) {
+            (true, _) => Some(IS_EXACT),
+            (_, false) => Some("at this tolerance no record changes to screen space"),
+            _ => None,
+        },
+        Block::ChildPlanes
+        | Block::PlaneQuadrant
+        | Block::MarginGap
+        | Block::CubePlanes
+        | Block::CubeFront
+        | Block::PlaneSide
+        | Block::PlaneCover => (!exact).then_some(NOT_EXACT),
+        Block::CageCentre | Block::CentreHalf => exact.then_some(IS_EXACT),
+        Block::BlendWay
+        | Block::BlendShares
+        | Block::BlendCounts
+        | Block::BlendWeight
+        | Block::BlendSample => {
+            (!setup.options.coverage.blends()).then_some("only coverage alpha has it")
+        }
+        Block::DetailDepth => {
+            (setup.lod_limit.is_none()).then_some("level of detail 0 takes no node for a solid")
+        }
+        Block::MarginGrow if exact => Some(IS_EXACT),
+        Block::MarginGrow => {
+            (setup.grow_shift.is_none()).then_some("at this tolerance boxes are not widened")
+        }
+        _ => None,
     }
 }

@@ -1,5 +1,4 @@
-//! What a frame's hardware is given before it starts: its constants, and the nodes in its memory.
-//! `rtl/` draws whole frames from these files (`docs/rtl.md`).
+//! Images for `$readmemh`: the constants and the nodes from which `rtl/` draws whole frames (`docs/rtl.md`).
 
 use std::fmt::Write;
 
@@ -26,8 +25,8 @@ pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>, layout: &Node
     text
 }
 
-/// The nodes: which children each has, which of them have none, and where they begin; where the layout has bricks, those
-/// in two words, and none below. `None`: children are not side by side, or numbers are too great, which words cannot say.
+/// The nodes: masks of children and of leaves, and the place of the first child. Bricks have two words, and no nodes below.
+/// `None` if children are not side by side, or if numbers are too large for the words.
 pub(super) fn nodes(graph: &GraphView<'_>, layout: &NodeLayout) -> Option<String> {
     if !graph.links.is_empty() {
         return None;
