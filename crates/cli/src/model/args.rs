@@ -99,7 +99,7 @@ pub(super) fn read(path: &Path) -> Result<String, CliError> {
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
 }
 
-/// The description of a hardware by its name: one that ships, or a file, seen from a folder.
+/// The description with a name: a shipped one, or a file relative to a folder.
 fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
     if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());

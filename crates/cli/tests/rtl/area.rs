@@ -133,7 +133,7 @@ fn small_pictures_have_room() {
     }
 }
 
-/// Operations of a list such as `3 add (33) 7 add`: how often, which, and their bits; 32 where none are told.
+/// Operations of a list such as `3 add (33) 7 add`: times, name, and bits, by default 32.
 pub(crate) fn operations(list: &str) -> Vec<(f64, &str, u32)> {
     let words: Vec<&str> = list.split(' ').collect();
     let mut operations = Vec::new();
@@ -163,7 +163,7 @@ fn predictions(text: &str) -> impl Iterator<Item = (&str, &str, f64)> {
     })
 }
 
-/// The rows of blocks are what the table of areas says of their operations.
+/// The rows of blocks are the table's areas of their operations.
 #[test]
 fn the_predictions_of_the_blocks_are_the_tables() {
     let table = CostTable::load_shipped().unwrap();
@@ -188,8 +188,7 @@ fn the_predictions_of_the_blocks_are_the_tables() {
     assert_eq!(blocks, 39);
 }
 
-/// The rows that were written before the machines were synthesized; of stage B the one with a fault mended that it had
-/// then.
+/// The predictions from before synthesis. That of stage B is the one after a correction.
 #[test]
 fn the_predictions_of_the_machines_stand() {
     let of_stages = [

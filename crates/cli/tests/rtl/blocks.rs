@@ -12,10 +12,11 @@ use tempfile::TempDir;
 use super::tools::{rtl, shiftvox, text, try_run, words};
 use super::turned::turned;
 
-/// Views: from outside, where records change to screen space; with the eye within, where they stay; across the picture's
-/// edges.
+/// A view from outside, where records change to screen space.
 pub(crate) const OUTSIDE: &str = "gen:menger,depth=3 --size 48";
+/// A view from within, where they do not.
 pub(crate) const WITHIN: &str = "gen:menger,depth=3 --size 48 --eye 13.4,12.7,3.5 --target 20,14,9";
+/// Boxes across the picture's edges.
 pub(crate) const NEAR: &str = "gen:menger,depth=3 --size 48 --zoom 6";
 
 /// Rules of stage A, and of stages B and C.

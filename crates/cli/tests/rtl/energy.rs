@@ -1,9 +1,9 @@
-//! Energy of the machine's operations by toggles: synthesized blocks, with the delays of their cells, run through the
-//! rows of a frame; every pin of every cell that changes takes what the library of cells says.
+//! Energy of the machine's operations by toggles. Synthesized blocks, with the delays of their cells, run through the rows of
+//! a frame. Every change of a pin takes the energy in the library of cells.
 //!
-//! A change of an input charges or discharges the pin, `C V^2 / 2`; one of an output takes the cell's internal energy,
-//! the mean of rise and fall and of the inputs that may cause it, at a load of about 25 fF and the shortest transition.
-//! Wires weigh nothing and registers are left out. 0.18 um says nothing of picojoules at 45 nm: only ratios compare.
+//! A change of an input takes `C V^2 / 2`. A change of an output takes the cell's internal energy at a load of about 25 fF
+//! and the shortest transition: the mean of rise and fall, and of the inputs that may cause it. Wires and registers are left
+//! out. Only ratios compare, because the cells are of 0.18 um and the model's energies of 45 nm.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -26,8 +26,8 @@ const LOAD: f64 = 0.025;
 /// Most rows of a block.
 const ROWS: u64 = 400;
 
-/// Blocks; the operations that nearly all of their logic is; and how many rows on the same block of the machine has its
-/// next one. The rows of the others are of x and y in turn.
+/// Blocks, the main operations of their logic, and the distance of successive rows of the same block in the machine. Rows of
+/// the others alternate between x and y.
 const BLOCKS: [(&str, &str, u64); 9] = [
     ("centre", "add", 1),
     ("vertex_pool", "add", 2),
@@ -147,7 +147,7 @@ fn counting_cells(verilog: &str, energies: &PinEnergies) -> String {
     text
 }
 
-/// What an operation list of `predictions.csv` takes by the model's table, pJ, and how many operations it has.
+/// Energy of a list of operations in `predictions.csv` by the model's table, pJ, and their number.
 fn by_table(table: &CostTable, list: &str) -> (f64, f64) {
     let operations = operations(list);
     let energies = operations
@@ -174,7 +174,7 @@ fn divide_steps(rows: &Path) -> f64 {
     f64::from(steps.iter().sum::<u32>()) / steps.len() as f64
 }
 
-/// What a run of a block's netlist took.
+/// The energy of a run of a block's netlist.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     /// Energy of all rows but the first, pJ.
@@ -245,8 +245,8 @@ fn run_rows(files: [&Path; 3], block: &Value, step: u64, random: bool) -> Run {
     }
 }
 
-/// Prints by block: changes of an output a row, and energy an operation, with the frame's rows and with random ones;
-/// that of random rows by a centre's addition; what the model's table says of the operations by its addition.
+/// Prints changes per output and row, and energy per operation, with the frame's rows and with random ones. The energy of
+/// random rows is also printed relative to an addition of the centre, beside the same ratio of the model's table.
 #[test]
 #[ignore = "takes minutes, and needs qflow-tech-osu018"]
 fn energy_by_toggles_beside_the_table() {

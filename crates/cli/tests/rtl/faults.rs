@@ -10,263 +10,34 @@ use super::machines::{
     Expected, LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree_in_icarus,
 };
 use super::tools::{icarus, rtl, run, text};
-use super::views::WITHIN;
 
-/// File, text, mistake.
-type Fault = (&'static str, &'static str, &'static str);
-
-/// A small frame that reveals mistakes. `SOLIDS` in a view is a tree with solids on each level.
-type Group = (&'static Machine, &'static str, &'static [Fault]);
+/// The list of mistakes.
+const FAULTS: &str = include_str!("faults.txt");
 
 static TWO_LANES: Machine = Machine::new("stage_c", Some([2, 2, 2]), true);
 
-const SPONGE: &str = "gen:menger,depth=3 --size 5x4 --lod 0.5 --view front";
-const SOLIDS: &str = "SOLIDS --size 9x8 --lod 0 --view iso";
+fn machine_of(name: &str) -> &'static Machine {
+    match name {
+        "stage_a" => &STAGE_A,
+        "stage_b" => &STAGE_B,
+        "stage_c" => &STAGE_C,
+        "stage_c_bricks" => &STAGE_C_BRICKS,
+        "four_lanes" => &LANES[3],
+        "four_contexts" => &LANES[6],
+        "two_lanes" => &TWO_LANES,
+        other => panic!("no machine {other}"),
+    }
+}
 
-/// What connects the blocks; the silhouettes of stage B, for small voxels, cubes about the eye, and an eye on a corner;
-/// stage C at a level of detail; what lanes share; two contexts; bricks.
-static SHORT: [Group; 8] = [
-    (
-        &STAGE_A,
-        "gen:menger,depth=2 --size 7x8 --view iso",
-        &[
-            ("machine", "r_node : first + count", "r_node : first"),
-            ("machine", "marked <= after", "marked <= vector"),
-            (
-                "children",
-                "for (place = 7; place >= 0; place = place - 1)",
-                "for (place = 0; place < 8; place = place + 1)",
-            ),
-            ("cache", "valid[{set, way}] <= 1", "valid[{set, way}] <= 0"),
-            ("memory", "<= data_in", "<= ~data_in"),
-            ("verdict", "one & ~before_near", "~before_near"),
-            ("image_step", ".low_half_x(half[0])", ".low_half_x(half[2])"),
-            ("to_screen", "(column - 4)", "(column - 3)"),
-            ("frame_constants", "vector[3 + i]", "vector[4 + i]"),
-        ],
-    ),
-    (
-        &STAGE_B,
-        SPONGE,
-        &[
-            ("machine", "c_more <= inner_more", "c_more <= c_more"),
-            ("plane_constants", "low[3*i + 2]}", "low[3*i + 1]}"),
-            ("image_step", "sample ? no_margin : gap", "gap"),
-            ("verdict", "leaf | has_lod_depth & deep", "leaf"),
-        ],
-    ),
-    (
-        &STAGE_B,
-        WITHIN,
-        &[
-            ("silhouettes", "depth - r_level - 1'b1", "depth - r_level"),
-            ("silhouettes", "whole & next_in >= whole_level", "whole"),
-            ("silhouettes", ".positive(positive)", ".positive(1'b0)"),
-            ("silhouette_steps", "divided - 1'b1 == back_level", "1'b1"),
-            ("silhouette", "known ? of_divided : inner", "inner"),
-            ("silhouette", "sides <= sides_above", "sides <= sides"),
-            (
-                "silhouette",
-                "wanted <= front_side",
-                "wanted <= ~front_side",
-            ),
-        ],
-    ),
-    (
-        &STAGE_B,
-        "gen:random,depth=2,seed=1 --size 12x9 --fov 100 --eye 2,1,2 --target 2.4,3.1,1.3",
-        &[
-            (
-                "silhouettes",
-                ".before_eye(t_w_min > 0)",
-                ".before_eye(1'b1)",
-            ),
-            ("plane_side", "none ? 2'd3", "none ? 2'd0"),
-        ],
-    ),
-    (
-        &STAGE_C,
-        SPONGE,
-        &[
-            ("steps", "draws <= deep", "draws <= 0"),
-            (
-                "parts",
-                "state == OBJECT | state == CHILD",
-                "state == CHILD",
-            ),
-            ("silhouettes", "looks & coverage == 2", "looks"),
-        ],
-    ),
-    (
-        &LANES[3],
-        WITHIN,
-        &[
-            ("arbiter", "waiting[i] | ~waiting[j]", "1'b1"),
-            ("arbiter", "first & {N{enable}}", "first"),
-            ("shared_cache", "on_its_way = 1;", "on_its_way = 0;"),
-            ("shared_cache", "& place == filled", "& place == 0"),
-            ("shared_cache", "waits ? wanted", "waits ? at[2:0]"),
-            ("lanes", "last_fill ? kinds >> 1 : kinds", "kinds"),
-            (
-                "machine",
-                "fill_place = TILE_WORDS + level",
-                "fill_place = TILE_WORDS",
-            ),
-            (
-                "machine",
-                "PIXEL: if (pixel_taken) mark_sample",
-                "PIXEL: mark_sample",
-            ),
-        ],
-    ),
-    (&TWO_LANES, WITHIN, &[]),
-    (
-        &STAGE_C_BRICKS,
-        SOLIDS,
-        &[
-            ("brick_child", "~leaves & ", ""),
-            (
-                "bricks",
-                "r_is_brick ? voxels : {56'd0, mask}",
-                "{56'd0, mask}",
-            ),
-            ("bricks", "- first_brick + second", "- first_brick"),
-        ],
-    ),
-];
+/// File, text, mistake.
+fn fault_of(line: &'static str) -> [String; 3] {
+    let mut parts = line.split('"');
+    let [file, right, _, fault] = std::array::from_fn(|_| parts.next().unwrap());
+    [file.trim(), right, fault].map(|text| text.replace("\\n", "\n"))
+}
 
-/// Scattered voxels, and fill words, on stage C; the turns of contexts; bricks. If voxels were never taken back from the
-/// stack, no view would reveal it: no other brick is read while one lies there, so the registers still have them.
-static LONG: [Group; 5] = [
-    (
-        &STAGE_C,
-        "gen:random,depth=3,seed=1 --size 9x7 --fov 70 --eye 9,2.3,5.1 --target 2.4,3.1,1.3",
-        &[
-            ("parts", "asked_x = r_quad_x >> above", "asked_x = r_quad_x"),
-            ("parts", "state == ORDER ? order_now : order", "order"),
-            ("parts", "leaves[octant]", "mask[octant]"),
-            ("parts", "first <= p_first", "first <= first"),
-            ("parts", "r_inside <= p_inside", "r_inside <= 1"),
-            ("parts", "one << octant_bit << 1", "one << octant_bit"),
-            (
-                "parts",
-                "if (left != 0) state",
-                "if (left_there != 0) state",
-            ),
-            ("steps", "r_w <= parent_w", "r_w <= r_w"),
-            ("plane_whole", "doubled >>> 1", "doubled >> 1"),
-            (
-                "parent_planes",
-                "y_k (.plane(edge_y)",
-                "y_k (.plane(edge_x)",
-            ),
-            ("parent_cage", "child[k*W +: W] << 1", "child[k*W +: W]"),
-            ("grown_cage", "edge_k >>> 1", "edge_k >> 1"),
-            ("silhouette_steps", "if (~looks) begin", "begin"),
-            ("silhouettes", "known & coverage != 0", "known"),
-        ],
-    ),
-    (
-        &STAGE_C,
-        "gen:menger,depth=2 --size 11x14 --view iso",
-        &[
-            ("joined_fill", "| state == CHILD & judged", ""),
-            ("joined_fill", "is_written <= joined", "is_written <= 0"),
-            ("joined_fill", "== 1 ? quarter", "== 1 ? around"),
-            (
-                "joined_fill",
-                "of_word[3], of_word[1]",
-                "of_word[1], of_word[3]",
-            ),
-            ("joined_fill", "? &written", "? written[0]"),
-            ("joined_fill", "c_quad_x <= c_quad_x >> 2", "c_quad_x <= 0"),
-            ("silhouette_steps", "known ? ATTRIBUTE : DRAWN", "DRAWN"),
-            ("machine", "if (known) choose;\n            else", ""),
-        ],
-    ),
-    (
-        &TWO_LANES,
-        WITHIN,
-        &[
-            ("contexts", "state == NODE ? LOOK : state", "state"),
-            (
-                "contexts",
-                "asks_node | runs : asks_node",
-                "asks_node : asks_node",
-            ),
-            (
-                "contexts",
-                "wanted_by[running] <= wanted",
-                "wanted_by[running] <= 0",
-            ),
-            (
-                "contexts",
-                "& ~(looks_at_answer ? runs : {CONTEXTS{1'b0}})",
-                "",
-            ),
-            ("contexts", "(begun | start) & ~runs", "begun | start"),
-            ("contexts", "state == ATTRIBUTE\n", "1'b0\n"),
-            (
-                "machine",
-                "fill_address} << CONTEXT_LOG2 | running",
-                "fill_address} << CONTEXT_LOG2",
-            ),
-            ("machine", "waiting <= kept_of_next[KEPT +: WAITING];", ""),
-            ("joined_fill", "is_written <= 1;", ""),
-            ("silhouette", "{a, b, of_divided, here} <= kept[next];", ""),
-        ],
-    ),
-    (
-        &LANES[6],
-        "gen:random,depth=4,seed=5 --size 24x20 --view iso",
-        &[
-            ("arbiter", "waiting[i] | ~waiting[j]", "1'b1"),
-            ("stage", "r_quad_x, r_quad_y, ", ""),
-            ("stage", "r_min, r_max, ", "r_min, "),
-            ("stage", "middle, leaves, ", "middle, "),
-        ],
-    ),
-    (
-        &STAGE_C_BRICKS,
-        SOLIDS,
-        &[
-            ("bricks", "- first_brick", ""),
-            (
-                "bricks",
-                "if (state == SOLID) second <= 0;\n    else if",
-                "if",
-            ),
-            (
-                "bricks",
-                "voxels <= p_voxels;",
-                "voxels <= {56'd0, p_mask};",
-            ),
-            (
-                "bricks",
-                "first_voxel <= p_first_voxel;",
-                "first_voxel <= p_first;",
-            ),
-            (
-                "bricks",
-                "p_is_brick ? children_in(p_voxels)",
-                "p_is_brick ? 8'hff",
-            ),
-            ("bricks", ".octant(c_octant)", ".octant(octant)"),
-            ("bricks", "first_voxel + voxels_before", "first_voxel"),
-            (
-                "bricks",
-                "node_word[63:56], children_in",
-                "8'd0, children_in",
-            ),
-            ("bricks", "c_level + 1'b1 == depth", "c_level == depth"),
-            ("brick_child", "i < 7", "i < 3"),
-            ("parts", "if (in_brick) go_down;\n  else", ""),
-        ],
-    ),
-];
-
-/// Draws a small frame in Icarus Verilog: as it is, and with each mistake.
-fn faults_are_found(&(machine, view, faults): &Group) {
+/// Draws the small frame of a section in Icarus Verilog: as it is, and with each mistake. Returns how many there were.
+fn faults_are_found(machine: &'static Machine, view: &str, lines: &[&'static str]) -> usize {
     let shelter = tempfile::tempdir().unwrap();
     let file = shelter.path().join("solids.vxg");
     vxg::write(&tree_with_larger_solids(3), &file, true).unwrap();
@@ -274,16 +45,17 @@ fn faults_are_found(&(machine, view, faults): &Group) {
     let modules = shelter.path().join("modules");
     fs::create_dir(&modules).unwrap();
     let compiled = shelter.path().join("frame.vvp");
-    for &(file, right, fault) in [("", "", "")].iter().chain(faults) {
+    let faults = lines.iter().map(|line| fault_of(line));
+    for [file, right, fault] in std::iter::once(Default::default()).chain(faults) {
         // Of files in several folders the first counts.
         let mut found = 1;
         for folder in machine.folders().iter().rev() {
             for path in fs::read_dir(rtl().join(folder)).unwrap() {
                 let path = path.unwrap().path();
                 let mut source = fs::read_to_string(&path).unwrap();
-                if path.file_stem().unwrap() == file {
-                    found = source.matches(right).count();
-                    source = source.replace(right, fault);
+                if path.file_stem().unwrap() == file.as_str() {
+                    found = source.matches(&right).count();
+                    source = source.replace(&right, &fault);
                 }
                 fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
             }
@@ -298,17 +70,36 @@ fn faults_are_found(&(machine, view, faults): &Group) {
         let drawn = agree_in_icarus(&expected, &compiled, 2 * expected.cycles);
         assert_eq!(drawn.is_ok(), file.is_empty(), "{file}: {fault}: {drawn:?}");
     }
+    lines.len()
+}
+
+/// The mistakes of a set's sections.
+fn faults_of_set_are_found(set: &str) -> usize {
+    let lines = FAULTS
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let lines: Vec<&str> = lines.collect();
+    let mut sections = lines
+        .chunk_by(|_, next| !next.starts_with('['))
+        .collect::<Vec<_>>();
+    sections.retain(|section| section[0].starts_with(&format!("[{set} ")));
+    let found = sections.into_par_iter().map(|section| {
+        let (head, view) = section[0].split_once("] ").unwrap();
+        let (_, machine) = head.split_once(' ').unwrap();
+        faults_are_found(machine_of(machine), view, &section[1..])
+    });
+    found.sum()
 }
 
 #[test]
 fn faults_of_every_machine_are_found() {
-    SHORT.par_iter().for_each(faults_are_found);
+    assert_eq!(faults_of_set_are_found("short"), 36);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn more_faults_are_found() {
-    LONG.par_iter().for_each(faults_are_found);
+    assert_eq!(faults_of_set_are_found("long"), 47);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Whole frames in Verilog against the machine: every event with all its bits, in order; the picture; the cycles.
+//! Whole frames in Verilog against the machine: every event with all its bits in order, the picture, and the cycles.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fs;
@@ -175,7 +175,7 @@ fn bricks_in_many_scenes() {
     let file = shelter.path().join("solids.vxg");
     vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
     let solids = format!("{} --size 64 --view iso", text(&file));
-    // No brick: less than two levels; the root alone.
+    // The first has less than two levels, the second the root alone.
     let without_bricks = [
         "gen:random,depth=1,seed=2 --size 20",
         "gen:random,depth=2,seed=3 --size 20",

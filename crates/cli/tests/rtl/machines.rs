@@ -1,5 +1,5 @@
-//! Simulated machines of `rtl/`, and the reference machine in the same frames: every event with all its bits, in order; the
-//! picture; the cycles.
+//! Simulated machines of `rtl/` against the reference machine: every event with all its bits in order, the picture, and the
+//! cycles.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -351,7 +351,7 @@ pub(crate) fn agree(machine: &Machine, view: &str, links: Option<&[u32]>) -> Agr
     agreement
 }
 
-/// Draws a view in Icarus Verilog: the same. `compiled`: the testbench; `most`: cycles that end it.
+/// As [`agree`], with a compiled testbench in Icarus Verilog, for at most so many cycles.
 pub(crate) fn agree_in_icarus(
     expected: &Expected<'_>,
     compiled: &Path,

@@ -115,7 +115,7 @@ fn modules(folder: &str) -> Vec<String> {
         .collect()
 }
 
-/// Margins wider than a node, and words so short that sums are often equal to what they are compared with.
+/// Margins wider than a node, and words so short that comparisons often have equal sides.
 const WIDE: &str = "--coverage any --cage corners --tolerance 2 --frac 1";
 /// Boxes that must hold a sample.
 const SAMPLES: &str = "--coverage exact --cage corners";

@@ -7,9 +7,6 @@ pub(crate) const TREE: &str = concat!(
 /// In the middle of the sponge's hollow, looking at a corner of it.
 pub(crate) const INSIDE: &str =
     "gen:menger,depth=3 --size 64 --eye 13.4,12.7,13.5 --target 20,16,11";
-/// Between voxels, where tiles have about the same work.
-pub(crate) const WITHIN: &str =
-    "gen:menger,depth=1 --size 13x11 --eye 1.5,1.4,1.2 --target 2.9,1.9,1.8";
 
 /// The bundled tree, a sponge, terrain, and an eye within them; sizes that fill the picture's quadtree and that do not.
 pub(crate) const SCENES: [&str; 6] = [

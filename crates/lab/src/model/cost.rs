@@ -18,27 +18,27 @@ use super::frame::Counted;
 use super::range::Range;
 use shiftvox::project::FrameSetup;
 
-/// The tables, and the choices that counts leave open.
+/// The tables, and choices that do not follow from counts.
 #[derive(Debug, Clone)]
 pub struct Prices {
     /// Areas and energies.
     pub table: CostTable,
     /// How shifts and spans are built.
     pub costing: Costing,
-    /// What gates are chosen for.
+    /// Small area or short delay of gates.
     pub goal: Goal,
 }
 
-/// What a frame costs.
+/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     /// Energy of the operations, pJ.
     pub operations: Breakdown,
     /// Energy of the memories on the chip, pJ.
     pub on_chip: Breakdown,
-    /// Energy of what goes to outer memory and comes from there, pJ.
+    /// Energy of outer memory, pJ.
     pub outer: Breakdown,
-    /// Bits that go there and come from there.
+    /// Traffic to outer memory.
     pub traffic: OuterTraffic,
 }
 
@@ -52,7 +52,7 @@ impl FrameCost {
     }
 }
 
-/// Bits of a hardware's stacks.
+/// Bits of all stacks.
 #[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
@@ -67,7 +67,7 @@ pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
     u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)
 }
 
-/// Bits that go to outer memory and come from there.
+/// Traffic to outer memory, bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct OuterTraffic {
     /// Lines of nodes, read.
@@ -91,7 +91,7 @@ impl OuterTraffic {
 /// Bits of a word of outer memory. Neighbours share words.
 const OUTER_WORD_BITS: u32 = 64;
 
-/// Energy of traffic to outer memory, pJ, by what it is for.
+/// Energy of traffic to outer memory, pJ, by purpose.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -111,9 +111,8 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
     Ok(sum)
 }
 
-/// Energy of a frame on a hardware. Accesses to nodes and attributes go to
-/// the hardware's caches, their misses to outer memory, line by line; spilled records go there
-/// and come back; pixels go there.
+/// Energy of a frame. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
+/// are written there and read back. Pixels are written there.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -312,7 +311,7 @@ mod tests {
             spilled_bits: 936,
             pixel_bits: 24,
         };
-        // 8 words of a line; 15 words out, 15 words back; 1 word of a pixel.
+        // A line has 8 words, the spilled record 15 out and 15 back, the pixel 1.
         let sum = outer_energy(&traffic, &table).unwrap();
         assert!((sum.total - (8.0 + 15.0 + 15.0 + 1.0) * 1950.0).abs() < 1e-6);
         assert!((sum.low - 39.0 * 1300.0).abs() < 1e-6);

@@ -10,7 +10,7 @@ use super::frame::{self, Counted};
 use shiftvox::graph::Graph;
 use shiftvox::project::FrameSetup;
 
-/// What a frame costs on the light hardware, and what that hardware is.
+/// The costs of a frame on the light hardware.
 #[derive(Debug, Clone)]
 pub struct LightDesign {
     /// Energy and traffic.

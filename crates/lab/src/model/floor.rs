@@ -2,7 +2,7 @@
 //! move:
 //!
 //! - the lines that hold the attributes of the visible voxels;
-//! - the lines that hold the nodes above them, which tell that they exist and where;
+//! - the lines that hold the nodes above them;
 //! - the pixels.
 //!
 //! Each line is fetched once, as by a cache of unlimited size. Arithmetic and memories on the chip cost nothing here.
@@ -19,12 +19,12 @@ use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{Graph, NodeLayout};
 
-/// The least that a frame moves, and what that costs.
+/// The least traffic of a frame, and its energy.
 #[derive(Debug, Clone, Serialize)]
 pub struct Floor {
-    /// Lines of the nodes above what is seen.
+    /// Lines of the nodes above visible voxels.
     pub node_lines: u64,
-    /// Lines of the attributes of what is seen.
+    /// Lines of the attributes of visible voxels.
     pub attribute_lines: u64,
     /// Samples that show something.
     pub pixels: u64,
@@ -38,7 +38,7 @@ pub struct Floor {
     pub energy_pj: Range,
 }
 
-/// The floor of a frame, for the node format and the lines of a hardware.
+/// The bound for a frame, the node format and the cache lines of a hardware.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -69,7 +69,7 @@ pub fn floor(
         let [x, y, z, level] = voxel;
         let mut above = view.root;
         for at in 0..=level.max(0) as u32 {
-            // What a leaf is, stands in its parent, or in itself.
+            // A leaf is marked in its parent or in its own node.
             if at == level as u32 && layout.leaf_masks {
                 break;
             }

@@ -1,7 +1,7 @@
 //! The hardware model: the cost of a frame on the light hardware, beside a ray caster with multipliers.
 //!
-//! [`frame`] draws a frame and counts it, [`ray_caster`] does the same with rays. [`cost`] and [`area`] turn counts into
-//! energy and area, [`clock`] compares the units with the clock, and [`mod@floor`] computes what every design must move.
+//! [`frame`] draws a frame and counts it. [`ray_caster`] does the same with rays. [`cost`] and [`area`] turn counts into
+//! energy and area. [`clock`] compares the units with the clock. [`mod@floor`] is a lower bound for every design.
 //! [`report`] collects all of that. [`mod@explore`] repeats it over many designs, words, rules and sizes. [`vectors`] writes
 //! the inputs and outputs of the machine's blocks.
 

@@ -50,7 +50,7 @@ impl std::ops::Add for Range {
     }
 }
 
-/// Which of two designs needs less.
+/// The design that needs less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Winner {

@@ -18,22 +18,22 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, NodeLayout};
 use shiftvox::project::FrameSetup;
 
-/// What the ray caster took, its rays in one order.
+/// The costs of the ray caster, its rays in one order.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
     /// The order of its rays.
     pub order: RayOrder,
     /// Steps by kind.
     pub counts: FloatRayCounts,
-    /// Hits and misses of nodes in a cache like the hardware's.
+    /// Hits of nodes in a cache like the hardware's.
     pub node_hits: u64,
-    /// See `node_hits`.
+    /// Misses of nodes.
     pub node_misses: u64,
     /// Misses of attributes in a cache like the hardware's.
     pub attribute_misses: u64,
-    /// What the frame costs.
+    /// Energy of the frame.
     pub cost: FrameCost,
-    /// How long it takes at least.
+    /// Lower bound on its cycles.
     pub cycles: RayCycles,
     /// Its area, NAND2 equivalents.
     pub area: DesignArea,
@@ -70,8 +70,7 @@ fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
     })
 }
 
-/// Casts a frame's rays. `node_caches`: the sizes to try, as the hardware's
-/// otherwise; `exact`: the true picture.
+/// Casts a frame's rays beside node caches of several sizes. `exact` is the true picture.
 ///
 /// # Errors
 /// When a size is no cache's.

@@ -157,7 +157,7 @@ pub struct MissCurve {
     pub points: Vec<MissPoint>,
 }
 
-/// A frame that was drawn on the serial machine, on a hardware, and by rays.
+/// A frame drawn by the serial machine, by the hardware, and by rays.
 #[derive(Debug)]
 pub struct Drawn<'a> {
     /// The scene.

@@ -9,7 +9,7 @@ use crate::report::{Cell, Table};
 pub struct TableSpec {
     /// Its title.
     pub title: &'static str,
-    /// The array of its rows, as a path with dots. A `*` stands for every field of an object.
+    /// The array of its rows, as a path with dots. A `*` matches every field of an object.
     pub rows: &'static str,
     /// Columns with blanks between them: `head=path:factor:digits`. Head, factor and digits may be missing. The path `*`
     /// is the name of the field that matched a `*` of `rows`.

@@ -29,7 +29,7 @@ use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
 use shiftvox_lab::model::explore::{self, Explored};
 
-/// What was found of a scene.
+/// The points of a scene.
 struct Explorations {
     scene: String,
     /// Points of the space.
@@ -140,7 +140,7 @@ fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, C
     Space::from_toml(text, hardware, open).map_err(|error| CliError::input(error).at(name))
 }
 
-/// The points that are asked for, of so many.
+/// The requested points, of so many.
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     match &args.points {
         Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
@@ -171,7 +171,7 @@ fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Res
     ))
 }
 
-/// What results are of: a run takes none of another.
+/// The header of results, which must be equal for results to be reused.
 fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -> Value {
     let graph = &subject.graph;
     // Everything that figures depend on and that has no name of its own.
@@ -198,7 +198,7 @@ fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -
     )
 }
 
-/// What is measured of every scene.
+/// The measurements of every scene.
 struct Asked<'a> {
     args: &'a ModelArgs,
     space: &'a Space,

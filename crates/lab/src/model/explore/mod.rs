@@ -3,10 +3,15 @@
 //! [`space`] describes the designs, [`explore`] measures them, and [`mod@front`] finds the Pareto-optimal ones in time,
 //! area, energy and wrong samples. [`lines`] is the format of results, one point per line of JSON.
 //!
-//! Whatever depends on a part of a point only is computed once for all points that share it: the exact picture by size;
-//! the machine's counts by drawing settings and organisation; the rays by drawing settings, node format and cache lines,
-//! for caches of all sizes at once; cycles by everything except name and clock. Where parents lie on the stack, a record's
-//! turn does not depend on the hardware. Those turns are recorded once, and only their cycles are simulated per point.
+//! Points share results that depend on a part of them only:
+//!
+//! - the exact picture depends on its size;
+//! - the machine's counts depend on drawing settings and organisation;
+//! - the rays depend on drawing settings, node format and cache lines, and are cast for caches of all sizes at once;
+//! - cycles depend on everything except name and clock.
+//!
+//! Where parents lie on the stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only
+//! their cycles are simulated per point.
 
 pub mod front;
 pub mod lines;

@@ -6,9 +6,9 @@ use shiftvox::graph::{GraphView, NodeLayout};
 use shiftvox::machine::frame_registers;
 use shiftvox::project::FrameSetup;
 
-/// The file of constants: a register a line, from number 0 on.
+/// The file of constants from number 0 on, one register per line.
 pub(super) const CONSTANTS: &str = "frame.constants.hex";
-/// The file of nodes: a word of 64 bits a line, from node 0 on; of a brick two.
+/// The file of nodes from number 0 on, one word of 64 bits per line. A brick has two words.
 pub(super) const NODES: &str = "frame.nodes.hex";
 
 /// The constants, each as wide as a word.

@@ -2,13 +2,13 @@
 
 use serde_json::{Value, json};
 
-use super::blocks::{absence, meaning};
+use super::blocks::{Descriptions, absence};
 use super::recorder::{Recording, TURNS, Turns, file_name};
 use super::{Request, SCHEMA};
 use shiftvox::machine::{ProvenWidths, proven_widths};
 use shiftvox::project::{FrameSetup, Stats};
 
-/// The manifest of a folder of vectors; `nodes`: of the graph.
+/// The manifest of a folder of vectors. `nodes` is the size of the graph.
 pub(super) fn document(
     setup: &FrameSetup,
     request: &Request<'_>,
@@ -70,20 +70,24 @@ pub(super) fn document(
     })
 }
 
+fn meaning(block: &str, port: &str) -> String {
+    Descriptions::shipped().meaning(block, port).to_owned()
+}
+
 fn entry(setup: &FrameSetup, recording: &Recording, proven: Option<&ProvenWidths>) -> Value {
-    let of = &recording.description;
+    let of = recording.description;
     let stages: Vec<&str> = of.stages.iter().map(|stage| stage.name()).collect();
     let absent = || absence(recording.block, setup).unwrap_or("none of these records came to it");
     let ports = |side: usize, proven| {
         let seen = &recording.seen[side];
-        recording.ports[side].describe(setup.format, |name| meaning(of.name, name), seen, proven)
+        recording.ports[side].describe(setup.format, |name| meaning(&of.name, name), seen, proven)
     };
     json!({
         "name": of.name,
         "stages": stages,
         "section": format!("SPEC.md, {}", of.section),
         "function": of.function,
-        "file": (recording.rows > 0).then(|| file_name(of.name)),
+        "file": (recording.rows > 0).then(|| file_name(&of.name)),
         "rows": recording.rows,
         "frame_rows": recording.frame_rows,
         "reason": (recording.rows == 0).then(absent),

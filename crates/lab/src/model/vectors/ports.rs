@@ -10,7 +10,7 @@ use shiftvox::project::CageKind;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Port {
     /// Its name in Verilog.
-    pub name: &'static str,
+    pub name: String,
     /// Width and sign of each number.
     pub kind: SignalKind,
     /// Count of its numbers.
@@ -36,15 +36,15 @@ const OF_FRAME: [&str; 9] = [
 ];
 
 impl Ports {
-    /// Reads `name:kind` with blanks between them. A kind is `w` for a word, `v` for a wide word, `u4` and `s4` for numbers
-    /// of four bits without and with sign, and `c` for one coordinate of a cage: eight vertices, or a corner and three
-    /// edges. A number before it is a count.
+    /// Reads `name:kind` with blanks between them. A kind is `w` for a word or `v` for a wide word. `u4` and `s4` are numbers
+    /// of four bits without and with sign. `c` is one coordinate of a cage: eight vertices, or a corner and three edges. A
+    /// number before a kind is a count.
     ///
     /// # Panics
     /// When the text is not like that.
     #[must_use]
-    pub fn new(text: &'static str, cage: CageKind) -> Self {
-        let port = |text: &'static str| {
+    pub fn new(text: &str, cage: CageKind) -> Self {
+        let port = |text: &str| {
             let (name, kind) = text.split_once(':')?;
             let letter = kind.find(|c: char| c.is_ascii_alphabetic())?;
             let (count, kind) = kind.split_at(letter);
@@ -63,6 +63,7 @@ impl Ports {
                 "c" => (SignalKind::Word, 4),
                 _ => return None,
             };
+            let name = name.to_owned();
             Some(Port { name, kind, count })
         };
         let ports = text.split_whitespace().map(|text| match port(text) {
@@ -111,12 +112,12 @@ impl Ports {
         Some(text)
     }
 
-    /// The ports in the manifest. `seen`: by number, the least and the greatest value in the rows of the frame; `proven`:
-    /// the widths that suffice, if they are known.
+    /// The ports in the manifest. `seen` has the range of each number in the rows of the frame, and `proven` the sufficient
+    /// widths, if they are known.
     pub(super) fn describe(
         &self,
         format: Format,
-        meaning: impl Fn(&str) -> &'static str,
+        meaning: impl Fn(&str) -> String,
         seen: &[NumberSpan],
         proven: Option<&ProvenWidths>,
     ) -> Value {
@@ -139,8 +140,8 @@ impl Ports {
                 "bits": bits,
                 "signed": port.kind.is_signed(),
                 "lowest_bit": lowest,
-                "meaning": meaning(port.name),
-                "changes": if OF_FRAME.contains(&port.name) { "frame" } else { "row" },
+                "meaning": meaning(&port.name),
+                "changes": if OF_FRAME.contains(&port.name.as_str()) { "frame" } else { "row" },
                 "seen": seen.iter().map(range).collect::<Vec<_>>(),
                 "proven_bits": (0..port.count).map(proven_bits).collect::<Vec<_>>(),
             })
@@ -154,7 +155,7 @@ impl Port {
     /// The number of a record that an input is, if set-up can prove its width.
     fn number(&self, at: usize) -> Option<RecordNumber> {
         let is_edge = self.count == 4 && at > 0;
-        match (self.name, is_edge) {
+        match (self.name.as_str(), is_edge) {
             ("w_min", _) => Some(RecordNumber::LeastW),
             ("w", false) => Some(RecordNumber::ClipW),
             ("w", true) | ("edge_w", _) => Some(RecordNumber::EdgeW),

@@ -8,15 +8,11 @@ use hwmodel::cycles::StackHolds;
 use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
-use super::blocks::{Description, absence, describe};
+use super::blocks::{Description, Descriptions, absence, describe};
 use super::ports::Ports;
 use shiftvox::machine::{Block, NumberSpan, Port};
 use shiftvox::project::FrameSetup;
 use shiftvox::whole::WholeError;
-
-/// The ports of a record, as the machine shows it.
-const RECORD: &str = "solid:u1 inside:u1 in_screen_space:u1 level:u6 voxel_level:u6 quad_level:u6 node:u32 quad:2u20 \
-                      min:3w max:3w x:c y:c w:c w_min:w span_x:2w span_y:2w edge_x:3v edge_y:3v edge_z:3v axis_c:3v";
 
 /// The file of turns.
 pub(super) const TURNS: &str = "turns.jsonl";
@@ -78,7 +74,7 @@ impl Lines {
 #[derive(Debug)]
 pub(super) struct Recording {
     pub(super) block: Block,
-    pub(super) description: Description,
+    pub(super) description: &'static Description,
     /// Inputs and outputs.
     pub(super) ports: [Ports; 2],
     pub(super) rows: u64,
@@ -128,7 +124,7 @@ impl Recorder {
             Recording {
                 block,
                 description,
-                ports: [description.inputs, description.outputs].map(|of| Ports::new(of, cage)),
+                ports: [&description.inputs, &description.outputs].map(|of| Ports::new(of, cage)),
                 rows: 0,
                 frame_rows: 0,
                 seen: Default::default(),
@@ -138,7 +134,7 @@ impl Recorder {
         // Turns that blend are not recorded.
         let turns = (!setup.options.coverage.blends()).then(|| {
             Ok::<_, VectorsError>(Turns {
-                record: Ports::new(RECORD, cage),
+                record: Ports::new(&Descriptions::shipped().record, cage),
                 turns: 0,
                 events: 0,
                 file: Lines::create(folder.join(TURNS))?,
@@ -191,7 +187,7 @@ impl Recorder {
         if self.is_directed && absence(recording.block, &self.setup).is_some() {
             return Ok(());
         }
-        let name = recording.description.name;
+        let name = recording.description.name.as_str();
         let packed = |side: usize| recording.ports[side].packed(rows[side], format);
         let (Some(into), Some(out)) = (packed(0), packed(1)) else {
             return Err(VectorsError::Misfit(name));
