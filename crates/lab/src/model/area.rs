@@ -44,17 +44,6 @@ pub struct DesignArea {
 }
 
 impl DesignArea {
-    /// Its parts, by name.
-    #[must_use]
-    pub fn parts(&self) -> [(&'static str, &Breakdown); 4] {
-        [
-            ("units", &self.units),
-            ("registers", &self.registers),
-            ("memories", &self.memories),
-            ("control", &self.control),
-        ]
-    }
-
     /// All of it.
     #[must_use]
     pub fn range(&self) -> Range {
@@ -67,8 +56,9 @@ impl DesignArea {
         let logic = self.units.total + self.registers.total;
         self.control
             .push("control", "control", 1, logic.round() as u64, share);
-        let sum = self.parts().map(|(_, part)| Range::from(part));
-        let sum = sum.into_iter().fold(Range::default(), |a, b| a + b);
+        let parts = [&self.units, &self.registers, &self.memories, &self.control];
+        let sum = parts.map(Range::from).into_iter();
+        let sum = sum.fold(Range::default(), |a, b| a + b);
         (self.total, self.low, self.high) = (sum.value, sum.low, sum.high);
         Ok(self)
     }

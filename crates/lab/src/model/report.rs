@@ -261,8 +261,8 @@ fn records_by_kind(counted: &Counted) -> Vec<KindTraffic> {
 
 fn levels(counter: &Counter) -> Vec<LevelRecords> {
     let operations = counter.sum_by(|cell| cell.level);
-    let levels = counter.records_by_level().into_iter();
-    levels
+    counter
+        .records_by_level()
         .map(|(level, records)| LevelRecords {
             level,
             records,

@@ -18,6 +18,7 @@ pub mod lines;
 pub mod space;
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Mutex;
 
 use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
@@ -283,10 +284,9 @@ impl<'a> Shared<'a> {
         for point in points {
             let camera = camera_of(of.camera, point.drawing);
             let options = point.drawing.options(of.options);
-            if !shared.exact.contains_key(&point.drawing.size) {
+            if let Entry::Vacant(place) = shared.exact.entry(point.drawing.size) {
                 let setup = frame::true_setup(of.graph, &camera, of.options)?;
-                let exact = frame::reference(&of.graph.view(), &setup)?;
-                shared.exact.insert(point.drawing.size, exact);
+                place.insert(frame::reference(&of.graph.view(), &setup)?);
             }
             let setup = || {
                 let placement = &of.graph.placement;
