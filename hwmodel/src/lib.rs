@@ -50,7 +50,6 @@ pub mod memory;
 mod narrow;
 pub mod probe;
 pub mod shifts;
-pub mod statistics;
 pub mod tap;
 mod trap;
 mod word;
