@@ -66,7 +66,6 @@ pub mod memory;
 mod narrow;
 pub mod probe;
 pub mod shifts;
-pub mod statistics;
 pub mod tap;
 mod trap;
 mod word;

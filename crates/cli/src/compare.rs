@@ -1,4 +1,4 @@
-//! `compare`: how far two pictures or two buffers are apart.
+//! `compare`: the difference of two pictures or two buffers.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -25,9 +25,8 @@ pub struct CompareArgs {
     /// Reference: of the same kind and size
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the
-    /// number of differing pixels, or NAME=VALUE with a name of the report (psnr_* and ssim: at
-    /// least; all others: at most); repeatable
+    /// Allowed difference, beyond which the exit code is 3 [default: 0]: the number of differing pixels, or NAME=VALUE
+    /// with a name of the report. Values of psnr_* and ssim are lower bounds, all others upper bounds; repeatable
     #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
     threshold: Vec<Threshold>,
     /// Picture of the differences, four times as bright

@@ -1,4 +1,4 @@
-//! `info`: what is in a scene.
+//! `info`: describes a scene.
 
 use std::time::Instant;
 
@@ -92,77 +92,37 @@ fn of_one(
     }
 }
 
-/// What is said of a scene, in numbers.
-struct Facts {
-    low: [i64; 3],
-    high: [i64; 3],
-    levels: Vec<(u64, u128)>,
-    bytes: u64,
-    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape; none
-    /// where there is too little memory to find out.
-    gains: Option<[f64; 2]>,
-    colors: usize,
-    camera_line: String,
-}
-
-impl Facts {
-    fn of(scene: &Scene) -> Self {
-        let graph = &scene.graph;
-        let (low, high) = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
-        let origin = graph.placement.origin_index;
-        let file = |corner: [i64; 3]| [0, 1, 2].map(|k| corner[k] + origin[k]);
-        let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-        Self {
-            low: file(low),
-            high: file(high),
-            levels: levels(graph),
-            bytes: graph.bytes(),
-            gains: merge_gains(graph),
-            colors: distinct_leaf_colors(graph),
-            camera_line: camera_line(&camera),
-        }
-    }
-
-    fn size(&self) -> [i64; 3] {
-        [0, 1, 2].map(|k| self.high[k] - self.low[k])
-    }
-
-    fn bytes_per_voxel(&self, graph: &Graph) -> f64 {
-        self.bytes as f64 / graph.voxels.max(1) as f64
-    }
-}
-
 fn describe(scene: &Scene) -> Value {
-    let facts = Facts::of(scene);
     let graph = &scene.graph;
-    let levels: Vec<Value> = facts
-        .levels
-        .iter()
-        .enumerate()
-        .map(|(level, &(nodes, in_tree))| {
-            let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
-            json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
-        })
-        .collect();
+    let (low, high) = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
+    let origin = graph.placement.origin_index;
+    let file = |corner: [i64; 3]| [0, 1, 2].map(|k| corner[k] + origin[k]);
+    let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
+    let level = |(level, (nodes, in_tree)): (usize, (u64, u128))| {
+        let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
+        json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
+    };
+    let levels: Vec<Value> = levels(graph).into_iter().enumerate().map(level).collect();
+    let gains = merge_gains(graph);
     json!({
         "scene": scene.source,
         "format": scene.format,
-        "index_low": facts.low,
-        "index_high": facts.high,
-        "opacities": opacities(&scene.graph),
-        "size": facts.size(),
+        "index_low": file(low),
+        "index_high": file(high),
+        "opacities": opacities(graph),
+        "size": [0, 1, 2].map(|k| high[k] - low[k]),
         "voxel_size_world": graph.placement.voxel_size,
         "depth": graph.depth,
         "voxels": graph.voxels,
         "nodes": graph.len(),
         "levels": levels,
-        "bytes": facts.bytes,
-        "bytes_per_voxel": facts.bytes_per_voxel(graph),
-        "dag_gain": facts.gains.map(|gains| gains[0]),
-        "dag_gain_by_shape": facts.gains.map(|gains| gains[1]),
+        "bytes": graph.bytes(),
+        "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
+        "dag_gain": gains.map(|gains| gains[0]),
+        "dag_gain_by_shape": gains.map(|gains| gains[1]),
         "palette_entries": scene.palette,
-        "colors": facts.colors,
-        "camera": facts.camera_line,
+        "colors": distinct_leaf_colors(graph),
+        "camera": camera_line(&camera),
         "mesh": scene.mesh.as_ref().map(|mesh| json!({
             "triangles": mesh.triangles,
             "positions": mesh.positions,
@@ -179,54 +139,63 @@ fn describe(scene: &Scene) -> Value {
     })
 }
 
+/// The description in text.
 fn description(scene: &Scene, several: bool) -> String {
-    let facts = Facts::of(scene);
-    let graph = &scene.graph;
-    let [x, y, z] = facts.size();
-    let palette = scene
-        .palette
-        .map_or_else(|| "none".to_owned(), |n| format!("{n} entries"));
+    let facts = describe(scene);
+    let count = |key: &str| grouped(facts[key].as_u64().unwrap_or(0));
+    let words = |key: &str| facts[key].as_str().unwrap_or_default().to_owned();
+    let gain = |key: &str| facts[key].as_f64();
     let lines = [
-        ("scene", scene.source.clone()),
-        ("format", scene.format.clone()),
-        ("size", format!("{x} x {y} x {z} voxels")),
+        ("scene", words("scene")),
+        ("format", words("format")),
+        (
+            "size",
+            format!(
+                "{} x {} x {} voxels",
+                facts["size"][0], facts["size"][1], facts["size"][2]
+            ),
+        ),
         (
             "indices",
-            format!("{:?} up to, not including, {:?}", facts.low, facts.high),
+            format!(
+                "{} up to, not including, {}",
+                facts["index_low"], facts["index_high"]
+            ),
         ),
-        ("depth", format!("{} levels below the root", graph.depth)),
-        ("voxels", grouped(graph.voxels)),
-        ("nodes", grouped(graph.len() as u64)),
+        ("depth", format!("{} levels below the root", facts["depth"])),
+        ("voxels", count("voxels")),
+        ("nodes", count("nodes")),
         (
             "memory",
             format!(
-                "{} bytes, {:.2} a voxel",
-                grouped(facts.bytes),
-                facts.bytes_per_voxel(graph)
+                "{} bytes, {:.2} per voxel",
+                count("bytes"),
+                facts["bytes_per_voxel"].as_f64().unwrap_or(0.0)
             ),
         ),
         (
             "DAG gain",
-            match facts.gains {
-                Some([all, shape]) => {
+            match (gain("dag_gain"), gain("dag_gain_by_shape")) {
+                (Some(all), Some(shape)) => {
                     format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
                 }
-                None => "not found out: merging takes more memory than is free".to_owned(),
+                _ => "unknown: merging takes more memory than is free".to_owned(),
             },
         ),
-        ("palette", palette),
-        ("opacities", opacities(graph)),
         (
-            "colours",
-            format!("{} different", grouped(facts.colors as u64)),
+            "palette",
+            scene
+                .palette
+                .map_or_else(|| "none".to_owned(), |n| format!("{n} entries")),
         ),
-        ("camera", facts.camera_line.clone()),
+        ("opacities", words("opacities")),
+        ("colours", format!("{} different", count("colors"))),
+        ("camera", words("camera")),
     ];
     let mesh = scene.mesh.as_ref().map(|mesh| {
         let (low, high) = mesh.bounds;
         format!(
-            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
-             voxelised in {:.1} ms",
+            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, voxelised in {:.1} ms",
             grouped(mesh.triangles),
             grouped(mesh.positions),
             grouped(mesh.materials),
@@ -236,12 +205,11 @@ fn description(scene: &Scene, several: bool) -> String {
         )
     });
     let lines = lines.into_iter().chain(mesh.map(|mesh| ("mesh", mesh)));
-    let rows = facts.levels.iter().enumerate();
-    let rows = rows
-        .map(|(level, &(nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)])
-        .collect();
+    let rows = levels(&scene.graph).into_iter().enumerate();
+    let rows =
+        rows.map(|(level, (nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)]);
     let head = ["level", "nodes", "in a tree"].map(String::from).into();
-    let levels = report::table(head, rows);
+    let levels = report::table(head, rows.collect());
     let text: Vec<String> = lines
         .map(|(name, value)| format!("{name:<9} {value}"))
         .collect();
@@ -249,8 +217,7 @@ fn description(scene: &Scene, several: bool) -> String {
     format!("{}\n\n{levels}{gap}", text.join("\n"))
 }
 
-/// How many of the nodes without children let light through, and how much
-/// they cover of their faces on the average.
+/// The share of leaves that let light through, and their mean coverage of faces.
 fn opacities(graph: &Graph) -> String {
     if graph.opacity.is_empty() {
         return "none: all voxels are opaque".to_owned();
@@ -266,7 +233,7 @@ fn opacities(graph: &Graph) -> String {
         }
     }
     format!(
-        "six a voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
+        "six per voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
         100.0 * airy as f64 / all.max(1) as f64,
         100.0 * covered as f64 / (96 * all.max(1)) as f64
     )
@@ -318,8 +285,7 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
 /// Bytes a node that merging takes at the least.
 const MERGE_BYTES: u64 = 16;
 
-/// How much smaller the graph gets when equal subtrees are merged: all nodes
-/// over those left, with attributes and by shape alone.
+/// Nodes over those left after merging of equal subtrees: with attributes, and by shape. `None` if memory is too small.
 fn merge_gains(graph: &Graph) -> Option<[f64; 2]> {
     budget::check("merging", graph.len() as u64 * MERGE_BYTES).ok()?;
     Some([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))

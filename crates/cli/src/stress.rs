@@ -11,7 +11,8 @@ use super::experiment::context::Context;
 use super::experiment::export;
 use super::report;
 use shiftvox::whole;
-use shiftvox_lab::stress::{self, Case, End, Findings, Hold, Outcome, SweepPlan, rows, tables};
+use shiftvox_lab::report::Table;
+use shiftvox_lab::stress::{self, Case, End, Hold, Outcome, SweepPlan};
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -20,7 +21,7 @@ pub(super) struct StressArgs {
     /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
     #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
-    /// Chooses viewpoints and rules; the same seed gives the same sweep
+    /// Seed of viewpoints and rules; the same seed gives the same sweep
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// All widths from 16 to 64 bits, more scenes, larger pictures, most rules: hours
@@ -34,11 +35,11 @@ pub(super) struct StressArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(1..=2048))]
     size: Vec<u32>,
-    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of
+    /// Random rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of
     /// 56
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     rules: Option<u32>,
-    /// Viewpoints that the seed chooses, beside the thirteen standard ones
+    /// Random viewpoints beside the thirteen standard ones
     #[arg(long, value_name = "N")]
     viewpoints: Option<u32>,
     /// Draw one case alone: a line that a failing sweep prints
@@ -71,14 +72,19 @@ pub(super) fn run(
     let started = std::time::Instant::now();
     let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
     let seconds = started.elapsed().as_secs_f64();
-    let document = document(&plan, &findings, &context);
+    let mut fields = findings.document(&plan);
+    fields["command"] = json!(context.command_line());
+    let document = report::document("stress", fields);
     if let Some(path) = &args.export_json {
         whole::write(path, format!("{document:#}\n").as_bytes(), args.force)?;
         console.note(format!("{}: written", path.display()));
     }
     match console.json {
         true => console.document(&document)?,
-        false => export::print(&tables(&plan, &findings), console)?,
+        false => {
+            let tables: Vec<Table> = stress::TABLES.iter().map(|of| of.of(&document)).collect();
+            export::print(&tables, console)?;
+        }
     }
     let total = findings.total();
     console.note(format!(
@@ -107,7 +113,7 @@ pub(super) fn run(
     Err(CliError::new(
         Kind::Failed,
         format!(
-            "{} of {} frames did not keep what they must",
+            "{} of {} frames violate a check",
             report::grouped(total.failed),
             report::grouped(total.cases)
         ),
@@ -143,53 +149,7 @@ fn plan(args: &StressArgs, from_config: &[String]) -> Result<SweepPlan, CliError
     Ok(plan)
 }
 
-fn document(plan: &SweepPlan, findings: &Findings, context: &Context) -> serde_json::Value {
-    let table = rows(plan, findings);
-    let rows: Vec<serde_json::Value> = table
-        .rows
-        .iter()
-        .map(|row| {
-            let fields = table.columns.iter().zip(row);
-            fields
-                .map(|(name, cell)| ((*name).to_owned(), json!(cell)))
-                .collect()
-        })
-        .collect();
-    let worst: Vec<serde_json::Value> = findings
-        .worst
-        .iter()
-        .map(|((hold, bits), worst)| {
-            json!({ "held_in": Hold::ALL[*hold], "bits": bits, "worst": worst })
-        })
-        .collect();
-    let viewpoints: serde_json::Map<String, serde_json::Value> = findings
-        .viewpoints
-        .iter()
-        .map(|(name, tally)| ((*name).to_owned(), json!(tally)))
-        .collect();
-    let failures: serde_json::Map<String, serde_json::Value> = findings
-        .failures
-        .iter()
-        .map(|(check, count)| (check.name().to_owned(), json!(count)))
-        .collect();
-    report::document(
-        "stress",
-        json!({
-            "command": context.command_line(),
-            "seed": plan.seed,
-            "total": findings.total(),
-            "failures": failures,
-            "failed": findings.failed,
-            "traps": findings.traps,
-            "refusals": findings.refusals,
-            "viewpoints": viewpoints,
-            "vertices": worst,
-            "results": rows,
-        }),
-    )
-}
-
-/// Draws one case and prints what was found.
+/// Draws one case and prints its outcome.
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
     if console.json {
@@ -245,7 +205,7 @@ fn description(case: &Case, outcome: &Outcome) -> String {
     }
     for failure in &outcome.failures {
         lines.push(format!(
-            "NOT KEPT, {}: {}",
+            "VIOLATED, {}: {}",
             failure.check.name(),
             failure.detail
         ));

@@ -91,7 +91,6 @@ mod memories;
 mod observe;
 mod recording;
 mod report;
-mod scaling;
 mod sequential;
 mod simulate;
 mod tasks;
@@ -110,7 +109,6 @@ pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,
 };
-pub use scaling::{LANES, ScalingRow, scaling};
 pub use simulate::{SimulationError, simulate};
 pub use trace::{Recorder, TraceLimit};
 pub use turn::{Child, ImageNode, TurnLog, Workload};

@@ -11,7 +11,7 @@ use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::error::{CliError, Kind};
 use crate::experiment::export::ExportArgs;
 use shiftvox::bounded;
-use shiftvox_lab::bench::Scan;
+use shiftvox::project::SetupOptions;
 use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::cost::Prices;
 
@@ -27,8 +27,6 @@ pub(crate) struct ModelArgs {
     #[command(flatten)]
     pub(super) hardware: HardwareArgs,
     #[command(flatten)]
-    pub(super) tables: TableArgs,
-    #[command(flatten)]
     pub(super) explore: ExploreArgs,
     #[command(flatten)]
     pub(super) files: FileArgs,
@@ -42,24 +40,24 @@ pub(crate) struct ModelArgs {
     pub(super) rules: RuleArgs,
 }
 
-/// The hardware, and what its parts cost.
+/// The hardware, and the prices of its parts.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Hardware")]
 pub(super) struct HardwareArgs {
     /// Hardware: tiny, paper, light, wide, or a TOML file like those (--print-hw shows one) [default: light;
-    /// paper where boxes and not outlines are drawn, and with --rules]
+    /// paper with --coverage any or center; with --explore, the space's]
     #[arg(long = "hw", value_name = "NAME|FILE")]
-    hw: Option<String>,
-    /// Print the description of the hardware, and do nothing else
+    pub(super) hw: Option<String>,
+    /// Print the description of the hardware and exit
     #[arg(long)]
     pub(super) print_hw: bool,
-    /// TOML file with costs of your own, which go before the shipped ones
+    /// TOML file with costs that replace shipped ones
     #[arg(long, value_name = "FILE")]
     costs: Option<PathBuf>,
-    /// What gates are chosen for
+    /// Whether gates are chosen for small area or short delay
     #[arg(long, value_enum, default_value_t)]
     goal: Goal,
-    /// How the span of eight values is found, for energy
+    /// Method of finding the span of eight values, for energy
     #[arg(long, value_enum, default_value_t)]
     spans: MinMaxUnits,
     /// Count shifts by constants as shifters, not as wires
@@ -70,43 +68,13 @@ pub(super) struct HardwareArgs {
     pub(super) ray_order: Option<RayOrder>,
 }
 
-/// What is reported beside the frame itself.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Tables")]
-pub(super) struct TableArgs {
-    /// Both cages, three drawing rules and the tolerances of each side by side
-    #[arg(long)]
-    pub(super) rules: bool,
-    /// The same frame with 1 to 64 lanes
-    #[arg(long)]
-    pub(super) lanes: bool,
-    /// The same frame in words of many widths: bits=16..48, or with steps: bits=16..64+4
-    #[arg(long, value_name = "bits=A..B", value_parser = bits_scan)]
-    pub(super) sweep: Option<Scan>,
-    /// Node caches of 4 KiB to 1 MiB, for this hardware and for the ray caster in every order
-    #[arg(long)]
-    pub(super) caches: bool,
-    /// What each setting of the hardware's organisation gives, alone and on top of those before
-    #[arg(long)]
-    pub(super) steps: bool,
-    /// Growing pictures of this object, and growing objects in this picture
-    #[arg(long)]
-    pub(super) growth: bool,
-    /// All of these; widths from 16 to 64 in steps of 4, where --sweep says no other
-    #[arg(long)]
-    pub(super) all: bool,
-}
-
 /// Files beside those of every experiment.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct FileArgs {
-    /// One self-contained page with everything, picture and heat map of records
+    /// Web page of one file: tables, plots, picture and heat map
     #[arg(long, value_name = "FILE")]
     pub(super) html: Option<PathBuf>,
-    /// Statistics in the manner of gem5: name, value, # description
-    #[arg(long, value_name = "FILE")]
-    pub(super) stats: Option<PathBuf>,
     /// Heat map of records per pixel, PNG
     #[arg(long, value_name = "FILE")]
     pub(super) heat: Option<PathBuf>,
@@ -116,7 +84,7 @@ pub(super) struct FileArgs {
     /// Records of the trace
     #[arg(long, value_name = "N", default_value_t = 2000)]
     pub(super) trace_records: u64,
-    /// Folder of test vectors of each block ($readmemh), with a manifest
+    /// Folder of test vectors: JSON lines with the inputs and outputs of each block, and a manifest
     #[arg(long, value_name = "DIR")]
     pub(super) vectors: Option<PathBuf>,
     /// Records of the test vectors
@@ -125,35 +93,13 @@ pub(super) struct FileArgs {
     pub(super) vector_records: u64,
 }
 
-fn bits_scan(text: &str) -> Result<Scan, String> {
-    // A range without steps goes by ones.
-    let stepped = if text.contains(['*', '+']) {
-        text.to_owned()
-    } else {
-        format!("{text}+1")
-    };
-    let scan: Scan = stepped.parse()?;
-    if scan.name() != "bits" {
-        return Err(format!("only `bits` can be swept, not `{}`", scan.name()));
-    }
-    let range = hwmodel::MIN_BITS..=hwmodel::MAX_BITS;
-    match scan.values().iter().find(|bits| !range.contains(bits)) {
-        Some(bits) => Err(format!(
-            "a word has {} to {} bits, not {bits}",
-            range.start(),
-            range.end()
-        )),
-        None => Ok(scan),
-    }
-}
-
 /// Reads a file that the user names.
 pub(super) fn read(path: &Path) -> Result<String, CliError> {
     bounded::read_settings(path)
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
 }
 
-/// The description of a hardware by its name: one that ships, or a file, seen from a folder.
+/// The description with a name: a shipped one, or a file relative to a folder.
 fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
     if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());
@@ -179,15 +125,23 @@ pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliE
         .map_err(|error| CliError::new(Kind::Input, error).at(name))
 }
 
+/// Width of a word, bits, where no flag sets it: the width for which the shipped hardware is built.
+const BITS: u32 = 32;
+
 impl ModelArgs {
-    /// The hardware's name or file: the best one known for the rule, unless told otherwise. Tiles are of use only to
-    /// rules that draw outlines, and rules are compared on the paper's own hardware.
+    /// The rules and the words of the frame.
+    pub(super) fn setup_options(&self) -> SetupOptions {
+        SetupOptions {
+            bits: self.rules.bits.unwrap_or(BITS),
+            ..self.rules.options(0)
+        }
+    }
+
+    /// The hardware's name or file; by default the best one known for the rule. Tiles help only rules that draw outlines.
     fn hardware_name(&self) -> &str {
-        let draws_outlines = self.rules.options(0).coverage.draws_outlines();
-        let best = if draws_outlines && !self.tables.rules {
-            "light"
-        } else {
-            "paper"
+        let best = match self.rules.options(0).coverage.draws_outlines() {
+            true => "light",
+            false => "paper",
         };
         self.hardware.hw.as_deref().unwrap_or(best)
     }
@@ -214,7 +168,7 @@ impl HardwareArgs {
             let own = CostTable::empty()
                 .with_overrides(&name, &text)
                 .map_err(wrong)?;
-            // What nothing is priced by is a slip of the pen.
+            // An operation that the model never prices is a typing error.
             let known = table.operations();
             let own = own.operations();
             if let Some(stranger) = own.iter().find(|name| !known.contains(name)) {
@@ -236,16 +190,5 @@ impl HardwareArgs {
             },
             goal: self.goal,
         })
-    }
-}
-
-impl TableArgs {
-    /// Word widths to sweep.
-    pub(super) fn widths(&self) -> Option<Vec<u32>> {
-        match (&self.sweep, self.all) {
-            (Some(scan), _) => Some(scan.values()),
-            (None, true) => Some((16..=64).step_by(4).collect()),
-            (None, false) => None,
-        }
     }
 }

@@ -7,13 +7,11 @@ use hwmodel::cycles::NoObserver;
 use serde_json::{Value, json};
 
 use super::args::ModelArgs;
-use super::findings::setup_options;
 use crate::error::CliError;
 use shiftvox::graph::Graph;
 use shiftvox::project::{Camera, FrameSetup};
 use shiftvox_lab::model::design::LightDesign;
 use shiftvox_lab::model::frame;
-use shiftvox_lab::model::range::Range;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -33,7 +31,7 @@ pub(crate) fn brief(
 ) -> Result<Value, CliError> {
     let Line { args } = Line::try_parse_from(flags).map_err(CliError::of_words)?;
     let (hardware, prices) = (args.hardware()?, args.hardware.prices()?);
-    let (options, overflow) = (setup_options(&args), args.rules.overflow());
+    let (options, overflow) = (args.setup_options(), args.rules.overflow());
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     let (view, observer) = (graph.view(), &mut NoObserver);
@@ -41,7 +39,7 @@ pub(crate) fn brief(
     let cycles = &simulated.cycles;
     let design = LightDesign::price(graph, &setup, &counted, cycles, &hardware, &prices)?;
     // From pJ.
-    let energy = Range::new(design.cost.total()).times(1e-6);
+    let energy = design.cost.total().times(1e-6);
     Ok(json!({
         "hardware": hardware.name,
         "bits": setup.format.bits(),

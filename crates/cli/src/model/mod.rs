@@ -4,10 +4,8 @@ mod args;
 #[cfg(feature = "view")]
 mod brief;
 mod explore;
-mod findings;
+mod find;
 mod output;
-mod page;
-mod summary;
 mod trace;
 mod vectors;
 
@@ -44,6 +42,6 @@ pub(super) fn run(
     let [name] = names.as_slice() else {
         return Err(CliError::usage("model looks at one scene at a time"));
     };
-    let found = findings::find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
+    let found = find::find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
     output::write(&found, args, console)
 }

@@ -1,30 +1,28 @@
-//! What the model found, to stdout and to files.
+//! The report, to stdout and to files.
 
 use std::path::Path;
 
-use hwmodel::memory::RecordKind;
-use hwmodel::statistics::{Statistics, Value as Figure};
 use serde_json::{Value, json};
 
 use super::args::ModelArgs;
-use super::findings::Findings;
-use super::summary::{long_tables, short_tables, summary};
-use super::{page, trace};
+use super::find::Found;
+use super::trace;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::report;
-use shiftvox::picture::png;
+use shiftvox::picture::{Background, Shading, png, resolve};
 use shiftvox::whole;
-use shiftvox_lab::model::{caches, cost, fill_bits, floor, heat, plots, record, statistics};
-use shiftvox_lab::report::plot::Panel;
-use shiftvox_lab::report::{Cell, Table};
+use shiftvox_lab::model::range::Winner;
+use shiftvox_lab::model::{heat, plots, tables};
+use shiftvox_lab::report::html::Page;
+use shiftvox_lab::report::{Cell, Table, grouped, plot};
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
-    let others = [&files.html, &files.stats, &files.heat, &files.trace];
+    let others = [&files.html, &files.heat, &files.trace];
     export::check_with(&args.export, others.into_iter().flatten())?;
     if let Some(trace) = &files.trace {
         trace::kind(trace)?;
@@ -39,155 +37,217 @@ fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(),
 }
 
 /// Writes all files, then prints.
-pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
-    let force = args.export.force;
-    let list = statistics::of(
-        &found.counted,
-        &found.simulated,
-        &found.cost,
-        &found.area,
-        Some(&found.ray_caster),
-    );
-    let panels = panels(found);
-    if let Some(path) = &args.files.stats {
-        file(path, list.to_stats_txt().as_bytes(), force, console)?;
-    }
-    let (map, most) = heat::map(&found.counted.frame);
-    let heat_png = png::encode(found.setup.width, found.setup.height, &map)
-        .map_err(|e| CliError::new(Kind::Run, e))?;
-    if let Some(path) = &args.files.heat {
-        file(path, &heat_png, force, console)?;
-    }
-    if let Some(path) = &args.files.html {
-        let html = page::html(found, &panels, &heat_png, most)?;
-        file(path, html.as_bytes(), force, console)?;
-    }
-    let mut printed = vec![summary(found)];
-    printed.extend(short_tables(found));
+pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
+    let document = document(found);
+    let long = tables::LONG.iter().map(|spec| spec.of(&document));
+    let short = tables::SHORT.iter().map(|spec| spec.of(&document));
     let results = Results {
-        document: document(found, &list),
-        rows: rows(&list),
-        tables: printed,
-        more_tables: long_tables(found),
+        rows: tables::figures(&document),
+        tables: std::iter::once(summary(found)).chain(short).collect(),
+        more_tables: long.collect(),
         preface: Context::now().command_line() + "\n",
-        panels,
+        panels: plots::panels(&found.report),
+        document,
     };
+    let encode = |rgba: &[[u8; 4]]| {
+        let (width, height) = (found.setup.width, found.setup.height);
+        png::encode(width, height, rgba).map_err(|error| CliError::new(Kind::Run, error))
+    };
+    let (map, most) = heat::map(&found.counted.frame);
+    let heat_png = encode(&map)?;
+    if let Some(path) = &args.files.heat {
+        file(path, &heat_png, args.export.force, console)?;
+    }
+    if args.files.html.is_some() {
+        let (frame, graph) = (&found.counted.frame, &found.subject.graph);
+        let background = Background::default();
+        let shown = resolve(frame, graph, &found.setup, Shading::Lambert, background)?;
+        let heat_says = format!("Records per pixel, logarithmic; brightest: {most:.1}");
+        let picture = encode(&shown.rgba)?;
+        let pictures = [(&picture[..], "The picture"), (&heat_png, &heat_says)];
+        let title = format!("The light hardware draws {}", found.subject.name);
+        write_page(&title, &results, &pictures, args, console)?;
+    }
     export::write(&results, &args.export, console)
 }
 
-/// Statistics as rows.
-fn rows(list: &Statistics) -> Table {
-    let mut table = Table::new("Statistics", &["name", "value", "unit", "description"]);
-    for statistic in list.iter() {
-        let value = match statistic.value {
-            Figure::Count(count) => Cell::from(count),
-            Figure::Measure(measure) => Cell::Number(measure, 6),
-        };
-        table.rows.push(vec![
-            Cell::Text(statistic.name.clone()),
-            value,
-            Cell::Text(statistic.unit.clone()),
-            Cell::Text(statistic.description.clone()),
-        ]);
+/// Writes the page of `--html`: pictures, tables and plots.
+pub(super) fn write_page(
+    title: &str,
+    results: &Results,
+    pictures: &[(&[u8], &str)],
+    args: &ModelArgs,
+    console: &Console,
+) -> Result<(), CliError> {
+    let Some(path) = &args.files.html else {
+        return Ok(());
+    };
+    let mut page = Page::new(title);
+    page.lines(&results.preface);
+    page.pictures(pictures);
+    let section = |page: &mut Page, table: &Table| {
+        page.section(&table.title);
+        page.table(table);
+    };
+    page.chapter("Tables");
+    results
+        .tables
+        .iter()
+        .for_each(|table| section(&mut page, table));
+    page.chapter("Plots");
+    page.plot(&plot::svg(&results.panels), "");
+    page.chapter("Details");
+    results
+        .more_tables
+        .iter()
+        .for_each(|table| section(&mut page, table));
+    file(path, page.finish().as_bytes(), args.export.force, console)
+}
+
+/// The most important figures in words.
+fn summary(found: &Found) -> Table {
+    let of = &found.report;
+    let cycles = &of.simulated.cycles;
+    let title = format!(
+        "{}, {} x {}, on hardware `{}`: {}",
+        found.subject.name,
+        found.setup.width,
+        found.setup.height,
+        of.hardware.name,
+        cycles.bottleneck.sentence
+    );
+    let mut table = Table::new(title, &["what", "figure"]);
+    let mut row = |what: &str, figure: String| {
+        table.rows.push(vec![what.into(), Cell::Text(figure)]);
+    };
+    let counter = &found.counted.counter;
+    let kilobits = |bits: u64| format!("{} kbit", grouped(bits / 1024));
+    row("records", grouped(counter.records()));
+    row(
+        "operations",
+        format!(
+            "{}, {:.0} per record; none is a multiplication or a division; widest {} bits",
+            grouped(counter.ops()),
+            found.counted.operations_per_record(),
+            counter.widest()
+        ),
+    );
+    row(
+        "cycles",
+        format!(
+            "{}: {:.1} per record, {:.1} per pixel; {:.1} frames per second at {} MHz",
+            grouped(cycles.cycles),
+            cycles.cycles_per_record,
+            cycles.cycles_per_pixel,
+            cycles.frames_per_second,
+            cycles.clock_mhz
+        ),
+    );
+    row(
+        "parallelism",
+        format!(
+            "work over span {:.1}; there are {} contexts on {} lanes",
+            cycles.parallelism, cycles.contexts, cycles.lanes
+        ),
+    );
+    row(
+        "picture",
+        match of.differing_samples {
+            0 => "the same as the serial machine's".to_owned(),
+            some => format!(
+                "{} samples differ from the serial machine's: under this rule, children of one class may claim the same \
+                 sample",
+                grouped(some)
+            ),
+        },
+    );
+    row(
+        "stack",
+        format!(
+            "{} bits per record, at most {} records deep; all entries take {}",
+            of.record_bits,
+            cycles.stack.deepest,
+            kilobits(of.stack_bits)
+        ),
+    );
+    row("fill vectors", kilobits(of.fill_vector_bits));
+    if of.accumulator_bits > 0 {
+        row("accumulators", kilobits(of.accumulator_bits));
     }
+    if cycles.stack.spilled > 0 {
+        let bits = kilobits(cycles.stack.spilled_bits);
+        let spilled = grouped(cycles.stack.spilled);
+        row(
+            "spilled records",
+            format!("{spilled}: {bits} written to outer memory and read back"),
+        );
+    }
+    row(
+        "node cache",
+        format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
+    );
+    row(
+        "clock",
+        format!(
+            "{} MHz: {}. The units allow {:.0} MHz at most",
+            cycles.clock_mhz, of.clock_says, of.clock.fastest_mhz
+        ),
+    );
+    let rays = &of.ray_caster;
+    row(
+        "area",
+        format!(
+            "{:.0} NAND2 equivalents ({:.0} to {:.0}) without wires; the ray caster {:.0} ({:.0} to {:.0})",
+            of.area.total,
+            of.area.low,
+            of.area.high,
+            rays.area.total,
+            rays.area.low,
+            rays.area.high
+        ),
+    );
+    let (light, rival) = (of.cost.total(), rays.cost.total());
+    let (light, rival) = (light.times(1e-6), rival.times(1e-6));
+    row(
+        "energy",
+        format!(
+            "{:.1} uJ ({:.1} to {:.1}); the ray caster {:.1} uJ ({:.1} to {:.1}): {}",
+            light.value,
+            light.low,
+            light.high,
+            rival.value,
+            rival.low,
+            rival.high,
+            match Winner::by_ranges(light, rival) {
+                Winner::Neither => "the ranges overlap, so neither wins".to_owned(),
+                winner => format!("the {} needs less", winner.name()),
+            }
+        ),
+    );
+    row(
+        "wrong pixels (coverage)",
+        format!(
+            "{} of {}; the ray caster {}",
+            of.coverage_error.extra + of.coverage_error.missing,
+            grouped(of.coverage_error.covered),
+            rays.error.extra + rays.error.missing
+        ),
+    );
     table
 }
 
-/// All plots.
-fn panels(found: &Findings) -> Vec<Panel> {
-    let cycles = &found.simulated.cycles;
-    let mut panels = vec![
-        plots::operations(&found.counted),
-        plots::cycles(cycles),
-        plots::roofline(&found.counted, cycles, &found.hardware),
-        plots::energy(&found.cost, Some(&found.ray_caster.cost)),
-        plots::miss_curve(&found.counted),
-    ];
-    if !found.lanes.is_empty() {
-        panels.push(plots::lanes(&found.lanes));
+fn document(found: &Found) -> Value {
+    let mut fields = json!(found.report);
+    let graph = &found.subject.graph;
+    for (key, value) in [
+        ("scene", json!(found.subject.name)),
+        ("voxels", json!(graph.voxels)),
+        ("nodes", json!(graph.len())),
+        ("width", json!(found.setup.width)),
+        ("height", json!(found.setup.height)),
+        ("camera", report::camera(&found.subject.camera)),
+    ] {
+        fields[key] = value;
     }
-    if !found.caches.is_empty() {
-        panels.push(plots::caches(&found.caches));
-    }
-    if !found.formats.is_empty() {
-        panels.push(plots::formats(&found.formats));
-    }
-    panels
-}
-
-fn document(found: &Findings, list: &Statistics) -> Value {
-    let record: Vec<Value> = found
-        .counted
-        .fields
-        .iter()
-        .map(|f| json!({ "field": f.name, "bits": f.bits, "held": format!("{:?}", f.held) }))
-        .collect();
-    let by_kind: Vec<Value> = RecordKind::ALL
-        .into_iter()
-        .map(|kind| {
-            let records = &found.counted.records;
-            let accesses = records.of(kind);
-            json!({ "kind": kind, "bits": records.bits().of(kind), "popped": accesses.reads, "pushed": accesses.writes })
-        })
-        .collect();
-    let cells: Vec<_> = found.counted.counter.cells().collect();
-    let curve: Vec<_> = found
-        .counted
-        .memory
-        .curves()
-        .iter()
-        .map(|(memory, curve)| {
-            json!({ "memory": memory.name(), "line_bytes": curve.line_bytes(), "points": curve.points() })
-        })
-        .collect();
-    report::document(
-        "model",
-        json!({
-            "scene": found.name,
-            "voxels": found.subject.graph.voxels,
-            "nodes": found.subject.graph.len(),
-            "width": found.setup.width,
-            "height": found.setup.height,
-            "camera": report::camera(&found.subject.camera),
-            "word": {
-                "bits": found.setup.format.bits(),
-                "screen_fraction_bits": found.setup.format.frac(),
-                "clip_fraction_bits": found.setup.clip_frac,
-            },
-            "hardware": found.hardware,
-            "record_bits": record::record_bits(&found.counted.fields),
-            "shifts": found.counted.shifts.sites(),
-            "record": record,
-            "records_by_kind": by_kind,
-            "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
-            "fill_vector_bits": fill_bits::fill_store_bits(&found.setup, &found.hardware),
-            "accumulator_bits": cost::accumulator_bits(&found.setup),
-            "operations": cells,
-            "miss_curves": curve,
-            "simulated": found.simulated,
-            "same_picture": found.differing == 0,
-            "differing_samples": found.differing,
-            "coverage_error": found.wrong,
-            "cost": found.cost,
-            "area": found.area,
-            "comparison": found.comparison,
-            "clock": found.clock,
-            "clock_says": found.clock.sentence(),
-            "ray_caster": found.ray_caster,
-            "claims": found.claims,
-            "rules": found.rules,
-            "formats": found.formats,
-            "lanes": found.lanes,
-            "caches": found.caches,
-            "caches_say": (!found.caches.is_empty()).then(|| caches::sentence(&found.caches)),
-            "floor": found.floor,
-            "halves": found.halves,
-            "halves_say": (!found.halves.is_empty()).then(|| floor::sentence(&found.halves, &found.floor)),
-            "steps": found.steps,
-            "numbers": found.numbers,
-            "growing_pictures": found.pictures,
-            "growing_objects": found.objects,
-            "statistics": list,
-        }),
-    )
+    report::document("model", fields)
 }

@@ -1,4 +1,4 @@
-//! `--vectors`: test vectors for who builds the hardware.
+//! `--vectors`: test vectors for hardware designers.
 
 use hwmodel::Overflow;
 use hwmodel::cycles::{Hardware, Organisation};
@@ -9,9 +9,9 @@ use crate::error::{CliError, Kind};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::FrameSetup;
-use shiftvox_lab::model::vectors::{self, FolderError, Request, VectorsError};
+use shiftvox_lab::model::vectors::{self, Request, VectorsError};
 
-/// Fails before the work where something would be replaced.
+/// Fails before the work if the folder would be replaced.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     match &args.files.vectors {
         Some(folder) => Ok(vectors::check_free(folder, args.export.force)?),
@@ -19,7 +19,7 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     }
 }
 
-/// Lays a linked graph out as the memory of `frame.nodes.hex` holds it; it is then drawn and counted like this.
+/// Lays out a linked graph as in the memory of `frame.nodes.hex`. It is drawn and counted like that.
 pub(super) fn lay_out(graph: &mut Graph, console: &Console) {
     if graph.links.is_empty() {
         return;
@@ -30,7 +30,7 @@ pub(super) fn lay_out(graph: &mut Graph, console: &Console) {
     }
 }
 
-/// Writes the vectors that are asked for.
+/// Writes the requested vectors.
 pub(super) fn write(
     args: &ModelArgs,
     scene: &str,
@@ -47,7 +47,7 @@ pub(super) fn write(
         scene,
         records: args.files.vector_records,
         overflow,
-        // Turns are those of hardware that makes them one step after the other; of any other, the paper's.
+        // Only sequential hardware has turns of its own; others have the paper's.
         organisation: match hardware.sequential {
             true => hardware.organisation,
             false => Organisation::default(),
@@ -71,25 +71,16 @@ pub(super) fn write(
     Ok(())
 }
 
-impl From<FolderError> for CliError {
-    fn from(error: FolderError) -> Self {
-        match error {
-            FolderError::Store(error) => error.into(),
-            FolderError::Foreign { .. } => {
-                Self::new(Kind::Run, error).advise("give another name, or empty the folder")
-            }
-        }
-    }
-}
-
 impl From<VectorsError> for CliError {
     fn from(error: VectorsError) -> Self {
         match error {
             VectorsError::Engine(error) => error.into(),
-            VectorsError::Folder(error) => error.into(),
             VectorsError::Store(error) => error.into(),
             VectorsError::Misfit(_) => Self::new(Kind::Limit, error),
-            VectorsError::Unknown(_) | VectorsError::Manifest(_) => Self::new(Kind::Run, error),
+            VectorsError::Foreign { .. } => {
+                Self::new(Kind::Run, error).advise("give another name, or empty the folder")
+            }
+            VectorsError::Manifest(_) => Self::new(Kind::Run, error),
         }
     }
 }

@@ -37,7 +37,7 @@ fn a_folder_of_vectors() {
     let folder = at.join("made/rows");
     let first = files(&folder);
     let manifest: Value = serde_json::from_slice(&first["manifest.json"]).unwrap();
-    assert_eq!(manifest["schema"], 5);
+    assert_eq!(manifest["schema"], 6);
     assert_eq!(manifest["scene"], "gen:menger,depth=2");
     assert_eq!(manifest["records"], 5);
     assert_eq!(manifest["word"]["bits"], 32);
@@ -47,19 +47,18 @@ fn a_folder_of_vectors() {
     // No record has more than one centre.
     assert!((1..=5).contains(&centre["frame_rows"].as_u64().unwrap()));
     assert!(rows > 5, "rows made for the block");
-    assert_eq!(centre["stimulus"]["bits"], 6 * 32);
-    let text = String::from_utf8(first["centre.in.hex"].clone()).unwrap();
-    let lines = text.lines().filter(|line| !line.starts_with("//"));
-    assert_eq!(lines.count() as u64, rows);
-    let readme = String::from_utf8(first["README.txt"].clone()).unwrap();
-    assert!(readme.contains("$readmemh(\"centre.in.hex\", stimulus);"));
-    assert!(readme.contains("module centre_tb;"));
+    assert_eq!(centre["in"]["bits"], 6 * 32);
+    let text = String::from_utf8(first["centre.jsonl"].clone()).unwrap();
+    assert_eq!(text.lines().count() as u64, rows);
+    let row: Value = serde_json::from_str(text.lines().next().unwrap()).unwrap();
+    assert_eq!(row["in"].as_str().map(str::len), Some(6 * 32 / 4));
+    assert_eq!(row["out"].as_str().map(str::len), Some(3 * 32 / 4));
     // The same again is the same to the byte; more records are more rows.
     let more = ["--vectors", "more", "--vector-records", "40"];
     model(at, &["--vectors", "again", "--vector-records", "5"]).success();
     assert!(files(&at.join("again")) == first);
     model(at, &more).success();
-    assert!(files(&at.join("more"))["filled.in.hex"].len() > first["filled.in.hex"].len());
+    assert!(files(&at.join("more"))["filled.jsonl"].len() > first["filled.jsonl"].len());
     // Nothing temporary is left.
     let mut names: Vec<_> = fs::read_dir(at)
         .unwrap()
@@ -79,12 +78,12 @@ fn what_is_there_stays_there() {
     let folder = at.join("rows");
     fs::create_dir(&folder).unwrap();
     model(at, &rows).success();
-    fs::write(folder.join("centre.in.hex"), b"mine").unwrap();
+    fs::write(folder.join("centre.jsonl"), b"mine").unwrap();
     let refused = model(at, &rows).code(1);
     assert!(stderr_of(&refused).contains("--force"));
-    assert_eq!(files(&folder)["centre.in.hex"], b"mine");
+    assert_eq!(files(&folder)["centre.jsonl"], b"mine");
     model(at, &forced).success();
-    assert_ne!(files(&folder)["centre.in.hex"], b"mine");
+    assert_ne!(files(&folder)["centre.jsonl"], b"mine");
     // What did not come from here is not replaced, even so.
     fs::write(folder.join("thesis.tex"), b"mine").unwrap();
     let refused = model(at, &forced).code(1);

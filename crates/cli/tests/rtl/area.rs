@@ -1,36 +1,38 @@
-//! What the area table says of the machine: its memories, bit by bit, and the prediction that the synthesis of
-//! `rtl/synth.sh machine` stands beside.
+//! The area model of the machine: its memories, bit by bit, and the predictions for the synthesis of `rtl/synth.sh machine`.
 
 use std::fs;
 
 use hwmodel::cost::{CostTable, Goal};
 use serde_json::Value;
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, lanes};
-use super::tools::{icarus, is_there, parameter, rtl, run, shiftvox, text};
+use super::machines::{
+    Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree_in_icarus,
+};
+use super::tools::{icarus, rtl, run, shiftvox, text, words};
 use super::views::TREE;
 
-/// What the model says of the machine for a view, words of 32 bits.
-fn modelled(machine: &Machine, view: &[&str]) -> Value {
+/// The model's report of the machine for a view, words of 32 bits.
+fn modelled(machine: &Machine, view: &str) -> Value {
     let shelter = tempfile::tempdir().unwrap();
     let file = shelter.path().join("hardware.toml");
     fs::write(&file, machine.hardware()).unwrap();
-    let hardware = ["--hw", text(&file), "--bits", "32", "--json"];
-    let arguments = [&["model"], view, machine.rules, &hardware].concat();
+    let line = format!("model {view} --hw {} --bits 32 --json", text(&file));
+    let arguments = [words(&line), machine.rules()].concat();
     serde_json::from_str(&shiftvox(shelter.path(), &arguments)).unwrap()
 }
 
-/// The parameters of a machine for this view alone: no number is wider than the model's record has it. What lies on
-/// stage C's stack does not tell all of them; its records are stage B's.
-fn parameters(machine: &Machine, view: &[&str], top: &str) -> Vec<String> {
+/// The parameters of a machine for this view alone: no number is wider than in the model's record. The stack of stage C does
+/// not hold all numbers; its records are stage B's.
+fn parameters(machine: &Machine, view: &str) -> Vec<(&'static str, u64)> {
     let model = match machine.stage {
         "stage_c" => modelled(&STAGE_B, view),
         _ => modelled(machine, view),
     };
     let bits = |name: &str| {
-        let fields = model["record"].as_array().unwrap();
-        let field = fields.iter().find(|field| field["field"] == name).unwrap();
-        field["bits"].as_u64().unwrap()
+        let mut fields = model["record"].as_array().unwrap().iter();
+        fields.find(|field| field["field"] == name).unwrap()["bits"]
+            .as_u64()
+            .unwrap()
     };
     let of_frame = [
         ("PICTURE_LEVELS", bits("quadtree place") / 2),
@@ -39,97 +41,84 @@ fn parameters(machine: &Machine, view: &[&str], top: &str) -> Vec<String> {
         ("DEPTH", (1 << bits("level of the voxel")) - 1),
         ("NODE_WIDTH", bits("octree node")),
     ];
-    of_frame
-        .into_iter()
-        .chain(machine.parameters())
-        .map(|(name, value)| parameter(top, name, value))
-        .collect()
+    of_frame.into_iter().chain(machine.parameters()).collect()
 }
 
 #[test]
 fn memories_have_the_bits_that_the_model_says() {
-    if !is_there("iverilog") {
-        return;
-    }
     let shelter = tempfile::tempdir().unwrap();
     let into = shelter.path().join("memories.vvp");
-    let views: [&[&str]; 3] = [
-        &[TREE, "--size", "64"],
-        &["gen:menger,depth=4", "--size", "96x20"],
-        &["gen:terrain,depth=6", "--size", "300", "--lod", "0"],
+    let views = [
+        TREE,
+        "gen:menger,depth=4 --size 96x20",
+        "gen:terrain,depth=6 --size 300 --lod 0",
     ];
     let side_by_side = [
-        Machine::lanes_of_stage_b(lanes(3, 1, 2)),
-        Machine::lanes_of_stage_c(lanes(2, 2, 2), true),
+        Machine::new("stage_b", Some([3, 1, 2]), false),
+        Machine::new("stage_c", Some([2, 2, 2]), true),
     ];
-    for (machine, view) in [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS]
-        .into_iter()
-        .chain(&side_by_side)
-        .flat_map(|machine| views.map(|view| (machine, view)))
-        // Lanes have the memories of a machine, but for the fill vectors, bricks but for the stack: one view is enough.
-        .filter(|(machine, view)| machine.parameters().is_empty() || *view == views[1])
-    {
-        let model = modelled(machine, view);
-        let top = match machine.testbench() {
-            "frame_tb" => "memories_tb",
-            _ => "lanes_memories_tb",
+    let machines = [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS];
+    for machine in machines.into_iter().chain(&side_by_side) {
+        // Lanes differ from a machine only in the fill vectors, bricks only in the stack: one view is enough.
+        let views = if machine.parameters().is_empty() {
+            &views[..]
+        } else {
+            &views[1..2]
         };
-        icarus(
-            machine.folders,
-            top,
-            &parameters(machine, view, top),
-            text(&into),
-        );
-        let printed = run(shelter.path(), "vvp", &["-n", text(&into)]);
-        let of_verilog: Vec<(&str, u64)> = printed
-            .lines()
-            .map(|line| line.split_once(": ").unwrap())
-            .map(|(name, bits)| (name, bits.parse().unwrap()))
-            .filter(|(name, _)| *name != "levels of detail")
-            .collect();
-        let lines = model["area"]["memories"]["lines"].as_array().unwrap();
-        let of_model: Vec<(&str, u64)> = lines
-            .iter()
-            .map(|line| {
-                (
-                    line["name"].as_str().unwrap(),
-                    line["times"].as_u64().unwrap(),
-                )
-            })
-            .collect();
-        assert_eq!(of_verilog, of_model, "{} {view:?}", machine.name);
-        assert_eq!(of_model.len(), 6);
+        for view in views {
+            let top = match machine.testbench() {
+                "frame_tb" => "memories_tb",
+                _ => "lanes_memories_tb",
+            };
+            icarus(&machine.folders(), top, &parameters(machine, view), &into);
+            let printed = run(shelter.path(), "vvp", &["-n", text(&into)]);
+            let lines = printed.lines().map(|line| line.split_once(": ").unwrap());
+            let of_verilog: Vec<(&str, u64)> = lines
+                .map(|(name, bits)| (name, bits.parse().unwrap()))
+                .filter(|(name, _)| *name != "levels of detail")
+                .collect();
+            let model = modelled(machine, view);
+            let lines = model["area"]["memories"]["lines"]
+                .as_array()
+                .unwrap()
+                .iter();
+            let of_model: Vec<(&str, u64)> = lines
+                .map(|line| {
+                    (
+                        line["name"].as_str().unwrap(),
+                        line["times"].as_u64().unwrap(),
+                    )
+                })
+                .collect();
+            assert_eq!(of_verilog, of_model, "{} {view}", machine.name());
+            assert_eq!(of_model.len(), 6);
+        }
     }
+}
+
+/// Draws a view on machines in Icarus Verilog.
+fn draws(machine: &Machine, parameters: &[(&str, u64)], view: &str) {
+    let shelter = tempfile::tempdir().unwrap();
+    let into = shelter.path().join("frame.vvp");
+    icarus(&machine.folders(), machine.testbench(), parameters, &into);
+    let expected = Expected::new(machine, view, None);
+    let drawn = agree_in_icarus(&expected, &into, 200_000);
+    assert_eq!(drawn, Ok(()), "{} {view}", machine.name());
 }
 
 #[test]
 #[ignore = "takes a quarter of a minute"]
 fn a_machine_of_just_a_frames_widths_draws_it() {
-    if !is_there("iverilog") {
-        return;
-    }
-    let shelter = tempfile::tempdir().unwrap();
-    let into = shelter.path().join("frame.vvp");
-    let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
+    let view = "gen:menger,depth=2 --size 7x8 --view iso";
     for machine in [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS] {
-        let parameters = parameters(machine, &view, "frame_tb");
-        icarus(machine.folders, "frame_tb", &parameters, text(&into));
-        let simulator = ["vvp", "-n", text(&into), "+most=200000"];
-        let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
-        assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+        draws(machine, &parameters(machine, view), view);
     }
 }
 
-/// Pictures of one sample; pictures and tiles of one level, where nothing is joined, on machines of the fewest levels
-/// that there are.
+/// Pictures of one sample; pictures and tiles of one level, where nothing is joined, on machines of the fewest levels.
 #[test]
 fn small_pictures_have_room() {
-    if !is_there("iverilog") {
-        return;
-    }
-    let shelter = tempfile::tempdir().unwrap();
-    let into = shelter.path().join("frame.vvp");
-    let side_by_side = Machine::lanes_of_stage_c(lanes(1, 2, 2), false);
+    let side_by_side = Machine::new("stage_c", Some([1, 2, 2]), false);
     for (machine, size, levels) in [
         (&STAGE_A, "1x1", 2),
         (&STAGE_B, "1x1", 2),
@@ -138,21 +127,13 @@ fn small_pictures_have_room() {
         (&side_by_side, "7x8", 4),
         (&side_by_side, "4x4", 4),
     ] {
-        let top = machine.testbench();
-        let levels = ("PICTURE_LEVELS", levels);
-        let parameters = machine.parameters().into_iter().chain([levels]);
-        let parameters: Vec<String> = parameters
-            .map(|(name, value)| parameter(top, name, value))
-            .collect();
-        icarus(machine.folders, top, &parameters, text(&into));
-        let view = ["gen:menger,depth=1", "--size", size, "--view", "iso"];
-        let simulator = ["vvp", "-n", text(&into), "+most=200000"];
-        let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
-        assert_eq!(agreement.cycles[0], agreement.cycles[1], "{size}");
+        let parameters = [machine.parameters(), vec![("PICTURE_LEVELS", levels)]].concat();
+        let view = format!("gen:menger,depth=1 --size {size} --view iso");
+        draws(machine, &parameters, &view);
     }
 }
 
-/// Operations of a list such as `3 add (33) 7 add`: how often, which, and their bits; 32 where none are told.
+/// Operations of a list such as `3 add (33) 7 add`: times, name, and bits, by default 32.
 pub(crate) fn operations(list: &str) -> Vec<(f64, &str, u32)> {
     let words: Vec<&str> = list.split(' ').collect();
     let mut operations = Vec::new();
@@ -182,7 +163,7 @@ fn predictions(text: &str) -> impl Iterator<Item = (&str, &str, f64)> {
     })
 }
 
-/// The rows of blocks are what the table of areas says of their operations.
+/// The rows of blocks are the table's areas of their operations.
 #[test]
 fn the_predictions_of_the_blocks_are_the_tables() {
     let table = CostTable::load_shipped().unwrap();
@@ -207,8 +188,7 @@ fn the_predictions_of_the_blocks_are_the_tables() {
     assert_eq!(blocks, 39);
 }
 
-/// The rows that were written before the machines were synthesized; of stage B the one with a fault mended that it had
-/// then.
+/// The predictions from before synthesis. That of stage B is the one after a correction.
 #[test]
 fn the_predictions_of_the_machines_stand() {
     let of_stages = [
@@ -220,7 +200,7 @@ fn the_predictions_of_the_machines_stand() {
         let text = fs::read_to_string(rtl().join(file)).unwrap();
         let row = predictions(&text).find(|&(of, ..)| of == name);
         let (_, _, predicted) = row.unwrap();
-        let area = &modelled(machine, &[TREE, "--size", "64"])["area"];
+        let area = &modelled(machine, TREE)["area"];
         let parts = ["units", "registers", "control"];
         let said: f64 = parts
             .iter()

@@ -1,9 +1,9 @@
-//! Energy of the machine's operations by toggles: synthesized blocks, with the delays of their cells, run through the
-//! rows of a frame; every pin of every cell that changes takes what the library of cells says.
+//! Energy of the machine's operations by toggles. Synthesized blocks, with the delays of their cells, run through the rows of
+//! a frame. Every change of a pin takes the energy in the library of cells.
 //!
-//! A change of an input charges or discharges the pin, `C V^2 / 2`; one of an output takes the cell's internal energy,
-//! the mean of rise and fall and of the inputs that may cause it, at a load of about 25 fF and the shortest transition.
-//! Wires weigh nothing and registers are left out. 0.18 um says nothing of picojoules at 45 nm: only ratios compare.
+//! A change of an input takes `C V^2 / 2`. A change of an output takes the cell's internal energy at a load of about 25 fF
+//! and the shortest transition: the mean of rise and fall, and of the inputs that may cause it. Wires and registers are left
+//! out. Only ratios compare, because the cells are of 0.18 um and the model's energies of 45 nm.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,8 +14,8 @@ use hwmodel::cost::CostTable;
 use serde_json::Value;
 
 use super::area::operations;
-use super::testbench::testbench;
-use super::tools::{is_there, rtl, run, shiftvox, text};
+use super::blocks::{PAPER, rows_of_records, testbench};
+use super::tools::{rtl, run, text, words};
 use super::views::TREE;
 
 const CELLS: &str = "/usr/share/qflow/tech/osu018";
@@ -26,8 +26,8 @@ const LOAD: f64 = 0.025;
 /// Most rows of a block.
 const ROWS: u64 = 400;
 
-/// Blocks; the operations that nearly all of their logic is; and how many rows on the same block of the machine has its
-/// next one. The rows of the others are of x and y in turn.
+/// Blocks, the main operations of their logic, and the distance of successive rows of the same block in the machine. Rows of
+/// the others alternate between x and y.
 const BLOCKS: [(&str, &str, u64); 9] = [
     ("centre", "add", 1),
     ("vertex_pool", "add", 2),
@@ -147,7 +147,7 @@ fn counting_cells(verilog: &str, energies: &PinEnergies) -> String {
     text
 }
 
-/// What an operation list of `predictions.csv` takes by the model's table, pJ, and how many operations it has.
+/// Energy of a list of operations in `predictions.csv` by the model's table, pJ, and their number.
 fn by_table(table: &CostTable, list: &str) -> (f64, f64) {
     let operations = operations(list);
     let energies = operations
@@ -159,16 +159,22 @@ fn by_table(table: &CostTable, list: &str) -> (f64, f64) {
     )
 }
 
-/// Steps of the frame's divides, the mean of all but the first: four, and one for each fraction bit, a row's last field.
+/// Steps of the frame's divides, the mean of all but the first: four, and one per fraction bit, which a row's inputs end
+/// with.
 fn divide_steps(rows: &Path) -> f64 {
-    let text = fs::read_to_string(rows.join("to_screen_divide.in.hex")).unwrap();
-    let rows = text.lines().filter(|line| !line.starts_with("//"));
-    let steps = rows.map(|row| 4 + (u32::from_str_radix(&row[row.len() - 2..], 16).unwrap() & 63));
+    let text = fs::read_to_string(rows.join("to_screen_divide.jsonl")).unwrap();
+    let rows = text
+        .lines()
+        .map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let steps = rows.map(|row| {
+        let into = row["in"].as_str().unwrap();
+        4 + (u32::from_str_radix(&into[into.len() - 2..], 16).unwrap() & 63)
+    });
     let steps: Vec<u32> = steps.take(ROWS as usize).skip(1).collect();
     f64::from(steps.iter().sum::<u32>()) / steps.len() as f64
 }
 
-/// What a run of a block's netlist took.
+/// The energy of a run of a block's netlist.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     /// Energy of all rows but the first, pJ.
@@ -190,31 +196,31 @@ fn run_rows(files: [&Path; 3], block: &Value, step: u64, random: bool) -> Run {
     let rows = rows.min(ROWS);
     // The first row is not counted.
     let taken = (rows.div_ceil(step) - 1) as f64;
-    let wrong = "if (result !== expected[i]) wrong = wrong + 1;";
-    let mut bench = testbench(block, rows);
-    assert!(bench.contains(wrong));
-    bench = bench.replace(wrong, &format!("{wrong}\n      count.on = 1;"));
-    let next = "i = i + 1";
-    assert_eq!(bench.matches(next).count(), 1);
-    bench = bench.replace(next, &format!("i = i + {step}"));
-    if random {
-        let words = block["stimulus"]["bits"].as_u64().unwrap().div_ceil(32);
-        let numbers = vec!["$random"; words as usize].join(", ");
-        let row = "row = stimulus[i];";
-        assert!(bench.contains(row));
-        bench = bench.replace(row, &format!("row = {{{numbers}}};"));
-    }
-    let show = "$display(\"pj %f outputs %0d cells %0d\", count.pj, count.outputs, count.cells);";
-    let last = bench.rfind("  end\nendmodule").unwrap();
-    bench.insert_str(last, &format!("    {show}\n"));
+    let words_in = block["in"]["bits"].as_u64().unwrap().div_ceil(32) as usize;
+    let stimulus = match random {
+        true => format!(
+            "`define STIMULUS {{{}}}\n",
+            vec!["$random"; words_in].join(", ")
+        ),
+        false => String::new(),
+    };
     // A row lasts longer than the longest path.
-    let bench = format!("`timescale 1us/10ps\n{bench}");
+    let bench = format!(
+        "`timescale 1us/10ps\n`define MOST {rows}\n`define STEP {step}\n{stimulus}`define EACH count.on = 1;\n\
+         `define SHOW $display(\"pj %f outputs %0d cells %0d\", count.pj, count.outputs, count.cells);\n{}",
+        testbench(name, block)
+    );
     let (source, compiled) = (folder.join("bench.v"), folder.join("bench.vvp"));
     fs::write(&source, bench).unwrap();
-    let top = format!("{name}_tb");
-    let arguments = ["-g2012", "-gspecify", "-s", &top, "-s", "count", "-o"];
-    let files = [&compiled, &source, netlist, cells].map(text);
-    run(folder, "iverilog", &[&arguments[..], &files].concat());
+    let line = format!(
+        "-g2012 -gspecify -I {} -s {name}_tb -s count -o {} {} {} {}",
+        text(&rtl()),
+        text(&compiled),
+        text(&source),
+        text(netlist),
+        text(cells)
+    );
+    run(folder, "iverilog", &words(&line));
     let printed = run(folder, "vvp", &["-n", text(&compiled)]);
     let line = printed
         .lines()
@@ -226,7 +232,7 @@ fn run_rows(files: [&Path; 3], block: &Value, step: u64, random: bool) -> Run {
         .collect();
     if !random {
         assert!(
-            printed.contains(&format!("{name} 0\n")),
+            printed.contains(&format!("{name}_tb: 0 of ")),
             "{name}: the netlist's rows are wrong"
         );
     }
@@ -239,38 +245,20 @@ fn run_rows(files: [&Path; 3], block: &Value, step: u64, random: bool) -> Run {
     }
 }
 
-/// Prints by block: changes of an output a row, and energy an operation, with the frame's rows and with random ones;
-/// that of random rows by a centre's addition; what the model's table says of the operations by its addition.
+/// Prints changes per output and row, and energy per operation, with the frame's rows and with random ones. The energy of
+/// random rows is also printed relative to an addition of the centre, beside the same ratio of the model's table.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes, and needs qflow-tech-osu018"]
 fn energy_by_toggles_beside_the_table() {
     let liberty = Path::new(CELLS).join("osu018_stdcells.lib");
-    if !is_there("iverilog") || !is_there("yosys") || !liberty.exists() {
-        eprintln!("skipped: it needs yosys and qflow-tech-osu018");
-        return;
-    }
     let energies = energies_of_pins(&fs::read_to_string(liberty).unwrap());
     let verilog = fs::read_to_string(Path::new(CELLS).join("osu018_stdcells.v")).unwrap();
     let shelter = tempfile::tempdir().unwrap();
     let cells = shelter.path().join("cells.v");
     fs::write(&cells, counting_cells(&verilog, &energies)).unwrap();
 
-    let rows = shelter.path().join("rows");
-    let vectors = [
-        "--paper",
-        "--bits",
-        "32",
-        "--vectors",
-        text(&rows),
-        "--vector-records",
-        "4000",
-    ];
-    shiftvox(
-        shelter.path(),
-        &[&["model", TREE, "--size", "64"], &vectors[..]].concat(),
-    );
-    let manifest = fs::read_to_string(rows.join("manifest.json")).unwrap();
-    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let vectors = rows_of_records(PAPER, TREE, "32", 4000);
+    let rows = &vectors.folder;
     let predictions = fs::read_to_string(rtl().join("predictions.csv")).unwrap();
     let table = CostTable::load_shipped().unwrap();
 
@@ -279,10 +267,9 @@ fn energy_by_toggles_beside_the_table() {
         let netlist = shelter.path().join(format!("{name}.v"));
         let synthesize = format!("NETLIST={} ./synth.sh {name}", text(&netlist));
         run(&rtl(), "sh", &["-c", &synthesize]);
-        let blocks = manifest["blocks"].as_array().unwrap();
-        let block = blocks.iter().find(|block| block["name"] == name).unwrap();
+        let (_, block) = vectors.blocks().find(|(of, _)| *of == name).unwrap();
         let operations = match class {
-            DIVIDE => format!("{:.1} divide_step (36)", divide_steps(&rows)),
+            DIVIDE => format!("{:.1} divide_step (36)", divide_steps(rows)),
             _ => {
                 let mut all = predictions.lines();
                 let of_block = all.find_map(|row| row.strip_prefix(&format!("{name},")));
@@ -290,7 +277,7 @@ fn energy_by_toggles_beside_the_table() {
             }
         };
         let (by_table, count) = by_table(&table, &operations);
-        let files = [&rows, &netlist, &cells].map(PathBuf::as_path);
+        let files = [rows, &netlist, &cells].map(PathBuf::as_path);
         let of_frame = run_rows(files, block, step, false);
         // Random numerators and divisors make no quotients.
         let random = match class {

@@ -1,76 +1,61 @@
-//! Whole frames in Verilog against the machine: every event with all its bits, in order; the picture; the cycles.
+//! Whole frames in Verilog against the machine: every event with all its bits in order, the picture, and the cycles.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::fs;
 
-use shiftvox::graph::{LinkedGraph, vxg};
+use shiftvox::graph::{Graph, LinkedGraph, NodeLayout, vxg};
 
-use super::machines::{
-    Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree, agree_linked, lanes,
-};
-use super::tools::{is_there, rtl, run, text};
-use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
+use super::machines::{LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree};
+use super::tools::{rtl, run, text};
+use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within, with_tiles};
 
 #[test]
 fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
-    if !is_there("verilator") {
-        return;
-    }
     for (machine, events) in [
         (&STAGE_A, 1_000_000),
         (&STAGE_B, 250_000),
         (&STAGE_C, 100_000),
     ] {
-        let agreement = agree(machine, &[TREE, "--size", "64"]);
+        let agreement = agree(machine, TREE, None);
         assert!(agreement.events > events && agreement.samples > 1000);
     }
 }
 
 #[test]
 fn an_eye_inside_too() {
-    if !is_there("verilator") {
-        return;
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
+        agree(machine, INSIDE, None);
     }
-    agree(&STAGE_A, &INSIDE);
-    agree(&STAGE_B, &INSIDE);
-    agree(&STAGE_C, &INSIDE);
 }
 
-/// Synthesis takes all machines, and lanes: no latch, no loop, no signal with two drivers.
+/// Synthesis accepts all machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
 fn yosys_takes_the_machines() {
-    if !is_there("yosys") {
-        return;
-    }
-    let lanes_b = Machine::lanes_of_stage_b(lanes(2, 1, 1));
-    let lanes_c = Machine::lanes_of_stage_c(lanes(2, 2, 1), true);
-    for (machine, top) in [
-        (&STAGE_A, "machine"),
-        (&STAGE_B, "machine"),
-        (&STAGE_C, "machine"),
-        (&STAGE_C_BRICKS, "machine"),
-        (&lanes_b, "lanes"),
-        (&lanes_c, "lanes"),
-    ] {
+    let lanes = [
+        Machine::new("stage_b", Some([2, 1, 1]), false),
+        Machine::new("stage_c", Some([2, 2, 1]), true),
+    ];
+    let machines = [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS];
+    let machines = machines.map(|machine| (machine, "machine")).into_iter();
+    for (machine, top) in machines.chain(lanes.iter().map(|machine| (machine, "lanes"))) {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();
-        for folder in machine.folders {
+        for folder in machine.folders() {
             for path in fs::read_dir(rtl().join(folder)).unwrap() {
                 let name = path.unwrap().file_name().into_string().unwrap();
                 if name.ends_with(".v") {
-                    files
-                        .entry(name.clone())
-                        .or_insert(format!("{folder}/{name}"));
+                    let path = format!("{folder}/{name}");
+                    files.entry(name).or_insert(path);
                 }
             }
         }
         let files: Vec<String> = files.into_values().collect();
-        let (files, folders) = (files.join(" "), machine.folders.join(" -I"));
-        let parameters: String = machine
-            .parameters()
+        let (files, folders) = (files.join(" "), machine.folders().join(" -I"));
+        let parameters = machine.parameters();
+        let parameters = parameters
             .iter()
-            .map(|(name, value)| format!(" -chparam {name} {value}"))
-            .collect();
+            .map(|(name, value)| format!(" -chparam {name} {value}"));
+        let parameters: String = parameters.collect();
         let script = format!(
             "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top {top}{parameters}; proc; check -assert; \
              select -assert-none t:$dlatch"
@@ -82,146 +67,163 @@ fn yosys_takes_the_machines() {
 #[test]
 #[ignore = "takes minutes"]
 fn many_scenes() {
-    if !is_there("verilator") {
-        return;
-    }
     for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         for view in SCENES {
-            agree(machine, view);
+            agree(machine, view, None);
         }
     }
 }
 
-/// A graph as this file writes it: its name, its depth, and each node's children by octant.
-pub(crate) type Drawn = (&'static str, u32, Vec<[Option<u32>; 8]>);
+#[test]
+#[ignore = "takes minutes"]
+fn lanes_draw_many_scenes() {
+    for machine in &LANES {
+        for view in SCENES.into_iter().chain([TREE, INSIDE]) {
+            agree(machine, view, None);
+        }
+    }
+}
 
-/// Graphs with shared nodes and with cycles.
-pub(crate) fn linked_graphs() -> Vec<Drawn> {
-    let no = None;
-    let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
-    vec![
-        (
-            "one node, four times below itself",
-            6,
-            vec![[a, no, no, a, no, a, a, no]],
-        ),
+/// Graphs with shared nodes and with cycles: name, depth, children by octant.
+fn linked_graphs() -> Vec<(&'static str, Graph)> {
+    // Digits are nodes, a dot is no child.
+    let graphs = [
+        ("one node, four times below itself", 6, "0..0.00."),
         (
             "two nodes in turns, and a solid",
             7,
-            vec![
-                [b, no, no, a, no, c, b, no],
-                [no, a, b, no, no, no, no, a],
-                [no; 8],
-            ],
+            "1..0.21. .01....0 ........",
         ),
         (
             "one solid, shared by three, one of them shared by the root",
             3,
-            vec![
-                [b, c, no, b, b, no, c, b],
-                [d, no, d, no, no, d, no, d],
-                [no, d, b, no, d, no, no, no],
-                [no; 8],
-            ],
+            "12.11.21 3.3..3.3 .31.3... ........",
         ),
-    ]
+    ];
+    let graph = |(name, depth, nodes): (&'static str, u32, &str)| {
+        let mut graph = LinkedGraph::new(depth);
+        for (at, children) in nodes.split(' ').enumerate() {
+            let mut children = children.chars().map(|digit| digit.to_digit(10));
+            let children = std::array::from_fn(|_| children.next().flatten());
+            graph.add_node([40 * at as u8 + 30, 90, 160], children);
+        }
+        (name, graph.build().unwrap())
+    };
+    graphs.map(graph).into()
 }
 
-/// The hardware draws linked graphs from a memory in which lists of children lie side by side, shared ones once.
+/// The hardware draws linked graphs from a memory in which lists of children lie side by side, shared ones once. They have
+/// no bricks, also on a machine that can have them.
 #[test]
 #[ignore = "takes minutes"]
 fn linked_and_cyclic_graphs() {
-    if !is_there("verilator") {
-        return;
-    }
     let shelter = tempfile::tempdir().unwrap();
-    for (name, depth, nodes) in linked_graphs() {
-        let mut graph = LinkedGraph::new(depth);
-        for (at, &children) in nodes.iter().enumerate() {
-            graph.add_node([40 * at as u8 + 30, 90, 160], children);
-        }
-        let graph = graph.build().unwrap();
-        let file = shelter.path().join("linked.vxg");
+    let file = shelter.path().join("linked.vxg");
+    for (name, graph) in linked_graphs() {
+        assert!(bricks_of(&graph).is_empty(), "{name}");
         vxg::write(&graph, &file, true).unwrap();
         for view in [
-            &["--size", "64", "--view", "iso"][..],
-            &["--size", "40x60", "--azimuth", "130", "--lod", "0"],
-            &["--size", "33", "--view", "right", "--zoom", "5"],
+            "--size 64 --view iso",
+            "--size 40x60 --azimuth 130 --lod 0",
+            "--size 33 --view right --zoom 5",
         ] {
-            let view = [&[text(&file)], view].concat();
-            for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
-                eprint!("{name}: ");
-                let agreement = agree_linked(machine, &view, Some(&graph.links));
-                assert!(agreement.samples > 0, "{name}");
-            }
+            let view = format!("{} {view}", text(&file));
+            let machines = [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS];
+            let drawn = machines.map(|machine| agree(machine, &view, Some(&graph.links)));
+            assert!(drawn.iter().all(|of| of.samples > 0), "{name}");
+            assert_eq!(drawn[2].cycles, drawn[3].cycles, "{name}");
         }
     }
 }
 
-/// So many views by seed.
-pub(crate) fn random_views(
-    machine: &Machine,
-    number: u32,
-    make: &mut dyn FnMut(Dice<'_>) -> Vec<String>,
-) {
-    if !is_there("verilator") {
-        return;
+/// A tree with solids on each level, also next to voxels in a brick. Trees of voxels do not have those.
+pub(crate) fn tree_with_larger_solids(depth: u32) -> Graph {
+    let mut dice = Dice(5);
+    let mut graph = LinkedGraph::new(depth);
+    let (mut levels, mut next) = (VecDeque::from([0]), 1);
+    while let Some(level) = levels.pop_front() {
+        let mask = match level {
+            0 => 0xff,
+            _ if level == depth || dice.next(3) == 0 => 0,
+            _ => 1 + dice.next(255),
+        };
+        let children = std::array::from_fn(|octant| {
+            (mask >> octant & 1 != 0).then(|| {
+                levels.push_back(level + 1);
+                next += 1;
+                next - 1
+            })
+        });
+        graph.add_node([40, 90, 160], children);
     }
-    let mut state = 1u64;
-    let mut next = |most: u64| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % most
-    };
-    let mut unlike = 0;
-    for at in 0..number {
-        let view = make(&mut next);
-        let view: Vec<&str> = view.iter().map(String::as_str).collect();
-        let agreement = Expected::new(machine, &view)
-            .compare(&[machine.simulator()])
-            .unwrap_or_else(|error| panic!("{} {at} {view:?}: {error}", machine.name));
-        let [simulated, model] = agreement.cycles;
-        if simulated != model {
-            eprintln!("{at} {view:?}: {simulated} cycles, {model} in the model");
-            unlike += 1;
-        }
+    let graph = graph.build().unwrap();
+    assert!(!bricks_of(&graph).is_empty());
+    graph
+}
+
+/// The nodes that are bricks where lists of children lie side by side.
+fn bricks_of(graph: &Graph) -> std::ops::Range<u32> {
+    let graph = graph.side_by_side().unwrap();
+    NodeLayout::new(&graph.view(), true, true).bricks()
+}
+
+/// Cycles with bricks beside those without.
+#[test]
+#[ignore = "takes minutes"]
+fn bricks_in_many_scenes() {
+    let shelter = tempfile::tempdir().unwrap();
+    let file = shelter.path().join("solids.vxg");
+    vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
+    let solids = format!("{} --size 64 --view iso", text(&file));
+    // The first has less than two levels, the second the root alone.
+    let without_bricks = [
+        "gen:random,depth=1,seed=2 --size 20",
+        "gen:random,depth=2,seed=3 --size 20",
+    ];
+    let views = [TREE, INSIDE, &solids]
+        .into_iter()
+        .chain(SCENES)
+        .chain(without_bricks);
+    for view in views {
+        let [with, without] = [&STAGE_C_BRICKS, &STAGE_C].map(|machine| agree(machine, view, None));
+        assert_eq!(with.samples, without.samples);
+        let is_fewer = with.cycles[0] < without.cycles[0];
+        assert!(is_fewer || without_bricks.contains(&view), "{view}");
     }
-    let name = machine.name;
-    eprintln!(
-        "{name} {:?}: {number} random views: all events and pictures equal; cycles unlike in {unlike}",
-        machine.parameters()
-    );
-    assert_eq!(unlike, 0);
+}
+
+/// Draws views by seed.
+fn random_views(machine: &Machine, number: u32, make: &dyn Fn(&mut Dice) -> String) {
+    let mut dice = Dice(1);
+    for _ in 0..number {
+        agree(machine, &make(&mut dice), None);
+    }
 }
 
 #[test]
 #[ignore = "takes minutes"]
-fn two_hundred_random_views() {
-    random_views(&STAGE_A, 200, &mut any_view);
+fn random_views_from_all_sides() {
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
+        random_views(machine, 200, &any_view);
+    }
+    random_views(&STAGE_C_BRICKS, 100, &any_view);
+}
+
+/// Planes are degenerate there, and cubes reach behind the eye.
+#[test]
+#[ignore = "takes minutes"]
+fn wide_random_views_from_between_the_voxels() {
+    for machine in [&STAGE_B, &STAGE_C] {
+        random_views(machine, 200, &view_from_within);
+    }
+    random_views(&STAGE_C_BRICKS, 100, &view_from_within);
 }
 
 #[test]
 #[ignore = "takes minutes"]
-fn two_hundred_random_views_of_stage_b() {
-    random_views(&STAGE_B, 200, &mut any_view);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn two_hundred_random_views_of_stage_c() {
-    random_views(&STAGE_C, 200, &mut any_view);
-}
-
-/// Where planes are degenerate, and cubes reach behind the eye.
-#[test]
-#[ignore = "takes minutes"]
-fn two_hundred_wide_views_of_stage_b_from_between_the_voxels() {
-    random_views(&STAGE_B, 200, &mut view_from_within);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn two_hundred_wide_views_of_stage_c_from_between_the_voxels() {
-    random_views(&STAGE_C, 200, &mut view_from_within);
+fn lanes_draw_many_random_views() {
+    for machine in &LANES {
+        random_views(machine, 25, &|dice| with_tiles(any_view, dice));
+        random_views(machine, 25, &|dice| with_tiles(view_from_within, dice));
+    }
 }

@@ -1,6 +1,6 @@
-//! Why stage B makes no search for hidden records (`docs/rtl.md`, section 4): a record that is subdivided and no larger
-//! than a sample goes down to a sample, or is rejected; the fit never stops before. Along one axis of the picture, with
-//! the roundings of `rtl/stage_b/image_step.v` and `rtl/blocks/size_clip.v`.
+//! Stage B does not search for hidden records (`docs/rtl.md`, section 4), because its fit never stops early. A record that
+//! is subdivided and no larger than a sample descends to a sample or is rejected. This is checked along one axis of the
+//! picture, with the roundings of `rtl/stage_b/image_step.v` and `rtl/blocks/size_clip.v`.
 
 /// A number of a cage: at its corner, and along its three edges.
 type Number = [i64; 4];
@@ -22,7 +22,7 @@ fn fits(x: Number, w: Number, below: u32) -> bool {
     size <= span(w).0 >> below
 }
 
-/// Where the fit stops above the samples, the cage there; `None`: it does not, or rejects.
+/// The cage where the fit stops above the samples. `None` if it does not stop, or rejects.
 fn stops(mut x: Number, w: Number, mut below: u32) -> Option<(Number, u32)> {
     if span(x).1 < 0 || span(both(x, w, |x, w| x - w)).0 > 0 {
         return None;

@@ -8,52 +8,53 @@ pub(crate) fn rtl() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("rtl")
 }
 
-/// Whether a program is installed; says that a test is skipped if not.
-pub(crate) fn is_there(program: &str) -> bool {
-    let is_there = Command::new(program).arg("-V").output().is_ok();
-    if !is_there {
-        eprintln!("skipped: no {program} (apt-get install iverilog verilator yosys)");
-    }
-    is_there
+/// The words of a command line.
+pub(crate) fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
 }
 
-/// Runs a program in a folder; what it prints.
-pub(crate) fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) -> String {
-    let program = program.as_ref();
+/// Runs a program in a folder and returns its output, or its errors.
+pub(crate) fn try_run<A: AsRef<str>>(
+    folder: &Path,
+    program: &str,
+    arguments: &[A],
+) -> Result<String, String> {
+    let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
     let ran = Command::new(program)
-        .args(arguments)
+        .args(&arguments)
         .current_dir(folder)
-        .output()
-        .unwrap();
+        .output();
+    let needed = "the tests need iverilog, verilator and yosys";
+    let ran = ran.unwrap_or_else(|error| panic!("{program}: {error}; {needed}"));
     let words = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
-    let (out, errors) = (words(&ran.stdout), words(&ran.stderr));
-    let last = errors.len().saturating_sub(2000);
-    assert!(
-        ran.status.success(),
-        "{} {arguments:?}: {}",
-        program.display(),
-        errors.get(last..).unwrap_or(&errors)
-    );
-    out
+    match ran.status.success() {
+        true => Ok(words(&ran.stdout)),
+        false => Err(format!("{program} {arguments:?}: {}", words(&ran.stderr))),
+    }
 }
 
-/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with modules from those folders.
-pub(crate) fn icarus(folders: &[&str], top: &str, parameters: &[String], into: &str) {
+/// Runs a program in a folder and returns its output.
+pub(crate) fn run<A: AsRef<str>>(folder: &Path, program: &str, arguments: &[A]) -> String {
+    try_run(folder, program, arguments).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with the modules of those folders.
+pub(crate) fn icarus(folders: &[&str], top: &str, parameters: &[(&str, u64)], into: &Path) {
+    let mut arguments: Vec<String> = words("-g2012 -I .")
+        .into_iter()
+        .map(str::to_owned)
+        .collect();
+    for folder in folders {
+        arguments.extend(["-I", folder, "-y", folder].map(str::to_owned));
+    }
     let source = format!("tb/{top}.v");
-    let mut arguments = vec!["-g2012", "-I", "."];
+    arguments.extend(["-s", top, &source, "-o", text(into)].map(str::to_owned));
     arguments.extend(
-        folders
+        parameters
             .iter()
-            .flat_map(|folder| ["-I", folder, "-y", folder]),
+            .map(|(name, value)| format!("-P{top}.{name}={value}")),
     );
-    arguments.extend(["-s", top, &source, "-o", into]);
-    arguments.extend(parameters.iter().map(String::as_str));
     run(&rtl(), "iverilog", &arguments);
-}
-
-/// A parameter of a testbench, as [`icarus`] has it.
-pub(crate) fn parameter(top: &str, name: &str, value: u64) -> String {
-    format!("-P{top}.{name}={value}")
 }
 
 /// Runs `shiftvox`.
@@ -61,7 +62,7 @@ pub(crate) fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
     run(folder, env!("CARGO_BIN_EXE_shiftvox"), arguments)
 }
 
-/// A path as a command has it.
+/// A path as a command needs it.
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }

@@ -1,6 +1,5 @@
-//! Blocks that undo others, by the rows of those, turned around: what came out goes in, what went in must come out.
-//!
-//! Only rows that can be undone are: halves without a remainder, numbers that their double does not overflow.
+//! Blocks that undo others, by the rows of those, turned around: outputs become inputs, and inputs outputs. Only rows that
+//! can be undone are used: halves without a remainder, numbers whose double does not overflow.
 
 use std::fs;
 
@@ -11,43 +10,24 @@ use super::blocks::Rows;
 /// Bits, the highest first.
 type Bits = String;
 
-/// What goes into a block and what comes out, by port.
+/// Inputs and outputs of a block, by port.
 type Row = [Vec<(&'static str, Bits)>; 2];
 
-/// A row of a block: the bits of its fields by the beginning of their names, which lie side by side.
-struct Fields<'r> {
-    fields: &'r Value,
-    row: Bits,
+/// The bits of a port in a row of hexadecimal digits.
+fn bits_of(side: &Value, hexadecimal: &str, port: &str) -> Bits {
+    let digits = hexadecimal.chars().map(|digit| digit.to_digit(16).unwrap());
+    let row: Bits = digits.map(|digit| format!("{digit:04b}")).collect();
+    let mut ports = side["ports"].as_array().unwrap().iter();
+    let found = ports.find(|of| of["name"] == port);
+    let found = found.unwrap_or_else(|| panic!("no port {port}"));
+    let number = |key: &str| found[key].as_u64().unwrap() as usize;
+    let (lowest, bits) = (number("lowest_bit"), number("bits") * number("count"));
+    row[row.len() - lowest - bits..row.len() - lowest].to_owned()
 }
 
-impl<'r> Fields<'r> {
-    fn new(fields: &'r Value, hexadecimal: &str) -> Self {
-        let digits = hexadecimal.chars().map(|digit| digit.to_digit(16).unwrap());
-        let row = digits.map(|digit| format!("{digit:04b}")).collect();
-        Self { fields, row }
-    }
-
-    /// Of all fields whose name begins so, in the order in which they lie there.
-    fn of(&self, beginning: &str) -> Bits {
-        let fields = self.fields["fields"].as_array().unwrap().iter();
-        let mut found: Vec<(usize, usize)> = fields
-            .filter(|field| field["name"].as_str().unwrap().starts_with(beginning))
-            .map(|field| ["lowest_bit", "bits"].map(|key| field[key].as_u64().unwrap() as usize))
-            .map(|[lowest, bits]| (lowest, bits))
-            .collect();
-        found.sort_unstable();
-        let end = self.row.len();
-        let bits = |&(lowest, bits): &(usize, usize)| &self.row[end - lowest - bits..end - lowest];
-        found.iter().rev().map(bits).collect()
-    }
-}
-
-/// Whether the double of each number of a port overflows none of them.
+/// Whether the double of each number of a port fits its bits.
 fn can_be_doubled(numbers: &str, bits: usize) -> bool {
-    (0..numbers.len() / bits).all(|at| {
-        let number = &numbers[at * bits..][..2];
-        number == "00" || number == "11"
-    })
+    (0..numbers.len() / bits).all(|at| ["00", "11"].contains(&&numbers[at * bits..][..2]))
 }
 
 fn doubled(numbers: &str, bits: usize) -> Bits {
@@ -55,7 +35,7 @@ fn doubled(numbers: &str, bits: usize) -> Bits {
     (0..numbers.len() / bits).map(double).collect()
 }
 
-/// The blocks, each with that whose rows it has.
+/// The blocks, and those whose rows they use.
 const TURNED: [(&str, &str); 5] = [
     ("grown_cage", "vertex_pool"),
     ("parent_cage", "vertex_pool"),
@@ -64,33 +44,33 @@ const TURNED: [(&str, &str); 5] = [
     ("parent_planes", "child_planes"),
 ];
 
-/// Rows of a block, from a row of another.
-fn turn(block: &str, into: &Fields<'_>, out: &Fields<'_>) -> Vec<Row> {
+/// Rows of a block from the inputs and outputs of a row of another.
+fn turn(block: &str, into: &dyn Fn(&str) -> Bits, out: &dyn Fn(&str) -> Bits) -> Vec<Row> {
     match block {
         "grown_cage" | "parent_cage" => {
-            let parent = into.of("parent");
+            let parent = into("parent");
             let bits = parent.len() / 4;
             if (1..4).any(|at| parent.as_bytes()[(at + 1) * bits - 1] == b'1') {
                 return Vec::new();
             }
             let row = |octant: u8| {
                 let octant = format!("{octant:03b}");
-                let child = out.of(&format!("child_{octant}"));
-                let (octant, parent) = (("octant", octant), parent.clone());
+                let child = ("child", out(&format!("child_{octant}")));
+                let (octant, parent) = (("octant", octant), ("parent", parent.clone()));
                 match block {
-                    "grown_cage" => [vec![("parent", parent), octant], vec![("child", child)]],
-                    _ => [vec![("child", child), octant], vec![("parent", parent)]],
+                    "grown_cage" => [vec![parent, octant], vec![child]],
+                    _ => [vec![child, octant], vec![parent]],
                 }
             };
             (0..8).map(row).collect()
         }
         "whole_clip" => {
-            let (x, w) = (into.of("x"), into.of("w"));
+            let (x, w) = (into("x"), into("w"));
             let bits = x.len() / 4;
             if !can_be_doubled(&x, bits) {
                 return Vec::new();
             }
-            let halves = [("0", doubled(&x, bits)), ("1", out.of("relative"))];
+            let halves = [("0", doubled(&x, bits)), ("1", out("relative"))];
             let row = |(right, inner): (&str, Bits)| {
                 let stimulus = vec![("x", inner), ("w", w.clone()), ("right", right.to_owned())];
                 [stimulus, vec![("outer", x.clone())]]
@@ -98,112 +78,82 @@ fn turn(block: &str, into: &Fields<'_>, out: &Fields<'_>) -> Vec<Row> {
             halves.map(row).into()
         }
         "plane_whole" => {
-            let plane = into.of("plane");
+            let plane = into("plane");
             let (ab, c) = plane.split_at(plane.len() / 3 * 2);
             if !can_be_doubled(c, c.len()) {
                 return Vec::new();
             }
-            let inner = format!("{ab}{}", out.of("inner_c"));
-            let stimulus = vec![("plane", inner), ("quadrant", into.of("quadrant"))];
+            let inner = ("plane", ab.to_owned() + &out("inner_c"));
+            let stimulus = vec![inner, ("quadrant", into("quadrant"))];
             vec![[stimulus, vec![("outer_c", c.to_owned())]]]
         }
         "parent_planes" => {
-            let across = [
-                "axis_x_a", "axis_x_b", "axis_y_a", "axis_y_b", "axis_z_a", "axis_z_b",
+            let unchanged = [
+                "axis_x", "axis_y", "axis_z", "axis_x_c", "axis_y_c", "axis_z_c", "half", "octant",
             ];
-            let [xa, xb, ya, yb, za, zb] = across.map(|name| into.of(name));
-            let stimulus = vec![
-                ("edge_x", out.of("child_edge_x")),
-                ("edge_y", out.of("child_edge_y")),
-                ("edge_z", out.of("child_edge_z")),
-                ("axis_x", xa + &xb),
-                ("axis_y", ya + &yb),
-                ("axis_z", za + &zb),
-                ("axis_x_c", into.of("axis_x_c")),
-                ("axis_y_c", into.of("axis_y_c")),
-                ("axis_z_c", into.of("axis_z_c")),
-                ("half", into.of("half")),
-                ("octant", into.of("octant")),
+            let edges = [
+                ("edge_x", "child_edge_x", "parent_edge_x"),
+                ("edge_y", "child_edge_y", "parent_edge_y"),
+                ("edge_z", "child_edge_z", "parent_edge_z"),
             ];
-            let expected = vec![
-                ("parent_edge_x", into.of("edge_x")),
-                ("parent_edge_y", into.of("edge_y")),
-                ("parent_edge_z", into.of("edge_z")),
-            ];
-            vec![[stimulus, expected]]
+            let children = edges.map(|(edge, child, _)| (edge, out(child)));
+            let others = unchanged.map(|name| (name, into(name)));
+            let parents = edges.map(|(edge, _, parent)| (parent, into(edge)));
+            vec![[[&children[..], &others].concat(), parents.into()]]
         }
         other => unreachable!("{other}"),
     }
 }
 
-/// The rows of a file, one a line.
-fn lines(rows: &Rows, side: &Value) -> Vec<String> {
-    let path = rows.folder.join(side["file"].as_str().unwrap());
-    let text = fs::read_to_string(path).unwrap();
-    let rows = text.lines().filter(|line| !line.starts_with("//"));
-    rows.map(|line| line.trim().to_owned()).collect()
-}
-
-/// Ports side by side, the first highest; planes number by number, as testbenches know them.
-fn fields(ports: &[(&str, Bits)]) -> Value {
-    let mut lowest: usize = ports.iter().map(|(_, bits)| bits.len()).sum();
-    let mut fields = Vec::new();
-    for (name, bits) in ports {
-        let numbers: &[&str] = match *name {
-            "axis_x" | "axis_y" | "axis_z" => &["_a", "_b"],
-            name if name.contains("edge_") => &["_a", "_b", "_c"],
-            _ => &[""],
-        };
-        for number in numbers {
-            let bits = bits.len() / numbers.len();
-            lowest -= bits;
-            let name = format!("{name}{number}");
-            fields.push(json!({ "name": name, "bits": bits, "lowest_bit": lowest }));
-        }
-    }
-    json!({ "fields": fields })
+/// Ports side by side, the first highest.
+fn described(ports: &[(&str, Bits)]) -> Value {
+    let all: usize = ports.iter().map(|(_, bits)| bits.len()).sum();
+    let mut lowest = all;
+    let ports = ports.iter().map(|(name, bits)| {
+        lowest -= bits.len();
+        json!({ "name": name, "count": 1, "bits": bits.len(), "lowest_bit": lowest })
+    });
+    json!({ "bits": all, "ports": ports.collect::<Vec<_>>() })
 }
 
 fn hexadecimal(ports: &[(&str, Bits)]) -> String {
     let bits: String = ports.iter().map(|(_, bits)| bits.as_str()).collect();
     let padded = format!("{}{bits}", "0".repeat((4 - bits.len() % 4) % 4));
     let digit = |at: usize| u8::from_str_radix(&padded[4 * at..][..4], 2).unwrap();
-    (0..padded.len() / 4)
-        .map(|at| format!("{:x}", digit(at)))
-        .collect()
+    let digits = (0..padded.len() / 4).map(|at| format!("{:x}", digit(at)));
+    digits.collect()
 }
 
-/// The same rows, of these blocks alone.
+/// The rows of these blocks alone.
 pub(crate) fn turned(mut rows: Rows) -> Rows {
     let mut blocks = Vec::new();
     for (name, of) in TURNED {
-        let all = rows.manifest["blocks"].as_array().unwrap();
-        let block = all.iter().find(|block| block["name"] == of).unwrap();
-        let [stimulus, expected] = [&block["stimulus"], &block["expected"]];
-        let pairs = lines(&rows, stimulus)
-            .into_iter()
-            .zip(lines(&rows, expected));
-        let made: Vec<Row> = pairs
-            .flat_map(|(into, out)| {
-                turn(
-                    name,
-                    &Fields::new(stimulus, &into),
-                    &Fields::new(expected, &out),
-                )
-            })
-            .collect();
+        let (_, block) = rows.blocks().find(|(name, _)| *name == of).unwrap();
+        let text = fs::read_to_string(rows.folder.join(format!("{of}.jsonl"))).unwrap();
+        let lines = text
+            .lines()
+            .map(|line| serde_json::from_str::<Value>(line).unwrap());
+        let made = lines.flat_map(|line| {
+            let side = |side: &'static str| {
+                let digits = line[side].as_str().unwrap().to_owned();
+                move |port: &str| bits_of(&block[side], &digits, port)
+            };
+            turn(name, &side("in"), &side("out"))
+        });
+        let made: Vec<Row> = made.collect();
+        let line = |[into, out]: &Row| {
+            let (into, out) = (hexadecimal(into), hexadecimal(out));
+            format!("{{\"in\":\"{into}\",\"out\":\"{out}\"}}\n")
+        };
+        let lines: String = made.iter().map(line).collect();
+        fs::write(rows.folder.join(format!("{name}.jsonl")), lines).unwrap();
         let [into, out] = made.first().unwrap();
         blocks.push(json!({
             "name": name,
             "rows": made.len(),
-            "stimulus": fields(into),
-            "expected": fields(out),
+            "in": described(into),
+            "out": described(out),
         }));
-        for (side, end) in ["in", "out"].iter().enumerate() {
-            let text: Vec<String> = made.iter().map(|row| hexadecimal(&row[side])).collect();
-            let path = rows.folder.join(format!("{name}.{end}.hex"));
-            fs::write(path, text.join("\n") + "\n").unwrap();
-        }
     }
     rows.manifest["blocks"] = Value::Array(blocks);
     rows

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a ray caster's hardware would have: one entry for each kind of step.
+/// The kinds of steps of a ray caster's hardware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
@@ -79,8 +79,7 @@ pub(super) trait Arithmetic {
     /// Called for each step.
     fn count(&mut self, step: FloatStep, times: u32);
 
-    /// `times` steps are to be waited for, one after the other, before the ray
-    /// goes on: its longest chain. What can be done at the same time is not in it.
+    /// Counts `times` dependent steps of the ray's longest chain. Steps that can run in parallel are not in it.
     fn wait(&mut self, step: FloatStep, times: u32);
 
     /// A word of a node is read.

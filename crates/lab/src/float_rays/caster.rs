@@ -4,7 +4,7 @@ use super::arithmetic::{Arithmetic, FloatStep};
 use super::{LEAST_SLOPE, MANTISSA_BITS};
 use shiftvox::graph::{GraphView, NodeLayout};
 
-/// What is put aside when a ray descends: the node above, and where the ray leaves it.
+/// An entry of a ray's stack: the parent node, and the exit from it.
 #[derive(Debug, Clone, Copy, Default)]
 struct StackEntry {
     node: u32,

@@ -1,9 +1,7 @@
 //! The ray caster as hardware: every step counted while it is executed.
 //!
-//! So that the comparison with the machine is fair to the ray caster, its rays
-//! are made as cheaply as a ray can be: in every order a constant added to the last
-//! direction, the eye as the origin of all; nothing is charged for the first of a row,
-//! and for choosing among constants nothing at all.
+//! The comparison favours the ray caster: its rays are as cheap as possible. Each direction is the last one plus a constant,
+//! and the eye is the origin of all. The first ray of a row and the choice of the constant are free.
 
 use serde::Serialize;
 
@@ -56,7 +54,7 @@ impl FloatRayCounts {
     }
 }
 
-/// What a ray reads.
+/// A read of a ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RayRead {
     /// A word of a node, by its place among all words.
@@ -194,7 +192,7 @@ mod tests {
         assert_eq!(counts.of(FloatStep::FloatMultiply), (3 + 6) * rays);
         // The six planes, and the step to the next ray.
         assert_eq!(counts.of(FloatStep::FloatAdd), (6 + 3) * rays);
-        // Three least slopes; of three planes the last and the first; 0.
+        // Three least slopes, the last and the first of three planes, and 0.
         assert_eq!(counts.of(FloatStep::FloatMinMax), (3 + 2 + 2 + 1) * rays);
         assert_eq!(counts.of(FloatStep::FloatCompare), (3 + 1) * rays);
         assert_eq!(counts.of(FloatStep::NodeRead), 0);
@@ -242,7 +240,7 @@ mod tests {
         assert_eq!(counts.of(FloatStep::PixelWrite), counted.drawn() as u64);
         let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
         assert!(counts.cells.abs_diff(steps) * 100 < steps);
-        // Each ray that hits reads the attribute of what it shows.
+        // Each ray that hits reads the attribute of its voxel.
         let shown = counted
             .node
             .iter()

@@ -1,10 +1,8 @@
 //! A ray caster in `f32`: the stand-in for renderers that are not ours.
 //!
-//! One ray for each sample through the octree, with a stack, children in the
-//! order in which the ray meets them (Revelles, Urena, Lastra 2000; the form
-//! is that of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). No
-//! allocation for a ray, nothing tested twice, the first leaf ends it: a
-//! plain implementation. One thread, no packets.
+//! One ray per sample traverses the octree with a stack and visits children in the order in which it meets them (Revelles,
+//! Urena, Lastra 2000, in the form of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). The first leaf ends a ray.
+//! There are no allocations per ray, no packets, and one thread.
 //!
 //! The object is the cube `[1, 2]^3`, so that a cell's position along an axis
 //! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
@@ -26,7 +24,7 @@ use shiftvox::graph::{GraphView, NodeLayout};
 use shiftvox::project::vector::cross;
 use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
 
-/// Bits of an `f32`'s mantissa, hence levels that positions can resolve.
+/// Bits of an `f32`'s mantissa, which are also the levels that positions resolve.
 const MANTISSA_BITS: u32 = 23;
 /// Deepest level that is examined; nodes there are drawn as one voxel.
 pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;

@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(first(RayOrder::Rows, 17), (1, 1));
         assert_eq!(first(RayOrder::Tiles, 9), (1, 1));
         assert_eq!(first(RayOrder::Tiles, 64), (8, 0));
-        // 0b1101: columns from bits 0 and 2, 0b11; rows from bits 1 and 3, 0b10.
+        // 13 is 0b1101: bits 0 and 2 are the column 0b11, bits 1 and 3 the row 0b10.
         assert_eq!(first(RayOrder::Morton, 13), (3, 2));
     }
 }

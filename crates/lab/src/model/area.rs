@@ -1,14 +1,12 @@
-//! Area of a whole design: units, registers, memories and control.
+//! Area of a whole design without wires: units, registers, memories and control.
 //!
-//! - *Units*: of every class of operation that the frame uses in a stage, as many as
-//!   the hardware has, but no more than any visit of the stage has passes for: what a
-//!   description gives to a stage that never uses it is not built. Shifts that are not wires have
-//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its;
-//!   there work that is done beside another stage is that one's).
-//! - *Registers*: a pipeline of latency `l` that takes operations every `i` cycles keeps
-//!   `l / i` results of its width, rounded up; a context keeps the record, or the ray, that it works on.
-//! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours whoever has them.
-//! - *Control*: a share of units and registers, by the table. Wires are in nothing.
+//! - *Units*: those of the hardware for every class of operation that the frame uses in a stage, but no more than any visit
+//!   of the stage can use. Shifts that are not wires have as many shifters as keep pace with the stage. That is its shifts
+//!   over its busy cycles, or over all its cycles on sequential hardware.
+//! - *Registers*: a pipeline of latency `l` and interval `i` keeps `l / i` results, rounded up. A context keeps its record
+//!   or ray.
+//! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours designs with several.
+//! - *Control*: a share of units and registers, by the table.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,7 +27,7 @@ use shiftvox::project::FrameSetup;
 /// Area of a design, NAND2 equivalents, line by line.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct DesignArea {
-    /// Of what computes.
+    /// Of units that compute.
     pub units: Breakdown,
     /// Of pipelines and contexts.
     pub registers: Breakdown,
@@ -46,17 +44,6 @@ pub struct DesignArea {
 }
 
 impl DesignArea {
-    /// Its parts, by name.
-    #[must_use]
-    pub fn parts(&self) -> [(&'static str, &Breakdown); 4] {
-        [
-            ("units", &self.units),
-            ("registers", &self.registers),
-            ("memories", &self.memories),
-            ("control", &self.control),
-        ]
-    }
-
     /// All of it.
     #[must_use]
     pub fn range(&self) -> Range {
@@ -69,8 +56,9 @@ impl DesignArea {
         let logic = self.units.total + self.registers.total;
         self.control
             .push("control", "control", 1, logic.round() as u64, share);
-        let sum = self.parts().map(|(_, part)| Range::from(part));
-        let sum = sum.into_iter().fold(Range::default(), |a, b| a + b);
+        let parts = [&self.units, &self.registers, &self.memories, &self.control];
+        let sum = parts.map(Range::from).into_iter();
+        let sum = sum.fold(Range::default(), |a, b| a + b);
         (self.total, self.low, self.high) = (sum.value, sum.low, sum.high);
         Ok(self)
     }
@@ -131,11 +119,10 @@ struct Units<'a> {
 const REGISTER_BITS: u32 = 8;
 /// Bits of an address in outer memory.
 const ADDRESS_BITS: u32 = 32;
-/// Bits of what a ray keeps in its context: slopes, planes' constants, corner (three words
-/// each), entry, exit, exit of the parent, side, direction to come (three words), and
-/// node, mask, two octants, level.
+/// Bits of a ray in its context. Three words each: slopes, planes' constants, corner, next direction. A word each: entry,
+/// exit, exit of the parent, side. Then node, mask, two octants, level.
 const RAY_BITS: u64 = 32 * (3 + 3 + 3 + 4 + 3) + 32 + 8 + 3 + 3 + 5;
-/// Bits of a brick's voxels, which a ray keeps too, and where they begin.
+/// Bits of a brick's voxels in a ray's context, and of their place.
 const BRICK_BITS: u64 = 64 + 32;
 
 /// Bits beside a cache's lines: the rest of the address, whether the line is
@@ -153,7 +140,7 @@ fn depth(unit: &cycles::Unit) -> u64 {
     u64::from(unit.latency.div_ceil(unit.interval.max(1)))
 }
 
-/// What the light hardware did in a frame.
+/// The counts of a frame on the light hardware.
 #[derive(Debug, Clone, Copy)]
 pub struct LightFrame<'a> {
     /// Operations.
@@ -258,7 +245,7 @@ fn shifters(
     }
 }
 
-/// Area of the ray caster beside a hardware.
+/// Area of the ray caster.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -301,7 +288,7 @@ pub fn of_rays(
     caches(area, hardware, prices)
 }
 
-/// Adds what both designs have, and control.
+/// Adds the caches and control.
 fn caches(
     mut area: DesignArea,
     hardware: &Hardware,
@@ -336,8 +323,8 @@ mod tests {
         assert_eq!(tag_bits(&cache), 26 + 1);
     }
 
-    /// One unit and its pipeline, a context, a memory, control; rows: an adder of 32 bits is 232.9,
-    /// a register of 32 bits 128, of 8 bits 32.
+    /// One unit and its pipeline, a context, a memory, control. In the table, an adder of 32 bits is 232.9, a register of 32
+    /// bits 128, and one of 8 bits 32.
     #[test]
     fn parts_by_hand() {
         let prices = prices();

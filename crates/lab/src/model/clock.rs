@@ -1,10 +1,8 @@
-//! Whether the units keep up with the hardware's clock.
+//! The delay of the units against the hardware's clock.
 //!
-//! A unit of latency `l` is a pipeline of `l + 1` steps, each of one period.
-//! Its gates' delay, by the area table, must fit into them. That is the least
-//! that must hold: delays are without wires, flip-flops and what stands before a unit in the
-//! same step, and a tree of units has the latency of the whole tree and is
-//! looked at here as one unit of it. So a unit that misses does miss; one that meets may yet not.
+//! A unit of latency `l` is a pipeline of `l + 1` steps of one period each, into which its gates' delay must fit. The check
+//! is optimistic: delays are without wires, flip-flops and earlier units of the same step, and a tree of units is checked
+//! as one unit. A unit that misses the clock here misses it in hardware; the converse does not hold.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +19,7 @@ use super::cost::Prices;
 pub struct UnitDelay {
     /// Stage whose block has it.
     pub stage: Stage,
-    /// What it does.
+    /// Its class of operation.
     pub class: OpClass,
     /// Its width, bits.
     pub width: u32,
@@ -62,7 +60,7 @@ impl ClockCheck {
         self.units.iter().filter(|unit| !unit.meets())
     }
 
-    /// What there is to say, and what would help.
+    /// The result in words, with the pipeline depths that would help.
     #[must_use]
     pub fn sentence(&self) -> String {
         let missing: Vec<String> = self

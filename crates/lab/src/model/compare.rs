@@ -1,8 +1,7 @@
-//! Both designs line by line, each figure with its range: energy, power,
-//! bandwidth, area; and whether the ranges overlap.
+//! Both designs line by line: energy, power, bandwidth, area, each with its range.
 //!
-//! Power is energy times frames a second: of what switches. Leakage is not in it, for
-//! the tables have no source for it; nor are clock tree and wires.
+//! Power is energy times frames per second, so it is dynamic power. Leakage is not in it, because the tables have no source
+//! for it. Clock tree and wires are not in it either.
 
 use serde::Serialize;
 
@@ -10,7 +9,7 @@ use super::area::DesignArea;
 use super::cost::FrameCost;
 use super::range::{Range, Winner};
 
-/// A design and what a frame takes on it.
+/// A design and the cost of a frame on it.
 #[derive(Debug, Clone, Copy)]
 pub struct Design<'a> {
     /// Energy and traffic.
@@ -19,14 +18,14 @@ pub struct Design<'a> {
     pub area: &'a DesignArea,
     /// Cycles of a frame.
     pub cycles: u64,
-    /// Frames a second.
+    /// Frames per second.
     pub frames_per_second: f64,
 }
 
 /// A figure of both designs.
 #[derive(Debug, Clone, Serialize)]
 pub struct ComparedLine {
-    /// What it is.
+    /// Its name.
     pub what: &'static str,
     /// Its unit.
     pub unit: &'static str,
@@ -36,82 +35,70 @@ pub struct ComparedLine {
     pub ray_caster: Range,
     /// Whether the ranges overlap.
     pub overlap: bool,
-    /// Who has less, if they do not.
+    /// The design with less, if they do not overlap.
     pub less: Winner,
 }
 
-/// Picojoules in a microjoule.
-const PJ_IN_UJ: f64 = 1e6;
-/// Picojoules in a joule.
-const PJ_IN_J: f64 = 1e12;
+impl Design<'_> {
+    /// Its figures, with names and units. `slower`: frames per second of the slower design.
+    fn figures(&self, slower: f64) -> [(&'static str, &'static str, Range); 10] {
+        let micro = |part| Range::from(part).times(1e-6);
+        let energy = self.cost.total();
+        let bits = self.cost.traffic.bits() as f64;
+        let one = |value: f64| Range::new((value, value, value));
+        let rate = self.frames_per_second;
+        [
+            ("energy of operations", "uJ", micro(&self.cost.operations)),
+            (
+                "energy of memories on the chip",
+                "uJ",
+                micro(&self.cost.on_chip),
+            ),
+            ("energy of outer memory", "uJ", micro(&self.cost.outer)),
+            ("energy of the frame", "uJ", energy.times(1e-6)),
+            (
+                "power at its own speed, without leakage",
+                "W",
+                energy.times(rate / 1e12),
+            ),
+            (
+                "power at the slower one's speed, without leakage",
+                "W",
+                energy.times(slower / 1e12),
+            ),
+            ("traffic to outer memory", "MB a frame", one(bits / 8e6)),
+            ("bandwidth at its own speed", "GB/s", one(bits / 8e9 * rate)),
+            (
+                "bandwidth",
+                "bits a cycle",
+                one(bits / self.cycles.max(1) as f64),
+            ),
+            ("area", "NAND2", self.area.range()),
+        ]
+    }
+}
 
-/// The lines. Of the ray caster, cycles are the fewest possible and frames a second the most, so
-/// that its power and bandwidth at its own speed are the most, too.
+/// The lines. The ray caster's cycles are a lower bound, so its power and bandwidth at its own speed are upper bounds.
 #[must_use]
 pub fn lines(light: Design<'_>, ray_caster: Design<'_>) -> Vec<ComparedLine> {
     let slower = light.frames_per_second.min(ray_caster.frames_per_second);
-    let energy = |of: Design<'_>| Range::new(of.cost.total()).times(1.0 / PJ_IN_UJ);
-    let watts = |of: Design<'_>, rate: f64| Range::new(of.cost.total()).times(rate / PJ_IN_J);
-    let bits = |of: Design<'_>| of.cost.traffic.bits() as f64;
-    let one = |value: f64| Range::new((value, value, value));
-    type Of<'f> = Box<dyn Fn(Design<'_>) -> Range + 'f>;
-    let lines: [(&str, &str, Of<'_>); 10] = [
-        (
-            "energy of operations",
-            "uJ",
-            Box::new(|of| Range::from(&of.cost.operations).times(1.0 / PJ_IN_UJ)),
-        ),
-        (
-            "energy of memories on the chip",
-            "uJ",
-            Box::new(|of| Range::from(&of.cost.on_chip).times(1.0 / PJ_IN_UJ)),
-        ),
-        (
-            "energy of outer memory",
-            "uJ",
-            Box::new(|of| Range::from(&of.cost.outer).times(1.0 / PJ_IN_UJ)),
-        ),
-        ("energy of the frame", "uJ", Box::new(energy)),
-        (
-            "power at its own speed, without leakage",
-            "W",
-            Box::new(|of| watts(of, of.frames_per_second)),
-        ),
-        (
-            "power at the slower one's speed, without leakage",
-            "W",
-            Box::new(move |of| watts(of, slower)),
-        ),
-        (
-            "traffic to outer memory",
-            "MB a frame",
-            Box::new(|of| one(bits(of) / 8e6)),
-        ),
-        (
-            "bandwidth at its own speed",
-            "GB/s",
-            Box::new(|of| one(bits(of) / 8e9 * of.frames_per_second)),
-        ),
-        (
-            "bandwidth",
-            "bits a cycle",
-            Box::new(|of| one(bits(of) / of.cycles.max(1) as f64)),
-        ),
-        ("area", "NAND2", Box::new(|of| of.area.range())),
-    ];
-    let line = |(what, unit, of): (&'static str, &'static str, Of<'_>)| {
-        let (light, ray_caster) = (of(light), of(ray_caster));
-        let less = Winner::by_ranges(light, ray_caster);
-        ComparedLine {
-            what,
-            unit,
-            light,
-            ray_caster,
-            overlap: less == Winner::Neither,
-            less,
-        }
-    };
-    lines.into_iter().map(line).collect()
+    let pairs = light
+        .figures(slower)
+        .into_iter()
+        .zip(ray_caster.figures(slower));
+    pairs
+        .map(|((what, unit, light), (.., ray_caster))| {
+            let less = Winner::by_ranges(light, ray_caster);
+            ComparedLine {
+                what,
+                unit,
+                light,
+                ray_caster,
+                overlap: less == Winner::Neither,
+                less,
+            }
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -122,14 +109,13 @@ mod tests {
     use crate::model::cost::OuterTraffic;
 
     fn cost(picojoules: f64, node_bits: u64) -> FrameCost {
-        let operations = Breakdown {
-            total: picojoules,
-            low: picojoules / 2.0,
-            high: picojoules * 2.0,
-            ..Breakdown::default()
-        };
         FrameCost {
-            operations,
+            operations: Breakdown {
+                total: picojoules,
+                low: picojoules / 2.0,
+                high: picojoules * 2.0,
+                ..Breakdown::default()
+            },
             on_chip: Breakdown::default(),
             outer: Breakdown::default(),
             traffic: OuterTraffic {
@@ -141,48 +127,46 @@ mod tests {
 
     #[test]
     fn by_hand() {
-        let (a, b) = (cost(1e9, 8_000_000), cost(1e10, 800_000));
-        let area = |total: f64| DesignArea {
-            total,
-            low: total,
-            high: total,
+        let costs = [cost(1e9, 8_000_000), cost(1e10, 800_000)];
+        let area = DesignArea {
+            total: 5.0,
+            low: 5.0,
+            high: 5.0,
             ..DesignArea::default()
         };
-        let areas = (area(5.0), area(5.0));
-        let light = Design {
-            cost: &a,
-            area: &areas.0,
-            cycles: 4_000_000,
-            frames_per_second: 50.0,
+        let design = |at: usize, cycles, frames_per_second| Design {
+            cost: &costs[at],
+            area: &area,
+            cycles,
+            frames_per_second,
         };
-        let rays = Design {
-            cost: &b,
-            area: &areas.1,
-            cycles: 2_000_000,
-            frames_per_second: 100.0,
-        };
-        let lines = lines(light, rays);
-        let of = |what: &str, unit: &str| {
-            let found = lines
-                .iter()
-                .find(|line| line.what == what && line.unit == unit);
-            found.unwrap().clone()
-        };
-        // A millijoule fifty times a second is 50 mW; ten of them a hundred times 1 W.
-        let power = of("power at its own speed, without leakage", "W");
-        assert!((power.light.value - 0.05).abs() < 1e-12);
-        assert!((power.ray_caster.value - 1.0).abs() < 1e-12);
+        let lines = lines(design(0, 4_000_000, 50.0), design(1, 2_000_000, 100.0));
+        let of = |what: &str| lines.iter().find(|line| line.what == what).unwrap();
+        // A millijoule fifty times per second is 50 mW; ten of them a hundred times are 1 W. A megabyte fifty times per
+        // second; two bits per cycle.
+        for (what, light, ray_caster) in [
+            ("power at its own speed, without leakage", 0.05, 1.0),
+            (
+                "power at the slower one's speed, without leakage",
+                0.05,
+                0.5,
+            ),
+            ("bandwidth at its own speed", 0.05, 0.01),
+            ("bandwidth", 2.0, 0.4),
+        ] {
+            let line = of(what);
+            assert!((line.light.value - light).abs() < 1e-12, "{line:?}");
+            assert!(
+                (line.ray_caster.value - ray_caster).abs() < 1e-12,
+                "{line:?}"
+            );
+        }
+        let power = of("power at its own speed, without leakage");
         assert!((power.ray_caster.low - 0.5).abs() < 1e-12);
         assert_eq!((power.less, power.overlap), (Winner::Light, false));
-        let slower = of("power at the slower one's speed, without leakage", "W");
-        assert!((slower.ray_caster.value - 0.5).abs() < 1e-12);
-        // A megabyte fifty times a second; two bits a cycle.
-        let bandwidth = of("bandwidth at its own speed", "GB/s");
-        assert!((bandwidth.light.value - 0.05).abs() < 1e-12);
-        assert!((of("bandwidth", "bits a cycle").light.value - 2.0).abs() < 1e-12);
-        assert_eq!(bandwidth.less, Winner::RayCaster);
+        assert_eq!(of("bandwidth").less, Winner::RayCaster);
         // Energies differ tenfold, and their ranges fourfold either way.
-        assert_eq!(of("energy of the frame", "uJ").less, Winner::Light);
-        assert!(of("area", "NAND2").overlap);
+        assert_eq!(of("energy of the frame").less, Winner::Light);
+        assert!(of("area").overlap);
     }
 }

@@ -15,51 +15,44 @@ use serde::Serialize;
 
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
-use shiftvox::frame::quadtree::nodes_to;
+use super::range::Range;
 use shiftvox::project::FrameSetup;
 
-/// The tables, and the choices that counts leave open.
+/// The tables, and choices that do not follow from counts.
 #[derive(Debug, Clone)]
 pub struct Prices {
     /// Areas and energies.
     pub table: CostTable,
     /// How shifts and spans are built.
     pub costing: Costing,
-    /// What gates are chosen for.
+    /// Small area or short delay of gates.
     pub goal: Goal,
 }
 
-/// What a frame costs.
+/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     /// Energy of the operations, pJ.
     pub operations: Breakdown,
     /// Energy of the memories on the chip, pJ.
     pub on_chip: Breakdown,
-    /// Energy of what goes to outer memory and comes from there, pJ.
+    /// Energy of outer memory, pJ.
     pub outer: Breakdown,
-    /// Bits that go there and come from there.
+    /// Traffic to outer memory.
     pub traffic: OuterTraffic,
 }
 
 impl FrameCost {
-    /// All of it, pJ: value, and the ends of its range.
+    /// The sum, pJ.
     #[must_use]
-    pub fn total(&self) -> (f64, f64, f64) {
+    pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
-        parts.iter().fold((0.0, 0.0, 0.0), |sum, part| {
-            (sum.0 + part.total, sum.1 + part.low, sum.2 + part.high)
-        })
+        let parts = parts.into_iter().map(Range::from);
+        parts.fold(Range::default(), |sum, part| sum + part)
     }
 }
 
-/// Bits of the fill vectors of a picture: four for each node of its quadtree.
-#[must_use]
-pub fn fill_vector_bits(setup: &FrameSetup) -> u64 {
-    4 * nodes_to(setup.levels) as u64
-}
-
-/// Bits of a hardware's stacks.
+/// Bits of all stacks.
 #[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
@@ -74,7 +67,7 @@ pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
     u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)
 }
 
-/// Bits that go to outer memory and come from there.
+/// Traffic to outer memory, bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct OuterTraffic {
     /// Lines of nodes, read.
@@ -98,7 +91,7 @@ impl OuterTraffic {
 /// Bits of a word of outer memory. Neighbours share words.
 const OUTER_WORD_BITS: u32 = 64;
 
-/// Energy of traffic to outer memory, pJ, by what it is for.
+/// Energy of traffic to outer memory, pJ, by purpose.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -118,9 +111,8 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
     Ok(sum)
 }
 
-/// Energy of a frame on a hardware. Accesses to nodes and attributes go to
-/// the hardware's caches, their misses to outer memory, line by line; spilled records go there
-/// and come back; pixels go there.
+/// Energy of a frame. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
+/// are written there and read back. Pixels are written there.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -319,7 +311,7 @@ mod tests {
             spilled_bits: 936,
             pixel_bits: 24,
         };
-        // 8 words of a line; 15 words out, 15 words back; 1 word of a pixel.
+        // A line has 8 words, the spilled record 15 out and 15 back, the pixel 1.
         let sum = outer_energy(&traffic, &table).unwrap();
         assert!((sum.total - (8.0 + 15.0 + 15.0 + 1.0) * 1950.0).abs() < 1e-6);
         assert!((sum.low - 39.0 * 1300.0).abs() < 1e-6);

@@ -1,7 +1,6 @@
 //! The light hardware's figures for a frame that was counted and simulated.
 
 use hwmodel::cycles::{CycleReport, Hardware};
-use hwmodel::memory::Widths;
 
 use super::ModelError;
 use super::area::{self, DesignArea, LightFrame};
@@ -11,11 +10,9 @@ use super::frame::{self, Counted};
 use shiftvox::graph::Graph;
 use shiftvox::project::FrameSetup;
 
-/// What a frame costs on the light hardware, and what that hardware is.
+/// The costs of a frame on the light hardware.
 #[derive(Debug, Clone)]
 pub struct LightDesign {
-    /// Bits that accesses move.
-    pub widths: Widths,
     /// Energy and traffic.
     pub cost: FrameCost,
     /// Area.
@@ -49,7 +46,6 @@ impl LightDesign {
             cost: cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?,
             area: area::light(used, hardware, prices)?,
             clock: clock::check(&counted.counter, hardware, prices)?,
-            widths,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Bits of the fill vectors: what is on the chip, and what an access moves.
+//! Bits of the fill vectors on the chip, and of an access to them.
 
 use hwmodel::cycles::{Hardware, Organisation};
 
@@ -26,9 +26,8 @@ pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
     }
 }
 
-/// Bits of the fill vectors that a hardware has on the chip: those of the picture or, where it is drawn by tiles, of
-/// as many tiles as contexts. A context takes up a tile only if no record of its lane is ready, so on one lane no
-/// more tiles are under way than contexts; where lanes take work from one another, there may be a few more.
+/// Bits of the fill vectors on the chip: of the picture or, if it is drawn by tiles, of one tile per context. A context
+/// begins a tile only if no record of its lane is ready. Lanes that steal work may have a few more tiles in progress.
 #[must_use]
 pub fn fill_store_bits(setup: &FrameSetup, hardware: &Hardware) -> u64 {
     let (above, joined) = fill_levels(setup, hardware.organisation);

@@ -1,11 +1,11 @@
-//! What every design must move to draw a frame from a graph in a node format, whatever it computes: the price of that
-//! is a floor under its energy.
+//! A lower bound on the energy of every design that draws a frame from a graph in a given node format. Every design must
+//! move:
 //!
-//! - the lines that hold the attributes of the voxels that are seen;
-//! - the lines that hold the nodes above them: without them nobody knows that they are there, and where;
+//! - the lines that hold the attributes of the visible voxels;
+//! - the lines that hold the nodes above them;
 //! - the pixels.
 //!
-//! Each line once, as with a cache that forgets nothing. Arithmetic and memories on the chip cost nothing here.
+//! Each line is fetched once, as by a cache of unlimited size. Arithmetic and memories on the chip cost nothing here.
 
 use std::collections::BTreeSet;
 
@@ -14,18 +14,17 @@ use hwmodel::cycles::Hardware;
 use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
 
-use super::caches::{self, CacheRow};
 use super::cost::{OuterTraffic, outer_energy};
 use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{Graph, NodeLayout};
 
-/// The least that a frame moves, and what that costs.
+/// The least traffic of a frame, and its energy.
 #[derive(Debug, Clone, Serialize)]
 pub struct Floor {
-    /// Lines of the nodes above what is seen.
+    /// Lines of the nodes above visible voxels.
     pub node_lines: u64,
-    /// Lines of the attributes of what is seen.
+    /// Lines of the attributes of visible voxels.
     pub attribute_lines: u64,
     /// Samples that show something.
     pub pixels: u64,
@@ -39,7 +38,7 @@ pub struct Floor {
     pub energy_pj: Range,
 }
 
-/// The floor of a frame, for the node format and the lines of a hardware.
+/// The bound for a frame, the node format and the cache lines of a hardware.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -70,7 +69,7 @@ pub fn floor(
         let [x, y, z, level] = voxel;
         let mut above = view.root;
         for at in 0..=level.max(0) as u32 {
-            // What a leaf is, stands in its parent, or in itself.
+            // A leaf is marked in its parent or in its own node.
             if at == level as u32 && layout.leaf_masks {
                 break;
             }
@@ -93,9 +92,7 @@ pub fn floor(
     let lines = |lines: usize, cache: &hwmodel::cycles::Cache| {
         8 * u64::from(cache.line_bytes) * lines as u64
     };
-    let price = |traffic: OuterTraffic| {
-        outer_energy(&traffic, table).map(|sum| Range::new((sum.total, sum.low, sum.high)))
-    };
+    let price = |traffic: OuterTraffic| outer_energy(&traffic, table).map(|sum| Range::from(&sum));
     let none = OuterTraffic::default();
     let nodes_pj = price(OuterTraffic {
         node_bits: lines(nodes.len(), &hardware.node_cache),
@@ -118,73 +115,6 @@ pub fn floor(
         pixels_pj,
         energy_pj: nodes_pj + attributes_pj + pixels_pj,
     })
-}
-
-/// Whether half of the ray caster's energy can be had with a node cache of one size.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct HalfRow {
-    /// Size of the node cache, bytes.
-    pub bytes: u32,
-    /// Half of the ray caster's energy, pJ.
-    pub half_pj: Range,
-    /// The floor under every design's energy, pJ.
-    pub floor_pj: Range,
-    /// What the light hardware takes, of the ray caster's energy.
-    pub light_share: f64,
-    /// What the floor alone takes of it.
-    pub floor_share: f64,
-    /// Whether the floor is above the half, at the low and at the high price of outer memory.
-    pub is_impossible: bool,
-}
-
-/// The floor beside the table over sizes of the node cache.
-#[must_use]
-pub fn halves(rows: &[CacheRow], floor: &Floor) -> Vec<HalfRow> {
-    rows.iter()
-        .map(|row| {
-            let (ray, floor_pj) = (row.best.energy_pj, floor.energy_pj);
-            let half_pj = ray.times(0.5);
-            HalfRow {
-                bytes: row.bytes,
-                half_pj,
-                floor_pj,
-                light_share: row.light.energy_pj.value / ray.value,
-                floor_share: floor_pj.value / ray.value,
-                is_impossible: floor_pj.low > half_pj.low && floor_pj.high > half_pj.high,
-            }
-        })
-        .collect()
-}
-
-/// What the table says of half of the ray caster's energy.
-#[must_use]
-pub fn sentence(rows: &[HalfRow], floor: &Floor) -> String {
-    let uj = |range: Range| range.value / 1e6;
-    let sizes = |impossible: bool| -> String {
-        let of = rows.iter().filter(|row| row.is_impossible == impossible);
-        let all: Vec<String> = of.map(|row| caches::size(row.bytes)).collect();
-        all.join(", ")
-    };
-    let mut text = format!(
-        "Every design must move {:.0} uJ: attributes of what is seen {:.0}, the nodes above it {:.0}, pixels {:.0}",
-        uj(floor.energy_pj),
-        uj(floor.attributes_pj),
-        uj(floor.nodes_pj),
-        uj(floor.pixels_pj),
-    );
-    if rows.iter().any(|row| row.is_impossible) {
-        text += &format!(
-            ". That alone is more than half of the ray caster's energy with node caches of {}",
-            sizes(true)
-        );
-    }
-    if rows.iter().any(|row| !row.is_impossible) {
-        text += &format!(
-            ". It leaves room for half of the ray caster's energy with node caches of {}",
-            sizes(false)
-        );
-    }
-    text + "."
 }
 
 #[cfg(test)]

@@ -16,10 +16,10 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{Machine, MachineOptions, Simulated, narrowed};
 use shiftvox::picture::{Shading, lights};
-use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
+use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 use shiftvox::rays::Rays;
 
-/// What was counted while a frame was drawn.
+/// A frame and its counts.
 #[derive(Debug)]
 pub struct Counted {
     /// The picture, with records by sample.
@@ -28,9 +28,9 @@ pub struct Counted {
     pub counter: Counter,
     /// Where accesses went.
     pub memory: MemoryProbe,
-    /// By how many places lines shift.
+    /// Shifts by source line.
     pub shifts: ShiftProbe,
-    /// What the records on the stack held.
+    /// Stack traffic by kind of record.
     pub records: RecordProbe,
     /// The machine's own counters.
     pub stats: Stats,
@@ -52,14 +52,14 @@ impl Counted {
         found.map_or(0, |&(_, count)| count)
     }
 
-    /// Samples that another picture shows otherwise.
+    /// Samples that differ in another picture.
     #[must_use]
     pub fn differing(&self, other: &Frame) -> u64 {
         let pairs = self.frame.voxel.iter().zip(&other.voxel);
         pairs.filter(|(a, b)| a != b).count() as u64
     }
 
-    /// Operations a record.
+    /// Operations per record.
     #[must_use]
     pub fn operations_per_record(&self) -> f64 {
         self.counter.ops() as f64 / self.counter.records().max(1) as f64
@@ -78,7 +78,7 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
     }
 }
 
-/// A machine with an overflow policy, organised as a hardware is.
+/// A machine with an overflow policy and an organisation.
 fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
         overflow,
@@ -147,25 +147,7 @@ pub fn count_operations(
     Ok((frame, counter, stats))
 }
 
-/// Draws a frame and counts what its operations and area are priced by.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
-pub fn count_priced(
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    organisation: Organisation,
-    overflow: Overflow,
-) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
-    let setup = &*in_words(setup, organisation);
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let probes = (Counter::new(), ShiftProbe::new());
-    let mut machine = machine(overflow, organisation);
-    let (stats, (counter, shifts)) = machine.render_probed(graph, setup, &mut frame, probes)?;
-    Ok((frame, counter, shifts, stats))
-}
-
-/// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
+/// Simulates a frame on hardware, cycle by cycle.
 ///
 /// # Errors
 /// When a word overflows under the trap policy, or a stack that does not spill.
@@ -213,7 +195,7 @@ pub fn record_turns(
     Ok(turns.map(|turns| (frame, turns)))
 }
 
-/// What [`simulate`] says of the cycles of a frame whose turns are recorded, on hardware that is not sequential.
+/// The cycles of a frame whose turns are recorded, as from [`simulate`], on hardware that is not sequential.
 ///
 /// # Errors
 /// When a stack is full that does not spill.
@@ -229,6 +211,23 @@ pub fn replay(
     let mut workload = turns.replay(&hardware);
     let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
     Ok(report.map_err(|error| error.map(EngineError::from))?)
+}
+
+/// The view against which errors are measured: 64 bits, the exact rule.
+///
+/// # Errors
+/// When the camera sees nothing.
+pub fn true_setup(
+    graph: &Graph,
+    camera: &Camera,
+    base: &SetupOptions,
+) -> Result<FrameSetup, ModelError> {
+    let options = SetupOptions {
+        aa_log2: base.aa_log2,
+        ..SetupOptions::default()
+    };
+    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
+    Ok(setup)
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.

@@ -1,18 +1,11 @@
-//! The hardware model's report: what a frame costs on the light hardware, and
-//! what a ray caster with multipliers would cost instead.
+//! The hardware model: the cost of a frame on the light hardware, beside a ray caster with multipliers.
 //!
-//! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
-//! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
-//! units with the clock, [`design`] does all of that; [`rules`],
-//! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, over sizes of the node cache, and over pictures and objects; [`steps`] over the settings
-//! of a hardware's organisation; [`mod@explore`] over many designs; [`floor`] says what every
-//! design must move; [`claims`] compares the image-order
-//! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
+//! [`frame`] draws a frame and counts it. [`ray_caster`] does the same with rays. [`cost`] and [`area`] turn counts into
+//! energy and area. [`clock`] compares the units with the clock. [`mod@floor`] is a lower bound for every design.
+//! [`report`] collects all of that. [`mod@explore`] repeats it over many designs, words, rules and sizes. [`vectors`] writes
+//! the inputs and outputs of the machine's blocks.
 
 pub mod area;
-pub mod caches;
-pub mod claims;
 pub mod clock;
 pub mod compare;
 pub mod cost;
@@ -21,18 +14,14 @@ pub mod explore;
 pub mod fill_bits;
 pub mod floor;
 pub mod frame;
-pub mod growth;
 pub mod heat;
 pub mod plots;
 pub mod range;
 pub mod ray_caster;
 pub mod ray_cycles;
 pub mod record;
-pub mod rules;
+pub mod report;
 pub mod safe;
-pub mod statistics;
-pub mod steps;
-pub mod sweep;
 pub mod tables;
 pub mod vectors;
 
@@ -51,7 +40,7 @@ pub enum ModelError {
     /// The machine could not finish the frame.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The hardware could not.
+    /// The hardware could not finish it.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
     /// The hardware's description is not sound.
@@ -60,16 +49,4 @@ pub enum ModelError {
     /// A figure is missing in the cost tables.
     #[error(transparent)]
     Cost(#[from] CostError),
-}
-
-/// Infinity, which JSON has not, as the word `inf`.
-pub(crate) fn infinity_as_word<S: serde::Serializer>(
-    value: &f64,
-    to: S,
-) -> Result<S::Ok, S::Error> {
-    if value.is_infinite() {
-        to.serialize_str("inf")
-    } else {
-        to.serialize_f64(*value)
-    }
 }

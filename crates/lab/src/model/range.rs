@@ -50,8 +50,8 @@ impl std::ops::Add for Range {
     }
 }
 
-/// Which of two designs needs less.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// The design that needs less.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Winner {
     /// The light hardware.
@@ -75,9 +75,8 @@ impl Winner {
         }
     }
 
-    /// The one that needs less at the low end of all prices and at the high
-    /// end of all prices: both pay the same for a word of outer memory, however much
-    /// that is.
+    /// The one that needs less at the low end of all prices and at their high end. Both pay the same for a word of
+    /// outer memory then.
     #[must_use]
     pub fn at_equal_prices(light: Range, ray_caster: Range) -> Self {
         if light.low < ray_caster.low && light.high < ray_caster.high {

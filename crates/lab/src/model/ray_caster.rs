@@ -1,11 +1,11 @@
 //! For comparison: a ray caster in floating point, drawing the same view with
 //! the same node format and caches, counted and priced by the same tables.
 
+use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
 use hwmodel::cycles::{self, Hardware, HardwareError};
 use hwmodel::memory::{Cache, PIXEL_BITS};
-use hwmodel::{Memory, cycles::Bound};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::ModelError;
 use super::area::{self, DesignArea};
@@ -18,22 +18,22 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, NodeLayout};
 use shiftvox::project::FrameSetup;
 
-/// What the ray caster took, its rays in one order.
+/// The costs of the ray caster, its rays in one order.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
     /// The order of its rays.
     pub order: RayOrder,
     /// Steps by kind.
     pub counts: FloatRayCounts,
-    /// Hits and misses of nodes in a cache like the hardware's.
+    /// Hits of nodes in a cache like the hardware's.
     pub node_hits: u64,
-    /// See `node_hits`.
+    /// Misses of nodes.
     pub node_misses: u64,
     /// Misses of attributes in a cache like the hardware's.
     pub attribute_misses: u64,
-    /// What the frame costs.
+    /// Energy of the frame.
     pub cost: FrameCost,
-    /// How long it takes at least.
+    /// Lower bound on its cycles.
     pub cycles: RayCycles,
     /// Its area, NAND2 equivalents.
     pub area: DesignArea,
@@ -44,20 +44,12 @@ pub struct RayCasterReport {
 }
 
 /// Energy of a frame whose rays come in an order.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnergy {
     /// The order.
     pub order: RayOrder,
     /// Energy, pJ.
     pub energy_pj: f64,
-}
-
-impl RayCasterReport {
-    /// What takes longest, if all else costs no time.
-    #[must_use]
-    pub fn bottleneck(&self) -> Option<&Bound> {
-        self.cycles.bounds.first()
-    }
 }
 
 /// A frame's rays, cast in one order beside caches of several sizes.
@@ -78,8 +70,7 @@ fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
     })
 }
 
-/// Casts a frame's rays. `node_caches`: the sizes to try, as the hardware's
-/// otherwise; `exact`: the true picture.
+/// Casts a frame's rays beside node caches of several sizes. `exact` is the true picture.
 ///
 /// # Errors
 /// When a size is no cache's.
@@ -162,7 +153,7 @@ pub fn price(
         attribute_misses: run.attribute_misses,
         orders: vec![OrderEnergy {
             order: run.order,
-            energy_pj: cost.total().0,
+            energy_pj: cost.total().value,
         }],
         cost,
         cycles: ray_cycles::cycles(&counts, misses, &traffic, rays, hardware),
@@ -215,7 +206,7 @@ pub fn cheapest(
     for run in runs {
         let report = price(run, at, hardware, rays, prices)?;
         orders.extend(report.orders.iter().copied());
-        let energy = |report: &RayCasterReport| report.cost.total().0;
+        let energy = |report: &RayCasterReport| report.cost.total().value;
         if best
             .as_ref()
             .is_none_or(|best| energy(&report) < energy(best))

@@ -1,19 +1,15 @@
-//! How many cycles the ray caster takes at least.
+//! A lower bound on the cycles of the ray caster.
 //!
-//! Its hardware: lanes of units, pipelined, that rays in contexts share. The
-//! figure is the largest of what each part needs for all that was counted while
-//! the rays were cast, as if every part always had work waiting:
+//! Its hardware has lanes of pipelined units that rays in contexts share. The bound is the largest of these times:
 //!
-//! - of a kind of unit: operations, times its interval, over the units;
-//! - of a port: accesses over the port's width; of a cache's misses: their time
-//!   over the misses that may be under way; of outer memory: bits over its width;
-//!   of pixels: the way out;
-//! - of the contexts: the steps that must follow one another within a ray (counted by the
-//!   caster itself), each its latency and a cycle to issue, and all misses of nodes, over the contexts.
+//! - operations of a kind of unit, times its interval, over the number of units;
+//! - accesses of a port over its width;
+//! - latencies of a cache's misses over the number of misses in flight;
+//! - bits from outer memory over its width, and the drain of pixels;
+//! - latencies of each ray's dependent steps, and of all node misses, over the contexts.
 //!
-//! No frame is faster than that. A real one is slower: rays wait for each other's units,
-//! and the last rays leave contexts idle. So this favours the ray caster; the light
-//! hardware is simulated cycle by cycle.
+//! A real frame is slower: rays wait for each other's units, and the last rays leave contexts idle. So the bound favours the
+//! ray caster. The light hardware is simulated cycle by cycle.
 
 use std::collections::BTreeMap;
 
@@ -28,11 +24,11 @@ pub const ASIDE_BITS: u32 = 64;
 /// Entries of a ray's stack: one a level.
 const ASIDE_ENTRIES: u64 = 24;
 
-/// The ray caster's parts, a lane.
+/// The parts of a lane of the ray caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayHardware {
-    /// Rays that a lane works on in turns.
+    /// Rays in flight per lane.
     pub contexts: u32,
     /// Units by kind of step; minima and maxima are `float_compare`'s.
     pub units: BTreeMap<FloatStep, Unit>,
@@ -89,11 +85,11 @@ pub struct RayCycles {
     pub cycles: u64,
     /// Frames a second at the hardware's clock: an upper bound.
     pub frames_per_second: f64,
-    /// What each part needs, most first.
+    /// Cycles of each part, most first.
     pub bounds: Vec<Bound>,
 }
 
-/// What the caches let through.
+/// Misses of the caches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RayMisses {
     /// Lines of nodes.
@@ -102,7 +98,7 @@ pub struct RayMisses {
     pub attribute: u64,
 }
 
-/// The bound for what was counted.
+/// The bound for a frame's counts.
 #[must_use]
 pub fn cycles(
     counts: &FloatRayCounts,

@@ -1,9 +1,7 @@
-//! How many bits a record has on the machine's stack, field by field: what an
-//! architect needs for the stack's width.
+//! The bits of a record on the machine's stack, field by field.
 //!
-//! Numbers have as many bits as their greatest value needs, coordinates those
-//! of the frame's format or, packed, those that its set-up proves to be enough. Poses share their bits: a record has one at a time,
-//! and under the rules that draw outlines there is one pose alone.
+//! Numbers have the bits of their greatest value. Coordinates have those of the frame's format or, if packed, the width that
+//! set-up proves sufficient. Clip and screen space share bits, because a record is in one of them.
 
 use hwmodel::cycles::{Organisation, StackHolds};
 use hwmodel::memory::RecordBits;
@@ -16,9 +14,10 @@ use shiftvox::project::vector::cross;
 use shiftvox::project::{CageKind, EngineError, FrameSetup};
 
 /// A field of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RecordField {
     /// Its name.
+    #[serde(rename = "field")]
     pub name: &'static str,
     /// Its bits, all parts of it together.
     pub bits: u32,
@@ -26,8 +25,8 @@ pub struct RecordField {
     pub held: FieldPresence,
 }
 
-/// When a record has a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The records that have a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum FieldPresence {
     /// Always.
     Always,
@@ -35,7 +34,7 @@ pub enum FieldPresence {
     InClipSpace,
     /// In screen space.
     InScreenSpace,
-    /// As a finest voxel, which has no children and hence no need of vertices.
+    /// As a finest voxel, which has no children and needs no vertices.
     AsFinestVoxel,
 }
 
@@ -180,14 +179,14 @@ pub struct NumberWidths {
     pub used: u32,
 }
 
-/// The constants that every record is compared with or moved by, which set-up writes to registers, six of each: name, what they
-/// span in this frame, what they can, and their bits without packing.
+/// Constants that set-up writes to registers, six of each: name, range in this frame, possible range, and bits without
+/// packing.
 fn setup_constants(setup: &FrameSetup) -> [(&'static str, NumberSpan, NumberSpan, u32); 2] {
     let span_of = |values: &mut dyn Iterator<Item = i128>| {
         let spans = values.map(NumberSpan::of);
         spans.reduce(NumberSpan::with).unwrap_or_default()
     };
-    // All eyes beyond the object compare alike.
+    // All eyes beyond the object have the same comparisons.
     let beyond = (1i128 << (setup.depth + setup.sub_levels)) + 1;
     let eye = setup.eye_floor.iter().chain(&setup.eye_ceil);
     let eye = span_of(&mut eye.map(|&c| i128::from(c).clamp(-1, beyond)));
@@ -310,9 +309,8 @@ fn record_bits_of(setup: &FrameSetup, nodes: usize, organisation: Organisation) 
     u64::from(record_bits(&record_fields(setup, nodes, organisation)))
 }
 
-/// Bits of a frame's records by their kind. Under the rules that draw outlines
-/// a cube at the level of the finest voxels is drawn and has no parts: of its
-/// vertices its turn needs one thing, whether all are before the eye.
+/// Bits of a frame's records by kind. Under the rules that draw outlines, a finest voxel has no parts. Its turn only needs
+/// to know whether all vertices are before the eye.
 #[must_use]
 pub fn bits_by_kind(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> RecordBits {
     // A parent is never a finest voxel.

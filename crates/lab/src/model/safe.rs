@@ -1,73 +1,80 @@
-//! How large a scene a word format is safe for.
+//! The word format of a frame, and how large a scene it is safe for.
 //!
-//! Safe: no word of the frame can overflow (*headroom*), and rounding moves
-//! nothing by more than a quarter of a pixel, seen from its own size away.
+//! Safe means that no word of the frame can overflow (*headroom*), and that rounding moves nothing by more than a quarter
+//! of a pixel, seen from its own size away.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use shiftvox::graph::{Graph, MAX_DEPTH, Placement};
 use shiftvox::project::camera::MAX_SIDE;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
+use shiftvox::project::{Camera, FrameSetup};
 
 /// Most rounding that is safe, pixels.
 const MOST_ROUNDING_PX: f64 = 0.25;
 
-/// How far, in pixels, rounding may turn or stretch a view: the edges of a
-/// voxel are rounded to units of `2^-clip_frac`.
-pub(super) fn rounding_px(setup: &FrameSetup) -> f64 {
+/// The word format of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Format {
+    /// Fraction bits of clip vectors.
+    pub clip_fraction_bits: u32,
+    /// Fraction bits of screen positions.
+    pub screen_fraction_bits: u32,
+    /// Whether bounds prove that no word of the frame overflows.
+    pub has_headroom: bool,
+    /// The rounding error of the view, pixels, seen from the object's own size away.
+    pub rounding_px: f64,
+    /// Most octree levels that are safe, for an object of the same size in the world.
+    pub safe_depth: Option<u32>,
+    /// Largest safe picture, pixels per side.
+    pub safe_picture: Option<u32>,
+    /// The near plane of rules `any` and `center`, finest voxels: a sixteenth, where the format can express it.
+    pub near_voxels: f64,
+}
+
+impl Format {
+    /// The format of a frame's set-up.
+    #[must_use]
+    pub fn new(graph: &Graph, camera: &Camera, own: &FrameSetup) -> Self {
+        let is_safe = |camera: &Camera, placement: &Placement, depth: u32| {
+            let setup = FrameSetup::new(camera, placement, depth, &own.options).ok();
+            setup.is_some_and(|of| of.has_headroom && rounding_px(&of) <= MOST_ROUNDING_PX)
+        };
+        let at_depth = |depth: u32| {
+            let mut placement = graph.placement;
+            let scale = libm::ldexp(1.0, graph.depth as i32 - depth as i32);
+            placement.voxel_size *= scale;
+            // The same corner of the world, in voxels of the other size.
+            let scaled = |index: i64| libm::round(index as f64 / scale) as i64;
+            placement.origin_index = placement.origin_index.map(scaled);
+            is_safe(camera, &placement, depth)
+        };
+        let of_size = |side: u32| {
+            let camera = Camera {
+                width: side,
+                height: side,
+                ..*camera
+            };
+            is_safe(&camera, &graph.placement, graph.depth)
+        };
+        Self {
+            clip_fraction_bits: own.clip_frac,
+            screen_fraction_bits: own.format.frac(),
+            has_headroom: own.has_headroom,
+            rounding_px: rounding_px(own),
+            safe_depth: (1..=MAX_DEPTH).take_while(|&depth| at_depth(depth)).last(),
+            safe_picture: largest(MAX_SIDE, of_size),
+            near_voxels: own.near as f64 / libm::ldexp(1.0, own.clip_frac as i32),
+        }
+    }
+}
+
+/// The rotation or stretch of a view by rounding, pixels: voxels' edges are rounded to units of `2^-clip_frac`.
+fn rounding_px(setup: &FrameSetup) -> f64 {
     let root_px = setup.levels - setup.options.aa_log2;
     libm::ldexp(1.0, root_px as i32 - 2 - setup.clip_frac as i32)
 }
 
-/// What a format is safe for; each alone, with all else as in the scene.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Safe {
-    /// Most octree levels, of an object of the same size in the world.
-    pub depth: Option<u32>,
-    /// Largest picture, pixels a side.
-    pub picture: Option<u32>,
-    /// Least distance at which `any` and `center` draw, in finest voxels: the
-    /// near plane is a sixteenth of a voxel, where the format can express that.
-    pub near_voxels: Option<f64>,
-}
-
-fn is_safe(setup: &FrameSetup) -> bool {
-    setup.has_headroom && rounding_px(setup) <= MOST_ROUNDING_PX
-}
-
-/// What `options`' format is safe for in a view.
-pub(super) fn of(graph: &Graph, camera: &Camera, options: &SetupOptions) -> Safe {
-    let setup = |camera: &Camera, placement: &Placement, depth: u32| {
-        FrameSetup::new(camera, placement, depth, options).ok()
-    };
-    let at_depth = |depth: u32| {
-        let mut placement = graph.placement;
-        let scale = libm::ldexp(1.0, graph.depth as i32 - depth as i32);
-        placement.voxel_size *= scale;
-        // The same corner of the world, in voxels of the other size.
-        placement.origin_index = placement
-            .origin_index
-            .map(|index| libm::round(index as f64 / scale) as i64);
-        setup(camera, &placement, depth).is_some_and(|setup| is_safe(&setup))
-    };
-    let of_size = |side: u32| {
-        let camera = Camera {
-            width: side,
-            height: side,
-            ..*camera
-        };
-        setup(&camera, &graph.placement, graph.depth).is_some_and(|setup| is_safe(&setup))
-    };
-    let own = setup(camera, &graph.placement, graph.depth);
-    Safe {
-        depth: (1..=MAX_DEPTH).take_while(|&depth| at_depth(depth)).last(),
-        picture: largest(MAX_SIDE, of_size),
-        near_voxels: own.map(|own| own.near as f64 / libm::ldexp(1.0, own.clip_frac as i32)),
-    }
-}
-
-/// The largest number up to `most` for which `holds`, which holds for all
-/// smaller ones if for one.
+/// The largest number up to `most` for which `holds`. If it holds for a number, it holds for all smaller ones.
 fn largest(most: u32, holds: impl Fn(u32) -> bool) -> Option<u32> {
     if !holds(1) {
         return None;
@@ -75,10 +82,9 @@ fn largest(most: u32, holds: impl Fn(u32) -> bool) -> Option<u32> {
     let (mut yes, mut no) = (1, most + 1);
     while no - yes > 1 {
         let middle = yes + (no - yes) / 2;
-        if holds(middle) {
-            yes = middle;
-        } else {
-            no = middle;
+        match holds(middle) {
+            true => yes = middle,
+            false => no = middle,
         }
     }
     Some(yes)
@@ -90,9 +96,8 @@ mod tests {
 
     #[test]
     fn the_largest_is_found() {
-        assert_eq!(largest(100, |n| n <= 37), Some(37));
-        assert_eq!(largest(100, |_| true), Some(100));
-        assert_eq!(largest(100, |_| false), None);
-        assert_eq!(largest(100, |n| n <= 1), Some(1));
+        for (most, expected) in [(37, Some(37)), (200, Some(100)), (0, None), (1, Some(1))] {
+            assert_eq!(largest(100, |n| n <= most), expected, "{most}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! One frame of the sweep, as a line of text that draws it again.
+//! A frame of the sweep, as a line of text that draws it again.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,57 +9,51 @@ use super::scene::StressScene;
 use shiftvox::graph::{Graph, Placement};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupError, SetupOptions};
 
-/// A scene, a camera, and what the frame is drawn with.
+/// A scene, a camera and settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// The scene.
     pub scene: StressScene,
     /// The camera, in finest voxels from the object's lowest corner.
     pub camera: Camera,
-    /// How far object and camera are from the world's origin, voxels along each axis.
+    /// Distance of object and camera from the world's origin, voxels along each axis.
     pub shift: i64,
     /// Settings.
     pub options: SetupOptions,
 }
 
-/// A number as the shortest decimals that read back as it.
-struct Vector(DVec3);
-
-impl fmt::Display for Vector {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{},{},{}", self.0.x, self.0.y, self.0.z)
+impl Case {
+    /// Camera and settings by their keys, seen from another origin.
+    fn settings(&self, origin: DVec3) -> Vec<(&'static str, String)> {
+        let (camera, options) = (&self.camera, &self.options);
+        let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
+        let mut all = vec![
+            ("eye", vector(camera.eye + origin)),
+            ("target", vector(camera.target + origin)),
+            ("up", vector(camera.up)),
+            ("fov", camera.fov_degrees.to_string()),
+            ("size", format!("{}x{}", camera.width, camera.height)),
+            ("bits", options.bits.to_string()),
+        ];
+        all.extend(options.frac.map(|frac| ("frac", frac.to_string())));
+        all.extend([
+            ("cage", options.cage.name().to_owned()),
+            ("tolerance", options.tolerance_px.to_string()),
+            ("coverage", options.coverage.name().to_owned()),
+            ("lod", options.lod_px.to_string()),
+        ]);
+        all
     }
 }
 
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (camera, options) = (&self.camera, &self.options);
-        write!(
-            f,
-            "scene={};eye={};target={};up={};fov={};size={}x{}",
-            self.scene,
-            Vector(camera.eye),
-            Vector(camera.target),
-            Vector(camera.up),
-            camera.fov_degrees,
-            camera.width,
-            camera.height,
-        )?;
+        write!(f, "scene={}", self.scene)?;
         if self.shift != 0 {
             write!(f, ";shift={}", self.shift)?;
         }
-        write!(f, ";bits={}", options.bits)?;
-        if let Some(frac) = options.frac {
-            write!(f, ";frac={frac}")?;
-        }
-        write!(
-            f,
-            ";cage={};tolerance={};coverage={};lod={}",
-            options.cage.name(),
-            options.tolerance_px,
-            options.coverage.name(),
-            options.lod_px
-        )
+        let mut settings = self.settings(DVec3::ZERO).into_iter();
+        settings.try_for_each(|(key, value)| write!(f, ";{key}={value}"))
     }
 }
 
@@ -160,7 +154,7 @@ impl Case {
         }
     }
 
-    /// Where the object lies.
+    /// The placement of the object.
     #[must_use]
     pub fn placement(&self, graph: &Graph) -> Placement {
         let mut placement = graph.placement;
@@ -182,7 +176,7 @@ impl Case {
         )
     }
 
-    /// The command that draws the picture to look at, where `render` can.
+    /// The command that draws the picture, where `render` can.
     #[must_use]
     pub fn render_line(&self, graph: &Graph) -> Option<String> {
         let StressScene::Generated(spec) = &self.scene else {
@@ -192,29 +186,13 @@ impl Case {
             return None;
         }
         let lowest = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
-        let (camera, options) = (&self.camera, &self.options);
-        let mut line = format!(
-            "shiftvox render {spec} --engine machine --eye {} --target {} --up {} --fov {} --size \
-             {}x{} --bits {}",
-            Vector(camera.eye + lowest),
-            Vector(camera.target + lowest),
-            Vector(camera.up),
-            camera.fov_degrees,
-            camera.width,
-            camera.height,
-            options.bits,
-        );
-        if let Some(frac) = options.frac {
-            line += &format!(" --frac {frac}");
-        }
-        line += &format!(
-            " --cage {} --tolerance {} --coverage {} --lod {} -o failing.png",
-            options.cage.name(),
-            options.tolerance_px,
-            options.coverage.name(),
-            options.lod_px
-        );
-        Some(line)
+        let flags = self.settings(lowest).into_iter();
+        let flags: String = flags
+            .map(|(key, value)| format!(" --{key} {value}"))
+            .collect();
+        Some(format!(
+            "shiftvox render {spec} --engine machine{flags} -o failing.png"
+        ))
     }
 }
 

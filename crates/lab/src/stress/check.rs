@@ -1,4 +1,4 @@
-//! One case: drawn, and compared with the oracle, the specification and the bounds.
+//! Draws a case and compares it with the oracle, the specification and the bounds.
 
 use super::case::Case;
 use super::outcome::{Check, End, Outcome};
@@ -14,14 +14,14 @@ use shiftvox::rays::Rays;
 
 /// Largest tolerance, samples, at which a hole is a failure.
 pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
-/// From so many records on no frame is merely long: any rule is then expected to have ended.
+/// Every rule must have ended after so many records.
 pub const PATIENCE: u64 = 200_000_000;
-/// Voxels whose vertices are examined in a frame.
+/// Voxels per frame whose vertices are examined.
 const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;
 
-/// The last oracle's picture without level of detail, for cases with the same integers.
+/// The oracle's last picture without level of detail, which cases with the same integers share.
 #[derive(Debug, Default)]
 pub(crate) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
@@ -30,7 +30,7 @@ pub(crate) struct Oracle {
 impl Oracle {
     fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
         let same = |last: &FrameSetup| {
-            // What the oracle looks at.
+            // The integers that the oracle uses.
             last.origin_clip == setup.origin_clip
                 && last.edge_clip == setup.edge_clip
                 && last.sub_levels == setup.sub_levels
@@ -58,11 +58,6 @@ impl Oracle {
         // The oracle has no error to give.
         let _ = Rays.render(&graph.view(), setup, &mut frame);
         frame
-    }
-
-    /// Forgets it: another graph comes.
-    pub(crate) fn forget(&mut self) {
-        self.last = None;
     }
 }
 
@@ -357,10 +352,8 @@ impl CheckedFrame<'_> {
                 first.get_or_insert(sample);
             }
         }
-        // The image-order paper's rules part a voxel down to the level bound; where a record
-        // meets that, words are too narrow for the view, and what is left of a
-        // voxel is drawn at one sample, or by its box. An infinite tolerance is
-        // the image-order paper's to the letter. Holes of both are listed, not failures.
+        // The image-order paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that
+        // words are too narrow for the view. Its holes, and those at infinite tolerance, are counted but allowed.
         let is_promised =
             self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
         if let Some(sample) = first.filter(|_| is_promised) {
@@ -414,7 +407,7 @@ fn check_vertices(
 }
 
 fn check_engines(graph: &Graph, seen: &CheckedFrame<'_>, outcome: &mut Outcome) {
-    // What the fast engine does not draw it hands to the machine.
+    // The machine draws views that the fast engine does not.
     if !seen.is_exact() || !seen.setup.has_headroom {
         return;
     }

@@ -1,23 +1,26 @@
-//! What a sweep found: outcomes, added up by scene, word width and rule.
+//! The results of a sweep: outcomes, added up by scene, word width and rule.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::case::Case;
 use super::outcome::{Check, End, Outcome};
-use super::vertex::Worst;
+use super::sweep::{SweepPlan, TOLERANCES};
+use super::vertex::{Hold, Worst};
+use shiftvox::project::Coverage;
 
-/// What outcomes are added up by.
+/// The key by which outcomes are added up.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Key {
     /// Place of the scene in the plan.
     pub scene: usize,
     /// Word width.
     pub bits: u32,
-    /// Place of the rule in [`Coverage::UNBLENDED`](shiftvox::project::Coverage::UNBLENDED).
+    /// Place of the rule in [`Coverage::UNBLENDED`].
     pub coverage: usize,
-    /// Place of the tolerance in [`super::TOLERANCES`].
+    /// Place of the tolerance in [`TOLERANCES`].
     pub tolerance: usize,
 }
 
@@ -26,15 +29,15 @@ pub struct Key {
 pub struct Tally {
     /// Cases.
     pub cases: u64,
-    /// Those with a picture.
+    /// Cases with a picture.
     pub drawn: u64,
-    /// Those that an overflow ended, with its place.
+    /// Cases that ended with an overflow.
     pub trapped: u64,
-    /// Those that the set-up refused.
+    /// Cases that set-up refused.
     pub refused: u64,
-    /// Those given up after the most records: [`End::CutOff`].
+    /// Cases given up after the most records: [`End::CutOff`].
     pub cut_off: u64,
-    /// Those that did not keep what they must.
+    /// Cases that violated a check.
     pub failed: u64,
     /// Most records of a frame.
     pub most_records: u64,
@@ -42,101 +45,118 @@ pub struct Tally {
     pub inside: u64,
     /// Holes among them.
     pub holes: u64,
-    /// Samples that show what is hidden.
+    /// Samples that show an occluded voxel.
     pub order: u64,
     /// Samples that the oracle covers.
     pub covered: u64,
-    /// Samples covered that should not be.
+    /// False positives.
     pub extra: u64,
-    /// Samples not covered that should be.
+    /// False negatives.
     pub missing: u64,
 }
 
 impl Tally {
-    fn note(&mut self, outcome: &Outcome) {
-        self.cases += 1;
-        match outcome.end {
-            End::Drawn => self.drawn += 1,
-            End::Trapped(_) => self.trapped += 1,
-            End::Refused(_) => self.refused += 1,
-            End::CutOff => self.cut_off += 1,
-        }
-        self.failed += u64::from(!outcome.failures.is_empty());
-        self.most_records = self.most_records.max(outcome.records);
-        self.inside += outcome.inside;
-        self.holes += outcome.holes;
-        self.order += outcome.order;
-        self.covered += outcome.coverage.covered;
-        self.extra += outcome.coverage.extra;
-        self.missing += outcome.coverage.missing;
+    fn of(outcome: &Outcome) -> Self {
+        let mut tally = Self {
+            cases: 1,
+            failed: u64::from(!outcome.failures.is_empty()),
+            most_records: outcome.records,
+            inside: outcome.inside,
+            holes: outcome.holes,
+            order: outcome.order,
+            covered: outcome.coverage.covered,
+            extra: outcome.coverage.extra,
+            missing: outcome.coverage.missing,
+            ..Self::default()
+        };
+        *match outcome.end {
+            End::Drawn => &mut tally.drawn,
+            End::Trapped(_) => &mut tally.trapped,
+            End::Refused(_) => &mut tally.refused,
+            End::CutOff => &mut tally.cut_off,
+        } = 1;
+        tally
     }
 
-    /// Both together.
+    fn sums(&mut self) -> [&mut u64; 12] {
+        [
+            &mut self.cases,
+            &mut self.drawn,
+            &mut self.trapped,
+            &mut self.refused,
+            &mut self.cut_off,
+            &mut self.failed,
+            &mut self.inside,
+            &mut self.holes,
+            &mut self.order,
+            &mut self.covered,
+            &mut self.extra,
+            &mut self.missing,
+        ]
+    }
+
+    /// Adds another tally.
     pub fn merge(&mut self, other: &Self) {
-        self.cases += other.cases;
-        self.drawn += other.drawn;
-        self.trapped += other.trapped;
-        self.refused += other.refused;
-        self.cut_off += other.cut_off;
-        self.failed += other.failed;
+        let mut other = other.clone();
         self.most_records = self.most_records.max(other.most_records);
-        self.inside += other.inside;
-        self.holes += other.holes;
-        self.order += other.order;
-        self.covered += other.covered;
-        self.extra += other.extra;
-        self.missing += other.missing;
+        for (sum, more) in self.sums().into_iter().zip(other.sums()) {
+            *sum += *more;
+        }
     }
 }
 
-/// A case that did not keep what it must.
+/// A case that violated a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Failed {
-    /// What it did not keep.
+    /// The check.
     pub check: Check,
-    /// Where and how.
+    /// Place and kind of the violation.
     pub detail: String,
     /// The case, for `--case`.
     pub case: String,
-    /// A smaller one that fails too, where it was searched for.
+    /// A smaller case that violates the check, if it was shrunk.
     pub minimal: Option<String>,
-    /// The smaller one's details.
+    /// The smaller case's details.
     pub minimal_detail: Option<String>,
     /// A command that draws its picture, where `render` can.
     pub render: Option<String>,
 }
 
-/// What a sweep found.
+/// The results of a sweep.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
     /// Outcomes by scene, width and rule.
     pub tallies: BTreeMap<Key, Tally>,
-    /// Worst vertices by [`super::Hold`] and word width.
-    pub worst: BTreeMap<(usize, u32), Worst>,
+    /// Worst vertices by [`Hold`] and word width.
+    pub worst: BTreeMap<(Hold, u32), Worst>,
     /// Outcomes by viewpoint.
     pub viewpoints: BTreeMap<&'static str, Tally>,
-    /// Traps by place, records left out.
+    /// Traps by place, without the record.
     pub traps: BTreeMap<String, u64>,
     /// Refusals by reason.
     pub refusals: BTreeMap<String, u64>,
     /// Failures by check.
     pub failures: BTreeMap<Check, u64>,
-    /// Some of the failures, those that were shrunk first.
+    /// Some of the failures, shrunk ones first.
     pub failed: Vec<Failed>,
 }
 
-/// Failures that are reported in full, of each check in each job.
-const TOLD: usize = 3;
+/// Failures that are reported in full, per check and job.
+const TOLD: u64 = 3;
 
 impl Findings {
-    /// All together.
+    /// All outcomes.
     #[must_use]
     pub fn total(&self) -> Tally {
-        let mut total = Tally::default();
-        for tally in self.tallies.values() {
-            total.merge(tally);
+        self.sum(|_| true)
+    }
+
+    fn sum(&self, wanted: impl Fn(&Key) -> bool) -> Tally {
+        let mut sum = Tally::default();
+        for (_, tally) in self.tallies.iter().filter(|(key, _)| wanted(key)) {
+            sum.merge(tally);
         }
-        total
+        sum
     }
 
     pub(super) fn note(
@@ -146,29 +166,23 @@ impl Findings {
         case: &Case,
         outcome: &Outcome,
     ) {
-        for (hold, worst) in outcome.worst.iter().enumerate() {
+        for (hold, worst) in Hold::ALL.into_iter().zip(&outcome.worst) {
             if worst.vertices > 0 {
                 self.worst.entry((hold, key.bits)).or_default().merge(worst);
             }
         }
-        self.tallies.entry(key).or_default().note(outcome);
-        self.viewpoints.entry(viewpoint).or_default().note(outcome);
+        let tally = Tally::of(outcome);
+        self.tallies.entry(key).or_default().merge(&tally);
+        self.viewpoints.entry(viewpoint).or_default().merge(&tally);
         match &outcome.end {
             End::Drawn | End::CutOff => {}
-            End::Trapped(trap) => {
-                // Without the record, which is another in every case.
-                let place = trap.split(", record").next().unwrap_or(trap);
-                let place = place.split_once("overflowed in ").map_or(place, |p| p.1);
-                let place = place.split(", octree").next().unwrap_or(place);
-                let place = place.replace(" (stage", ", stage");
-                *self.traps.entry(place).or_default() += 1;
-            }
+            End::Trapped(trap) => *self.traps.entry(place_of(trap)).or_default() += 1,
             End::Refused(reason) => *self.refusals.entry(reason.clone()).or_default() += 1,
         }
         for failure in &outcome.failures {
             let count = self.failures.entry(failure.check).or_default();
             *count += 1;
-            if *count as usize <= TOLD {
+            if *count <= TOLD {
                 self.failed.push(Failed {
                     check: failure.check,
                     detail: failure.detail.clone(),
@@ -182,26 +196,109 @@ impl Findings {
     }
 
     pub(super) fn merge(&mut self, other: Self) {
-        for (key, worst) in other.worst {
-            self.worst.entry(key).or_default().merge(&worst);
-        }
-        for (key, tally) in other.tallies {
-            self.tallies.entry(key).or_default().merge(&tally);
-        }
-        for (name, tally) in other.viewpoints {
-            self.viewpoints.entry(name).or_default().merge(&tally);
-        }
-        for (to, from) in [
-            (&mut self.traps, other.traps),
-            (&mut self.refusals, other.refusals),
-        ] {
-            for (place, count) in from {
-                *to.entry(place).or_default() += count;
+        fn add<K: Ord, V: Default>(
+            to: &mut BTreeMap<K, V>,
+            from: BTreeMap<K, V>,
+            merge: impl Fn(&mut V, &V),
+        ) {
+            for (key, value) in from {
+                merge(to.entry(key).or_default(), &value);
             }
         }
-        for (check, count) in other.failures {
-            *self.failures.entry(check).or_default() += count;
-        }
+        let count = |to: &mut u64, from: &u64| *to += from;
+        add(&mut self.worst, other.worst, Worst::merge);
+        add(&mut self.tallies, other.tallies, Tally::merge);
+        add(&mut self.viewpoints, other.viewpoints, Tally::merge);
+        add(&mut self.traps, other.traps, count);
+        add(&mut self.refusals, other.refusals, count);
+        add(&mut self.failures, other.failures, count);
         self.failed.extend(other.failed);
     }
+
+    /// The results as JSON: all rows, and sums by scene, rule, viewpoint, word width, and check.
+    #[must_use]
+    pub fn document(&self, plan: &SweepPlan) -> Value {
+        let named = |fields: Value, tally: &Tally| {
+            let mut row = json!(tally);
+            for (key, value) in fields.as_object().into_iter().flatten() {
+                row[key] = value.clone();
+            }
+            row
+        };
+        let rule = |coverage: usize, tolerance: usize| {
+            let (rule, px) = (Coverage::UNBLENDED[coverage], TOLERANCES[tolerance]);
+            let must_be_0 = match (rule.draws_outlines(), px <= super::STRICT_TOLERANCE) {
+                (true, _) => "yes",
+                (_, true) => "except at the level bound",
+                _ => "no",
+            };
+            json!({
+                "coverage": rule.name(),
+                "tolerance_px": if px.is_finite() { json!(px) } else { json!("inf") },
+                "holes_must_be_0": must_be_0,
+            })
+        };
+        let results = self.tallies.iter().map(|(key, tally)| {
+            let mut fields = rule(key.coverage, key.tolerance);
+            fields["scene"] = json!(plan.scenes[key.scene].to_string());
+            fields["bits"] = json!(key.bits);
+            named(fields, tally)
+        });
+        let scenes = plan.scenes.iter().enumerate().map(|(at, scene)| {
+            let tally = self.sum(|key| key.scene == at);
+            named(json!({ "scene": scene.to_string() }), &tally)
+        });
+        let places = (0..Coverage::UNBLENDED.len())
+            .flat_map(|coverage| (0..TOLERANCES.len()).map(move |tolerance| (coverage, tolerance)));
+        let rules = places.filter_map(|(coverage, tolerance)| {
+            let is_rule = |key: &Key| (key.coverage, key.tolerance) == (coverage, tolerance);
+            let tally = self.sum(is_rule);
+            (tally.cases > 0).then(|| named(rule(coverage, tolerance), &tally))
+        });
+        let mut vertices: Vec<Value> = Vec::new();
+        for hold in Hold::ALL {
+            let mut all = Worst::default();
+            let worst = self.worst.iter().filter(|((of, _), _)| *of == hold);
+            for ((_, bits), worst) in worst {
+                all.merge(worst);
+                vertices.push(json!({ "held_in": hold.name(), "bits": bits, "worst": worst }));
+            }
+            if all.vertices > 0 {
+                vertices.push(json!({ "held_in": hold.name(), "bits": "all", "worst": all }));
+            }
+        }
+        let checks = Check::ALL.map(|check| {
+            let failures = self.failures.get(&check).copied().unwrap_or(0);
+            json!({ "check": check.name(), "failures": failures, "about": check.about() })
+        });
+        let counts = |of: &BTreeMap<String, u64>| -> Vec<Value> {
+            let counts = of.iter();
+            counts
+                .map(|(what, frames)| json!({ "what": what, "frames": frames }))
+                .collect()
+        };
+        let viewpoints = self.viewpoints.iter();
+        let viewpoints = viewpoints.map(|(name, tally)| named(json!({ "viewpoint": name }), tally));
+        json!({
+            "seed": plan.seed,
+            "total": self.total(),
+            "checks": checks,
+            "failed": self.failed,
+            "traps": counts(&self.traps),
+            "refusals": counts(&self.refusals),
+            "scenes": scenes.collect::<Vec<_>>(),
+            "rules": rules.collect::<Vec<_>>(),
+            "viewpoints": viewpoints.collect::<Vec<_>>(),
+            "vertices": vertices,
+            "results": results.collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// The place of a trap without the record, which differs in every case.
+fn place_of(trap: &str) -> String {
+    let place = trap.split(", record").next().unwrap_or(trap);
+    let place = place.split_once("overflowed in ").map_or(place, |p| p.1);
+    let place = place.split(", octree").next().unwrap_or(place);
+    place.replace(" (stage", ", stage")
 }

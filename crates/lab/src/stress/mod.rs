@@ -1,8 +1,8 @@
-//! Numerical stability: word formats x cameras x scenes x rules, each frame
-//! held against the oracle, the specification and the bounds on its error.
+//! Numerical stability: frames of many word formats, cameras, scenes and rules against the oracle, the specification and
+//! the bounds on their error.
 //!
-//! `sweep` runs a [`SweepPlan`]; what fails is shrunk to a small [`Case`], a line
-//! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
+//! [`sweep()`] runs a [`SweepPlan`]. It shrinks a failure to a small [`Case`], a line of text that [`run_case`] draws again.
+//! `spec/lab.md` describes the method.
 
 pub mod case;
 mod check;
@@ -25,5 +25,5 @@ pub use findings::{Failed, Findings, Key, Tally};
 pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;
 pub use sweep::{SweepPlan, TOLERANCES, run_case, sweep};
-pub use tables::{rows, tables};
+pub use tables::TABLES;
 pub use vertex::{Hold, Worst};

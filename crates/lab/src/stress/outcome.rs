@@ -1,11 +1,11 @@
-//! What a case came to: how its frame ended, and which checks failed.
+//! The outcome of a case: the end of its frame, and the checks that failed.
 
 use serde::Serialize;
 
 use super::vertex::Worst;
 use crate::measure::CoverageError;
 
-/// What every frame must keep.
+/// A property that every frame must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
@@ -17,12 +17,12 @@ pub enum Check {
     Exact,
     /// Under `exact` no sample that is covered without level of detail is missing.
     Missing,
-    /// A closed surface has no holes: under `exact`; under the other rules at
-    /// tolerance 0 to 1/64 where no record met the level bound.
+    /// A closed surface has no holes under `exact`. Under the other rules this holds at tolerance 0 to 1/64, if no record met
+    /// the level bound.
     Holes,
-    /// Nothing is seen that lies behind what the oracle sees.
+    /// No sample shows a voxel behind the oracle's.
     Order,
-    /// What is seen is before the eye and at its sample.
+    /// A visible voxel is before the eye and at its sample.
     Place,
     /// Vertices are the specification's, bit for bit.
     Specification,
@@ -47,58 +47,60 @@ impl Check {
         Self::Engines,
     ];
 
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    /// Name and meaning.
+    const fn words(self) -> [&'static str; 2] {
         match self {
-            Self::Ends => "ends",
-            Self::Headroom => "headroom",
-            Self::Exact => "exact",
-            Self::Missing => "missing",
-            Self::Holes => "holes",
-            Self::Order => "order",
-            Self::Place => "place",
-            Self::Specification => "specification",
-            Self::Bound => "bound",
-            Self::Engines => "engines",
+            Self::Ends => ["ends", "a frame ends within a bound on records"],
+            Self::Headroom => ["headroom", "a frame with proven headroom does not trap"],
+            Self::Exact => [
+                "exact",
+                "exact: the oracle's picture at every level of detail",
+            ],
+            Self::Missing => ["missing", "exact: no covered sample is missing"],
+            Self::Holes => [
+                "holes",
+                "no holes in closed surfaces under exact, nor at tolerance 0 to 1/64 above the level bound",
+            ],
+            Self::Order => [
+                "order",
+                "no sample shows a voxel that the oracle's voxel occludes",
+            ],
+            Self::Place => [
+                "place",
+                "visible voxels are before the eye, and as near to their samples as the rule demands",
+            ],
+            Self::Specification => [
+                "specification",
+                "vertices are the specification's, bit for bit",
+            ],
+            Self::Bound => ["bound", "vertices are within the bounds on their error"],
+            Self::Engines => ["engines", "the fast engine draws the machine's bits"],
         }
     }
 
-    /// The details.
+    /// Its name.
     #[must_use]
-    pub fn about(self) -> &'static str {
-        match self {
-            Self::Ends => "a frame ends within a bound on records",
-            Self::Headroom => "a frame whose set-up promises that no word overflows does not trap",
-            Self::Exact => {
-                "exact: the oracle's picture, sample by sample, at every level of detail"
-            }
-            Self::Missing => "exact: no sample that is covered without level of detail is missing",
-            Self::Holes => {
-                "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no \
-                 record met the level bound"
-            }
-            Self::Order => "nothing is seen that the oracle's voxel hides",
-            Self::Place => {
-                "what is seen is before the eye and no more than the rule allows from its sample"
-            }
-            Self::Specification => "vertices are the specification's, bit for bit",
-            Self::Bound => "vertices are within the bounds on their error",
-            Self::Engines => "the fast engine draws the machine's bits",
-        }
+    pub const fn name(self) -> &'static str {
+        self.words()[0]
+    }
+
+    /// Its meaning.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        self.words()[1]
     }
 }
 
-/// Something that must not be.
+/// A violation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Failure {
-    /// What was not kept.
+    /// The violated property.
     pub check: Check,
-    /// Where and how.
+    /// Place and kind of the violation.
     pub detail: String,
 }
 
-/// How a frame ended.
+/// The end of a frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
@@ -113,20 +115,20 @@ pub enum End {
     CutOff,
 }
 
-/// What a case came to.
+/// The outcome of a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
-    /// How it ended.
+    /// The end of its frame.
     pub end: End,
-    /// What must not be.
+    /// Violations.
     pub failures: Vec<Failure>,
-    /// Records that had their turn.
+    /// Records processed.
     pub records: u64,
     /// Samples inside a closed surface, as the oracle sees it.
     pub inside: u64,
-    /// Those of them that show nothing, or something behind the surface.
+    /// Samples among them that show nothing, or a voxel behind the surface.
     pub holes: u64,
-    /// Samples that show what the oracle's voxel hides.
+    /// Samples that show a voxel that the oracle's voxel occludes.
     pub order: u64,
     /// The picture against the oracle's, without level of detail.
     pub coverage: CoverageError,
@@ -155,7 +157,7 @@ impl Outcome {
         });
     }
 
-    /// Whether this was not kept.
+    /// Whether the case violates a property.
     #[must_use]
     pub fn fails(&self, check: Check) -> bool {
         self.failures.iter().any(|failure| failure.check == check)

@@ -12,10 +12,10 @@ use shiftvox::split_mix::SplitMix;
 /// A scene by its text.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StressScene {
-    /// What a generator makes: `gen:shell,depth=5`.
+    /// A generator's scene: `gen:shell,depth=5`.
     Generated(Spec),
-    /// A dense plane through the cube's middle, which no line passes through,
-    /// over corners neither: `plane:depth,a,b,c` with its normal; c is not 0.
+    /// A plane through the cube's middle: `plane:depth,a,b,c` with its normal, c not 0. No line passes through, not even at
+    /// corners.
     Plane {
         /// Levels.
         depth: u32,
@@ -31,7 +31,7 @@ pub enum StressScene {
     Cyclic {
         /// Levels.
         depth: u32,
-        /// Which graph.
+        /// Seed of the graph.
         seed: u64,
     },
     /// A few voxels: `voxels:depth,x.y.z+x.y.z`.
@@ -150,7 +150,7 @@ impl StressScene {
     pub fn depth(&self) -> u32 {
         match self {
             Self::Generated(spec) if spec.generator().name == "menger" => {
-                // Three voxels a step, in a cube of a power of two.
+                // A step triples the voxels; the cube's side is a power of two.
                 3u64.saturating_pow(spec.settings().depth)
                     .next_power_of_two()
                     .trailing_zeros()

@@ -1,4 +1,4 @@
-//! What is put under stress: the machine, or in tests one with an error.
+//! The machine under test, or in tests a machine with an error.
 
 use hwmodel::Trap;
 

@@ -1,4 +1,4 @@
-//! The sweep: scenes x viewpoints x formats x rules, in parallel, the same in every run.
+//! The sweep over scenes, viewpoints, formats and rules, in parallel. It is the same in every run.
 
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use shiftvox::graph::{Graph, Progress};
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox::split_mix::SplitMix;
 
-/// What is swept.
+/// The plan of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepPlan {
     /// Scenes.
@@ -23,11 +23,11 @@ pub struct SweepPlan {
     pub bits: Vec<u32>,
     /// Pictures' sides, pixels.
     pub pixels: Vec<u32>,
-    /// Viewpoints of each scene that the seed chooses, beyond the standard ones.
+    /// Random viewpoints of each scene beside the standard ones.
     pub random_viewpoints: u32,
-    /// Rules drawn for each scene, viewpoint and format; all of them where there are fewer.
+    /// Random rules for each scene, viewpoint and format, at most all of them.
     pub rules: usize,
-    /// What chooses viewpoints and rules.
+    /// Seed of viewpoints and rules.
     pub seed: u64,
     /// Most records of a frame.
     pub most_records: u64,
@@ -103,33 +103,33 @@ impl SweepPlan {
     }
 }
 
-/// Levels of detail, samples: `exact` must be the oracle's picture at all of
-/// them, and has as many rules here as it has in them.
+/// Levels of detail, samples, at which `exact` must be the oracle's picture.
 const EXACT_LODS: [f64; 4] = [0.0, 1.0, 0.3, 3.0];
-/// Rules under which the picture is defined at every sample: the first ones.
+/// The first rules define the picture at every sample.
 const STRICT_RULES: usize = 2 * EXACT_LODS.len();
 
-/// All rules, those that promise most first.
+/// All rules, the strictest first.
 fn rules() -> Vec<SetupOptions> {
     let mut rules = Vec::new();
-    for cage in [CageKind::Frame, CageKind::Corners] {
-        rules.extend(EXACT_LODS.map(|lod_px| SetupOptions {
-            cage,
-            lod_px,
-            ..SetupOptions::of(Coverage::Exact)
-        }));
-    }
-    for coverage in [Coverage::Center, Coverage::Any] {
-        for tolerance_px in TOLERANCES {
-            for cage in [CageKind::Frame, CageKind::Corners] {
-                for lod_px in [0.0, 1.0] {
-                    rules.push(SetupOptions {
-                        cage,
-                        tolerance_px,
-                        lod_px,
-                        ..SetupOptions::of(coverage)
-                    });
-                }
+    for coverage in Coverage::ALL.into_iter().rev().filter(|of| !of.blends()) {
+        let tolerances = &TOLERANCES[..if coverage.draws_outlines() {
+            1
+        } else {
+            TOLERANCES.len()
+        }];
+        let lods = &EXACT_LODS[..if coverage.draws_outlines() {
+            EXACT_LODS.len()
+        } else {
+            2
+        }];
+        for &tolerance_px in tolerances {
+            for cage in CageKind::ALL.into_iter().rev() {
+                rules.extend(lods.iter().map(|&lod_px| SetupOptions {
+                    cage,
+                    tolerance_px,
+                    lod_px,
+                    ..SetupOptions::of(coverage)
+                }));
             }
         }
     }
@@ -200,17 +200,16 @@ fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
     let mut findings = Findings::default();
     let mut numbers = SplitMix::new(job.salt);
     let all = rules();
-    let strict = STRICT_RULES;
     let mut oracle = Oracle::default();
-    oracle.forget();
     for &bits in &plan.bits {
         for frac in SweepPlan::fractions(bits) {
-            let mut chosen: Vec<usize> = if plan.rules >= all.len() {
-                (0..all.len()).collect()
-            } else {
-                (0..plan.rules)
-                    .map(|i| numbers.below(if i == 0 { strict } else { all.len() } as u64) as usize)
-                    .collect()
+            // At least one rule is strict.
+            let below = |i: usize| if i == 0 { STRICT_RULES } else { all.len() };
+            let mut chosen: Vec<usize> = match plan.rules >= all.len() {
+                true => (0..all.len()).collect(),
+                false => (0..plan.rules)
+                    .map(|i| numbers.below(below(i) as u64) as usize)
+                    .collect(),
             };
             chosen.sort_unstable();
             chosen.dedup();

@@ -1,5 +1,5 @@
-//! A frame's vertices under test: the machine's cages against the
-//! specification, bit for bit, and against the true projection, within the bounds.
+//! The vertices of a frame: the machine's cages against the specification, bit for bit, and against the true projection,
+//! within the bounds.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::bounds::{Bounds, Cube, Space, Widths};
 use shiftvox::machine::Cage;
 use shiftvox::project::{CageKind, FrameSetup};
 
-/// How vertices are held, for tables.
+/// The space and the cage in which vertices are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hold {
@@ -36,7 +36,7 @@ impl Hold {
     }
 }
 
-/// The worst vertices that were seen of one kind.
+/// The worst vertices of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Worst {
     /// Vertices examined.
@@ -50,7 +50,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Both together.
+    /// Adds other vertices.
     pub fn merge(&mut self, other: &Self) {
         self.vertices += other.vertices;
         self.tightest = self.tightest.max(other.tightest);
@@ -70,7 +70,7 @@ impl Worst {
     }
 }
 
-/// What was found of a frame's vertices.
+/// Results of a frame's vertices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Vertices {
     /// By [`Hold`].
@@ -81,7 +81,7 @@ pub(super) struct Vertices {
     pub(super) beyond: Option<String>,
 }
 
-/// Error of the check's own arithmetic, samples a sample of the root's side.
+/// Error of the check's own arithmetic, samples per sample of the root's side.
 const CHECK_ERROR: f64 = 1e-14;
 
 /// Checks the voxels on the way down `path`.
@@ -92,8 +92,7 @@ pub(super) fn check_path(
     path: &[u8],
     found: &mut Vertices,
 ) {
-    // A trap here is a trap of the frame too, or of a root that leaves the
-    // picture by far: of no use.
+    // A trap here is a trap of the frame, too, or of a root far outside the picture.
     let Ok(way) = subject.cages_along(setup, path) else {
         return;
     };

@@ -8,7 +8,7 @@ use shiftvox::split_mix::SplitMix;
 /// A camera by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Viewpoint {
-    /// What tables call it.
+    /// Its name.
     pub name: &'static str,
     /// The camera, in finest voxels from the object's lowest corner.
     pub camera: Camera,

@@ -6,25 +6,23 @@ use std::str::FromStr;
 
 use clap::Args;
 
-/// What is explored, and which part of it.
+/// The space, and the part of it that is measured.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Explore")]
 pub(in crate::model) struct ExploreArgs {
-    /// Many hardware designs, and which of them no other beats in time, area, energy and wrong samples: a TOML file of
-    /// ranges, or bundled (--print-space shows it). Takes several scenes; --json prints a line for each point as soon
-    /// as it is there
-    #[arg(long, value_name = "SPACE|bundled", conflicts_with_all = [
-        "hw", "rules", "lanes", "sweep", "caches", "growth", "all", "stats", "heat", "trace", "vectors",
-    ])]
+    /// Measure many designs and find the Pareto-optimal ones in time, area, energy and wrong samples. SPACE: bundled,
+    /// caches, lanes, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes; --json
+    /// prints one line per point
+    #[arg(long, value_name = "SPACE", conflicts_with_all = ["heat", "trace", "vectors"])]
     pub(in crate::model) explore: Option<String>,
-    /// Print the space, and do nothing else
+    /// Print the space and exit
     #[arg(long, requires = "explore")]
     pub(super) print_space: bool,
-    /// Points by number: 7, or 7..12 with both ends; one of them with --print-hw: its hardware
+    /// Points by number: 7, or 7..12 with both ends. With --print-hw: the hardware of one point
     #[arg(long, value_name = "FROM..TO", requires = "explore")]
     pub(super) points: Option<Points>,
-    /// File to which results are appended line by line. Points that it has are not measured again; several
-    /// such files, one after the other, are one
+    /// File to which results are appended, one line per point. Points in the file are not measured again; several
+    /// such files can be concatenated
     #[arg(long, value_name = "FILE", requires = "explore")]
     pub(super) results: Option<PathBuf>,
 }

@@ -2,9 +2,7 @@
 
 pub(super) mod args;
 mod output;
-mod page;
 mod results;
-mod words;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -16,7 +14,6 @@ use xxhash_rust::xxh3::xxh3_64;
 use args::ExploreArgs;
 
 use super::args::{ModelArgs, hardware_named, read};
-use super::findings::setup_options;
 use crate::console::Console;
 use crate::document;
 use crate::error::{CliError, Kind};
@@ -32,7 +29,7 @@ use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
 use shiftvox_lab::model::explore::{self, Explored};
 
-/// What was found of a scene.
+/// The points of a scene.
 struct Explorations {
     scene: String,
     /// Points of the space.
@@ -51,12 +48,13 @@ pub(super) fn run(
     if args.explore.print_space {
         return console.data(text.trim_end());
     }
-    let space = open_space(space, &text)?;
+    let space = open_space(space, &text, args.hardware.hw.as_deref())?;
     let picked = picked(&args.explore, space.len())?;
     if args.hardware.print_hw {
         return print_hardware(&space, picked, console);
     }
-    if args.rules.bits.is_some() && space.axes().iter().any(|axis| axis.key == "bits") {
+    let has_bits = |point: Result<Point, _>| point.is_ok_and(|of| of.drawing.bits.is_some());
+    if args.rules.bits.is_some() && has_bits(space.point(0)) {
         return Err(CliError::usage(
             "the space has a range of bits: leave --bits out",
         ));
@@ -132,14 +130,17 @@ fn text_of(name: &str) -> Result<String, CliError> {
     read(Path::new(name))
 }
 
-fn open_space(name: &str, text: &str) -> Result<Space, CliError> {
-    // Descriptions are files beside the space.
-    let folder = whole::folder_of(Path::new(name));
+fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, CliError> {
+    // Descriptions are files beside the space; those of the command line are not.
+    let folder = match hardware {
+        Some(_) => Path::new(""),
+        None => whole::folder_of(Path::new(name)),
+    };
     let open = |name: &str| hardware_named(name, folder).map_err(|error| error.to_string());
-    Space::from_toml(text, open).map_err(|error| CliError::input(error).at(name))
+    Space::from_toml(text, hardware, open).map_err(|error| CliError::input(error).at(name))
 }
 
-/// The points that are asked for, of so many.
+/// The requested points, of so many.
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     match &args.points {
         Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
@@ -160,7 +161,7 @@ fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Res
     }
     let point = space.point(picked.start).map_err(CliError::input)?;
     let text = toml::to_string(&point.hardware).map_err(|e| CliError::new(Kind::Run, e))?;
-    let bits = point.bits.map_or_else(String::new, |bits| {
+    let bits = point.drawing.bits.map_or_else(String::new, |bits| {
         format!("# to be drawn with --bits {bits}\n")
     });
     let number = point.number;
@@ -170,7 +171,7 @@ fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Res
     ))
 }
 
-/// What results are of: a run takes none of another.
+/// The header of results, which must be equal for results to be reused.
 fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -> Value {
     let graph = &subject.graph;
     // Everything that figures depend on and that has no name of its own.
@@ -190,14 +191,14 @@ fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -
             },
             "width": args.size.width,
             "height": args.size.height,
-            "options": format!("{:?}", setup_options(args)),
+            "options": format!("{:?}", args.setup_options()),
             "overflow": format!("{:?}", args.rules.overflow()),
             "ray_order": args.hardware.ray_order,
         }),
     )
 }
 
-/// What is measured of every scene.
+/// The measurements of every scene.
 struct Asked<'a> {
     args: &'a ModelArgs,
     space: &'a Space,
@@ -237,7 +238,7 @@ fn measure(
         height: args.size.height,
         ..subject.camera
     };
-    let options = setup_options(args);
+    let options = args.setup_options();
     let explored = Explored {
         graph: &subject.graph,
         camera: &camera,

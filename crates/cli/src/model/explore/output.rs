@@ -1,20 +1,47 @@
-//! What an exploration found: lines, tables, plots, the page.
+//! The results of an exploration: lines, tables, plots.
 
 use serde_json::{Value, json};
 
-use super::words::{given_up, values};
-use super::{Explorations, page};
+use super::Explorations;
 use crate::console::Console;
 use crate::document;
 use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::model::args::ModelArgs;
-use shiftvox::whole;
+use crate::model::output::write_page;
 use shiftvox_lab::model::explore::front::FrontPoint;
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
+use shiftvox_lab::model::tables::TableSpec;
+use shiftvox_lab::report::Table;
 use shiftvox_lab::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
-use shiftvox_lab::report::{Cell, Table};
+
+/// All points are printed if there are no more than these; otherwise, only the front.
+const MOST_PRINTED: usize = 64;
+
+const POINTS: TableSpec = TableSpec {
+    title: "Points",
+    rows: "points",
+    columns: "point hardware=hardware_says front time_ms cycles area_nand2=area_nand2.value::0 \
+              energy_uj=energy_pj.value:1e-6:1 wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1 \
+              less_energy records=counts.records record_bits=counts.record_bits limits reason",
+};
+
+const ROWS: TableSpec = TableSpec {
+    title: "Points",
+    rows: "points",
+    columns: "scene point hardware=hardware_says front reason cycles time_ms area_nand2=area_nand2.value \
+              area_low=area_nand2.low area_high=area_nand2.high energy_pj=energy_pj.value energy_low=energy_pj.low \
+              energy_high=energy_pj.high wrong_samples meets_clock limits ray_caster_cycles=ray_caster.cycles \
+              ray_caster_energy_pj=ray_caster.energy_pj.value ray_caster_area_nand2=ray_caster.area_nand2.value",
+};
+
+const FRONT: TableSpec = TableSpec {
+    title: "",
+    rows: "front",
+    columns: "point hardware=hardware_says time_ms area_nand2=area_nand2.value::0 energy_uj=energy_pj.value:1e-6:1 \
+              wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1 what_others_have_less_of=gives_up_says",
+};
 
 /// Writes all files, then prints.
 pub(super) fn write(
@@ -22,22 +49,29 @@ pub(super) fn write(
     args: &ModelArgs,
     console: &Console,
 ) -> Result<(), CliError> {
-    let tables: Vec<Table> = found.iter().map(|of| table(of, args)).collect();
-    let command = Context::now().command_line();
-    if let Some(path) = &args.files.html {
-        let page = page::html(found, &tables, &command);
-        whole::write(path, page.as_bytes(), args.export.force)?;
-        console.note(format!("{}: written", path.display()));
-    }
     let fronts: Vec<Value> = found.iter().map(front_json).collect();
+    let rows: Vec<Value> = found.iter().flat_map(points_json).collect();
+    let mut tables = Vec::new();
+    for (of, front) in found.iter().zip(&fronts) {
+        if of.points.len() <= MOST_PRINTED {
+            let points = json!({ "points": points_json(of) });
+            let title = format!("{}: all points", of.scene);
+            tables.push(Table {
+                title,
+                ..POINTS.of(&points)
+            });
+        }
+        tables.push(front_table(of, front, args));
+    }
     let results = Results {
         document: document::document("explore", json!({ "scenes": fronts })),
-        rows: rows(found),
+        rows: ROWS.of(&json!({ "points": rows })),
         tables,
         more_tables: Vec::new(),
-        preface: format!("`{command}`\n"),
+        preface: format!("`{}`\n", Context::now().command_line()),
         panels: found.iter().map(panel).collect(),
     };
+    write_page("Hardware designs", &results, &[], args, console)?;
     export::write_files(&results, &args.export, console)?;
     if console.json {
         let mut fronts = fronts.iter();
@@ -50,138 +84,96 @@ fn front_json(of: &Explorations) -> Value {
     let point = |point: &FrontPoint| {
         let mut fields = json!(point);
         fields["hardware_says"] = json!(values(&point.line, &of.points));
-        fields["gives_up_says"] = json!(given_up(point));
+        let exchanges = point.gives_up.iter().map(ToString::to_string);
+        fields["gives_up_says"] = json!(exchanges.collect::<Vec<_>>().join("; "));
         fields
     };
     json!({
         "scene": of.scene,
         "space_points": of.all,
         "points": of.points.len(),
-        "refused": refused(of),
+        "refused": of.points.len() - drawn(of).count(),
         "too_slow_for_their_clock": too_slow(of),
         "front": of.front.iter().map(point).collect::<Vec<_>>(),
     })
 }
 
-/// Points that cannot draw the frame.
-fn refused(of: &Explorations) -> usize {
-    let drawn = of.points.iter().filter(|line| line.figures().is_some());
-    of.points.len() - drawn.count()
+/// All points, each with its description and whether it is on the front.
+fn points_json(of: &Explorations) -> Vec<Value> {
+    let point = |line: &PointLine| {
+        let mut fields = json!(line);
+        fields["hardware_says"] = json!(values(line, &of.points));
+        fields["front"] = json!(of.front.iter().any(|on| on.line.point == line.point));
+        fields
+    };
+    of.points.iter().map(point).collect()
 }
 
-/// Points that draw it, but whose units miss their clock.
+/// The values in which a point differs from others.
+fn values(line: &PointLine, points: &[PointLine]) -> String {
+    let varies = |key: &str, value: &Value| {
+        let mut others = points.iter().map(|other| other.values.get(key));
+        others.any(|other| other != Some(value))
+    };
+    let hardware = line.values.get("hardware").and_then(Value::as_str);
+    let mut words = vec![hardware.unwrap_or_default().to_owned()];
+    for (key, value) in &line.values {
+        if key != "hardware" && varies(key, value) {
+            let text = value.as_str().map(str::to_owned);
+            words.push(format!(
+                "{key} {}",
+                text.unwrap_or_else(|| value.to_string())
+            ));
+        }
+    }
+    words.join(", ")
+}
+
+fn drawn(of: &Explorations) -> impl Iterator<Item = &PointLine> {
+    of.points.iter().filter(|line| line.figures().is_some())
+}
+
+/// Points that draw the frame, but whose units miss their clock.
 fn too_slow(of: &Explorations) -> usize {
     let figures = of.points.iter().filter_map(PointLine::figures);
     figures.filter(|figures| !figures.meets_clock).count()
 }
 
-/// A number of things that need a word beside them only where there are some.
-fn unless_none(count: usize, what: &str) -> String {
-    match count {
-        0 => String::new(),
-        some => format!("; {some} {what}"),
-    }
-}
-
-fn table(of: &Explorations, args: &ModelArgs) -> Table {
-    let mut table = Table::of(
-        format!(
-            "{}, {} x {}: of {} hardware designs {} that no other beats in time, area, energy and wrong samples; of those, {} \
-             beside which none is better by a tenth in something and nowhere worse by a tenth{}{}{}",
-            of.scene,
-            args.size.width,
-            args.size.height,
-            of.points.len(),
-            of.front.len(),
-            of.front.iter().filter(|point| point.stands_out).count(),
-            unless_none(of.all - of.points.len(), "of the space are not measured"),
-            unless_none(refused(of), "cannot draw the frame"),
-            unless_none(too_slow(of), "are too slow for their clock"),
-        ),
-        "point hardware time_ms area_nand2 energy_uj wrong_samples ray_caster_uj \
-         what_others_have_less_of",
+/// The points of the front that stand out, under a title with the numbers of all others.
+fn front_table(of: &Explorations, front: &Value, args: &ModelArgs) -> Table {
+    let standing_out: Vec<&Value> = front["front"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter(|point| point["stands_out"] == true)
+        .collect();
+    let mut title = format!(
+        "{}, {} x {}: of {} hardware designs, {} are Pareto-optimal in time, area, energy and wrong samples. Listed are \
+         {}: no other is a tenth better in one measure and less than a tenth worse in all others",
+        of.scene,
+        args.size.width,
+        args.size.height,
+        of.points.len(),
+        of.front.len(),
+        standing_out.len(),
     );
-    for point in of.front.iter().filter(|point| point.stands_out) {
-        let figures = point.figures();
-        table.rows.push(vec![
-            Cell::from(point.line.point as u64),
-            Cell::Text(values(&point.line, &of.points)),
-            Cell::ms(figures.time_ms),
-            Cell::from(figures.area_nand2.value as u64),
-            Cell::Number(figures.energy_pj.value / 1e6, 1),
-            Cell::from(figures.wrong_samples),
-            Cell::Number(figures.ray_caster.energy_pj.value / 1e6, 1),
-            Cell::Text(given_up(point)),
-        ]);
-    }
-    table
-}
-
-/// All points as rows.
-fn rows(found: &[Explorations]) -> Table {
-    let mut table = Table::new(
-        "Points",
-        &[
-            "scene",
-            "point",
-            "values",
-            "on_front",
-            "reason",
-            "cycles",
-            "time_ms",
-            "area_nand2",
-            "area_low",
-            "area_high",
-            "energy_pj",
-            "energy_low",
-            "energy_high",
-            "wrong_samples",
-            "meets_clock",
-            "limits",
-            "ray_caster_cycles",
-            "ray_caster_energy_pj",
-            "ray_caster_area_nand2",
-        ],
-    );
-    let number = |value: f64| Cell::Number(value, 3);
-    let yes = |is: bool| Cell::from(if is { "yes" } else { "no" });
-    for of in found {
-        for line in &of.points {
-            let on_front = of.front.iter().any(|on| on.line.point == line.point);
-            let mut row = vec![
-                Cell::Text(of.scene.clone()),
-                Cell::from(line.point as u64),
-                Cell::Text(values(line, &of.points)),
-                yes(on_front),
-            ];
-            match &line.outcome {
-                shiftvox_lab::model::explore::PointOutcome::Refused { reason } => {
-                    row.push(Cell::Text(reason.clone()));
-                    row.resize(table.columns.len(), Cell::None);
-                }
-                shiftvox_lab::model::explore::PointOutcome::Drawn(figures) => {
-                    let (area, energy) = (figures.area_nand2, figures.energy_pj);
-                    row.extend([Cell::None, Cell::from(figures.cycles)]);
-                    row.push(number(figures.time_ms));
-                    row.extend([area.value, area.low, area.high].map(number));
-                    row.extend([energy.value, energy.low, energy.high].map(number));
-                    row.push(Cell::from(figures.wrong_samples));
-                    row.push(yes(figures.meets_clock));
-                    row.push(Cell::Text(figures.limits.clone()));
-                    let rays = &figures.ray_caster;
-                    row.push(Cell::from(rays.cycles));
-                    row.push(number(rays.energy_pj.value));
-                    row.push(number(rays.area_nand2.value));
-                }
-            }
-            table.rows.push(row);
+    for (count, what) in [
+        (of.all - of.points.len(), "of the space are not measured"),
+        (of.points.len() - drawn(of).count(), "cannot draw the frame"),
+        (too_slow(of), "are too slow for their clock"),
+    ] {
+        if count > 0 {
+            title += &format!("; {count} {what}");
         }
     }
-    table
+    Table {
+        title,
+        ..FRONT.of(&json!({ "front": standing_out }))
+    }
 }
 
-/// Energy over time: all points by the description that they begin with, the front's best with their numbers, and the
-/// ray caster beside each.
+/// Energy over time: a series per hardware description, with the numbers of points that stand out, and the ray caster
+/// beside each point.
 fn panel(of: &Explorations) -> Panel {
     let axis = |label: &str| Axis {
         label: label.to_owned(),

@@ -11,14 +11,14 @@ use shiftvox::bounded;
 use shiftvox::whole;
 use shiftvox_lab::model::explore::lines::{self, Recorded};
 
-/// A file of results that is open, and nobody else's.
+/// A locked file of results.
 pub(super) struct ResultsFile {
     file: File,
     path: PathBuf,
 }
 
 impl ResultsFile {
-    /// Opens or makes a file, and reads what it has. What was not written to its end is cut off.
+    /// Opens or makes a file and reads it. An incomplete last line is removed.
     pub(super) fn open(path: &Path, asked: &[Value]) -> Result<(Self, Recorded), CliError> {
         let at = |kind: Kind| {
             move |error: &dyn std::fmt::Display| CliError::new(kind, error).at(path.display())

@@ -1,5 +1,4 @@
-//! The points that no other beats in time, area, energy and wrong samples, and
-//! what each of them gives up.
+//! The Pareto front: the points that no other point dominates in time, area, energy and wrong samples, and their trade-offs.
 
 use serde::Serialize;
 
@@ -7,7 +6,7 @@ use super::PointFigures;
 use super::lines::PointLine;
 use crate::report::plot::dominated;
 
-/// What points are compared by; less is better.
+/// A measure of points; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Objective {
@@ -63,18 +62,18 @@ pub struct Change {
     pub ratio: f64,
 }
 
-/// What a point of the front gives up: a figure that another has less of, at a price.
+/// A trade-off: another point has less in one measure, and more in others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Exchange {
     /// The other point.
     pub to: usize,
-    /// What it has less of.
+    /// The measure with less.
     pub gain: Change,
-    /// What it has more of, most first.
+    /// The measures with more, most first.
     pub price: Vec<Change>,
 }
 
-/// So many times as much is worth a choice.
+/// The ratio from which a difference matters.
 pub const WORTH: f64 = 1.1;
 
 /// A point of the front.
@@ -83,8 +82,7 @@ pub struct FrontPoint {
     /// The point.
     #[serde(flatten)]
     pub line: PointLine,
-    /// Whether it is worth a choice: there is no other such point that is clearly better in
-    /// something, and nowhere clearly worse; clearly: by more than [`WORTH`].
+    /// Whether it stands out: no other such point is better by more than [`WORTH`] in one measure, and nowhere worse by that.
     pub stands_out: bool,
     /// For each figure that another point of the front has clearly less of, the best exchange: the one whose
     /// gain is largest beside its highest price. Among the points that stand out.
@@ -105,8 +103,8 @@ impl FrontPoint {
     }
 }
 
-/// The front of a scene's points, fastest first. Points whose units miss the clock are not on it, and of
-/// those alike in all four figures only the first is.
+/// The front of a scene's points, fastest first. Points whose units miss the clock are excluded. Of equal points only the
+/// first is on the front.
 #[must_use]
 pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     let standing = |of: &PointFigures| Objective::ALL.map(|objective| objective.of(of));
@@ -118,9 +116,12 @@ pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     able.sort_by(|a, b| compare(&standing(a.1), &standing(b.1)).then(a.0.point.cmp(&b.0.point)));
     able.dedup_by(|later, first| standing(first.1) == standing(later.1));
     let standings: Vec<[f64; 4]> = able.iter().map(|(_, of)| standing(of)).collect();
-    let beaten = dominated(&standings);
-    let unbeaten = able.into_iter().zip(beaten).filter(|(_, beaten)| !beaten);
-    let kept: Vec<_> = unbeaten.map(|(point, _)| point).collect();
+    let is_beaten = |own: &[f64; 4]| standings.iter().any(|other| dominates(other, own));
+    let unbeaten = able
+        .iter()
+        .zip(&standings)
+        .filter(|(_, own)| !is_beaten(own));
+    let kept: Vec<_> = unbeaten.map(|(point, _)| *point).collect();
     let standing_out = standing_out(&kept);
     let with_exchanges = |&(line, figures): &(&PointLine, &PointFigures)| FrontPoint {
         line: line.clone(),
@@ -133,7 +134,13 @@ pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     kept.iter().map(with_exchanges).collect()
 }
 
-/// The points that are worth a choice: the slowest goes first where another is left in its stead.
+/// Whether `a` is nowhere worse than `b`, and somewhere better.
+fn dominates(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    let pairs = || a.iter().zip(b);
+    pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b)
+}
+
+/// The points that stand out. A slower point is removed first, if another stands for it.
 fn standing_out<'a>(
     front: &[(&'a PointLine, &'a PointFigures)],
 ) -> Vec<(&'a PointLine, &'a PointFigures)> {
@@ -194,7 +201,7 @@ impl std::fmt::Display for Change {
 
 impl std::fmt::Display for Exchange {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // What is hardly more is no price.
+        // Increases below 0.5 % are ignored.
         let price = self.price.iter().filter(|change| change.ratio >= 1.005);
         let price: Vec<String> = price.map(Change::to_string).collect();
         let price = match price.as_slice() {

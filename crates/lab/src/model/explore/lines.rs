@@ -1,5 +1,4 @@
-//! Results, one a line of JSON: first what was asked, then points. The lines of several runs may stand one
-//! after the other in one file, as `cat` puts them.
+//! Results as lines of JSON: headers with scene, space and settings, then points. Files of several runs can be concatenated.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,9 +15,9 @@ pub struct PointLine {
     pub scene: String,
     /// The point's number.
     pub point: usize,
-    /// What it is made of.
+    /// Its values.
     pub values: BTreeMap<String, Value>,
-    /// What it came to.
+    /// Its outcome.
     #[serde(flatten)]
     pub outcome: PointOutcome,
 }
@@ -32,7 +31,7 @@ impl PointLine {
             scene: scene.to_owned(),
             point: point.number,
             values: values
-                .map(|(key, value)| (key.clone(), serde_json::json!(value)))
+                .map(|(key, value)| (key.clone(), in_json(value)))
                 .collect(),
             outcome,
         }
@@ -54,53 +53,61 @@ impl PointLine {
     }
 }
 
-/// A line that is of a kind, named in its first field.
+/// A value of a space in JSON, which has no infinity.
+fn in_json(value: &toml::Value) -> Value {
+    match value.as_float() {
+        Some(number) if number.is_infinite() => "inf".into(),
+        _ => serde_json::json!(value),
+    }
+}
+
+/// A line whose first field is its kind.
 #[must_use]
 pub fn kind_first(kind: &str, fields: &Value) -> String {
     let fields = fields.to_string();
     format!(r#"{{"kind":"{kind}",{}"#, &fields[1..])
 }
 
-/// How every line begins.
+/// The beginning of every line.
 const BEGIN: &[u8] = br#"{"kind":""#;
 
-/// Why lines cannot be used.
+/// Errors in a file of results.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinesError {
-    /// Not a line that a run writes.
+    /// A line that no run writes.
     #[error("line {line}: {why}")]
     Line {
         /// Its number, from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
-    /// The results of something else.
+    /// Results of another run.
     #[error("line {line}: these are other results: their `{what}` is {there}, not {here}")]
     Other {
         /// The line's number, from 1.
         line: usize,
-        /// What differs.
+        /// The field that differs.
         what: String,
-        /// What the file has.
+        /// Its value in the file.
         there: String,
-        /// What is asked for.
+        /// Its value in this run.
         here: String,
     },
 }
 
-/// What lines hold.
+/// The contents of a file of results.
 #[derive(Debug, Clone, Default)]
 pub struct Recorded {
     /// The points, each once.
     pub points: BTreeMap<(String, usize), PointLine>,
-    /// Scenes whose headers are there.
+    /// Scenes with headers.
     pub scenes: BTreeSet<String>,
-    /// Bytes of whole lines: what follows was not written to its end.
+    /// Bytes of complete lines.
     pub bytes: usize,
 }
 
-/// Reads lines. `asked`: the headers of what is explored, one a scene. A last line without its end is none.
+/// Reads lines. `asked` has the headers of this run, one per scene. A last line without an end is ignored.
 ///
 /// # Errors
 /// When a line is none, or of another space, scene, size or version.
@@ -153,7 +160,7 @@ fn name(scene: &Value) -> Option<String> {
     scene["name"].as_str().map(str::to_owned)
 }
 
-/// Whether a header is that of one of the scenes that are asked for.
+/// Whether a header equals that of a scene of this run.
 fn compare(found: &Value, asked: &[Value], line: usize) -> Result<(), LinesError> {
     let scene = |of: &Value| name(&of["scene"]);
     let like = asked.iter().find(|of| scene(of) == scene(found));

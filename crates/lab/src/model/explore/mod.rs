@@ -1,72 +1,79 @@
-//! Many hardware designs on one frame: which are worth building.
+//! Many hardware designs for one frame, measured in parallel.
 //!
-//! [`space`] says which designs there are, [`explore`] measures them, [`mod@front`] finds those that
-//! no other beats in time, area, energy and wrong samples; [`lines`] is how results are written,
-//! one a line, so that a run can be gone on with, or shared among computers.
+//! [`space`] describes the designs, [`explore`] measures them, and [`mod@front`] finds the Pareto-optimal ones in time,
+//! area, energy and wrong samples. [`lines`] is the format of results, one point per line of JSON.
 //!
-//! What does not depend on the whole point is computed once for all points that have it in common:
-//! the exact picture; what the machine counts, by width and organisation; the rays, by width, node
-//! format and lines, for caches of all sizes at once; cycles, by all but name and clock. Where parents lie on
-//! the stack, a record's turn does the same on every hardware: those turns are recorded once, and only
-//! the cycles are simulated anew. The figures are those of `shiftvox model` for the same hardware.
+//! Points share results that depend on a part of them only:
+//!
+//! - the exact picture depends on its size;
+//! - the machine's counts depend on drawing settings and organisation;
+//! - the rays depend on drawing settings, node format and cache lines, and are cast for caches of all sizes at once;
+//! - cycles depend on everything except name and clock.
+//!
+//! Where parents lie on the stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only
+//! their cycles are simulated per point.
 
 pub mod front;
 pub mod lines;
 pub mod space;
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Mutex;
 
-use hwmodel::Overflow;
 use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
+use hwmodel::{Memory, OpClass, Overflow};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::ModelError;
 use super::cost::Prices;
 use super::design::LightDesign;
+use super::fill_bits;
+use super::floor;
 use super::frame::{self, Counted};
-use super::range::Range;
-use super::ray_caster::{self, RayRun};
+use super::range::{Range, Winner};
+use super::ray_caster::{self, OrderEnergy, RayRun};
 use super::ray_cycles::RayHardware;
-use super::{ModelError, rules};
+use super::safe::Format;
 use crate::float_rays::RayOrder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use space::Point;
+use space::{Drawing, Point};
 
-/// What is drawn, how, and by which prices.
+/// The frame, and the prices.
 #[derive(Debug, Clone, Copy)]
 pub struct Explored<'a> {
     /// The scene.
     pub graph: &'a Graph,
-    /// From where it is seen, with the picture's size.
+    /// The camera and the size of the picture.
     pub camera: &'a Camera,
-    /// Rules and words; points may have another width.
+    /// Rules and words, where the points do not set others.
     pub options: &'a SetupOptions,
-    /// What becomes of words that overflow.
+    /// The overflow policy.
     pub overflow: Overflow,
-    /// The order of the ray caster's rays; none: for each point the one of least energy.
+    /// The order of the ray caster's rays; by default, for each point the order of least energy.
     pub order: Option<RayOrder>,
     /// Prices.
     pub prices: &'a Prices,
 }
 
-/// What a point came to.
+/// The result of a point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
     /// The frame was drawn.
     Drawn(Box<PointFigures>),
-    /// It cannot be.
+    /// The frame cannot be drawn.
     Refused {
-        /// Why: no such frame in words of this width, a word or a stack that overflows.
+        /// The reason: an impossible frame, or a word or a stack that overflows.
         reason: String,
     },
 }
 
-/// The figures of a point, as `shiftvox model` has them.
+/// The figures of a point. They equal those of `shiftvox model` for the same hardware.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointFigures {
     /// Cycles of the frame.
@@ -77,16 +84,67 @@ pub struct PointFigures {
     pub area_nand2: Range,
     /// Energy of the frame, pJ.
     pub energy_pj: Range,
-    /// Samples that show other than the exact picture: something else, too much or nothing.
+    /// Samples that differ from the exact picture in any way.
     pub wrong_samples: u64,
-    /// Samples that the hardware's picture shows otherwise than the serial machine's.
+    /// Samples that differ from the serial machine's picture.
     pub differing_samples: u64,
     /// Whether all units that the frame uses keep up with the clock.
     pub meets_clock: bool,
-    /// What limits the frame.
+    /// The resource that limits the frame.
     pub limits: String,
+    /// Counts behind these figures.
+    pub counts: PointCounts,
+    /// Energy of the operations, pJ.
+    pub operations_pj: Range,
+    /// Energy of the memories on the chip, pJ.
+    pub on_chip_pj: Range,
+    /// Energy of outer memory, pJ.
+    pub outer_pj: Range,
+    /// Area of the units that compute, NAND2 equivalents.
+    pub units_nand2: f64,
+    /// The word format.
+    pub format: Format,
     /// The ray caster with the same caches, nodes and clock.
     pub ray_caster: RivalFigures,
+    /// The design with less energy, if the ranges do not overlap.
+    pub less_energy: Winner,
+    /// The design with less energy if both pay the same low, or the same high, price for outer memory.
+    pub less_at_equal_prices: Winner,
+    /// Lower bound on the energy of every design, pJ: [`floor`].
+    pub floor_pj: Range,
+    /// Whether that bound exceeds half of the ray caster's energy at both ends of the prices.
+    pub half_is_impossible: bool,
+}
+
+/// Counts of a frame on a point's hardware.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct PointCounts {
+    /// Records of the serial machine.
+    pub records: u64,
+    /// Records of the hardware: some are processed that are hidden by the time they would have their turn serially.
+    pub hardware_records: u64,
+    /// Operations without shifts.
+    pub operations: u64,
+    /// Steps of the restoring divide, among the operations.
+    pub divide_steps: u64,
+    /// Bits of an entry of the stack.
+    pub record_bits: u32,
+    /// Records on the deepest stack of the serial machine.
+    pub deepest_stack: u64,
+    /// Words of nodes that are read.
+    pub node_reads: u64,
+    /// Lines of nodes that are fetched.
+    pub node_misses: u64,
+    /// Accesses to fill vectors.
+    pub fill_accesses: u64,
+    /// Bits of fill vectors on the chip.
+    pub fill_bits: u64,
+    /// Samples covered, but empty in the exact picture.
+    pub extra: u64,
+    /// Samples empty, but covered in the exact picture.
+    pub missing: u64,
+    /// Samples that show another voxel than the exact picture.
+    pub wrong_voxel: u64,
 }
 
 /// The ray caster's figures.
@@ -94,37 +152,42 @@ pub struct PointFigures {
 pub struct RivalFigures {
     /// The order of its rays.
     pub order: RayOrder,
-    /// Cycles of the frame, no fewer than.
+    /// Cycles of the frame: a lower bound.
     pub cycles: u64,
+    /// Lines of nodes that are fetched.
+    pub node_misses: u64,
     /// Area, NAND2 equivalents.
     pub area_nand2: Range,
     /// Energy of the frame, pJ.
     pub energy_pj: Range,
+    /// Energy in each order of its rays.
+    pub orders: Vec<OrderEnergy>,
 }
 
-/// What is there, or the reason why it is not.
+/// A value, or the reason why there is none.
 type OrReason<T> = Result<T, String>;
 
 /// Most bytes of all recorded turns.
 const MOST_RECORDED: usize = 1 << 30;
 
-/// What points have in common, by what it depends on.
+/// Results that points share.
 struct Shared<'a> {
     of: Explored<'a>,
-    exact: Frame,
-    /// By width of a word.
-    setups: BTreeMap<Option<u32>, OrReason<FrameSetup>>,
-    /// What the machine counts, by [`machine_key`].
+    /// By side of the picture.
+    exact: BTreeMap<Option<u32>, Frame>,
+    /// By drawing settings.
+    setups: BTreeMap<String, OrReason<(FrameSetup, Format)>>,
+    /// The machine's counts, by [`machine_key`].
     counted: BTreeMap<String, OrReason<Counted>>,
-    /// Turns that are the same on every hardware, and the picture's samples that are not the
-    /// serial machine's, by [`machine_key`].
+    /// Turns that are the same on every hardware, and the samples that differ from the serial machine's, by
+    /// [`machine_key`].
     turns: BTreeMap<String, (Recording, u64)>,
-    /// By [`ray_key`]: sizes of the node cache, and the rays of every order.
+    /// Sizes of the node cache, and the rays in every order, by [`ray_key`].
     rays: BTreeMap<String, (Vec<u32>, Vec<RayRun>)>,
     ray_hardware: RayHardware,
 }
 
-/// Measures points. `sink` gets them in their order, each as soon as those before it are there.
+/// Measures points. `sink` receives them in order, each as soon as all points before it are measured.
 ///
 /// # Errors
 /// When the camera sees nothing, the cost tables lack a figure, or the sink fails.
@@ -135,7 +198,7 @@ pub fn explore<E: From<ModelError> + Send>(
     sink: impl FnMut(&Point, PointOutcome) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     let shared = Shared::new(of, points, progress)?;
-    // Points that differ in name and clock alone take the same cycles.
+    // Points that differ only in name and clock take the same cycles.
     let mut groups = Vec::<Vec<usize>>::new();
     let mut places = BTreeMap::new();
     for (at, point) in points.iter().enumerate() {
@@ -145,7 +208,7 @@ pub fn explore<E: From<ModelError> + Send>(
             ..point.hardware.clone()
         };
         let place = *places
-            .entry(format!("{:?} {like:?}", point.bits))
+            .entry(format!("{:?} {like:?}", point.drawing))
             .or_insert(groups.len());
         if place == groups.len() {
             groups.push(Vec::new());
@@ -158,7 +221,7 @@ pub fn explore<E: From<ModelError> + Send>(
         next: 0,
         sink,
     });
-    // In turn, not in halves: those that the sink waits for come first.
+    // One after the other, so that the points for which the sink waits come first.
     let done = groups.into_iter().par_bridge().try_for_each(|group| {
         let simulated = shared.simulate(&points[group[0]])?;
         for at in group {
@@ -180,7 +243,7 @@ pub fn explore<E: From<ModelError> + Send>(
     done
 }
 
-/// Hands outcomes on in the order of their points.
+/// Passes outcomes on in the order of their points.
 struct InOrder<S> {
     waiting: BTreeMap<usize, PointOutcome>,
     next: usize,
@@ -206,10 +269,9 @@ impl<'a> Shared<'a> {
         progress: &dyn Progress,
     ) -> Result<Self, ModelError> {
         progress.begin("what points have in common", 0);
-        let true_setup = rules::true_setup(of.graph, of.camera, of.options)?;
         let mut shared = Self {
             of,
-            exact: frame::reference(&of.graph.view(), &true_setup)?,
+            exact: BTreeMap::new(),
             setups: BTreeMap::new(),
             counted: BTreeMap::new(),
             turns: BTreeMap::new(),
@@ -220,16 +282,21 @@ impl<'a> Shared<'a> {
         let mut machines = BTreeMap::<String, &Point>::new();
         let mut casts = BTreeMap::<String, (&Point, Vec<u32>)>::new();
         for point in points {
+            let camera = camera_of(of.camera, point.drawing);
+            let options = point.drawing.options(of.options);
+            if let Entry::Vacant(place) = shared.exact.entry(point.drawing.size) {
+                let setup = frame::true_setup(of.graph, &camera, of.options)?;
+                place.insert(frame::reference(&of.graph.view(), &setup)?);
+            }
             let setup = || {
-                let options = SetupOptions {
-                    bits: point.bits.unwrap_or(of.options.bits),
-                    ..*of.options
-                };
                 let placement = &of.graph.placement;
-                FrameSetup::new(of.camera, placement, of.graph.depth, &options)
-                    .map_err(|error| error.to_string())
+                let setup = FrameSetup::new(&camera, placement, of.graph.depth, &options)
+                    .map_err(|error| error.to_string())?;
+                let format = Format::new(of.graph, &camera, &setup);
+                Ok((setup, format))
             };
-            shared.setups.entry(point.bits).or_insert_with(setup);
+            let key = format!("{:?}", point.drawing);
+            shared.setups.entry(key).or_insert_with(setup);
             machines.entry(machine_key(point)).or_insert(point);
             let cast = casts.entry(ray_key(point));
             let (_, sizes) = cast.or_insert_with(|| (point, Vec::new()));
@@ -247,12 +314,12 @@ impl<'a> Shared<'a> {
         let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
             let hardware = &point.hardware;
-            let draw = || -> Result<_, String> {
-                let setup = shared.setup(point)?;
+            let draw = || -> OrReason<_> {
+                let (setup, _) = shared.setup(point)?;
                 let counted = frame::count(of.graph, setup, hardware, of.overflow)
                     .map_err(|error| error.to_string())?;
                 let view = of.graph.view();
-                // What fails here fails in the simulation too, and is told there.
+                // A failure here recurs in the simulation and is reported there.
                 let kind = hardware.organisation;
                 let turns = frame::record_turns(&view, setup, kind, of.overflow, most_bytes);
                 let turns = turns.ok().flatten();
@@ -267,12 +334,12 @@ impl<'a> Shared<'a> {
         let drawn: Vec<_> = machines.into_par_iter().map(count).collect();
         let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
         let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
-            let Ok(setup) = shared.setup(point) else {
+            let Ok((setup, _)) = shared.setup(point) else {
                 return Ok(None);
             };
+            let exact = shared.exact(point);
             let cast = |&order: &RayOrder| {
-                let hardware = &point.hardware;
-                ray_caster::cast(of.graph, setup, hardware, &sizes, order, &shared.exact)
+                ray_caster::cast(of.graph, setup, &point.hardware, &sizes, order, exact)
             };
             let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>()?;
             Ok(Some((key, (sizes, runs))))
@@ -291,27 +358,29 @@ impl<'a> Shared<'a> {
         Ok(shared)
     }
 
-    /// A point's frame set-up.
-    fn setup(&self, point: &Point) -> OrReason<&FrameSetup> {
-        match self.setups.get(&point.bits) {
-            Some(setup) => setup.as_ref().map_err(Clone::clone),
-            None => unreachable!("every point's frame is set up"),
+    fn exact(&self, point: &Point) -> &Frame {
+        &self.exact[&point.drawing.size]
+    }
+
+    fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
+        match &self.setups[&format!("{:?}", point.drawing)] {
+            Ok((setup, format)) => Ok((setup, format)),
+            Err(reason) => Err(reason.clone()),
         }
     }
 
-    /// A point's frame as the machine draws it, serially.
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Counted)> {
-        let setup = self.setup(point)?;
-        match self.counted.get(&machine_key(point)) {
-            Some(Ok(counted)) => Ok((setup, counted)),
-            Some(Err(reason)) => Err(reason.clone()),
-            None => unreachable!("every point's machine has drawn"),
+    /// A point's frame as the serial machine draws it.
+    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted)> {
+        let (setup, format) = self.setup(point)?;
+        match &self.counted[&machine_key(point)] {
+            Ok(counted) => Ok((setup, format, counted)),
+            Err(reason) => Err(reason.clone()),
         }
     }
 
-    /// A frame on a point's hardware, and the samples that it shows otherwise than the serial machine's.
+    /// A frame on a point's hardware, and the samples that differ from the serial machine's.
     fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
-        let (setup, counted) = match self.drawn(point) {
+        let (setup, _, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
@@ -340,49 +409,91 @@ impl<'a> Shared<'a> {
         point: &Point,
         (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
-        let (setup, counted) = match self.drawn(point) {
+        let (setup, format, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };
-        let (hardware, prices) = (&point.hardware, self.of.prices);
-        let light = LightDesign::price(self.of.graph, setup, counted, cycles, hardware, prices)?;
-        let Some((sizes, runs)) = self.rays.get(&ray_key(point)) else {
-            unreachable!("every point that is drawn has rays beside it");
-        };
+        let (graph, hardware, prices) = (self.of.graph, &point.hardware, self.of.prices);
+        let exact = self.exact(point);
+        let light = LightDesign::price(graph, setup, counted, cycles, hardware, prices)?;
+        let (sizes, runs) = &self.rays[&ray_key(point)];
         let bytes = hardware.node_cache.bytes;
         let at = sizes.iter().position(|&size| size == bytes).unwrap_or(0);
         let rays = ray_caster::cheapest(runs, at, hardware, &self.ray_hardware, prices)?;
+        let error = frame::error(&counted.frame, exact);
+        let accesses = counted.counter.accesses_by(|cell| cell.memory);
+        let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
+        let fill = of(Memory::FillVector);
+        let counter = &counted.counter;
+        let (energy, rival) = (light.cost.total(), rays.cost.total());
+        let floor_pj = floor::floor(graph, exact, hardware, &prices.table)?.energy_pj;
+        let half = rival.times(0.5);
         Ok(PointOutcome::Drawn(Box::new(PointFigures {
             cycles: cycles.cycles,
             time_ms: cycles.cycles as f64 / (hardware.clock_mhz * 1e3),
             area_nand2: light.area.range(),
-            energy_pj: Range::new(light.cost.total()),
-            wrong_samples: frame::error(&counted.frame, &self.exact).differing(),
+            energy_pj: energy,
+            wrong_samples: error.differing(),
             differing_samples: *differing_samples,
             meets_clock: light.clock.misses().next().is_none(),
             limits: cycles.bottleneck.resource.clone(),
+            counts: PointCounts {
+                records: counter.records(),
+                hardware_records: cycles.records,
+                operations: counter.ops() - counter.ops_of(OpClass::Shift),
+                divide_steps: counter.ops_of(OpClass::DivideStep),
+                record_bits: counted.record_bits(),
+                deepest_stack: counted.stat("deepest_stack"),
+                node_reads: of(Memory::Node).reads,
+                node_misses: cycles.node_cache.misses,
+                fill_accesses: fill.reads + fill.writes,
+                fill_bits: fill_bits::fill_store_bits(setup, hardware),
+                extra: error.extra,
+                missing: error.missing,
+                wrong_voxel: error.wrong_voxel,
+            },
+            operations_pj: Range::from(&light.cost.operations),
+            on_chip_pj: Range::from(&light.cost.on_chip),
+            outer_pj: Range::from(&light.cost.outer),
+            units_nand2: light.area.units.total,
+            format: *format,
+            less_energy: Winner::by_ranges(energy, rival),
+            less_at_equal_prices: Winner::at_equal_prices(energy, rival),
+            floor_pj,
+            half_is_impossible: floor_pj.low > half.low && floor_pj.high > half.high,
             ray_caster: RivalFigures {
                 order: rays.order,
                 cycles: rays.cycles.cycles,
+                node_misses: rays.node_misses,
                 area_nand2: rays.area.range(),
-                energy_pj: Range::new(rays.cost.total()),
+                energy_pj: rival,
+                orders: rays.orders,
             },
         })))
     }
 }
 
-/// What the machine's counts depend on.
-fn machine_key(point: &Point) -> String {
-    format!("{:?} {:?}", point.bits, point.hardware.organisation)
+/// The camera of a point.
+fn camera_of(camera: &Camera, drawing: Drawing) -> Camera {
+    Camera {
+        width: drawing.size.unwrap_or(camera.width),
+        height: drawing.size.unwrap_or(camera.height),
+        ..*camera
+    }
 }
 
-/// What the rays' counts depend on, but for the size of the node cache.
+/// Everything on which the machine's counts depend.
+fn machine_key(point: &Point) -> String {
+    format!("{:?} {:?}", point.drawing, point.hardware.organisation)
+}
+
+/// Everything on which the rays' counts depend, except the size of the node cache.
 fn ray_key(point: &Point) -> String {
     let hardware = &point.hardware;
     let format = |of: &Cache| (of.ways, of.line_bytes, of.entry_bytes);
     format!(
         "{:?} {} {} {} {:?} {:?}",
-        point.bits,
+        point.drawing,
         hardware.organisation.leaf_masks,
         hardware.organisation.bricks,
         hardware.attribute_cache.bytes,

@@ -1,23 +1,33 @@
-//! A space of hardware: descriptions to begin with, and ranges of what is changed in them.
+//! A space of hardware designs: descriptions to begin with, variants, and ranges of values that replace theirs.
 
 use std::fmt;
 
 use hwmodel::cycles::{Hardware, HardwareError};
 use hwmodel::{MAX_BITS, MIN_BITS};
+use serde::Deserialize;
+use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use toml::{Table, Value};
-
-use crate::model::sweep::with_width;
 
 /// Most points of a space.
 pub const MAX_POINTS: usize = 1 << 16;
 
 /// Names and texts of the spaces that ship.
-pub const SPACES: [(&str, &str); 1] = [("bundled", include_str!("bundled.toml"))];
+pub const SPACES: [(&str, &str); 7] = [
+    ("bundled", include_str!("spaces/bundled.toml")),
+    ("caches", include_str!("spaces/caches.toml")),
+    ("lanes", include_str!("spaces/lanes.toml")),
+    ("rules", include_str!("spaces/rules.toml")),
+    ("sizes", include_str!("spaces/sizes.toml")),
+    ("steps", include_str!("spaces/steps.toml")),
+    ("words", include_str!("spaces/words.toml")),
+];
 
-/// The key of the word's width, which is no part of a hardware's description.
-const BITS: &str = "bits";
-/// The key of the description that a point begins with.
+/// Keys of the ranges that say how the frame is drawn. All others are keys of the hardware.
+const DRAWING: [&str; 5] = ["bits", "cage", "coverage", "size", "tolerance"];
 const HARDWARE: &str = "hardware";
+const VARIANT: &str = "variant";
+/// Width of the words for which the shipped hardware is built, bits.
+const BUILT_FOR_BITS: u32 = 32;
 
 /// Why a space cannot be explored.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -25,38 +35,38 @@ pub enum SpaceError {
     /// Not TOML.
     #[error("space: {0}")]
     Syntax(String),
-    /// A key that nothing has.
+    /// An unknown key.
     #[error("space: there is no `{key}`; {instead}")]
     Unknown {
         /// The key, as in the file.
         key: String,
-        /// What there is.
+        /// The keys that exist there.
         instead: String,
     },
-    /// A range that is none.
+    /// A range without valid values.
     #[error("space: {key}: {why}")]
     Range {
         /// The key, as in the file.
         key: String,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
-    /// A description to begin with that cannot be had.
+    /// A description that cannot be read.
     #[error("space: hardware `{name}`: {why}")]
     Base {
         /// Its name.
         name: String,
-        /// Why.
+        /// The fault.
         why: String,
     },
-    /// A point that is no hardware.
+    /// A point that no hardware can be.
     #[error("space: point {point}, {values}: {source}")]
     Impossible {
         /// Its number.
         point: usize,
-        /// What it is made of.
+        /// Its values.
         values: String,
-        /// What is wrong with that.
+        /// The fault.
         source: HardwareError,
     },
     /// More points than [`MAX_POINTS`].
@@ -64,7 +74,7 @@ pub enum SpaceError {
     TooLarge,
 }
 
-/// A key and the values that it takes.
+/// A key and its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The key, with dots: `node_cache.bytes`.
@@ -73,11 +83,43 @@ pub struct Axis {
     pub values: Vec<Value>,
 }
 
+/// How the frame of a point is drawn, as far as the space says it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[serde(default)]
+pub struct Drawing {
+    /// Width of a word, bits.
+    pub bits: Option<u32>,
+    /// The cage of a record.
+    pub cage: Option<CageKind>,
+    /// The drawing rule.
+    pub coverage: Option<Coverage>,
+    /// Side of the picture, pixels.
+    pub size: Option<u32>,
+    /// Tolerance, pixels.
+    pub tolerance: Option<f64>,
+}
+
+impl Drawing {
+    /// Options with the settings of the space.
+    #[must_use]
+    pub fn options(&self, base: &SetupOptions) -> SetupOptions {
+        SetupOptions {
+            bits: self.bits.unwrap_or(base.bits),
+            cage: self.cage.unwrap_or(base.cage),
+            coverage: self.coverage.unwrap_or(base.coverage),
+            tolerance_px: self.tolerance.unwrap_or(base.tolerance_px),
+            ..*base
+        }
+    }
+}
+
 /// A space: the product of its axes. The last axis varies fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Space {
     bases: Vec<Hardware>,
-    /// The descriptions' names first, then keys by alphabet.
+    /// Settings of each variant, with dots in their keys.
+    variants: Vec<Vec<Axis>>,
+    /// Descriptions first, then variants, then keys in alphabetical order.
     axes: Vec<Axis>,
 }
 
@@ -86,49 +128,54 @@ pub struct Space {
 pub struct Point {
     /// Its number, from 0.
     pub number: usize,
-    /// What it is made of, axis by axis.
+    /// Its value on each axis.
     pub values: Vec<(String, Value)>,
-    /// Width of a word, if the space says it.
-    pub bits: Option<u32>,
+    /// How its frame is drawn.
+    pub drawing: Drawing,
     /// The hardware.
     pub hardware: Hardware,
 }
 
 impl fmt::Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let values = self.values.iter();
-        let values: Vec<String> = values
-            .map(|(key, value)| format!("{key} = {value}"))
-            .collect();
-        f.write_str(&values.join(", "))
+        f.write_str(&in_words(&self.values))
     }
 }
 
+fn in_words(values: &[(String, Value)]) -> String {
+    let values = values.iter().map(|(key, value)| format!("{key} = {value}"));
+    values.collect::<Vec<_>>().join(", ")
+}
+
 impl Space {
-    /// Reads a space and checks every point of it. `open` finds a description by the name
-    /// that the space has for it.
+    /// Reads a space and checks every point. `open` finds a description by its name; `hardware` replaces the descriptions
+    /// of the space.
     ///
     /// # Errors
     /// With the key or the point to blame.
     pub fn from_toml(
         text: &str,
+        hardware: Option<&str>,
         open: impl Fn(&str) -> Result<Hardware, String>,
     ) -> Result<Self, SpaceError> {
         let mut file: Table =
             toml::from_str(text).map_err(|error| SpaceError::Syntax(error.to_string()))?;
-        let names = file
-            .remove(HARDWARE)
-            .unwrap_or_else(|| Value::Array(vec!["paper".into()]));
-        let names = values_of(HARDWARE, &names)?;
+        let paper = || Value::Array(vec!["paper".into()]);
+        let names = file.remove(HARDWARE).unwrap_or_else(paper);
+        let names = match hardware {
+            Some(name) => vec![name.into()],
+            None => values_of(HARDWARE, &names)?,
+        };
         let ranges = match file.remove("ranges") {
             Some(Value::Table(ranges)) => ranges,
             None => Table::new(),
             Some(_) => return Err(wrong("ranges", "it must be a table: [ranges]")),
         };
+        let variants = file.remove("variants");
         if let Some(key) = file.keys().next() {
             return Err(SpaceError::Unknown {
                 key: key.clone(),
-                instead: "a space has `hardware` and [ranges]".to_owned(),
+                instead: "a space has `hardware`, [[variants]] and [ranges]".to_owned(),
             });
         }
         let mut bases = Vec::new();
@@ -142,23 +189,32 @@ impl Space {
             };
             bases.push(open(name).map_err(base)?);
         }
-        let mut axes = vec![Axis {
-            key: HARDWARE.to_owned(),
-            values: names,
-        }];
+        let axis = |key: &str, values| Axis {
+            key: key.to_owned(),
+            values,
+        };
+        let mut axes = vec![axis(HARDWARE, names)];
+        let (names, variants) = variants_of(variants)?;
+        if !names.is_empty() {
+            axes.push(axis(VARIANT, names));
+        }
         collect("", &ranges, &mut axes)?;
-        let space = Self { bases, axes };
+        let space = Self {
+            bases,
+            variants,
+            axes,
+        };
         space.check()?;
         Ok(space)
     }
 
-    /// What varies.
+    /// The axes.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// Points.
+    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         let sizes = self.axes.iter().map(|axis| axis.values.len());
@@ -174,63 +230,91 @@ impl Space {
     /// A point.
     ///
     /// # Errors
-    /// When it is no hardware; [`Self::from_toml`] lets no such space through.
+    /// When no hardware can be like that; [`Self::from_toml`] rejects such a space.
     pub fn point(&self, number: usize) -> Result<Point, SpaceError> {
         let mut rest = number;
         let mut values = Vec::new();
-        let mut base = 0;
+        let (mut base, mut drawing, mut changes) = (0, Table::new(), Vec::new());
         for axis in self.axes.iter().rev() {
             let at = rest % axis.values.len();
             rest /= axis.values.len();
-            values.push((axis.key.clone(), axis.values[at].clone()));
-            base = at; // at last of the first axis
+            let value = &axis.values[at];
+            values.push((axis.key.clone(), value.clone()));
+            match axis.key.as_str() {
+                HARDWARE => base = at,
+                VARIANT => {
+                    let settings = self.variants[at].iter();
+                    changes.extend(settings.map(|of| (of.key.as_str(), &of.values[0])));
+                }
+                // Variants replace what ranges set.
+                key => changes.insert(0, (key, value)),
+            }
         }
         values.reverse();
-        let bits = values.iter().find(|(key, _)| key == BITS);
-        let bits = bits.and_then(|(_, value)| u32::try_from(value.as_integer()?).ok());
-        let mut point = Point {
+        changes.retain(|(key, value)| {
+            let is_drawing = DRAWING.contains(key);
+            if is_drawing {
+                drawing.insert((*key).to_owned(), (*value).clone());
+            }
+            !is_drawing
+        });
+        let impossible = |source| SpaceError::Impossible {
+            point: number,
+            values: in_words(&values),
+            source,
+        };
+        let syntax = |error: toml::de::Error| HardwareError::Syntax(error.message().to_owned());
+        let drawing: Drawing = drawing
+            .try_into()
+            .map_err(|error| impossible(syntax(error)))?;
+        let hardware = match drawing.bits {
+            Some(bits) => with_width(&self.bases[base], bits),
+            None => self.bases[base].clone(),
+        };
+        let mut description = table_of(&hardware);
+        for (key, value) in changes {
+            if let Some(place) = slot(&mut description, key) {
+                *place = value.clone();
+            }
+        }
+        let hardware = description.try_into::<Hardware>().map_err(syntax);
+        let checked = hardware.and_then(|hardware| hardware.check().map(|()| hardware));
+        let hardware = checked.map_err(impossible)?;
+        Ok(Point {
             number,
             values,
-            bits,
-            hardware: self.bases[base].clone(),
-        };
-        if let Some(bits) = bits {
-            point.hardware = with_width(&point.hardware, bits);
-        }
-        match changed(&point) {
-            Ok(hardware) => Ok(Point { hardware, ..point }),
-            Err(source) => Err(SpaceError::Impossible {
-                point: number,
-                values: point.to_string(),
-                source,
-            }),
-        }
+            drawing,
+            hardware,
+        })
     }
 
     fn check(&self) -> Result<(), SpaceError> {
-        let range = i64::from(MIN_BITS)..=i64::from(MAX_BITS);
-        for axis in &self.axes[1..] {
-            if axis.key == BITS {
-                let is_no_width = |value: &&Value| {
-                    let bits = value.as_integer();
-                    !bits.is_some_and(|bits| range.contains(&bits))
-                };
-                if let Some(value) = axis.values.iter().find(is_no_width) {
-                    let why = format!("{value}: a word has {MIN_BITS} to {MAX_BITS} bits");
-                    return Err(wrong("ranges.bits", &why));
-                }
+        let named = self.axes.iter().filter(|axis| axis.key == VARIANT);
+        let names = named.flat_map(|axis| &axis.values);
+        let variants = names.zip(&self.variants).flat_map(|(name, settings)| {
+            let within = format!("variants.{}", name.as_str().unwrap_or_default());
+            settings.iter().map(move |axis| (within.clone(), axis))
+        });
+        let ranges = self.axes.iter().map(|axis| ("ranges".to_owned(), axis));
+        let is_own = |key: &str| [HARDWARE, VARIANT].contains(&key);
+        for (within, axis) in ranges
+            .chain(variants)
+            .filter(|(_, axis)| !is_own(&axis.key))
+        {
+            let key = format!("{within}.{}", axis.key);
+            if DRAWING.contains(&axis.key.as_str()) {
+                axis.values
+                    .iter()
+                    .try_for_each(|value| check_drawing(&key, &axis.key, value))?;
                 continue;
             }
             for base in &self.bases {
                 let mut description = table_of(base);
                 if slot(&mut description, &axis.key).is_none() {
+                    let there = neighbours(description, &axis.key);
                     return Err(SpaceError::Unknown {
-                        key: format!("ranges.{}", axis.key),
-                        instead: format!(
-                            "hardware `{}` has {}",
-                            base.name,
-                            neighbours(description, &axis.key)
-                        ),
+                        key,
+                        instead: format!("hardware `{}` has {there}", base.name),
                     });
                 }
             }
@@ -242,6 +326,18 @@ impl Space {
     }
 }
 
+/// A hardware whose units are wider or narrower by as much as words of `bits` bits are than those that it was built for.
+fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
+    let mut hardware = hardware.clone();
+    let stages = hardware.stages.values_mut();
+    for units in stages.chain([&mut hardware.units]) {
+        for unit in units.values_mut().filter(|unit| unit.width > 8) {
+            unit.width = (unit.width + bits).saturating_sub(BUILT_FOR_BITS).max(1);
+        }
+    }
+    hardware
+}
+
 fn wrong(key: &str, why: &str) -> SpaceError {
     SpaceError::Range {
         key: key.to_owned(),
@@ -249,19 +345,21 @@ fn wrong(key: &str, why: &str) -> SpaceError {
     }
 }
 
-/// A point's hardware: its description with the point's values in their places.
-fn changed(point: &Point) -> Result<Hardware, HardwareError> {
-    let mut description = table_of(&point.hardware);
-    for (key, value) in &point.values[1..] {
-        if let Some(place) = slot(&mut description, key) {
-            *place = value.clone();
-        }
-    }
-    let hardware: Hardware = description
+/// Checks one value of a setting of [`Drawing`].
+fn check_drawing(key: &str, setting: &str, value: &Value) -> Result<(), SpaceError> {
+    let one = Table::from_iter([(setting.to_owned(), value.clone())]);
+    let drawing: Drawing = one
         .try_into()
-        .map_err(|error: toml::de::Error| HardwareError::Syntax(error.message().to_owned()))?;
-    hardware.check()?;
-    Ok(hardware)
+        .map_err(|error: toml::de::Error| wrong(key, error.message()))?;
+    let bits = drawing.bits.unwrap_or(MIN_BITS);
+    if !(MIN_BITS..=MAX_BITS).contains(&bits) {
+        let why = format!("{value}: a word has {MIN_BITS} to {MAX_BITS} bits");
+        return Err(wrong(key, &why));
+    }
+    if drawing.size == Some(0) || drawing.tolerance.is_some_and(|px| px.is_nan() || px < 0.0) {
+        return Err(wrong(key, &format!("{value} is too small")));
+    }
+    Ok(())
 }
 
 fn table_of(hardware: &Hardware) -> Table {
@@ -271,7 +369,7 @@ fn table_of(hardware: &Hardware) -> Table {
     }
 }
 
-/// Where a description has a key with dots.
+/// The place of a dotted key in a description.
 fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     match key.split_once('.') {
         None => description.get_mut(key),
@@ -279,7 +377,7 @@ fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     }
 }
 
-/// The keys that stand where `key`, which does not, would.
+/// The keys beside the unknown key `key`.
 fn neighbours(description: Table, key: &str) -> String {
     let mut here = description;
     for part in key.split('.') {
@@ -292,7 +390,35 @@ fn neighbours(description: Table, key: &str) -> String {
     keys.join(", ")
 }
 
-/// Adds the axes of a table of ranges, in which tables without `from` are parts of descriptions.
+/// Names and settings of the variants.
+fn variants_of(list: Option<Value>) -> Result<(Vec<Value>, Vec<Vec<Axis>>), SpaceError> {
+    let must = "it must be a list: [[variants]], each with a `name` and the keys that it sets";
+    let list = match list {
+        None => return Ok((Vec::new(), Vec::new())),
+        Some(Value::Array(list)) => list,
+        Some(_) => return Err(wrong("variants", must)),
+    };
+    let (mut names, mut all) = (Vec::new(), Vec::new());
+    for variant in list {
+        let Value::Table(mut variant) = variant else {
+            return Err(wrong("variants", must));
+        };
+        let Some(name @ Value::String(_)) = variant.remove("name") else {
+            return Err(wrong("variants", must));
+        };
+        let mut settings = Vec::new();
+        collect("", &variant, &mut settings)?;
+        if settings.iter().any(|axis| axis.values.len() > 1) {
+            return Err(wrong("variants", "a variant sets one value for each key"));
+        }
+        names.push(name);
+        all.push(settings);
+    }
+    let names = values_of("variants", &Value::Array(names))?;
+    Ok((names, all))
+}
+
+/// Adds the axes of a table of ranges. Tables without `from` are parts of descriptions.
 fn collect(above: &str, ranges: &Table, axes: &mut Vec<Axis>) -> Result<(), SpaceError> {
     for (name, range) in ranges {
         let key = match above {
@@ -347,18 +473,17 @@ fn stepped(key: &str, range: &Table) -> Result<Vec<Value>, SpaceError> {
             instead: "a range has `from`, `to` and one of `step` and `times`".to_owned(),
         });
     }
-    let number = |name: &str| match range.get(name) {
+    let number = |name: &str| match range.get(name).map(Value::as_integer) {
         None => Ok(None),
-        Some(value) => match value.as_integer().map(u32::try_from) {
+        Some(value) => match value.map(u32::try_from) {
             Some(Ok(number)) => Ok(Some(number)),
-            _ => Err(wrong(
-                key,
-                &format!("`{name}` must be a whole number, 0 or more"),
-            )),
+            _ => {
+                let why = format!("`{name}` must be a whole number, 0 or more");
+                Err(wrong(key, &why))
+            }
         },
     };
-    let (from, to) = (number("from")?, number("to")?);
-    let (Some(from), Some(to)) = (from, to) else {
+    let (Some(from), Some(to)) = (number("from")?, number("to")?) else {
         return Err(wrong(key, "`from` and `to` are missing, or one of them"));
     };
     let next: Box<dyn Fn(u32) -> Option<u32>> = match (number("step")?, number("times")?) {
@@ -375,9 +500,7 @@ fn stepped(key: &str, range: &Table) -> Result<Vec<Value>, SpaceError> {
         return Err(wrong(key, &format!("it is empty, from {from} to {to}")));
     }
     let values = std::iter::successors(Some(from), |&value| next(value).filter(|&next| next <= to));
-    // One more than may be, so that it is seen.
-    let values = values.take(MAX_POINTS + 1);
-    Ok(values
-        .map(|value| Value::Integer(i64::from(value)))
-        .collect())
+    // One more than allowed, so that the excess is noticed.
+    let values = values.take(MAX_POINTS + 1).map(i64::from);
+    Ok(values.map(Value::Integer).collect())
 }

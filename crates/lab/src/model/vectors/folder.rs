@@ -1,143 +1,107 @@
-//! A folder of files that appears whole or not at all.
+//! A folder of files that appears completely or not at all.
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use shiftvox::whole;
-use shiftvox::whole::WholeError;
+use super::VectorsError;
+use shiftvox::whole::{self, WholeError};
 
 /// The file that identifies a folder of vectors.
 pub(super) const MANIFEST: &str = "manifest.json";
-/// The file that describes the others.
-pub(super) const README: &str = "README.txt";
-/// The header with the frame's constants.
-pub(super) const PARAMETERS: &str = "parameters.vh";
-/// How testbenches end.
-pub(super) const VERILOG: &str = "v";
-/// How the files of rows end.
-pub(super) const ROWS: &str = "hex";
 
-/// Why a folder was not written. Whatever stood there before still does.
-#[derive(Debug, thiserror::Error)]
-pub enum FolderError {
-    /// It is there already, or cannot be written.
-    #[error(transparent)]
-    Store(#[from] WholeError),
-    /// What is there did not come from here, and is not replaced even on demand.
-    #[error("{path} holds more than vectors ({other}), so it is not replaced")]
-    Foreign {
-        /// The folder.
-        path: PathBuf,
-        /// What is in it.
-        other: String,
-    },
-}
-
-fn failed(path: &Path, source: io::Error) -> FolderError {
-    FolderError::Store(WholeError::Io {
+fn failed(path: &Path, source: io::Error) -> VectorsError {
+    VectorsError::Store(WholeError::Io {
         path: path.to_owned(),
         source,
     })
 }
 
-/// What stands where a folder is to be.
+/// The state of a path at which a folder is to be written.
 enum Target {
     Nothing,
     EmptyFolder,
     Vectors,
 }
 
-/// Finds what stands at a path. Without `overwrite` only nothing and empty folders will do;
-/// with it, a folder of vectors too, but nothing else.
-fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
+/// Without `overwrite`, only nothing and empty folders are acceptable; with it, folders of vectors are, too.
+fn find_target(path: &Path, overwrite: bool) -> Result<Target, VectorsError> {
     let kind = match fs::symlink_metadata(path) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Target::Nothing),
         Err(e) => return Err(failed(path, e)),
         Ok(metadata) => metadata.file_type(),
     };
-    let exists = || FolderError::Store(WholeError::Exists(path.to_owned()));
-    let foreign = |other: &str| FolderError::Foreign {
-        path: path.to_owned(),
-        other: other.to_owned(),
+    let refused = |other: &str| match overwrite {
+        false => Err(VectorsError::Store(WholeError::Exists(path.to_owned()))),
+        true => Err(VectorsError::Foreign {
+            path: path.to_owned(),
+            other: other.to_owned(),
+        }),
     };
     if !kind.is_dir() {
-        return Err(if overwrite {
-            foreign("it is no folder")
-        } else {
-            exists()
-        });
+        return refused("it is not a folder");
     }
-    let mut is_known = false;
-    let mut others = None;
-    let mut is_empty = true;
+    let (mut names, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(path).map_err(|e| failed(path, e))? {
         let entry = entry.map_err(|e| failed(path, e))?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        let is_rows = Path::new(&name)
-            .extension()
-            .is_some_and(|e| e == ROWS || e == VERILOG);
-        is_empty = false;
-        is_known |= name == MANIFEST;
-        if !(is_file && (is_rows || [MANIFEST, README, PARAMETERS].contains(&name.as_str()))) {
-            others = Some(name);
+        let end = name.rsplit('.').next().unwrap_or_default();
+        if !is_file || !["jsonl", "hex"].contains(&end) && name != MANIFEST {
+            others.push(name.clone());
         }
+        names.push(name);
     }
-    match (is_empty, overwrite, others) {
-        (true, ..) => Ok(Target::EmptyFolder),
-        (_, false, _) => Err(exists()),
-        (_, true, Some(other)) => Err(foreign(&other)),
-        (_, true, None) if is_known => Ok(Target::Vectors),
-        (_, true, None) => Err(foreign("no manifest among them")),
+    match others.first() {
+        _ if names.is_empty() => Ok(Target::EmptyFolder),
+        Some(other) => refused(other),
+        None if !overwrite || !names.iter().any(|name| name == MANIFEST) => {
+            refused("there is no manifest")
+        }
+        None => Ok(Target::Vectors),
     }
 }
 
-/// Whether vectors may be written to a folder; called before long work.
+/// Checks before long work that vectors may be written to a folder.
 ///
 /// # Errors
-/// [`WholeError::Exists`] where a file or a folder with anything in it is there
-/// and may not be overwritten; [`FolderError::Foreign`] where it may, but holds other things.
-pub fn check_free(path: &Path, overwrite: bool) -> Result<(), FolderError> {
+/// [`WholeError::Exists`] if the folder may not be overwritten; [`VectorsError::Foreign`] if it may, but holds other
+/// things.
+pub fn check_free(path: &Path, overwrite: bool) -> Result<(), VectorsError> {
     find_target(path, overwrite)?;
     Ok(whole::check_folder(whole::folder_of(path))?)
 }
 
 /// Fills a folder under a temporary name beside its place, then renames it.
-///
-/// # Errors
-/// As [`check_free`]; the errors of `fill`; where the system refuses.
-pub(super) fn write<T, E: From<FolderError>>(
+pub(super) fn write<T>(
     path: &Path,
     overwrite: bool,
-    fill: impl FnOnce(&Path) -> Result<T, E>,
-) -> Result<T, E> {
+    fill: impl FnOnce(&Path) -> Result<T, VectorsError>,
+) -> Result<T, VectorsError> {
     find_target(path, overwrite)?;
     let parent = whole::folder_of(path);
-    whole::make_folder(parent).map_err(FolderError::from)?;
-    // Removed with all that is left in it, however this ends.
-    let (shelter, _in_use) = whole::temporary_folder(parent).map_err(FolderError::from)?;
+    whole::make_folder(parent)?;
+    // Removed with everything left in it, whatever happens.
+    let (shelter, _in_use) = whole::temporary_folder(parent)?;
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
-    // Someone else may have been there meanwhile.
-    match find_target(path, overwrite)? {
-        Target::Nothing => {}
-        Target::EmptyFolder => fs::remove_dir(path).map_err(|e| failed(path, e))?,
+    let rename = || fs::rename(&made, path);
+    // The path may have changed meanwhile.
+    let renamed = match find_target(path, overwrite)? {
+        Target::Nothing => rename(),
+        Target::EmptyFolder => fs::remove_dir(path).and_then(|()| rename()),
         Target::Vectors => {
             let before = shelter.path().join("before");
-            fs::rename(path, &before).map_err(|e| failed(path, e))?;
-            return match fs::rename(&made, path) {
-                Ok(()) => Ok(result),
-                Err(error) => {
-                    // Back to what it was; the first error is the one to report.
+            fs::rename(path, &before).and_then(|()| {
+                rename().inspect_err(|_| {
+                    // Restores the old folder; the first error is the one to report.
                     let _ = fs::rename(&before, path);
-                    Err(failed(path, error).into())
-                }
-            };
+                })
+            })
         }
-    }
-    fs::rename(&made, path).map_err(|e| failed(path, e))?;
+    };
+    renamed.map_err(|e| failed(path, e))?;
     Ok(result)
 }
 
@@ -145,18 +109,16 @@ pub(super) fn write<T, E: From<FolderError>>(
 mod tests {
     use super::*;
 
-    /// Names of the entries of a folder, in order.
     fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
-        let mut names: Vec<String> = entries
-            .map(|entry| name(entry).into_string().unwrap())
-            .collect();
+        let entries = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = entries.map(|name| name.into_string().unwrap()).collect();
         names.sort();
         names
     }
 
-    fn put(path: &Path, overwrite: bool, name: &str) -> Result<(), FolderError> {
+    fn put(path: &Path, overwrite: bool, name: &str) -> Result<(), VectorsError> {
         write(path, overwrite, |folder| {
             fs::write(folder.join(MANIFEST), b"{}").map_err(|e| failed(folder, e))?;
             fs::write(folder.join(name), b"").map_err(|e| failed(folder, e))
@@ -167,21 +129,18 @@ mod tests {
     fn whole_or_not_at_all() {
         let shelter = tempfile::tempdir().unwrap();
         let path = shelter.path().join("new/vectors");
-        put(&path, false, "one.hex").unwrap();
-        assert_eq!(names(&path), [MANIFEST, "one.hex"]);
-        let again = put(&path, false, "two.hex");
+        put(&path, false, "one.jsonl").unwrap();
+        assert_eq!(names(&path), [MANIFEST, "one.jsonl"]);
+        let again = put(&path, false, "two.jsonl");
         assert!(matches!(
             again,
-            Err(FolderError::Store(WholeError::Exists(_)))
+            Err(VectorsError::Store(WholeError::Exists(_)))
         ));
-        put(&path, true, "two.hex").unwrap();
-        assert!(names(&path).contains(&"two.hex".to_owned()));
-        assert!(!names(&path).contains(&"one.hex".to_owned()));
-        let broken: Result<(), FolderError> = write(&path, true, |folder| {
-            Err(failed(folder, io::Error::other("power cut")))
-        });
-        assert!(broken.is_err());
-        assert!(names(&path).contains(&"two.hex".to_owned()));
+        put(&path, true, "two.jsonl").unwrap();
+        assert_eq!(names(&path), [MANIFEST, "two.jsonl"]);
+        let power_cut = |folder: &Path| Err::<(), _>(failed(folder, io::Error::other("power cut")));
+        assert!(write(&path, true, power_cut).is_err());
+        assert_eq!(names(&path), [MANIFEST, "two.jsonl"]);
         assert_eq!(names(&shelter.path().join("new")), ["vectors"]);
     }
 
@@ -190,15 +149,19 @@ mod tests {
         let shelter = tempfile::tempdir().unwrap();
         let path = shelter.path().join("home");
         fs::create_dir(&path).unwrap();
-        put(&path, false, "one.hex").unwrap();
+        put(&path, false, "one.jsonl").unwrap();
+        let is_foreign = || {
+            matches!(
+                put(&path, true, "two.hex"),
+                Err(VectorsError::Foreign { .. })
+            )
+        };
         fs::write(path.join("thesis.tex"), b"mine").unwrap();
-        let refused = put(&path, true, "two.hex");
-        assert!(matches!(refused, Err(FolderError::Foreign { .. })));
+        assert!(is_foreign());
         assert_eq!(fs::read(path.join("thesis.tex")).unwrap(), b"mine");
         fs::remove_file(path.join("thesis.tex")).unwrap();
         fs::remove_file(path.join(MANIFEST)).unwrap();
-        let refused = put(&path, true, "two.hex");
-        assert!(matches!(refused, Err(FolderError::Foreign { .. })));
+        assert!(is_foreign());
         let file = shelter.path().join("file");
         fs::write(&file, b"mine").unwrap();
         assert!(put(&file, true, "two.hex").is_err());

@@ -1,5 +1,4 @@
-//! What a frame's hardware is given before it starts: its constants, and the nodes in its memory.
-//! `rtl/` draws whole frames from these files (`docs/rtl.md`).
+//! Images for `$readmemh`: the constants and the nodes from which `rtl/` draws whole frames (`docs/rtl.md`).
 
 use std::fmt::Write;
 
@@ -7,9 +6,9 @@ use shiftvox::graph::{GraphView, NodeLayout};
 use shiftvox::machine::frame_registers;
 use shiftvox::project::FrameSetup;
 
-/// The file of constants: a register a line, from number 0 on.
+/// The file of constants from number 0 on, one register per line.
 pub(super) const CONSTANTS: &str = "frame.constants.hex";
-/// The file of nodes: a word of 64 bits a line, from node 0 on; of a brick two.
+/// The file of nodes from number 0 on, one word of 64 bits per line. A brick has two words.
 pub(super) const NODES: &str = "frame.nodes.hex";
 
 /// The constants, each as wide as a word.
@@ -26,8 +25,8 @@ pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>, layout: &Node
     text
 }
 
-/// The nodes: which children each has, which of them have none, and where they begin; where the layout has bricks, those
-/// in two words, and none below. `None`: children are not side by side, or numbers are too great, which words cannot say.
+/// The nodes: masks of children and of leaves, and the place of the first child. Bricks have two words, and no nodes below.
+/// `None` if children are not side by side, or if numbers are too large for the words.
 pub(super) fn nodes(graph: &GraphView<'_>, layout: &NodeLayout) -> Option<String> {
     if !graph.links.is_empty() {
         return None;

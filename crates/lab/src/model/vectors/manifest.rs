@@ -1,19 +1,14 @@
-//! What stands in `manifest.json`.
+//! `manifest.json`: the word format, the constants, and a description of every file.
 
-use hwmodel::SignalKind;
 use serde_json::{Value, json};
 
-use super::description::absence;
-use super::manifest_fields::fields;
-use super::ports;
-use super::recorder::Recording;
-use super::rows::{EXPECTED, STIMULUS, file_name};
-use super::turns::Turns;
+use super::blocks::{Descriptions, absence};
+use super::recorder::{Recording, TURNS, Turns, file_name};
 use super::{Request, SCHEMA};
-use shiftvox::machine::{Block, ProvenWidths, proven_widths};
+use shiftvox::machine::{ProvenWidths, proven_widths};
 use shiftvox::project::{FrameSetup, Stats};
 
-/// The manifest of a folder of vectors; `nodes`: of the graph.
+/// The manifest of a folder of vectors. `nodes` is the size of the graph.
 pub(super) fn document(
     setup: &FrameSetup,
     request: &Request<'_>,
@@ -21,20 +16,21 @@ pub(super) fn document(
     stats: &Stats,
     (recordings, turns): (&[Recording], Option<&Turns>),
 ) -> Value {
-    let records = stats.iter().find(|(name, _)| *name == "records");
-    let overflows = stats.iter().find(|(name, _)| *name == "overflows");
+    let stat = |name: &str| {
+        stats
+            .iter()
+            .find(|(of, _)| *of == name)
+            .map_or(0, |of| of.1)
+    };
     let options = &setup.options;
-    let tolerance = if options.tolerance_px.is_finite() {
-        json!(options.tolerance_px)
-    } else {
-        json!("inf")
+    let tolerance = match options.tolerance_px.is_finite() {
+        true => json!(options.tolerance_px),
+        false => json!("inf"),
     };
     let proven = proven_widths(setup, nodes);
-    let blocks: Vec<Value> = Block::ALL
+    let blocks = recordings
         .iter()
-        .zip(recordings)
-        .map(|(&block, recording)| entry(setup, block, recording, proven.as_ref()))
-        .collect();
+        .map(|of| entry(setup, of, proven.as_ref()));
     json!({
         "kind": "shiftvox vectors",
         "schema": SCHEMA,
@@ -42,7 +38,7 @@ pub(super) fn document(
         "scene": request.scene,
         "width": setup.width,
         "height": setup.height,
-        "records": request.records.min(records.map_or(0, |&(_, count)| count)),
+        "records": request.records.min(stat("records")),
         "word": {
             "bits": setup.format.bits(),
             "wide_bits": setup.format.wide().bits(),
@@ -50,8 +46,8 @@ pub(super) fn document(
             "clip_fraction_bits": setup.clip_frac + setup.sub_levels,
         },
         "overflow": request.overflow,
-        // Of the whole frame: where there are any, functions hold modulo the policy.
-        "overflows": overflows.map_or(0, |&(_, count)| count),
+        // Of the whole frame. If there are any, functions hold modulo the policy.
+        "overflows": stat("overflows"),
         "cage": options.cage,
         "coverage": options.coverage,
         "tolerance": tolerance,
@@ -61,63 +57,47 @@ pub(super) fn document(
             "screen_fraction_bits": setup.format.frac(),
             "size_shifts": setup.size_limit.shifts(),
         },
-        "blocks": blocks,
+        "blocks": blocks.collect::<Vec<_>>(),
         "turns": turns.map_or_else(
             || json!({ "reason": "turns that blend are not written" }),
-            Turns::entry,
+            |of| json!({
+                "file": TURNS,
+                "turns": of.turns,
+                "events": of.events,
+                "record": of.record.describe(setup.format, |name| meaning("record", name), &[], None),
+            }),
         ),
-        "stages_without_blocks": {
-            "pop": "a record is read from the stack: no arithmetic",
-            "push": "a record is written to the stack: no arithmetic",
-        },
     })
 }
 
-fn entry(
-    setup: &FrameSetup,
-    block: Block,
-    recording: &Recording,
-    proven: Option<&ProvenWidths>,
-) -> Value {
-    let description = &recording.description;
-    let stages: Vec<&str> = description.stages.iter().map(|s| s.name()).collect();
-    let file = |end| (recording.rows > 0).then(|| file_name(description.name, end));
-    let reason = (recording.rows == 0)
-        .then(|| absence(block, setup).unwrap_or("none of these records came to it"));
+fn meaning(block: &str, port: &str) -> String {
+    Descriptions::shipped().meaning(block, port).to_owned()
+}
+
+fn entry(setup: &FrameSetup, recording: &Recording, proven: Option<&ProvenWidths>) -> Value {
+    let of = recording.description;
+    let stages: Vec<&str> = of.stages.iter().map(|stage| stage.name()).collect();
+    let absent = || absence(recording.block, setup).unwrap_or("none of these records came to it");
+    let ports = |side: usize, proven| {
+        let seen = &recording.seen[side];
+        recording.ports[side].describe(setup.format, |name| meaning(&of.name, name), seen, proven)
+    };
     json!({
-        "name": description.name,
+        "name": of.name,
         "stages": stages,
-        "section": format!("SPEC.md, {}", description.section),
-        "function": description.function,
+        "section": format!("SPEC.md, {}", of.section),
+        "function": of.function,
+        "file": (recording.rows > 0).then(|| file_name(&of.name)),
         "rows": recording.rows,
         "frame_rows": recording.frame_rows,
-        "reason": reason,
-        "stimulus": fields(setup.format, &description.stimulus, file(STIMULUS), &|(at, _)| {
-            known(recording, proven, 0, at)
-        }),
-        "expected": fields(setup.format, &description.expected, file(EXPECTED), &|(at, _)| {
-            known(recording, proven, 1, at)
-        }),
+        "reason": (recording.rows == 0).then(absent),
+        "in": ports(0, proven),
+        // Outputs have proven widths only where they are wide words.
+        "out": ports(1, proven.filter(|_| has_wide_outputs(recording))),
     })
 }
 
-/// What is known of a field of a block: when it changes, what values it took, and how many bits the
-/// set-up proves to be enough for those.
-fn known(recording: &Recording, proven: Option<&ProvenWidths>, side: usize, at: usize) -> Value {
-    let description = &recording.description;
-    let ports = [&description.stimulus, &description.expected][side];
-    let field = &ports.fields()[at];
-    // Within 64 bits: they are values of wires.
-    let seen = recording.seen[side].get(at);
-    let seen = seen.map(|span| [span.least as i64, span.greatest as i64]);
-    let number = (side == 0).then(|| ports::number_of(&field.name)).flatten();
-    let bits = proven.and_then(|proven| match (field.kind, number) {
-        (SignalKind::Wide, _) => Some(proven.wide_bits),
-        (_, number) => Some(proven.numbers.get(&number?)?.bits()),
-    });
-    json!({
-        "changes": if ports::is_of_frame(&field.name) { "frame" } else { "row" },
-        "seen": seen,
-        "proven_bits": bits,
-    })
+fn has_wide_outputs(recording: &Recording) -> bool {
+    let mut ports = recording.ports[1].0.iter();
+    ports.any(|port| port.kind == hwmodel::SignalKind::Wide)
 }

@@ -1,164 +1,209 @@
-//! The wires of a block's border, by name.
+//! The ports of a block, and rows of their values as hexadecimal digits.
 
-use hwmodel::{Format, SignalKind};
+use hwmodel::{Format, Signal, SignalKind};
+use serde_json::{Value, json};
 
-use shiftvox::machine::RecordNumber;
+use shiftvox::machine::{NumberSpan, ProvenWidths, RecordNumber};
 use shiftvox::project::CageKind;
 
-/// A word.
-pub(super) const WORD: SignalKind = SignalKind::Word;
-/// A wide word.
-pub(super) const WIDE: SignalKind = SignalKind::Wide;
-/// One wire.
-pub(super) const BIT: SignalKind = SignalKind::Unsigned(1);
-/// A level of a tree, or a shift by levels.
-pub(super) const LEVEL: SignalKind = SignalKind::Unsigned(6);
+/// A port: one or several numbers of one kind.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Port {
+    /// Its name in Verilog.
+    pub name: String,
+    /// Width and sign of each number.
+    pub kind: SignalKind,
+    /// Count of its numbers.
+    pub count: usize,
+}
 
-/// Inputs that are constants of a frame: a register that set-up writes, not wires from another block.
+/// Ports side by side, the most significant first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ports(pub Vec<Port>);
+
+/// Inputs that are constants of a frame: registers that set-up writes, not wires from another block. In rows made for a
+/// block they change nevertheless.
 const OF_FRAME: [&str; 9] = [
-    "eye_floor_",
-    "eye_ceil_",
+    "eye_floor",
+    "eye_ceil",
     "positive",
-    "axis_x_",
-    "axis_y_",
-    "axis_z_",
+    "axis_x",
+    "axis_y",
+    "axis_z",
     "wider",
     "closed",
     "limit",
 ];
 
-/// Whether an input is a constant of the frame, by its name. In rows made for the blocks it changes all the same.
-pub(super) fn is_of_frame(name: &str) -> bool {
-    // `axis_x_c` to `axis_z_c` are relative to a record's place in the picture.
-    OF_FRAME.iter().any(|of| name.starts_with(of))
-        && !(name.starts_with("axis_") && name.ends_with("_c"))
-}
-
-/// The number of a record that an input is, by its name: the set-up may prove how many bits are enough for it.
-pub(super) fn number_of(name: &str) -> Option<RecordNumber> {
-    let (stem, rest) = name.split_once('_').unwrap_or((name, ""));
-    let is_edge = rest.starts_with("edge");
-    match stem {
-        "w" if rest == "min" => Some(RecordNumber::LeastW),
-        "w" => Some(match is_edge {
-            true => RecordNumber::EdgeW,
-            false => RecordNumber::ClipW,
-        }),
-        "x" if is_edge => Some(RecordNumber::EdgeXy),
-        "x" if rest != "c" && !rest.is_empty() => Some(RecordNumber::ClipXy),
-        "edge" if rest.starts_with("x_") => Some(RecordNumber::EdgeXy),
-        "edge" if rest.starts_with("w_") => Some(RecordNumber::EdgeW),
-        "min" => Some(RecordNumber::Lowest),
-        "max" => Some(RecordNumber::Highest),
-        _ => None,
-    }
-}
-
-/// A field of a row.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Field {
-    /// Its name, fit for Verilog.
-    pub name: String,
-    /// Its width and sign.
-    pub kind: SignalKind,
-    /// What it is.
-    pub meaning: &'static str,
-}
-
-/// The fields of a row, the most significant first.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ports {
-    cage: CageKind,
-    fields: Vec<Field>,
-}
-
 impl Ports {
-    /// No fields; `cage`: how a frame's records hold their vertices.
-    pub(super) fn new(cage: CageKind) -> Self {
-        Self {
-            cage,
-            fields: Vec::new(),
-        }
-    }
-
-    /// All fields.
+    /// Reads `name:kind` with blanks between them. A kind is `w` for a word or `v` for a wide word. `u4` and `s4` are numbers
+    /// of four bits without and with sign. `c` is one coordinate of a cage: eight vertices, or a corner and three edges. A
+    /// number before a kind is a count.
+    ///
+    /// # Panics
+    /// When the text is not like that.
     #[must_use]
-    pub fn fields(&self) -> &[Field] {
-        &self.fields
+    pub fn new(text: &str, cage: CageKind) -> Self {
+        let port = |text: &str| {
+            let (name, kind) = text.split_once(':')?;
+            let letter = kind.find(|c: char| c.is_ascii_alphabetic())?;
+            let (count, kind) = kind.split_at(letter);
+            let count = if count.is_empty() {
+                1
+            } else {
+                count.parse().ok()?
+            };
+            let bits = || kind[1..].parse().ok();
+            let (kind, count) = match &kind[..1] {
+                "w" => (SignalKind::Word, count),
+                "v" => (SignalKind::Wide, count),
+                "u" => (SignalKind::Unsigned(bits()?), count),
+                "s" => (SignalKind::Signed(bits()?), count),
+                "c" if cage == CageKind::Corners => (SignalKind::Word, 8),
+                "c" => (SignalKind::Word, 4),
+                _ => return None,
+            };
+            let name = name.to_owned();
+            Some(Port { name, kind, count })
+        };
+        let ports = text.split_whitespace().map(|text| match port(text) {
+            Some(port) => port,
+            None => unreachable!("no port: {text}"),
+        });
+        Self(ports.collect())
     }
 
     /// Bits of a row.
     #[must_use]
     pub fn bits(&self, format: Format) -> u32 {
-        self.fields.iter().map(|f| f.kind.bits(format)).sum()
+        self.numbers().map(|(port, _)| port.kind.bits(format)).sum()
     }
 
-    /// Hexadecimal digits of a row.
+    /// Each number with its port and its place in that.
+    fn numbers(&self) -> impl Iterator<Item = (&Port, usize)> {
+        let ports = self.0.iter();
+        ports.flat_map(|port| (0..port.count).map(move |at| (port, at)))
+    }
+
+    /// Values as hexadecimal digits, the first the most significant; `None` if they do not fit the ports.
     #[must_use]
-    pub fn digits(&self, format: Format) -> u32 {
-        self.bits(format).div_ceil(4)
-    }
-
-    /// Each field with the place of its lowest bit in the row.
-    pub fn placed(&self, format: Format) -> impl Iterator<Item = (&Field, u32)> {
-        let mut left = self.bits(format);
-        self.fields.iter().map(move |field| {
-            left -= field.kind.bits(format);
-            (field, left)
-        })
-    }
-
-    /// With one more field.
-    pub(super) fn one(mut self, name: &str, kind: SignalKind, meaning: &'static str) -> Self {
-        self.fields.push(Field {
-            name: name.to_owned(),
-            kind,
-            meaning,
-        });
-        self
-    }
-
-    /// With a field for each ending, in order.
-    pub(super) fn each(
-        self,
-        name: &str,
-        endings: &[&str],
-        kind: SignalKind,
-        meaning: &'static str,
-    ) -> Self {
-        endings.iter().fold(self, |ports, ending| {
-            ports.one(&format!("{name}_{ending}"), kind, meaning)
-        })
-    }
-
-    /// With a field for each axis.
-    pub(super) fn axes(self, name: &str, kind: SignalKind, meaning: &'static str) -> Self {
-        self.each(name, &["x", "y", "z"], kind, meaning)
-    }
-
-    /// With `count` numbered fields.
-    pub(super) fn list(
-        self,
-        name: &str,
-        count: usize,
-        kind: SignalKind,
-        meaning: &'static str,
-    ) -> Self {
-        (0..count).fold(self, |ports, i| {
-            ports.one(&format!("{name}_{i}"), kind, meaning)
-        })
-    }
-
-    /// With one coordinate of a cage: eight vertices in Morton order, or a
-    /// corner and the edges from it along x, y, z.
-    pub(super) fn cage(self, name: &str, meaning: &'static str) -> Self {
-        match self.cage {
-            CageKind::Corners => self.list(name, 8, WORD, meaning),
-            CageKind::Frame => {
-                let edge = format!("{name}_edge");
-                self.one(&format!("{name}_corner"), WORD, meaning)
-                    .axes(&edge, WORD, meaning)
-            }
+    pub fn packed(&self, signals: &[Signal], format: Format) -> Option<String> {
+        let digits = self.bits(format).div_ceil(4);
+        let mut text = String::with_capacity(digits as usize);
+        // Fewer than four bits wait for more; with a word of 64 they fit 128.
+        let (mut waiting, mut held) = (0u128, digits * 4 - self.bits(format));
+        if signals.len() != self.numbers().count() {
+            return None;
         }
+        for (signal, (port, _)) in signals.iter().zip(self.numbers()) {
+            let bits = port.kind.bits(format);
+            if signal.kind != port.kind || !fits(signal.value, bits, port.kind.is_signed()) {
+                return None;
+            }
+            let mask = u64::MAX >> (64 - bits);
+            waiting = waiting << bits | u128::from(signal.value as u64 & mask);
+            held += bits;
+            while held >= 4 {
+                held -= 4;
+                text.push(char::from_digit((waiting >> held) as u32 & 0xf, 16)?);
+            }
+            waiting &= (1 << held) - 1;
+        }
+        Some(text)
+    }
+
+    /// The ports in the manifest. `seen` has the range of each number in the rows of the frame, and `proven` the sufficient
+    /// widths, if they are known.
+    pub(super) fn describe(
+        &self,
+        format: Format,
+        meaning: impl Fn(&str) -> String,
+        seen: &[NumberSpan],
+        proven: Option<&ProvenWidths>,
+    ) -> Value {
+        let (mut lowest, mut first) = (self.bits(format), 0);
+        let ports = self.0.iter().map(|port| {
+            let bits = port.kind.bits(format);
+            let place = first;
+            first += port.count;
+            lowest -= bits * port.count as u32;
+            // Values of wires fit 64 bits.
+            let range = |span: &NumberSpan| [span.least as i64, span.greatest as i64];
+            let seen = seen.get(place..first).unwrap_or_default();
+            let proven_bits = |at: usize| match (port.kind, proven?) {
+                (SignalKind::Wide, proven) => Some(proven.wide_bits),
+                (_, proven) => Some(proven.numbers.get(&port.number(at)?)?.bits()),
+            };
+            json!({
+                "name": port.name,
+                "count": port.count,
+                "bits": bits,
+                "signed": port.kind.is_signed(),
+                "lowest_bit": lowest,
+                "meaning": meaning(&port.name),
+                "changes": if OF_FRAME.contains(&port.name.as_str()) { "frame" } else { "row" },
+                "seen": seen.iter().map(range).collect::<Vec<_>>(),
+                "proven_bits": (0..port.count).map(proven_bits).collect::<Vec<_>>(),
+            })
+        });
+        let ports: Vec<Value> = ports.collect();
+        json!({ "bits": self.bits(format), "ports": ports })
+    }
+}
+
+impl Port {
+    /// The number of a record that an input is, if set-up can prove its width.
+    fn number(&self, at: usize) -> Option<RecordNumber> {
+        let is_edge = self.count == 4 && at > 0;
+        match (self.name.as_str(), is_edge) {
+            ("w_min", _) => Some(RecordNumber::LeastW),
+            ("w", false) => Some(RecordNumber::ClipW),
+            ("w", true) | ("edge_w", _) => Some(RecordNumber::EdgeW),
+            ("x", false) if self.count > 1 => Some(RecordNumber::ClipXy),
+            ("x", true) | ("edge_x", _) => Some(RecordNumber::EdgeXy),
+            ("min", _) => Some(RecordNumber::Lowest),
+            ("max", _) => Some(RecordNumber::Highest),
+            _ => None,
+        }
+    }
+}
+
+fn fits(value: i64, bits: u32, is_signed: bool) -> bool {
+    let spare = 64 - bits;
+    match is_signed {
+        true => (value << spare) >> spare == value,
+        false => value >= 0 && (value as u64) << spare >> spare == value as u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_packed_from_the_top() {
+        let format = Format::new(18, 4).unwrap();
+        let ports = Ports::new("bit:u1 word:w short:s3", CageKind::Frame);
+        let row = |values: &[i64]| {
+            let kinds = ports.0.iter().map(|port| port.kind);
+            let signals = kinds
+                .zip(values)
+                .map(|(kind, &value)| Signal { kind, value });
+            ports.packed(&signals.collect::<Vec<_>>(), format)
+        };
+        // 22 bits: two of padding, 1, 18 ones less the last, 101.
+        assert_eq!(row(&[1, -2, -3]).as_deref(), Some("3ffff5"));
+        assert_eq!(row(&[0, 1, 3]).as_deref(), Some("00000b"));
+        for bad in [&[2, 1, 3][..], &[1, 1 << 17, 3], &[1, 0, 4], &[]] {
+            assert_eq!(row(bad), None, "{bad:?}");
+        }
+        let counts = |cage| {
+            Ports::new("x:c plane:3v", cage)
+                .0
+                .iter()
+                .map(|p| p.count)
+                .sum::<usize>()
+        };
+        assert_eq!([CageKind::Corners, CageKind::Frame].map(counts), [11, 7]);
     }
 }

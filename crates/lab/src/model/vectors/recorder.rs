@@ -1,37 +1,106 @@
-//! A probe that writes what crosses the borders of blocks, row by row.
+//! A probe that writes the inputs and outputs of blocks, and the events of the ports to memories, as lines of JSON.
 
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
-use super::blocks::describe;
-use super::description::{Description, absence};
-use super::rows::{EXPECTED, Rows, STIMULUS, file_name, packed};
-use super::turns::Turns;
+use super::blocks::{Description, Descriptions, absence, describe};
+use super::ports::Ports;
 use shiftvox::machine::{Block, NumberSpan, Port};
 use shiftvox::project::FrameSetup;
+use shiftvox::whole::WholeError;
 
-/// A block's files and how many rows they have by now.
+/// The file of turns.
+pub(super) const TURNS: &str = "turns.jsonl";
+
+/// The file of a block.
+pub(super) fn file_name(block: &str) -> String {
+    format!("{block}.jsonl")
+}
+
+/// The name of a memory's port in events.
+fn name_of(port: Port) -> &'static str {
+    match port {
+        Port::Pop => "pop",
+        Port::Push => "push",
+        Port::FillRead => "fill_read",
+        Port::FillWrite => "fill_write",
+        Port::NodeRead => "node_read",
+        Port::AttributeRead => "attribute_read",
+        Port::PixelWrite => "pixel_write",
+        Port::Made => "made",
+    }
+}
+
+/// A file of lines.
+#[derive(Debug)]
+struct Lines {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Lines {
+    fn create(path: PathBuf) -> Result<Self, VectorsError> {
+        match File::create(&path) {
+            Ok(file) => Ok(Self {
+                path,
+                file: BufWriter::new(file),
+            }),
+            Err(source) => Err(WholeError::Io { path, source }.into()),
+        }
+    }
+
+    fn checked(&self, result: io::Result<()>) -> Result<(), VectorsError> {
+        let path = self.path.clone();
+        result.map_err(|source| WholeError::Io { path, source }.into())
+    }
+
+    fn write(&mut self, line: &str) -> Result<(), VectorsError> {
+        let written = writeln!(self.file, "{line}");
+        self.checked(written)
+    }
+
+    fn finish(&mut self) -> Result<(), VectorsError> {
+        let flushed = self.file.flush();
+        self.checked(flushed)
+    }
+}
+
+/// The rows of a block.
 #[derive(Debug)]
 pub(super) struct Recording {
-    pub(super) description: Description,
+    pub(super) block: Block,
+    pub(super) description: &'static Description,
+    /// Inputs and outputs.
+    pub(super) ports: [Ports; 2],
     pub(super) rows: u64,
-    /// Of them, those that the frame's records brought.
+    /// Rows from the frame's records. They come first.
     pub(super) frame_rows: u64,
     /// Least and greatest values of inputs and outputs in those rows.
     pub(super) seen: [Vec<NumberSpan>; 2],
-    /// Whether the frame's rules have the block.
-    is_there: bool,
-    files: Option<(Rows, Rows)>,
+    file: Option<Lines>,
 }
 
-/// Writes the rows of a frame's first records.
+/// The turns of a frame.
+#[derive(Debug)]
+pub(super) struct Turns {
+    pub(super) record: Ports,
+    pub(super) turns: u64,
+    pub(super) events: u64,
+    file: Lines,
+    /// Whether records lie on the stack, and not parents.
+    stacks_records: bool,
+}
+
+/// Records the first turns of a frame, and then the rows made for the blocks.
 #[derive(Debug)]
 pub(super) struct Recorder {
     folder: PathBuf,
-    format: Format,
+    setup: FrameSetup,
     /// By the block's number.
     blocks: Vec<Recording>,
     turns: Option<Turns>,
@@ -42,26 +111,41 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Of the first `records` records of a frame, into a folder that is there.
+    /// Of the first `records` records of a frame, into a folder that exists.
     pub(super) fn new(
         folder: &Path,
         setup: &FrameSetup,
         records: u64,
         stack: StackHolds,
     ) -> Result<Self, VectorsError> {
-        let recording = |&block: &Block| Recording {
-            description: describe(block, setup),
-            rows: 0,
-            frame_rows: 0,
-            seen: Default::default(),
-            is_there: absence(block, setup).is_none(),
-            files: None,
+        let cage = setup.options.cage;
+        let recording = |block: Block| {
+            let description = describe(block);
+            Recording {
+                block,
+                description,
+                ports: [&description.inputs, &description.outputs].map(|of| Ports::new(of, cage)),
+                rows: 0,
+                frame_rows: 0,
+                seen: Default::default(),
+                file: None,
+            }
         };
+        // Turns that blend are not recorded.
+        let turns = (!setup.options.coverage.blends()).then(|| {
+            Ok::<_, VectorsError>(Turns {
+                record: Ports::new(&Descriptions::shipped().record, cage),
+                turns: 0,
+                events: 0,
+                file: Lines::create(folder.join(TURNS))?,
+                stacks_records: stack == StackHolds::Children,
+            })
+        });
         Ok(Self {
-            turns: Turns::create(folder, setup, stack)?,
+            turns: turns.transpose()?,
             folder: folder.to_owned(),
-            format: setup.format,
-            blocks: Block::ALL.iter().map(recording).collect(),
+            setup: setup.clone(),
+            blocks: Block::ALL.map(recording).into(),
             records,
             is_open: true,
             is_directed: false,
@@ -69,7 +153,7 @@ impl Recorder {
         })
     }
 
-    /// The frame is drawn; what follows are inputs made for the blocks.
+    /// The frame is drawn. Further rows are made for the blocks.
     pub(super) fn begin_directed(&mut self) {
         for recording in &mut self.blocks {
             recording.frame_rows = recording.rows;
@@ -78,66 +162,44 @@ impl Recorder {
         self.is_directed = true;
     }
 
-    /// What was recorded, blocks in the order of [`Block::ALL`], once all files are whole.
+    /// The recordings in the order of [`Block::ALL`], and the turns, once all files are complete.
     pub(super) fn finish(mut self) -> Result<(Vec<Recording>, Option<Turns>), VectorsError> {
         if let Some(error) = self.error {
             return Err(error);
         }
-        for recording in &mut self.blocks {
-            if let Some((stimulus, expected)) = &mut recording.files {
-                stimulus.finish()?;
-                expected.finish()?;
-            }
-        }
-        if let Some(turns) = &mut self.turns {
-            turns.finish()?;
-        }
+        let blocks = self.blocks.iter_mut().filter_map(|of| of.file.as_mut());
+        let turns = self.turns.iter_mut().map(|of| &mut of.file);
+        blocks.chain(turns).try_for_each(Lines::finish)?;
         Ok((self.blocks, self.turns))
     }
 
-    fn record_row(
-        &mut self,
-        block: u32,
-        stimulus: &[Signal],
-        expected: &[Signal],
-    ) -> Result<(), VectorsError> {
-        let Some(recording) = self.blocks.get_mut(block as usize) else {
-            let port = Port::ALL.get(block as usize - self.blocks.len());
-            let (&port, &[address]) = port
-                .zip(stimulus.first_chunk())
-                .ok_or(VectorsError::Unknown(block))?;
-            return match &mut self.turns {
-                Some(turns) if !self.is_directed => turns.record(port, address, expected),
+    fn record_row(&mut self, number: u32, rows: [&[Signal]; 2]) -> Result<(), VectorsError> {
+        let format = self.setup.format;
+        let Some(recording) = self.blocks.get_mut(number as usize) else {
+            let port = Port::ALL.get(number as usize - self.blocks.len());
+            return match (&mut self.turns, port, rows) {
+                (Some(turns), Some(&port), [&[address], data]) if !self.is_directed => {
+                    turns.record(port, address, data, format)
+                }
                 _ => Ok(()),
             };
         };
-        if self.is_directed && !recording.is_there {
+        if self.is_directed && absence(recording.block, &self.setup).is_some() {
             return Ok(());
         }
-        let description = &recording.description;
-        let into = packed(stimulus, &description.stimulus, self.format);
-        let out = packed(expected, &description.expected, self.format);
-        let (Some(into), Some(out)) = (into, out) else {
-            return Err(VectorsError::Misfit(description.name));
+        let name = recording.description.name.as_str();
+        let packed = |side: usize| recording.ports[side].packed(rows[side], format);
+        let (Some(into), Some(out)) = (packed(0), packed(1)) else {
+            return Err(VectorsError::Misfit(name));
         };
-        let (to_stimulus, to_expected) = match &mut recording.files {
-            Some(files) => files,
-            files @ None => {
-                let create = |end: &str, ports| {
-                    let name = file_name(description.name, end);
-                    Rows::create(self.folder.join(name), self.format, ports)
-                };
-                files.insert((
-                    create(STIMULUS, &description.stimulus)?,
-                    create(EXPECTED, &description.expected)?,
-                ))
-            }
+        let file = match &mut recording.file {
+            Some(file) => file,
+            none => none.insert(Lines::create(self.folder.join(file_name(name)))?),
         };
-        to_stimulus.write(&into)?;
-        to_expected.write(&out)?;
+        file.write(&format!(r#"{{"in":"{into}","out":"{out}"}}"#))?;
         recording.rows += 1;
         if !self.is_directed {
-            for (seen, signals) in recording.seen.iter_mut().zip([stimulus, expected]) {
+            for (seen, signals) in recording.seen.iter_mut().zip(rows) {
                 let one = |signal: &Signal| NumberSpan::of(signal.value.into());
                 if seen.is_empty() {
                     seen.extend(signals.iter().map(one));
@@ -148,6 +210,41 @@ impl Recorder {
             }
         }
         Ok(())
+    }
+}
+
+impl Turns {
+    /// Writes an event of a port.
+    fn record(
+        &mut self,
+        port: Port,
+        address: Signal,
+        data: &[Signal],
+        format: Format,
+    ) -> Result<(), VectorsError> {
+        let is_record = match port {
+            Port::Pop | Port::Push => self.stacks_records,
+            other => other == Port::Made,
+        };
+        let data = match is_record {
+            true => {
+                let row = self.record.packed(data, format);
+                row.ok_or(VectorsError::Misfit(TURNS))?
+            }
+            false => {
+                let bits = |signal: &Signal| signal.kind.bits(format);
+                let all = data
+                    .iter()
+                    .fold(0, |all, of| all << bits(of) | of.value as u64);
+                format!("{all:x}")
+            }
+        };
+        self.turns += u64::from(port == Port::Made || port == Port::Pop && self.stacks_records);
+        self.events += 1;
+        let (port, address) = (name_of(port), address.value);
+        self.file.write(&format!(
+            r#"{{"port":"{port}","address":{address},"data":"{data}"}}"#
+        ))
     }
 }
 
@@ -163,7 +260,7 @@ impl Probe for Recorder {
     }
 
     fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-        if let Err(error) = self.record_row(block, stimulus, expected) {
+        if let Err(error) = self.record_row(block, [stimulus, expected]) {
             self.error = Some(error);
             self.is_open = false;
         }

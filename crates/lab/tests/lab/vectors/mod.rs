@@ -1,11 +1,9 @@
-//! Test vectors, replayed: every row of every block computed again from the
-//! files alone, in plain integers, by `SPEC.md` and the manifest.
-//! Nothing here uses the machine.
+//! Test vectors, replayed: every row of every block is computed again from the files alone, in plain integers, by `SPEC.md`
+//! and the manifest. Nothing here uses the machine.
 
 mod mutants;
 mod replay;
 mod rows;
-mod testbench;
 mod turns;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,25 +20,16 @@ use shiftvox_lab::model::vectors::{self, Recorded, Request};
 use tempfile::TempDir;
 
 use self::replay::replay;
-use self::rows::{Row, constants_of, read};
+use self::rows::{Row, constants_of, manifest_of, rows_of};
 use super::common::{camera, octree, setup, sierpinski, solid, tolerance_of};
 
-/// Rows that are not what their block gives, and the first of them; and rows by block.
+/// The first row that is not the output of its block, and the number of rows by block.
 fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
-    let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
-    let manifest: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(manifest["schema"], 5);
+    let manifest = manifest_of(folder);
+    assert_eq!(manifest["schema"], 6);
     let constants = constants_of(&manifest);
-    let mut files = [
-        "manifest.json",
-        "README.txt",
-        "parameters.vh",
-        "frame.constants.hex",
-    ]
-    .map(str::to_owned)
-    .into_iter()
-    .collect::<BTreeSet<_>>();
-    // Not of a graph that lists its children.
+    let mut files = BTreeSet::from(["manifest.json", "frame.constants.hex"].map(str::to_owned));
+    // A graph that lists its children has no such file.
     let nodes = "frame.nodes.hex";
     if folder.join(nodes).exists() {
         files.insert(nodes.to_owned());
@@ -51,23 +40,17 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
         let name = block["name"].as_str().unwrap();
         let rows = block["rows"].as_u64().unwrap() as usize;
         counts.insert(name.to_owned(), rows);
+        assert_eq!(block["file"].is_null(), rows == 0, "{name}");
+        assert_eq!(block["reason"].is_null(), rows > 0, "{name}");
         if rows == 0 {
             assert!(!block["reason"].as_str().unwrap().is_empty(), "{name}");
-            assert!(block["stimulus"]["file"].is_null() && block["expected"]["file"].is_null());
             continue;
         }
-        assert!(block["reason"].is_null());
-        for ports in ["stimulus", "expected"] {
-            files.insert(block[ports]["file"].as_str().unwrap().to_owned());
-        }
-        files.insert(format!("{name}_tb.v"));
-        let stimulus = read(folder, &block["stimulus"]);
-        let expected = read(folder, &block["expected"]);
-        let frame_rows = block["frame_rows"].as_u64().unwrap() as usize;
-        check_ranges(&block["stimulus"], &stimulus[..frame_rows], name);
-        check_ranges(&block["expected"], &expected[..frame_rows], name);
-        assert_eq!((stimulus.len(), expected.len()), (rows, rows), "{name}");
-        for (at, (into, out)) in stimulus.iter().zip(&expected).enumerate() {
+        files.insert(block["file"].as_str().unwrap().to_owned());
+        let found = rows_of(folder, block);
+        assert_eq!(found.rows.len(), rows, "{name}");
+        check_ranges(block, &found.rows);
+        for (at, [into, out]) in found.rows.iter().enumerate() {
             let found = replay(name, into, &constants);
             if found != out.values && wrong.is_none() {
                 let (values, out) = (&into.values, &out.values);
@@ -77,12 +60,7 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
             }
         }
     }
-    let turns = &manifest["turns"];
-    if turns["reason"].is_null() {
-        for ports in ["events", "records"] {
-            files.insert(turns[ports]["file"].as_str().unwrap().to_owned());
-        }
-    }
+    files.extend(manifest["turns"]["file"].as_str().map(str::to_owned));
     let there: BTreeSet<String> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -91,34 +69,35 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     (wrong, counts)
 }
 
-/// Fields whose range was compared with a proof.
+/// Numbers whose range was compared with a proof.
 static PROVEN: AtomicUsize = AtomicUsize::new(0);
 
-/// The manifest's ranges are those of the frame's rows, and within what is proven of them.
-fn check_ranges(ports: &Value, rows: &[Row], block: &str) {
-    for (at, field) in ports["fields"].as_array().unwrap().iter().enumerate() {
-        let values = || rows.iter().map(|row| row.values[at]);
-        let (least, greatest) = (values().min(), values().max());
-        let name = format!("{block}, {}", field["name"]);
-        let seen = |end: usize| field["seen"][end].as_i64().map(i128::from);
-        if rows.is_empty() {
-            continue;
+/// The manifest's ranges are those of the frame's rows, and within the proven widths.
+fn check_ranges(block: &Value, rows: &[[Row; 2]]) {
+    let rows = &rows[..block["frame_rows"].as_u64().unwrap() as usize];
+    for (side, key) in ["in", "out"]
+        .into_iter()
+        .enumerate()
+        .filter(|_| !rows.is_empty())
+    {
+        let ports = block[key]["ports"].as_array().unwrap().iter();
+        let numbers = ports.flat_map(|port| {
+            let count = port["count"].as_u64().unwrap() as usize;
+            (0..count).map(move |at| (port, at))
+        });
+        for (at, (port, of_port)) in numbers.enumerate() {
+            let values = || rows.iter().map(|row| row[side].values[at]);
+            let (least, greatest) = (values().min().unwrap(), values().max().unwrap());
+            let name = format!("{}, {}", block["name"], port["name"]);
+            let seen = [0, 1].map(|end| i128::from(port["seen"][of_port][end].as_i64().unwrap()));
+            assert_eq!(seen, [least, greatest], "{name}");
+            if let Some(bits) = port["proven_bits"][of_port].as_u64() {
+                let most = 1i128 << if least < 0 { bits - 1 } else { bits };
+                let is_within = -most <= least && greatest < most;
+                assert!(is_within, "{name}: {least} to {greatest}, {bits} bits");
+                PROVEN.fetch_add(1, Ordering::Relaxed);
+            }
         }
-        assert_eq!((seen(0), seen(1)), (least, greatest), "{name}");
-        let (Some(bits), Some(least), Some(greatest)) =
-            (field["proven_bits"].as_u64(), least, greatest)
-        else {
-            continue;
-        };
-        let most = match least < 0 {
-            true => 1i128 << (bits - 1),
-            false => 1i128 << bits,
-        };
-        assert!(
-            -most <= least && greatest < most,
-            "{name}: {least} to {greatest}, {bits} bits"
-        );
-        PROVEN.fetch_add(1, Ordering::Relaxed);
     }
 }
 
@@ -296,45 +275,21 @@ fn rows_of_all_scenes(options: &SetupOptions) -> BTreeMap<String, usize> {
 /// Blocks that frames must come to have rows; what a rule does not have has none.
 #[test]
 fn blocks_have_rows_where_they_should() {
-    let always = [
-        "filled",
-        "centre",
-        "octant_order",
-        "vertex_pool",
-        "child_corners",
-        "child_span",
-        "border_clip",
-        "bisector_clip",
-        "near_node",
-        "half_clip",
-        "quadrants",
-        "node_choice",
-        "fill_update",
-        "detail_depth",
-        "size_limit",
-        "size_clip",
-    ];
-    let of_change = ["change_depth", "to_screen_divide", "margin_grow"];
-    let of_exact = [
-        "child_planes",
-        "plane_quadrant",
-        "margin_gap",
-        "cube_planes",
-        "cube_front",
-        "plane_side",
-        "plane_cover",
-    ];
-    let of_blending = [
-        "blend_way",
-        "blend_shares",
-        "blend_counts",
-        "blend_weight",
-        "blend_sample",
-    ];
-    let of_samples = ["size_screen", "border_screen", "bisector_screen"];
+    let words = |text: &'static str| text.split(' ').collect::<Vec<_>>();
+    let always = words(
+        "filled centre octant_order vertex_pool child_corners child_span border_clip bisector_clip near_node half_clip \
+         quadrants node_choice fill_update detail_depth size_limit size_clip",
+    );
+    let of_change = words(
+        "change_depth to_screen_divide margin_grow size_screen border_screen bisector_screen",
+    );
+    let of_exact = words(
+        "child_planes plane_quadrant margin_gap cube_planes cube_front plane_side plane_cover",
+    );
+    let of_blending = words("blend_way blend_shares blend_counts blend_weight blend_sample");
     let of_centres = |changes| match changes {
-        true => ["cage_centre", "centre_sample"],
-        false => ["cage_centre", "centre_half"],
+        true => words("cage_centre centre_sample"),
+        false => words("cage_centre centre_half"),
     };
     for coverage in COVERAGES {
         for (cage, tolerance) in CAGES.into_iter().zip([0.125, 0.0]) {
@@ -350,7 +305,6 @@ fn blocks_have_rows_where_they_should() {
             has(&of_blending, coverage == Coverage::Alpha);
             has(&always, true);
             has(&of_change, changes);
-            has(&of_samples, changes);
             has(&of_exact, exact);
             if coverage != Coverage::Any {
                 has(&of_centres(changes), !exact);
@@ -359,53 +313,35 @@ fn blocks_have_rows_where_they_should() {
     }
 }
 
-/// A file with one bit changed is found out.
+/// One wrong bit in the last row of a file is detected.
 #[test]
 fn a_wrong_bit_is_found() {
-    let files = ["vertex_pool.out", "centre.in", "node_choice.out"];
-    changed_bits_are_found(
-        &options(Coverage::Exact, CageKind::Corners, 0.0, 24),
-        &files,
-    );
-}
-
-/// Of the blocks that blend too.
-#[test]
-fn a_wrong_bit_of_blending_is_found() {
-    let files = [
-        "blend_way.out",
-        "blend_shares.out",
-        "blend_counts.out",
-        "blend_weight.out",
-        "blend_sample.out",
-    ];
-    changed_bits_are_found(&options(Coverage::Alpha, CageKind::Frame, 0.0, 24), &files);
-}
-
-/// Changes the second lowest bit of the last row of each file, one after the other.
-fn changed_bits_are_found(options: &SetupOptions, files: &[&str]) {
-    let (_, graph, camera) = scenes().swap_remove(0);
-    let setup = setup(&graph, &camera, options);
-    let (_shelter, folder, _) = written(&graph.view(), &setup, 20);
-    assert_eq!(replay_folder(&folder).0, None);
-    for file in files {
-        let path = folder.join(format!("{file}.hex"));
+    let exact = options(Coverage::Exact, CageKind::Corners, 0.0, 24);
+    let alpha = options(Coverage::Alpha, CageKind::Frame, 0.0, 24);
+    for (options, block, side) in [
+        (&exact, "vertex_pool", "out"),
+        (&exact, "centre", "in"),
+        (&exact, "node_choice", "out"),
+        (&alpha, "blend_way", "out"),
+        (&alpha, "blend_shares", "out"),
+        (&alpha, "blend_counts", "out"),
+        (&alpha, "blend_weight", "out"),
+        (&alpha, "blend_sample", "out"),
+    ] {
+        let (_, graph, camera) = scenes().swap_remove(0);
+        let setup = setup(&graph, &camera, options);
+        let (_shelter, folder, _) = written(&graph.view(), &setup, 20);
+        assert_eq!(replay_folder(&folder).0, None);
+        let path = folder.join(format!("{block}.jsonl"));
         let text = fs::read_to_string(&path).unwrap();
-        let last = text
-            .trim_end()
-            .chars()
-            .last()
-            .unwrap()
-            .to_digit(16)
-            .unwrap();
-        let digit = char::from_digit(last ^ 2, 16).unwrap();
-        let mut broken = text.trim_end().to_owned();
-        broken.pop();
-        broken.push(digit);
-        fs::write(&path, broken + "\n").unwrap();
+        let (first, last) = text.trim_end().rsplit_once('\n').unwrap();
+        let mut row: Value = serde_json::from_str(last).unwrap();
+        let mut digits = row[side].as_str().unwrap().to_owned();
+        let digit = digits.pop().unwrap().to_digit(16).unwrap();
+        digits.push(char::from_digit(digit ^ 2, 16).unwrap());
+        row[side] = digits.into();
+        fs::write(&path, format!("{first}\n{row}\n")).unwrap();
         let (wrong, _) = replay_folder(&folder);
-        let block = file.split('.').next().unwrap();
-        assert!(wrong.is_some_and(|w| w.starts_with(block)), "{file}");
-        fs::write(&path, text).unwrap();
+        assert!(wrong.is_some_and(|w| w.starts_with(block)), "{block}");
     }
 }

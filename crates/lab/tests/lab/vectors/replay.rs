@@ -1,4 +1,4 @@
-//! What every block gives for a row, by SPEC.md and the manifest.
+//! The outputs of every block for a row, by SPEC.md and the manifest.
 
 use super::rows::{Constants, Row, scaled};
 
@@ -6,7 +6,7 @@ fn bits(flags: &[bool]) -> Vec<i128> {
     flags.iter().map(|&f| i128::from(f)).collect()
 }
 
-/// What a block gives for a row.
+/// The outputs of a block.
 pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128> {
     let get = |name: &str| row.get(name);
     match block {
@@ -27,17 +27,17 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
         }
         "size_limit" => vec![constants.share(get("w_min"), get("below"))],
         "size_clip" => {
-            let (x, w) = (row.axes("edge_x"), row.axes("edge_w"));
+            let (x, w) = (row.three("edge_x"), row.three("edge_w"));
             let size: i128 = (0..3).map(|k| x[k].abs().max((x[k] - w[k]).abs())).sum();
             bits(&[size <= get("most")])
         }
         "size_screen" => bits(&[get("high") - get("low") <= get("limit")]),
         "centre" => {
-            let (min, max) = (row.axes("min"), row.axes("max"));
+            let (min, max) = (row.three("min"), row.three("max"));
             (0..3).map(|k| (min[k] + max[k]).div_euclid(2)).collect()
         }
         "octant_order" => {
-            let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+            let (centre, eye) = (row.three("centre"), row.three("eye_floor"));
             let octant = (0..3).map(|k| i128::from(centre[k] > eye[k]) << (2 - k));
             let octant: i128 = octant.sum();
             let mut out = vec![octant];
@@ -60,7 +60,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             (0..3).flat_map(moved).collect()
         }
         "child_corners" => {
-            let (min, max, centre) = (row.axes("min"), row.axes("max"), row.axes("centre"));
+            let (min, max, centre) = (row.three("min"), row.three("max"), row.three("centre"));
             let upper = |k: usize| get("octant") >> (2 - k) & 1 == 1;
             let low = (0..3).map(|k| if upper(k) { centre[k] } else { min[k] });
             let high = (0..3).map(|k| if upper(k) { max[k] } else { centre[k] });
@@ -112,7 +112,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
         "half_clip" if row.flag("right") => row.cage("far").0,
         "half_clip" => row.cage("x").each(|x| 2 * x).0,
         "plane_quadrant" => {
-            let [a, b, c] = row.plane("plane");
+            let [a, b, c] = row.three("plane");
             let quadrant = get("quadrant");
             vec![2 * c + (quadrant & 1) * a + (quadrant >> 1) * b]
         }
@@ -173,15 +173,15 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             (0..3).flat_map(planes).flatten().collect()
         }
         "cube_front" => {
-            let (min, max) = (row.axes("min"), row.axes("max"));
-            let (floor, ceil) = (row.axes("eye_floor"), row.axes("eye_ceil"));
+            let (min, max) = (row.three("min"), row.three("max"));
+            let (floor, ceil) = (row.three("eye_floor"), row.three("eye_ceil"));
             let outside = (0..3).find(|&k| ceil[k] <= min[k] || max[k] <= floor[k]);
             outside.map_or(vec![0, 0, 0], |k| {
                 let same = (ceil[k] <= min[k]) == row.flag("positive");
                 vec![1, k as i128, if same { 1 } else { 2 }]
             })
         }
-        "plane_side" => vec![plane_side(row.plane("plane"), row.flag("sample"))],
+        "plane_side" => vec![plane_side(row.three("plane"), row.flag("sample"))],
         "plane_cover" => vec![plane_cover(row)],
         "fill_update" => {
             let after = get("vector") | get("bits");
@@ -192,7 +192,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             vec![(scaled(centre, -get("shift")) - get("eye")).abs()]
         }
         "blend_shares" => {
-            let way = row.axes("way");
+            let way = row.three("way");
             let all = way.iter().sum::<i128>().max(1);
             // To the nearest, halves up.
             let nearest = |k: usize| (32 * way[k] + all).div_euclid(2 * all);
@@ -201,17 +201,14 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             vec![x, y, 16 - x - y]
         }
         "blend_counts" => {
-            let squares = row.axes("share").map(|share| share * share);
+            let squares = row.three("share").map(|share| share * share);
             let length = (squares.iter().sum::<i128>() as f64).sqrt().round() as i128;
             let nearest = |square: i128| (2 * square + length).div_euclid(2 * length);
             squares.map(nearest).to_vec()
         }
         "blend_weight" => {
-            let (high, count) = (row.axes("high"), row.axes("count"));
-            let opacity = |k: usize| {
-                let side = ["low", "high"][high[k] as usize];
-                get(&format!("opacity_{}_{side}", AXES[k]))
-            };
+            let (high, count) = (row.three("high"), row.three("count"));
+            let opacity = |k: usize| row.of(&format!("opacity_{}", AXES[k]))[high[k] as usize];
             if (0..3).any(|k| opacity(k) == 15) {
                 return vec![256];
             }
@@ -226,10 +223,8 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             let full = left - share <= 64;
             let taken = if full { left } else { share };
             let mut out = vec![left - taken];
-            for color in ["red", "green", "blue"] {
-                let (sum, light) = (format!("sum_{color}"), format!("light_{color}"));
-                out.push(get(&sum) + taken * get(&light));
-            }
+            let colors = row.of("sum").iter().zip(row.of("light"));
+            out.extend(colors.map(|(sum, light)| sum + taken * light));
             out.extend(bits(&[left == 256, full]));
             out
         }
@@ -240,11 +235,14 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn edge(row: &Row, j: usize) -> [i128; 3] {
-    row.plane(&format!("edge_{}", AXES[j]))
+    row.three(&format!("edge_{}", AXES[j]))
 }
 
 fn axis(row: &Row, l: usize) -> [i128; 3] {
-    row.plane(&format!("axis_{}", AXES[l]))
+    let [a, b] = row.of(&format!("axis_{}", AXES[l])) else {
+        unreachable!("a and b");
+    };
+    [*a, *b, row.get(&format!("axis_{}_c", AXES[l]))]
 }
 
 /// The side of the open node's samples: at its corners the function takes all
@@ -272,9 +270,7 @@ fn plane_side([a, b, c]: [i128; 3], is_sample: bool) -> i128 {
 fn plane_cover(row: &Row) -> i128 {
     let mut all = true;
     for axis in AXES {
-        let sides: Vec<i128> = (0..4)
-            .map(|i| row.get(&format!("side_{axis}_{i}")))
-            .collect();
+        let sides = row.of(&format!("side_{axis}"));
         let (above, below) = (sides.contains(&1), sides.contains(&2));
         if !(above && below) {
             if !sides.contains(&0) {

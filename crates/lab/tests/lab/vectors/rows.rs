@@ -3,21 +3,32 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::rc::Rc;
 
 use serde_json::Value;
 
-/// A row: its fields' values by name, and in order.
-#[derive(Default, Clone)]
+/// The ports of a row: name, first number, count.
+type Names = Rc<BTreeMap<String, (usize, usize)>>;
+
+/// A row: the numbers of its ports, in order.
+#[derive(Clone)]
 pub(super) struct Row {
-    pub(super) names: BTreeMap<String, usize>,
+    pub(super) names: Names,
     pub(super) values: Vec<i128>,
 }
 
 impl Row {
+    /// All numbers of a port.
+    pub(super) fn of(&self, name: &str) -> &[i128] {
+        let (first, count) = self.names[name];
+        &self.values[first..first + count]
+    }
+
+    /// The number of a port that has one.
     pub(super) fn get(&self, name: &str) -> i128 {
-        match self.names.get(name) {
-            Some(&at) => self.values[at],
-            None => panic!("no field {name}"),
+        match self.of(name) {
+            &[one] => one,
+            several => panic!("{name}: {several:?}"),
         }
     }
 
@@ -25,25 +36,13 @@ impl Row {
         self.get(name) != 0
     }
 
-    /// Fields `name_x`, `name_y`, `name_z`.
-    pub(super) fn axes(&self, name: &str) -> [i128; 3] {
-        ["x", "y", "z"].map(|axis| self.get(&format!("{name}_{axis}")))
+    /// Three numbers: by axis, or a, b, c of a plane.
+    pub(super) fn three(&self, name: &str) -> [i128; 3] {
+        self.of(name).try_into().unwrap()
     }
 
-    /// Fields `name_a`, `name_b`, `name_c`.
-    pub(super) fn plane(&self, name: &str) -> [i128; 3] {
-        ["a", "b", "c"].map(|c| self.get(&format!("{name}_{c}")))
-    }
-
-    /// The numbers of a cage: eight or four.
     pub(super) fn cage(&self, name: &str) -> Cage {
-        if self.names.contains_key(&format!("{name}_corner")) {
-            let mut numbers = vec![self.get(&format!("{name}_corner"))];
-            numbers.extend(self.axes(&format!("{name}_edge")));
-            Cage(numbers)
-        } else {
-            Cage((0..8).map(|i| self.get(&format!("{name}_{i}"))).collect())
-        }
+        Cage(self.of(name).to_vec())
     }
 }
 
@@ -52,7 +51,7 @@ impl Row {
 pub(super) struct Cage(pub(super) Vec<i128>);
 
 impl Cage {
-    pub(super) fn vertices(&self) -> Vec<i128> {
+    fn vertices(&self) -> Vec<i128> {
         match self.0[..] {
             [corner, x, y, z] => (0..8)
                 .map(|i| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z)
@@ -82,17 +81,14 @@ impl Cage {
     pub(super) fn children(&self) -> Vec<Self> {
         if let [corner, x, y, z] = self.0[..] {
             // Towards zero, as `/` does.
-            let halves = [x / 2, y / 2, z / 2];
-            return (0..8i128)
-                .map(|c| {
-                    let [x, y, z] = halves;
-                    let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
-                    Self(vec![moved, x, y, z])
-                })
-                .collect();
+            let [x, y, z] = [x / 2, y / 2, z / 2];
+            let child = |c: i128| {
+                let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
+                Self(vec![moved, x, y, z])
+            };
+            return (0..8).map(child).collect();
         }
-        // The 27 points: a coordinate of 1 is the midpoint of 0 and 2; z is
-        // resolved last, so it is the outermost midpoint.
+        // The 27 points. A coordinate of 1 is the midpoint of 0 and 2; z is resolved last, so it is the outermost midpoint.
         fn point(corners: &[i128], at: [usize; 3]) -> i128 {
             for k in [2, 1, 0] {
                 if at[k] == 1 {
@@ -104,31 +100,29 @@ impl Cage {
             }
             corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2]
         }
-        (0..8)
-            .map(|c| {
-                let corner = |v: usize| {
-                    let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
-                    point(&self.0, at)
-                };
-                Self((0..8).map(corner).collect())
-            })
-            .collect()
+        let child = |c: usize| {
+            let corner = |v: usize| {
+                let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
+                point(&self.0, at)
+            };
+            Self((0..8).map(corner).collect())
+        };
+        (0..8).map(child).collect()
     }
 }
 
 /// `a * 2^places`, rounded down.
 pub(super) fn scaled(a: i128, places: i128) -> i128 {
-    if places >= 0 {
-        a << places
-    } else {
-        a.div_euclid(1 << (-places).min(100))
+    match places >= 0 {
+        true => a << places,
+        false => a.div_euclid(1 << (-places).min(100)),
     }
 }
 
 /// Constants of the manifest.
 pub(super) struct Constants {
     pub(super) fraction: i128,
-    pub(super) shifts: Vec<i128>,
+    shifts: Vec<i128>,
 }
 
 impl Constants {
@@ -138,92 +132,115 @@ impl Constants {
     }
 }
 
-/// A file's rows, packed as the manifest defines.
-pub(super) fn read(folder: &Path, ports: &Value) -> Vec<Row> {
-    let fields = ports["fields"].as_array().unwrap();
-    let names: BTreeMap<String, usize> = fields
-        .iter()
-        .enumerate()
-        .map(|(at, field)| (field["name"].as_str().unwrap().to_owned(), at))
-        .collect();
-    assert_eq!(names.len(), fields.len(), "a name twice");
-    let number = |value: &Value| value.as_u64().unwrap() as usize;
-    let (width, digits) = (number(&ports["bits"]), number(&ports["digits"]));
-    let text = fs::read_to_string(folder.join(ports["file"].as_str().unwrap())).unwrap();
-    let lines = text.lines().filter(|line| !line.starts_with("//"));
-    let row = |line: &str| {
-        assert_eq!(line.len(), digits, "{line}");
-        let all: Vec<bool> = line
-            .chars()
-            .flat_map(|digit| {
-                let digit = digit.to_digit(16).expect("a hexadecimal digit");
-                (0..4).rev().map(move |bit| digit >> bit & 1 == 1)
-            })
-            .collect();
-        let (padding, all) = all.split_at(all.len() - width);
-        assert!(padding.len() < 4 && !padding.contains(&true));
-        let mut end = width;
-        let values = fields
-            .iter()
-            .map(|field| {
-                let (bits, lowest) = (number(&field["bits"]), number(&field["lowest_bit"]));
-                assert_eq!(lowest + bits, end, "fields without gaps");
-                end = lowest;
-                let part = &all[width - lowest - bits..width - lowest];
-                let value = part.iter().fold(0i128, |v, &bit| v << 1 | i128::from(bit));
-                let is_negative = field["signed"].as_bool().unwrap() && part[0];
-                value - (i128::from(is_negative) << bits)
-            })
-            .collect();
-        assert_eq!(end, 0);
-        Row {
-            names: names.clone(),
-            values,
+/// A number of a row: its port's name, bits, sign.
+pub(super) type Number = (String, u32, bool);
+
+/// Inputs or outputs as the manifest describes them.
+pub(super) struct Ports {
+    names: Names,
+    pub(super) numbers: Vec<Number>,
+}
+
+impl Ports {
+    pub(super) fn new(side: &Value) -> Self {
+        let mut names = BTreeMap::new();
+        let mut numbers = Vec::new();
+        let mut end = side["bits"].as_u64().unwrap();
+        for port in side["ports"].as_array().unwrap() {
+            let number = |key: &str| port[key].as_u64().unwrap();
+            let (name, count, bits) = (
+                port["name"].as_str().unwrap(),
+                number("count"),
+                number("bits"),
+            );
+            assert_eq!(
+                number("lowest_bit") + count * bits,
+                end,
+                "{name}: ports without gaps"
+            );
+            end = number("lowest_bit");
+            let place = (numbers.len(), count as usize);
+            assert!(
+                names.insert(name.to_owned(), place).is_none(),
+                "{name} twice"
+            );
+            let one = (
+                name.to_owned(),
+                bits as u32,
+                port["signed"].as_bool().unwrap(),
+            );
+            numbers.extend(vec![one; count as usize]);
         }
-    };
-    lines.map(row).collect()
+        assert_eq!(end, 0);
+        let names = Rc::new(names);
+        Self { names, numbers }
+    }
+
+    /// A row from its hexadecimal digits.
+    pub(super) fn row(&self, text: &str) -> Row {
+        let digits = text
+            .chars()
+            .map(|digit| digit.to_digit(16).expect("hexadecimal"));
+        let all: Vec<bool> = digits
+            .flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1 == 1))
+            .collect();
+        let width: u32 = self.numbers.iter().map(|(_, bits, _)| bits).sum();
+        let (padding, mut all) = all.split_at(all.len() - width as usize);
+        assert!(padding.len() < 4 && !padding.contains(&true), "{text}");
+        let number = |(_, bits, signed): &Number| {
+            let (part, rest) = all.split_at(*bits as usize);
+            all = rest;
+            let value = part.iter().fold(0i128, |v, &bit| v << 1 | i128::from(bit));
+            value - (i128::from(*signed && part[0]) << bits)
+        };
+        Row {
+            names: self.names.clone(),
+            values: self.numbers.iter().map(number).collect(),
+        }
+    }
+}
+
+/// The rows of a block.
+pub(super) struct BlockRows {
+    pub(super) name: String,
+    /// Inputs and outputs.
+    pub(super) ports: [Ports; 2],
+    pub(super) rows: Vec<[Row; 2]>,
+}
+
+pub(super) fn manifest_of(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap()
+}
+
+/// The lines of a file, each an object of JSON.
+pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
+    let text = fs::read_to_string(folder.join(file.as_str().unwrap())).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
 }
 
 pub(super) fn constants_of(manifest: &Value) -> Constants {
-    let number = |name: &str| i128::from(manifest["constants"][name].as_i64().unwrap());
     let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
     Constants {
-        fraction: number("screen_fraction_bits"),
+        fraction: manifest["constants"]["screen_fraction_bits"]
+            .as_i64()
+            .unwrap()
+            .into(),
         shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
     }
 }
 
-/// A block's rows, as a folder has them.
-pub(super) struct BlockRows {
-    pub(super) name: String,
-    pub(super) inputs: Vec<(String, u32, bool)>,
-    pub(super) outputs: Vec<(String, u32, bool)>,
-    pub(super) stimulus: Vec<Row>,
-    pub(super) expected: Vec<Row>,
-}
-
-pub(super) fn rows_of(folder: &Path) -> (Vec<BlockRows>, Constants) {
-    let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
-    let manifest: Value = serde_json::from_str(&text).unwrap();
-    let blocks = manifest["blocks"].as_array().unwrap();
-    let fields = |ports: &Value| -> Vec<(String, u32, bool)> {
-        let all = ports["fields"].as_array().unwrap();
-        let field = |f: &Value| {
-            let bits = f["bits"].as_u64().unwrap() as u32;
-            let name = f["name"].as_str().unwrap().to_owned();
-            (name, bits, f["signed"].as_bool().unwrap())
-        };
-        all.iter().map(field).collect()
+/// A block's rows.
+pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
+    let ports = ["in", "out"].map(|side| Ports::new(&block[side]));
+    let row = |line: Value| {
+        let of = |at: usize| ports[at].row(line[["in", "out"][at]].as_str().unwrap());
+        [of(0), of(1)]
     };
-    let found = blocks
-        .iter()
-        .filter(|block| block["rows"].as_u64() > Some(0));
-    let found = found.map(|block| BlockRows {
+    BlockRows {
         name: block["name"].as_str().unwrap().to_owned(),
-        inputs: fields(&block["stimulus"]),
-        outputs: fields(&block["expected"]),
-        stimulus: read(folder, &block["stimulus"]),
-        expected: read(folder, &block["expected"]),
-    });
-    (found.collect(), constants_of(&manifest))
+        rows: lines(folder, &block["file"]).into_iter().map(row).collect(),
+        ports,
+    }
 }

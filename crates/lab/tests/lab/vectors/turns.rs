@@ -1,8 +1,7 @@
-//! Whole turns, replayed: stack and fill vectors are what was written to them, nodes are the graph's, and what
-//! is drawn is the picture.
+//! Whole turns, replayed: the stack and fill vectors return what was written, nodes are the graph's, and the pixels are
+//! the picture.
 
 use std::collections::BTreeMap;
-use std::fs;
 
 use serde_json::Value;
 use shiftvox::frame::{Frame, NO_NODE};
@@ -10,7 +9,7 @@ use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Coverage, Engine, FrameSetup};
 
-use super::rows::{Row, read};
+use super::rows::{Ports, lines, manifest_of};
 use super::{options, scenes, written};
 use crate::common::{setup, times};
 
@@ -18,8 +17,7 @@ use crate::common::{setup, times};
 #[derive(Default)]
 struct Memories {
     /// Rows of records.
-    stack: Vec<usize>,
-    pushed: usize,
+    stack: Vec<String>,
     turns: u64,
     fill: BTreeMap<i128, i128>,
     pixels: BTreeMap<i128, i128>,
@@ -44,21 +42,25 @@ fn empty_vector(setup: &FrameSetup, address: i128) -> i128 {
 }
 
 impl Memories {
-    /// Something crosses a port; whether it fits what crossed before.
-    fn cross(&mut self, port: &str, event: &Row, graph: &Graph, setup: &FrameSetup) -> bool {
-        let (address, data) = (event.get("address"), event.get("data"));
-        let place = address as usize;
+    /// Whether an event of a port fits the events before it.
+    fn cross(&mut self, event: &Value, graph: &Graph, setup: &FrameSetup) -> bool {
+        let (place, text) = (
+            event["address"].as_u64().unwrap(),
+            event["data"].as_str().unwrap(),
+        );
+        let (address, place) = (i128::from(place), place as usize);
+        // Records are longer than a number.
+        let data = i128::from_str_radix(text, 16).unwrap_or(-1);
         let empty = || empty_vector(setup, address);
-        match port {
+        match port_of(event) {
             "push" => {
-                self.stack.push(data as usize);
-                self.pushed += 1;
-                (self.stack.len(), self.pushed) == (place + 1, data as usize + 1)
+                self.stack.push(text.to_owned());
+                self.stack.len() == place + 1
             }
             "pop" => {
                 self.turns += 1;
                 let top = self.stack.pop();
-                self.stack.len() == place && top == Some(data as usize)
+                self.stack.len() == place && top.as_deref() == Some(text)
             }
             "fill_read" => data == *self.fill.entry(address).or_insert_with(empty),
             "fill_write" => {
@@ -76,17 +78,19 @@ impl Memories {
     }
 }
 
-/// The first event that does not fit those before it, and what they make of the memories.
+fn port_of(event: &Value) -> &str {
+    event["port"].as_str().unwrap()
+}
+
+/// The first event that does not fit the events before it, and the state of the memories then.
 fn replay<'e>(
-    names: &[&str],
-    events: impl IntoIterator<Item = &'e Row>,
+    events: impl IntoIterator<Item = &'e Value>,
     (graph, setup): (&Graph, &FrameSetup),
 ) -> (Option<String>, Memories) {
     let mut memories = Memories::default();
     for event in events {
-        let port = names[event.get("port") as usize];
-        if !memories.cross(port, event, graph, setup) {
-            return (Some(format!("{port}, {:?}", event.values)), memories);
+        if !memories.cross(event, graph, setup) {
+            return (Some(event.to_string()), memories);
         }
     }
     (None, memories)
@@ -107,18 +111,13 @@ fn turns_follow_from_one_another_and_make_the_picture() {
         for &(coverage, cage) in rules.take(FRAMES.len().min(times() as usize)) {
             let setup = setup(&graph, &camera, &options(coverage, cage, 0.125, 32));
             let (_shelter, folder, _) = written(&graph.view(), &setup, u64::MAX);
-            let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
-            let manifest: Value = serde_json::from_str(&text).unwrap();
-            let turns = &manifest["turns"];
-            let names = turns["ports"].as_array().unwrap().iter();
-            let names: Vec<&str> = names.map(|port| port["name"].as_str().unwrap()).collect();
-            let events = read(&folder, &turns["events"]);
-            let records = read(&folder, &turns["records"]);
+            let turns = &manifest_of(&folder)["turns"];
+            let events = lines(&folder, &turns["file"]);
             let of = (&graph, &setup);
-            let (wrong, memories) = replay(&names, &events, of);
+            let (wrong, memories) = replay(&events, of);
             let at = format!("{name}, {coverage:?}, {cage:?}");
             assert_eq!(wrong, None, "{at}");
-            assert_eq!(memories.pushed, records.len(), "{at}");
+            assert_eq!(Some(events.len() as u64), turns["events"].as_u64(), "{at}");
             assert_eq!(Some(memories.turns), turns["turns"].as_u64(), "{at}");
             assert!(memories.stack.is_empty(), "{at}");
             let mut frame = Frame::new(setup.width, setup.height, false);
@@ -128,27 +127,27 @@ fn turns_follow_from_one_another_and_make_the_picture() {
             let drawn = drawn.filter(|(_, node)| **node != NO_NODE);
             let drawn: BTreeMap<_, _> = drawn.map(|(at, &node)| (at, node.into())).collect();
             assert!(memories.pixels == drawn && !drawn.is_empty(), "{at}");
-            // A record's own numbers: the first is the whole object.
-            let first = &records[0];
-            assert_eq!(
-                (first.get("level"), first.get("node")),
-                (0, graph.root.into())
-            );
-            // Without any one pop, push, write or pixel it is all found to be wrong.
+            // The first record is the whole object.
+            let first = events
+                .iter()
+                .find(|event| port_of(event) == "push")
+                .unwrap();
+            let first = Ports::new(&turns["record"]).row(first["data"].as_str().unwrap());
+            let of_root = (first.get("level"), first.get("node"));
+            assert_eq!(of_root, (0, graph.root.into()));
+            // The loss of any single pop, push, write or pixel is detected.
             for lost in (0..events.len()).step_by(events.len().div_ceil(8 * times() as usize)) {
-                if ["fill_read", "node_read", "attribute_read"]
-                    .contains(&names[events[lost].get("port") as usize])
-                {
+                let port = port_of(&events[lost]);
+                if port.ends_with("_read") {
                     continue;
                 }
                 let rest = events[..lost].iter().chain(&events[lost + 1..]);
-                let (wrong, memories) = replay(&names, rest, of);
+                let (wrong, memories) = replay(rest, of);
                 let is_found = wrong.is_some()
                     || memories.pixels != drawn
                     || Some(memories.turns) != turns["turns"].as_u64();
-                // A vector written last is read by nobody.
-                let is_last = names[events[lost].get("port") as usize] == "fill_write";
-                assert!(is_found || is_last, "{at}: {lost}");
+                // Nobody reads the vector that is written last.
+                assert!(is_found || port == "fill_write", "{at}: {lost}");
             }
         }
     }

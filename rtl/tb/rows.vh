@@ -1,0 +1,49 @@
+// A module `BENCH that runs `BLOCK through the rows of the file `ROWS, lines of {"in":"..","out":".."} with digits of
+// `INTO and `OUT bits, and prints how many were wrong. `PORTS connects the block to `row` and `result`. A block that is
+// `CLOCKED takes cycles from `start` to `last`; all others are functions. At most `MOST rows are read, of `STEP rows one,
+// with the inputs `STIMULUS; after each, `EACH is done, and at the end `SHOW.
+`ifndef MOST
+`define MOST 2147483647
+`endif
+`ifndef STEP
+`define STEP 1
+`endif
+`ifndef STIMULUS
+`define STIMULUS row
+`endif
+`define READ $fscanf(file, "{\"in\":\"%h\",\"out\":\"%h\"}\n", row, expected) == 2 && at < `MOST
+module `BENCH;
+  reg [`INTO-1:0] row;
+  reg [`OUT-1:0] expected;
+  wire [`OUT-1:0] result;
+  reg clk = 0, start = 0, more;
+  wire last;
+  integer file, at = 0, wrong = 0;
+  `BLOCK dut (`PORTS);
+  initial begin
+    file = $fopen(`ROWS, "r");
+    more = `READ;
+    while (more) begin
+      row = `STIMULUS;
+`ifdef CLOCKED
+      start = 1; #1 clk = 1; #1 clk = 0; start = 0;
+      while (!last) begin #1 clk = 1; #1 clk = 0; end
+      #1 clk = 1; #1 clk = 0;
+`else
+      #1;
+`endif
+      if (result !== expected) wrong = wrong + 1;
+`ifdef EACH
+      `EACH
+`endif
+      repeat (`STEP) begin
+        at = at + 1;
+        if (more) more = `READ;
+      end
+    end
+    $display("%m: %0d of %0d", wrong, at);
+`ifdef SHOW
+    `SHOW
+`endif
+  end
+endmodule
