@@ -108,7 +108,7 @@
 //! no part that is made faster or wider makes a frame slower. With several that
 //! is not so: records then meet in another order (the anomalies of list
 //! scheduling, Graham 1969). Of 2000 improvements of random hardware on random
-//! records, 117 made the frame slower, at worst by 19 % (`tests/cycles_properties.rs`).
+//! records, 117 made the frame slower, at worst by 19 % (`tests/hwmodel/cycles_properties.rs`).
 //!
 //! # What is left out
 //!

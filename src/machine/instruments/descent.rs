@@ -86,7 +86,7 @@ impl Descent {
     /// If a word has overflowed on the way.
     pub(super) fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
         let dp = &mut self.dp;
-        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);
+        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host); // host: read by an experiment
         let cage = match held {
             CageWords::Clip(coordinates) => Cage::Clip(coordinates.map(&mut vertices)),
             CageWords::Screen(coordinates) => Cage::Screen(coordinates.map(&mut vertices)),

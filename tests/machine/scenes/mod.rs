@@ -12,15 +12,6 @@ use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
 use shiftvox::split_mix::SplitMix;
 
-/// The test data that are kept beside the repository, if they are there.
-pub fn shared_data() -> Option<PathBuf> {
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
-    folder.is_dir().then_some(folder)
-}
-
 /// The `.vox` files that come with the repository, by name.
 pub fn shipped_files() -> Vec<PathBuf> {
     vox_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"))

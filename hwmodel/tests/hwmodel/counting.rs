@@ -1,10 +1,8 @@
 //! The counter against a list of what it was told.
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::*;
+use crate::common::*;
 use hwmodel::count::{Accesses, Counter, LEVELS};
 use hwmodel::{Datapath, Memory, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word};
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! What the tests of the datapath share: a reference in 128-bit integers,
 //! numbers worth testing, and a probe that writes everything down.
-#![expect(unreachable_pub, reason = "a module of several test crates")]
-#![allow(dead_code, reason = "each test uses a part of it")]
 
 use hwmodel::{
     Datapath, Format, MAX_BITS, MIN_BITS, Memory, NoProbe, Number, OpClass, Overflow, Probe,
@@ -10,10 +8,10 @@ use hwmodel::{
 use proptest::prelude::*;
 
 /// The three policies.
-pub const POLICIES: [Overflow; 3] = [Overflow::Trap, Overflow::Wrap, Overflow::Saturate];
+pub(crate) const POLICIES: [Overflow; 3] = [Overflow::Trap, Overflow::Wrap, Overflow::Saturate];
 
 /// Either of the two types of number, as the host sees it.
-pub trait Host: Number + PartialEq + std::fmt::Debug {
+pub(crate) trait Host: Number + PartialEq + std::fmt::Debug {
     fn of(value: i64) -> Self;
     fn value(self) -> i64;
     /// Width of this type on a datapath of `format`, from the rule itself
@@ -46,33 +44,33 @@ impl Host for WideWord {
 }
 
 /// A format of this width.
-pub fn format(bits: u32) -> Format {
+pub(crate) fn format(bits: u32) -> Format {
     Format::new(bits, bits / 4).expect("a width within 16..=64")
 }
 
 /// All widths.
-pub fn widths() -> std::ops::RangeInclusive<u32> {
+pub(crate) fn widths() -> std::ops::RangeInclusive<u32> {
     MIN_BITS..=MAX_BITS
 }
 
 /// A datapath that nobody watches.
-pub fn datapath(bits: u32, policy: Overflow) -> Datapath<NoProbe> {
+pub(crate) fn datapath(bits: u32, policy: Overflow) -> Datapath<NoProbe> {
     Datapath::new(format(bits), policy, NoProbe)
 }
 
 /// Least number of `bits` bits.
-pub fn least(bits: u32) -> i128 {
+pub(crate) fn least(bits: u32) -> i128 {
     -(1i128 << (bits - 1))
 }
 
 /// Greatest number of `bits` bits.
-pub fn greatest(bits: u32) -> i128 {
+pub(crate) fn greatest(bits: u32) -> i128 {
     (1i128 << (bits - 1)) - 1
 }
 
 /// What an exact result becomes in a word of `bits` bits, and whether it did
 /// not fit. After a trap the word is the wrapped one.
-pub fn fit(exact: i128, bits: u32, policy: Overflow) -> (i64, bool) {
+pub(crate) fn fit(exact: i128, bits: u32, policy: Overflow) -> (i64, bool) {
     let overflowed = exact < least(bits) || exact > greatest(bits);
     let kept = match policy {
         Overflow::Trap | Overflow::Wrap => {
@@ -90,7 +88,7 @@ pub fn fit(exact: i128, bits: u32, policy: Overflow) -> (i64, bool) {
 }
 
 /// Numbers of `bits` bits at which carries, signs and rounding change.
-pub fn edge_cases(bits: u32) -> Vec<i64> {
+pub(crate) fn edge_cases(bits: u32) -> Vec<i64> {
     let (low, high) = (least(bits), greatest(bits));
     let half = 1i128 << (bits - 2);
     let all = [
@@ -117,7 +115,7 @@ pub fn edge_cases(bits: u32) -> Vec<i64> {
 }
 
 /// Any number of `bits` bits, small and large ones alike.
-pub fn any_value(bits: u32) -> impl Strategy<Value = i64> {
+pub(crate) fn any_value(bits: u32) -> impl Strategy<Value = i64> {
     let spare = 64 - bits;
     prop_oneof![
         3 => (any::<i64>(), 0..bits).prop_map(move |(v, less)| v >> (spare + less)),
@@ -126,12 +124,12 @@ pub fn any_value(bits: u32) -> impl Strategy<Value = i64> {
 }
 
 /// A width, and two numbers that fit a word of it.
-pub fn any_pair() -> impl Strategy<Value = (u32, i64, i64)> {
+pub(crate) fn any_pair() -> impl Strategy<Value = (u32, i64, i64)> {
     widths().prop_flat_map(|bits| (Just(bits), any_value(bits), any_value(bits)))
 }
 
 /// A width, and two numbers that fit a wide word of it.
-pub fn any_wide_pair() -> impl Strategy<Value = (u32, i64, i64)> {
+pub(crate) fn any_wide_pair() -> impl Strategy<Value = (u32, i64, i64)> {
     widths().prop_flat_map(|bits| {
         let wide = (2 * bits).min(64);
         (Just(bits), any_value(wide), any_value(wide))
@@ -140,7 +138,7 @@ pub fn any_wide_pair() -> impl Strategy<Value = (u32, i64, i64)> {
 
 /// One thing that a probe was told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
+pub(crate) enum Event {
     Op(OpClass, u32, StageLevel, u32),
     Read(Memory, u64, StageLevel),
     Write(Memory, u64, StageLevel),
@@ -149,7 +147,7 @@ pub enum Event {
 
 /// A probe that writes everything down.
 #[derive(Debug, Default)]
-pub struct Log(pub Vec<Event>);
+pub(crate) struct Log(pub Vec<Event>);
 
 impl Probe for Log {
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {

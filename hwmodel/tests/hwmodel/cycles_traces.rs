@@ -1,11 +1,7 @@
 //! The traces can be read, and say what the simulation said.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod cycles_common;
-
 use std::collections::BTreeMap;
 
-use cycles_common::{Does, Listed, Node};
+use crate::cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{Hardware, ImageNode, Recorder, START, TraceLimit, VisitSpan, simulate};
 use hwmodel::{Memory, OpClass, Stage};
 

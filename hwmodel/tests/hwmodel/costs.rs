@@ -1,8 +1,6 @@
 //! Energy and area by the shipped tables: operations line by line, accesses, bills.
 
-mod costs_common;
-
-use costs_common::{near, shipped};
+use crate::costs_common::{near, shipped};
 use hwmodel::cost::{
     Costing, Goal, MinMaxUnits, ShiftUnits, Store, Stores, Tally, Unit, area_of, energy_of,
     energy_of_tallies, memory_energy_of, operation_of,

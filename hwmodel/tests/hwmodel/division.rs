@@ -1,9 +1,7 @@
 //! The restoring divide that users build from single steps: bit for bit the
 //! floor of the exact quotient.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use hwmodel::{Datapath, NoProbe, Overflow, Word};
 use proptest::prelude::*;
 

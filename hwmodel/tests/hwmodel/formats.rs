@@ -1,8 +1,6 @@
 //! Word formats: what is one, what it holds, and the wide one beside it.
 
-mod common;
-
-use common::{greatest, least, widths};
+use crate::common::{greatest, least, widths};
 use hwmodel::{Format, FormatError, MAX_BITS, MIN_BITS};
 use serde::Deserialize;
 use serde::de::IntoDeserializer;

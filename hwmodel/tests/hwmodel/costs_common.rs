@@ -1,14 +1,13 @@
 //! What the tests of costs share.
-#![expect(unreachable_pub, reason = "a module of several test crates")]
 
 use hwmodel::cost::CostTable;
 
-pub fn shipped() -> CostTable {
+pub(crate) fn shipped() -> CostTable {
     CostTable::load_shipped().expect("well-formed tables")
 }
 
 #[track_caller]
-pub fn near(found: f64, expected: f64) {
+pub(crate) fn near(found: f64, expected: f64) {
     assert!(
         (found - expected).abs() <= 1e-9 * expected.abs().max(1.0),
         "{found} is not {expected}"

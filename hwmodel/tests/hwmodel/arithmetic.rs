@@ -4,9 +4,7 @@
 //! Each check runs on all pairs of edge cases for every width from 16 to 64,
 //! and on random pairs.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use hwmodel::{Datapath, NoProbe, Overflow, WideWord, Word};
 use proptest::prelude::*;
 

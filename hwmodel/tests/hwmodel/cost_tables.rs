@@ -1,9 +1,7 @@
 //! Cost tables: shipped figures, what lies between them, a user's own, and
 //! what is refused.
 
-mod costs_common;
-
-use costs_common::{near, shipped};
+use crate::costs_common::{near, shipped};
 use hwmodel::cost::{CostError, CostTable, Fit, Goal, Quantity};
 
 #[test]
@@ -62,15 +60,12 @@ fn figures_of_the_shipped_rows() {
     near(table.delay("add", 32, Goal::Delay).unwrap().value, 1301.61);
 }
 
-/// The synthesis figures are all there, where they can be compared.
+/// The synthesis figures are all there.
 #[test]
+#[ignore = "needs the folder SHIFTVOX_DATA"]
 fn the_synthesis_is_shipped_whole() {
-    let data = std::env::var("SHIFTVOX_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data").to_owned());
-    let Ok(text) = std::fs::read_to_string(format!("{data}/hw/synthesis.csv")) else {
-        eprintln!("skipped: no hw/synthesis.csv in {data}");
-        return;
-    };
+    let data = std::env::var("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with hw/");
+    let text = std::fs::read_to_string(format!("{data}/hw/synthesis.csv")).unwrap();
     let table = shipped();
     let mut rows = 0;
     for line in text.lines().skip(1) {
@@ -292,99 +287,37 @@ fn a_table_of_one_s_own() {
     assert_eq!(listed.unwrap().operations(), ["ad"]);
 }
 
+/// Fields of rows, and a part of the complaint.
+const NO_ROWS: &str = r#"operation = "add", width = 8, nand2 = 1 -> missing field `source`
+operation = "add", width = 8, nand2 = 1, source = " " -> mine.toml, row `add` of 8 bits: the source is empty
+operation = "", nand2 = 1, source = "s" -> no name
+operation = "add", width = 8, source = "s" -> there is no figure
+operation = "add", width = 0, nand2 = 1, source = "s" -> at least 1 bit
+operation = "add", width = -1, nand2 = 1, source = "s" -> invalid value
+operation = "add", nand2 = -1, source = "s" -> from 0 to 1e12
+operation = "add", nand2 = nan, source = "s" -> from 0 to 1e12
+operation = "add", nand2 = inf, source = "s" -> from 0 to 1e12
+operation = "add", nand2 = [2, 1], source = "s" -> range [low, high]
+operation = "add", nand2 = "1", source = "s" -> did not match
+operation = "add", nand = 1, source = "s" -> unknown field `nand`
+operation = "add", goal = "speed", nand2 = 1, source = "s" -> speed
+operation = "m", bytes = 0, width = 1, energy_pj = 1, source = "s" -> at least 1 byte
+operation = "m", bytes = 8, energy_pj = 1, source = "s" -> and a width
+operation = "add", width = 8, nand2 = 1, source = "s" }, { operation = "add", width = 8, nand2 = 2, source = "s" -> two such rows
+operation = "add", width = 8, nand2 = 1e300, source = "s" -> from 0 to 1e12
+operation = "add", width = 4294967295, nand2 = 1, source = "s" -> a width is at most 65536 bits
+operation = "m", bytes = 9223372036854775807, width = 1, energy_pj = 1, source = "s" -> at most 2^50 bytes
+operation = "add", nand2 = 1, source = "s" }, { operation = "add", width = 8, nand2 = 2, source = "s" -> row `add` of 8 bits: one row is for any width"#;
+
 #[test]
 fn what_is_no_table() {
-    let row = |fields: &str| format!("row = [{{ {fields} }}]");
-    for (text, says) in [
-        (
-            "row = [".to_owned(),
-            "mine.toml is no cost table: TOML parse error",
-        ),
-        (
-            row(r#"operation = "add", width = 8, nand2 = 1"#),
-            "missing field `source`",
-        ),
-        (
-            row(r#"operation = "add", width = 8, nand2 = 1, source = " ""#),
-            "mine.toml, row `add` of 8 bits: the source is empty",
-        ),
-        (row(r#"operation = "", nand2 = 1, source = "s""#), "no name"),
-        (
-            row(r#"operation = "add", width = 8, source = "s""#),
-            "there is no figure",
-        ),
-        (
-            row(r#"operation = "add", width = 0, nand2 = 1, source = "s""#),
-            "at least 1 bit",
-        ),
-        (
-            row(r#"operation = "add", width = -1, nand2 = 1, source = "s""#),
-            "invalid value",
-        ),
-        (
-            row(r#"operation = "add", nand2 = -1, source = "s""#),
-            "from 0 to 1e12",
-        ),
-        (
-            row(r#"operation = "add", nand2 = nan, source = "s""#),
-            "from 0 to 1e12",
-        ),
-        (
-            row(r#"operation = "add", nand2 = inf, source = "s""#),
-            "from 0 to 1e12",
-        ),
-        (
-            row(r#"operation = "add", nand2 = [2, 1], source = "s""#),
-            "range [low, high]",
-        ),
-        (
-            row(r#"operation = "add", nand2 = "1", source = "s""#),
-            "did not match",
-        ),
-        (
-            row(r#"operation = "add", nand = 1, source = "s""#),
-            "unknown field `nand`",
-        ),
-        (
-            row(r#"operation = "add", goal = "speed", nand2 = 1, source = "s""#),
-            "speed",
-        ),
-        (
-            row(r#"operation = "m", bytes = 0, width = 1, energy_pj = 1, source = "s""#),
-            "at least 1 byte",
-        ),
-        (
-            row(r#"operation = "m", bytes = 8, energy_pj = 1, source = "s""#),
-            "and a width",
-        ),
-        (
-            row(
-                r#"operation = "add", width = 8, nand2 = 1, source = "s" }, { operation = "add", width = 8, nand2 = 2, source = "s""#,
-            ),
-            "two such rows",
-        ),
-        (
-            row(r#"operation = "add", width = 8, nand2 = 1e300, source = "s""#),
-            "from 0 to 1e12",
-        ),
-        (
-            row(r#"operation = "add", width = 4294967295, nand2 = 1, source = "s""#),
-            "a width is at most 65536 bits",
-        ),
-        (
-            row(
-                r#"operation = "m", bytes = 9223372036854775807, width = 1, energy_pj = 1, source = "s""#,
-            ),
-            "at most 2^50 bytes",
-        ),
-        (
-            row(
-                r#"operation = "add", nand2 = 1, source = "s" }, { operation = "add", width = 8, nand2 = 2, source = "s""#,
-            ),
-            "row `add` of 8 bits: one row is for any width",
-        ),
-        ("rows = []".to_owned(), "unknown field `rows`"),
-    ] {
+    let rows = NO_ROWS.lines().map(|line| line.split_once(" -> ").unwrap());
+    let rows = rows.map(|(fields, says)| (format!("row = [{{ {fields} }}]"), says));
+    let others = [
+        ("row = [", "mine.toml is no cost table: TOML parse error"),
+        ("rows = []", "unknown field `rows`"),
+    ];
+    for (text, says) in rows.chain(others.map(|(text, says)| (text.to_owned(), says))) {
         let error = shipped()
             .with_overrides("mine.toml", &text)
             .unwrap_err()

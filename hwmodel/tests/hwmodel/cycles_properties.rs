@@ -1,11 +1,7 @@
 //! What holds of every simulation, on random records and random hardware.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod cycles_common;
-
 use std::collections::BTreeMap;
 
-use cycles_common::{Does, Listed, Node};
+use crate::cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{
     Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
     TraceLimit, Unit, simulate,

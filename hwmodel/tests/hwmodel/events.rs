@@ -1,9 +1,7 @@
 //! What a probe is told: each operation is exactly one event of its class and
 //! width (a midpoint is two), wires and constants are none.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use hwmodel::count::Counter;
 use hwmodel::{
     Datapath, Memory, NoProbe, Number, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word,

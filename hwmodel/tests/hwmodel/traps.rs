@@ -1,9 +1,7 @@
 //! The first overflow under [`Overflow::Trap`]: what it names, and that later
 //! ones do not replace it.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use hwmodel::{Datapath, NoProbe, Overflow, Stage, StageLevel, Trap, TrapOp, WideWord, Word};
 
 /// The trap of one operation, run in a place of its own.

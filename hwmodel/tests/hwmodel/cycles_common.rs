@@ -1,6 +1,4 @@
 //! A workload that does what a list says, for tests of the cycle model.
-#![expect(unreachable_pub, reason = "a module of several test crates")]
-#![allow(dead_code, reason = "each test uses a part of it")]
 
 use std::convert::Infallible;
 
@@ -9,7 +7,7 @@ use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 
 /// What a record does in its turn.
 #[derive(Debug, Clone)]
-pub enum Does {
+pub(crate) enum Does {
     /// So many operations of a class and width.
     Ops(Stage, OpClass, u32, u32),
     /// The same, done beside the stage in which the turn is.
@@ -24,13 +22,13 @@ pub enum Does {
 
 /// A record: what it does, and its children: record, place, region.
 #[derive(Debug, Clone, Default)]
-pub struct Node {
+pub(crate) struct Node {
     pub does: Vec<Does>,
     pub children: Vec<(u32, u8, ImageNode)>,
 }
 
 /// Record 0 of the list is the workload's start.
-pub struct Listed<'a> {
+pub(crate) struct Listed<'a> {
     nodes: &'a [Node],
     log: TurnLog,
     /// Items in the order of their turns.
@@ -40,7 +38,7 @@ pub struct Listed<'a> {
 }
 
 impl<'a> Listed<'a> {
-    pub fn new(nodes: &'a [Node], hardware: &Hardware) -> Self {
+    pub(crate) fn new(nodes: &'a [Node], hardware: &Hardware) -> Self {
         Self {
             nodes,
             log: TurnLog::new(hardware),
