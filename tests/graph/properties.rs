@@ -1,5 +1,4 @@
 //! A graph holds exactly the voxels that were pushed, however it was made.
-#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::collections::BTreeMap;
 
@@ -10,6 +9,8 @@ use shiftvox::graph::{
     BuildError, BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Normals, PackedNormal, Silent,
     Voxel, merge,
 };
+
+use crate::{parts, voxels};
 
 const PLACE: ([f64; 3], f64) = ([0.0; 3], 1.0);
 
@@ -44,37 +45,6 @@ fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
     seen
 }
 
-/// All that makes a graph, to be compared.
-fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
-    (
-        (graph.depth, graph.root, graph.voxels, graph.placement),
-        (
-            graph.mask.to_vec(),
-            graph.first.to_vec(),
-            graph.links.to_vec(),
-        ),
-        (graph.color.to_vec(), graph.normal.to_vec()),
-        graph.level_start.clone(),
-    )
-}
-
-/// Clusters and strays, with repeated indices, a few colours, some normals.
-fn voxels() -> impl Strategy<Value = Vec<Voxel>> {
-    let near = prop::array::uniform3(-6..6i32);
-    let far = prop::array::uniform3(-900_000..900_000i32);
-    let wide = prop::array::uniform3(-40..300i32);
-    let index = prop_oneof![20 => near, 3 => wide, 1 => far];
-    let color = prop_oneof![Just([1, 2, 3]), Just([250, 0, 9]), any::<[u8; 3]>()];
-    let normal =
-        prop_oneof![3 => Just(None), 1 => (1..=u16::MAX).prop_map(|n| Some(PackedNormal(n)))];
-    let voxel = (index, color, normal).prop_map(|(index, color, normal)| Voxel {
-        index,
-        color,
-        normal,
-    });
-    prop::collection::vec(voxel, 1..200)
-}
-
 fn last_by_index(voxels: &[Voxel]) -> BTreeMap<[i64; 3], Voxel> {
     voxels
         .iter()
@@ -84,7 +54,7 @@ fn last_by_index(voxels: &[Voxel]) -> BTreeMap<[i64; 3], Voxel> {
 
 proptest! {
     #[test]
-    fn every_voxel_is_at_its_place_and_no_other(voxels in voxels()) {
+    fn every_voxel_is_at_its_place_and_no_other(voxels in voxels(200)) {
         let graph = build_with(Normals::None, &voxels);
         let expected: BTreeMap<_, _> = last_by_index(&voxels)
             .into_iter()
@@ -95,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn cells_come_in_morton_order(voxels in voxels()) {
+    fn cells_come_in_morton_order(voxels in voxels(200)) {
         let graph = build(&voxels);
         // Octants from the root down, as the order defines.
         let path = |corner: [i32; 3]| -> Vec<i32> {
@@ -108,7 +78,7 @@ proptest! {
     }
 
     #[test]
-    fn the_box_is_tight(voxels in voxels()) {
+    fn the_box_is_tight(voxels in voxels(200)) {
         let graph = build(&voxels);
         let all = last_by_index(&voxels);
         let mut longest = 0;
@@ -123,7 +93,7 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_pushing_and_threads_do_not_matter(voxels in voxels(), seed in any::<u64>()) {
+    fn the_order_of_pushing_and_threads_do_not_matter(voxels in voxels(200), seed in any::<u64>()) {
         let unique: Vec<Voxel> = last_by_index(&voxels).into_values().collect();
         let mut shuffled = unique.clone();
         let mut state = seed;
@@ -141,7 +111,7 @@ proptest! {
     }
 
     #[test]
-    fn own_normals_are_kept(voxels in voxels()) {
+    fn own_normals_are_kept(voxels in voxels(200)) {
         let graph = build(&voxels);
         for (index, (_, normal)) in seen(&graph) {
             if let Some(own) = last_by_index(&voxels)[&index].normal {
@@ -151,7 +121,7 @@ proptest! {
     }
 
     #[test]
-    fn merging_changes_nothing_seen(voxels in voxels()) {
+    fn merging_changes_nothing_seen(voxels in voxels(200)) {
         let graph = build(&voxels);
         let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
         merged.validate().unwrap();
