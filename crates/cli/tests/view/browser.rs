@@ -65,11 +65,9 @@ fn assert_canvas(browser: &mut Browser, tab: &Tab, id: &str, file: &[u8], comman
 }
 
 #[test]
+#[ignore = "needs chromium"]
 fn the_page_turns_compares_and_shows_what_render_draws() {
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let browser = &mut browser;
+    let browser = &mut Browser::start();
     let program = Program::start(&["assets/tree.vox", "tests/data/axes.vox", "--size", "256"]);
     let tab = browser.open(&program.address);
     let fitted = assert_is_renders(browser, &tab);
@@ -154,11 +152,9 @@ fn the_page_turns_compares_and_shows_what_render_draws() {
 }
 
 #[test]
+#[ignore = "needs chromium"]
 fn the_slider_shows_the_papers_rule() {
-    let Some(mut browser) = Browser::start() else {
-        return;
-    };
-    let browser = &mut browser;
+    let browser = &mut Browser::start();
     let program = Program::start(&["assets/tree.vox", "--size", "360x330"]);
     let tab = browser.open(&program.address);
     let command = assert_is_renders(browser, &tab);

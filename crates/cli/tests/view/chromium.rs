@@ -30,8 +30,8 @@ pub(crate) struct Browser {
 pub(crate) struct Tab(String);
 
 impl Browser {
-    /// Starts one; `None`, visibly, where there is none.
-    pub(crate) fn start() -> Option<Self> {
+    /// Starts one.
+    pub(crate) fn start() -> Self {
         let own = std::env::var("SHIFTVOX_BROWSER").ok();
         let names = own.into_iter().chain(NAMES.map(str::to_owned));
         let profile = tempfile::tempdir().unwrap();
@@ -56,33 +56,26 @@ impl Browser {
                 .spawn()
                 .ok()
         });
-        let Some(mut child) = started else {
-            eprintln!("SKIPPED: no browser (chromium, or SHIFTVOX_BROWSER)");
-            return None;
-        };
-        let mut lines = BufReader::new(child.stderr.take()?).lines();
+        let mut child = started.expect("chromium, or the browser SHIFTVOX_BROWSER");
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
         let address = lines.by_ref().map_while(Result::ok).find_map(|line| {
             line.strip_prefix("DevTools listening on ")
                 .map(str::to_owned)
         });
-        let Some(address) = address else {
-            let _ = child.wait();
-            eprintln!("SKIPPED: the browser does not start");
-            return None;
-        };
+        let address = address.expect("a browser that starts");
         // What it says is read on, so that it does not wait.
         std::thread::spawn(move || lines.map_while(Result::ok).count());
         let (socket, _) = tungstenite::connect(address).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).unwrap();
         }
-        Some(Self {
+        Self {
             child,
             socket,
             count: 0,
             complaints: Vec::new(),
             _profile: profile,
-        })
+        }
     }
 
     fn call(&mut self, tab: Option<&Tab>, method: &str, parameters: Value) -> Value {

@@ -10,17 +10,11 @@ use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 
-/// Where a model of the shared data is, or a note on stderr that it is skipped.
-fn model(name: &str) -> Option<PathBuf> {
-    let beside =
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
-    let path = folder.join("mesh").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: mesh/{name} is not among the shared data");
-    None
+/// A model in the folder `SHIFTVOX_DATA`.
+fn model(name: &str) -> PathBuf {
+    let folder =
+        std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with mesh/");
+    PathBuf::from(folder).join("mesh").join(name)
 }
 
 /// Does `work` on so many threads.
@@ -32,11 +26,11 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 /// One and two threads build the same bytes; along a walk up to the model and away, what is left out
 /// because it is hidden, answers that come late, and a budget of a quarter of the file change no pixel.
 #[test]
-#[ignore = "takes long"]
+#[ignore = "needs the folder SHIFTVOX_DATA"]
 fn nothing_but_time_changes_on_a_walk() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["as_AC14-FZK-Haus.obj"] {
-        let Some(path) = model(name) else { continue };
+        let path = model(name);
         let (mesh, _) =
             shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let options = BuildOptions {
