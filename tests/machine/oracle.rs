@@ -427,29 +427,3 @@ fn a_picture_by_hand() {
     assert!(records.iter().all(|&tested| tested >= 1.0));
     assert_exact(&graph, &setup);
 }
-
-/// Clip vectors times a power of two are the same view; large ones leave 128 bits.
-#[test]
-fn views_beyond_128_bits_give_the_same_picture() {
-    let mut dice = Dice::new(5);
-    for _ in 0..6 {
-        let graph = random_graph(&mut dice, 3);
-        let eye = [(); 3].map(|()| f64::from(dice.below(33)) / 2.0 - 4.0);
-        let target = [eye[0] + 1.0, eye[1], eye[2]];
-        let setup = set_up(&camera(eye, target, [0.0, 0.0, 1.0], 90.0, 16), 3).without_detail();
-        let largest = |setup: &FrameSetup| {
-            let edges = setup.edge_clip.iter().flatten().map(|c| c.abs()).max();
-            edges
-                .into_iter()
-                .chain(setup.origin_clip.map(i64::abs))
-                .max()
-                .expect("some")
-        };
-        let spare = largest(&setup).leading_zeros() - 3;
-        let mut scaled = setup.clone();
-        scaled.origin_clip = setup.origin_clip.map(|c| c << spare);
-        scaled.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
-        assert_eq!(draw(&graph, &setup), draw(&graph, &scaled));
-        assert_exact(&graph, &scaled);
-    }
-}

@@ -17,48 +17,40 @@ fn trap_of(bits: u32, run: impl Fn(&mut Datapath<NoProbe>)) -> Option<Trap> {
 fn a_trap_names_operation_place_record_and_width() {
     for bits in widths() {
         let wide_bits = (2 * bits).min(64);
-        let end = |width: u32, low: bool| {
-            let end = if low { least(width) } else { greatest(width) };
-            i64::try_from(end).expect("64 bits at most")
-        };
-        let expected = |op, bits| {
+        let number = |end: i128| i64::try_from(end).expect("64 bits at most");
+        let (max, min) = (
+            Word::of(number(greatest(bits))),
+            Word::of(number(least(bits))),
+        );
+        let (one, wide) = (Word::of(1), WideWord::of(number(greatest(wide_bits))));
+        type Run<'r> = &'r dyn Fn(&mut Datapath<NoProbe>);
+        let runs: [(TrapOp, u32, Run<'_>); 9] = [
+            (TrapOp::Add, bits, &|dp| _ = dp.add(max, one)),
+            (TrapOp::Sub, bits, &|dp| _ = dp.sub(min, one)),
+            (TrapOp::Sub, bits, &|dp| _ = dp.neg(min)),
+            (TrapOp::ShiftLeft, bits, &|dp| _ = dp.shl(max, 1)),
+            (TrapOp::ShiftLeft, bits, &|dp| _ = dp.shl(one, u32::MAX)),
+            (TrapOp::ShiftLeft, bits, &|dp| _ = dp.shift_in(min, true)),
+            (TrapOp::Add, wide_bits, &|dp| _ = dp.add(wide, wide)),
+            (TrapOp::Load, bits, &|dp| _ = dp.load(i64::MIN)),
+            (TrapOp::Load, wide_bits, &|dp| _ = dp.load_wide(i64::MAX)),
+        ];
+        // 64 bits hold whatever is loaded.
+        let is_possible =
+            |(op, bits, _): &(TrapOp, u32, Run<'_>)| *op != TrapOp::Load || *bits < 64;
+        for (op, bits_of_op, run) in runs.into_iter().filter(is_possible) {
             let place = StageLevel {
                 stage: Stage::VertexPool,
                 level: 5,
             };
-            let record = 41;
-            Some(Trap {
+            let expected = Trap {
                 op,
                 place,
-                record,
-                bits,
-            })
-        };
-        let (max, min) = (Word::of(end(bits, false)), Word::of(end(bits, true)));
-        let one = Word::of(1);
-        let found = trap_of(bits, |dp| _ = dp.add(max, one));
-        assert_eq!(found, expected(TrapOp::Add, bits));
-        let found = trap_of(bits, |dp| _ = dp.sub(min, one));
-        assert_eq!(found, expected(TrapOp::Sub, bits));
-        let found = trap_of(bits, |dp| _ = dp.neg(min));
-        assert_eq!(found, expected(TrapOp::Sub, bits));
-        let found = trap_of(bits, |dp| _ = dp.shl(max, 1));
-        assert_eq!(found, expected(TrapOp::ShiftLeft, bits));
-        let found = trap_of(bits, |dp| _ = dp.shl(one, u32::MAX));
-        assert_eq!(found, expected(TrapOp::ShiftLeft, bits));
-        let found = trap_of(bits, |dp| _ = dp.shift_in(min, true));
-        assert_eq!(found, expected(TrapOp::ShiftLeft, bits));
-        if bits < 64 {
-            let found = trap_of(bits, |dp| _ = dp.load(i64::MIN));
-            assert_eq!(found, expected(TrapOp::Load, bits));
+                record: 41,
+                bits: bits_of_op,
+            };
+            assert_eq!(trap_of(bits, run), Some(expected));
         }
-        if wide_bits < 64 {
-            let found = trap_of(bits, |dp| _ = dp.load_wide(i64::MAX));
-            assert_eq!(found, expected(TrapOp::Load, wide_bits));
-        }
-        let wide = WideWord::of(end(wide_bits, false));
-        let found = trap_of(bits, |dp| _ = dp.add(wide, wide));
-        assert_eq!(found, expected(TrapOp::Add, wide_bits));
     }
 }
 

@@ -35,7 +35,6 @@ fn a_wrong_name_is_told_before_other_scenes_are_made() {
 mod unix {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt;
-    use std::os::unix::fs::{PermissionsExt, symlink};
 
     use super::*;
 
@@ -92,29 +91,6 @@ mod unix {
             "{}",
             stderr_of(&assert)
         );
-    }
-
-    #[test]
-    fn links_stay_and_modes_are_kept() {
-        let folder = folder();
-        let at = |name: &str| folder.path().join(name);
-        let draw = ["render", SCENE, "--size", "16", "-o", "link.png", "--force"];
-        fs::write(at("real.png"), b"old").unwrap();
-        fs::set_permissions(at("real.png"), fs::Permissions::from_mode(0o600)).unwrap();
-        symlink("real.png", at("link.png")).unwrap();
-        run(folder.path(), &draw).success();
-        assert!(fs::symlink_metadata(at("link.png")).unwrap().is_symlink());
-        assert_eq!(&fs::read(at("real.png")).unwrap()[1..4], b"PNG");
-        let mode = fs::metadata(at("real.png")).unwrap().permissions().mode();
-        assert_eq!(mode & 0o777, 0o600);
-        // What is no file is not replaced by one.
-        symlink("/dev/full", at("full.png")).unwrap();
-        let assert = run(
-            folder.path(),
-            &["render", SCENE, "-o", "full.png", "--force"],
-        )
-        .code(1);
-        assert!(stderr_of(&assert).contains("not a regular file"));
     }
 
     #[test]
