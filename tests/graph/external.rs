@@ -6,7 +6,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use shiftvox::graph::{
     BuildError, BuildOptions, Builder, ExternalBuilder, ExternalError, ExternalOptions,
-    ExternalReport, Normals, PackedNormal, Silent, Voxel, vxg,
+    ExternalReport, Normals, Silent, Voxel, vxg,
 };
 use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::generate::Spec;

@@ -218,16 +218,14 @@ fn two_voxels_by_hand() {
     let blended = |upper: u8, lower: u8| {
         let mut graph = opacities_of(graph.clone(), &[[0; 3]]);
         let mut opacity = graph.opacity.to_vec();
-        let top = cells(&graph)
-            .iter()
-            .find(|c| c.1[2] == 7)
-            .expect("a voxel")
-            .0;
-        let bottom = cells(&graph)
-            .iter()
-            .find(|c| c.1[2] == 0)
-            .expect("a voxel")
-            .0;
+        let of_height = |z: i64| {
+            cells(&graph)
+                .iter()
+                .find(|cell| cell.1[2] == z)
+                .expect("a voxel")
+                .0
+        };
+        let (top, bottom) = (of_height(7), of_height(0));
         // Seen from above: the high side of z. Other sides must not count, as they are not opaque.
         opacity[top as usize] = Opacity([238, 238, upper << 4 | 15]);
         opacity[bottom as usize] = Opacity([238, 238, lower << 4 | 15]);
