@@ -70,27 +70,6 @@ proptest! {
     }
 }
 
-#[test]
-fn small_objects_of_every_depth() {
-    let row = |length: i32| -> Vec<Voxel> {
-        (0..length)
-            .map(|i| Voxel {
-                index: [-i, i, 7],
-                color: [i as u8, 255 - i as u8, 9],
-                normal: None,
-            })
-            .collect()
-    };
-    for length in [1, 2, 3, 4, 5, 8, 9, 16, 17, 33, 65] {
-        let voxels = row(length);
-        for memory in MEMORY {
-            let (file, _) = external(&voxels, memory, Normals::FromSurface);
-            let expected = in_memory(&voxels, Normals::FromSurface);
-            assert_eq!(difference(&file, &expected), None, "{length}, {memory}");
-        }
-    }
-}
-
 /// Solids, walls, wires and hills, cut in blocks of one cluster and more.
 #[test]
 fn generated_scenes_are_the_same_in_any_memory() {

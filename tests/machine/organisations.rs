@@ -7,6 +7,7 @@ use shiftvox::frame::Frame;
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{FrameSetup, SetupOptions};
 
+use crate::common::stat;
 use crate::scenes::*;
 
 fn machine(organisation: Organisation) -> Machine {
@@ -16,112 +17,62 @@ fn machine(organisation: Organisation) -> Machine {
     })
 }
 
-/// What the organisation is for: fewer reads and writes of the same picture.
-#[test]
-fn parents_are_stored_less_often_and_leaves_are_not_read() {
+/// Reads and writes of a picture by memory: the stack, nodes, fill vectors; and its statistics.
+fn accesses(organisation: Organisation) -> ([(u64, u64); 3], impl Fn(&str) -> u64) {
     let graph = graph_of_spec("gen:terrain,depth=7");
     let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
     let options = SetupOptions::default();
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    let count = |stack, leaf_masks| {
-        let organisation = Organisation {
-            stack,
-            leaf_masks,
-            ..Organisation::default()
-        };
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn =
-            machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
-        let (stats, counter) = drawn.unwrap();
-        let of = |memory| {
-            let all = counter.accesses_by(|cell| cell.memory);
-            all.get(&memory).map_or((0, 0), |a| (a.reads, a.writes))
-        };
-        let stat = |wanted: &str| stats.iter().find(|(name, _)| *name == wanted).unwrap().1;
-        let (stored, loaded) = of(Memory::Stack);
-        assert_eq!(stored, loaded, "what is stored is loaded");
-        (
-            stored,
-            of(Memory::Node).0,
-            stat("subdivided"),
-            stat("records"),
-            stat("deepest_stack"),
-        )
-    };
-    let (stored, read, subdivided, records, _) = count(StackHolds::Children, false);
-    assert_eq!(stored, records);
-    assert!(read <= records && read > subdivided);
-    let (stored, read, subdivided, records, deepest) = count(StackHolds::Parents, true);
-    assert_eq!(read, subdivided, "only what is subdivided is read");
-    assert!(stored < subdivided, "a last child's parent is not stored");
-    assert!(2 * subdivided < records, "{subdivided} of {records}");
-    assert!(deepest <= u64::from(graph.depth), "{deepest}");
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn =
+        machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
+    let (stats, counter) = drawn.unwrap();
+    let all = counter.accesses_by(|cell| cell.memory);
+    let of = |memory| all.get(&memory).map_or((0, 0), |of| (of.reads, of.writes));
+    let all = [Memory::Stack, Memory::Node, Memory::FillVector].map(of);
+    (all, move |name| stat(&stats, name))
 }
 
-/// What each further setting is for, on the same picture.
+/// What each setting is for, on the same picture.
 #[test]
-fn what_is_hidden_is_not_read_and_what_is_known_is_not_stored() {
-    let graph = graph_of_spec("gen:terrain,depth=7");
-    let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
-    let options = SetupOptions::default();
-    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    let reads = |organisation: Organisation| {
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn =
-            machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
-        let all = drawn.unwrap().1.accesses_by(|cell| cell.memory);
-        let of = |memory: Memory| all.get(&memory).map_or((0, 0), |of| (of.reads, of.writes));
-        (
-            of(Memory::Stack).0,
-            of(Memory::Node).0,
-            of(Memory::FillVector),
-        )
-    };
-    let parents = Organisation {
-        stack: StackHolds::Parents,
-        leaf_masks: true,
-        ..Organisation::default()
-    };
-    let (stored, nodes, fill) = reads(parents);
-    let path = Organisation {
-        stack: StackHolds::Path,
-        ..parents
-    };
+fn each_setting_saves_reads_and_writes() {
+    let mut organisation = Organisation::default();
+    let ([stack, nodes, _], count) = accesses(organisation);
+    assert_eq!(stack, (count("records"), count("records")));
+    assert!(nodes.0 <= count("records") && nodes.0 > count("subdivided"));
+
+    (organisation.stack, organisation.leaf_masks) = (StackHolds::Parents, true);
+    let (parents, count) = accesses(organisation);
+    let [stack, nodes, _] = parents;
     assert_eq!(
-        reads(path),
-        (stored, nodes, fill),
-        "the same, of fewer bits"
+        nodes.0,
+        count("subdivided"),
+        "only what is subdivided is read"
     );
-    let unread = Organisation {
-        hidden_unread: true,
-        ..path
-    };
-    let seen = reads(unread);
-    assert!(3 * seen.1 < 2 * nodes, "{} of {nodes} nodes", seen.1);
-    let bricks = Organisation {
-        bricks: true,
-        ..unread
-    };
-    let of_bricks = reads(bricks);
     assert!(
-        10 * of_bricks.1 < 7 * seen.1,
-        "{} of {} words",
-        of_bricks.1,
-        seen.1
+        stack.0 == stack.1 && stack.0 < count("subdivided"),
+        "a last child's parent is not stored"
     );
-    let joined = Organisation {
-        joined_fill: true,
-        ..unread
-    };
-    let of_joined = reads(joined);
-    assert_eq!((of_joined.0, of_joined.1), (seen.0, seen.1));
-    let (before, after) = (seen.2, of_joined.2);
-    assert!(2 * after.0 < before.0, "{} of {} reads", after.0, before.0);
+    assert!(2 * count("subdivided") < count("records"));
+    assert!(count("deepest_stack") <= 7);
+
+    organisation.stack = StackHolds::Path;
+    assert_eq!(accesses(organisation).0, parents, "the same, of fewer bits");
+
+    organisation.hidden_unread = true;
+    let unread = accesses(organisation).0;
+    assert!(3 * unread[1].0 < 2 * nodes.0, "{unread:?} {nodes:?}");
+
+    organisation.bricks = true;
+    let bricks = accesses(organisation).0;
+    assert!(10 * bricks[1].0 < 7 * unread[1].0, "{bricks:?} {unread:?}");
+
+    (organisation.bricks, organisation.joined_fill) = (false, true);
+    let joined = accesses(organisation).0;
+    assert_eq!(joined[..2], unread[..2]);
     assert!(
-        4 * after.1 < 3 * before.1,
-        "{} of {} writes",
-        after.1,
-        before.1
+        2 * joined[2].0 < unread[2].0 && 4 * joined[2].1 < 3 * unread[2].1,
+        "{joined:?} {unread:?}"
     );
 }
 

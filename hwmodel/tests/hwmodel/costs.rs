@@ -2,7 +2,7 @@
 
 use crate::costs_common::{near, shipped};
 use hwmodel::cost::{
-    Costing, Goal, MinMaxUnits, ShiftUnits, Store, Stores, Tally, Unit, area_of, energy_of,
+    Costing, Goal, Line, MinMaxUnits, ShiftUnits, Store, Stores, Tally, Unit, area_of, energy_of,
     energy_of_tallies, memory_energy_of, operation_of,
 };
 use hwmodel::count::Counter;
@@ -23,19 +23,11 @@ fn energy_line_by_line() {
     counter.op(OpClass::Compare, 32, PLACE, 7);
     let table = shipped();
     let sum = energy_of(&counter, &table, Costing::default()).unwrap();
-    let lines: Vec<_> = sum
-        .lines
-        .iter()
-        .map(|l| (l.operation.as_str(), l.width, l.times))
-        .collect();
+    let line = |line: &Line| format!("{} {} {}", line.operation, line.width, line.times);
+    let lines: Vec<String> = sum.lines.iter().map(line).collect();
     assert_eq!(
         lines,
-        [
-            ("add", 32, 1000),
-            ("less", 32, 7),
-            ("shift_wires", 33, 500),
-            ("xor", 4, 10)
-        ]
+        ["add 32 1000", "less 32 7", "shift_wires 33 500", "xor 4 10"]
     );
     near(sum.lines[0].total, 100.0);
     near(sum.total, 100.0 + 7.0 * 0.0795 + 10.0 * 0.0111 / 2.0);
@@ -52,20 +44,15 @@ fn energy_line_by_line() {
         for shifts in [ShiftUnits::Wires, ShiftUnits::Variable] {
             let operation = operation_of(class, shifts);
             for width in [3, 4, 7, 16, 24, 33, 48, 64, 65, 96, 128] {
+                let is_there = |goal| {
+                    table.area(operation, width, goal).is_ok()
+                        && table.delay(operation, width, goal).is_ok()
+                };
+                let all = is_there(Goal::Area) && is_there(Goal::Delay);
                 assert!(
-                    table.energy(operation, width).is_ok(),
+                    all && table.energy(operation, width).is_ok(),
                     "{operation} {width}"
                 );
-                for goal in [Goal::Area, Goal::Delay] {
-                    assert!(
-                        table.area(operation, width, goal).is_ok(),
-                        "{operation} {width}"
-                    );
-                    assert!(
-                        table.delay(operation, width, goal).is_ok(),
-                        "{operation} {width}"
-                    );
-                }
             }
         }
     }

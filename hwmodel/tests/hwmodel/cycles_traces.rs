@@ -42,92 +42,66 @@ fn recorded(limit: TraceLimit) -> (Hardware, Recorder) {
     (hardware, recorder)
 }
 
-/// A dump, read as IEEE 1364 has it: names and widths by path, and every
-/// wire's values by time.
-struct Dump {
-    wires: BTreeMap<String, (u32, Vec<(u64, u64)>)>,
-}
+/// A dump, read as IEEE 1364 has it: width and values by time of every wire, by path.
+#[derive(Default)]
+struct Dump(BTreeMap<String, (u32, Vec<(u64, u64)>)>);
 
 impl Dump {
     fn read(text: &str) -> Self {
-        let mut tokens = text.split_whitespace();
-        let mut scopes: Vec<String> = Vec::new();
-        let mut by_id: BTreeMap<String, String> = BTreeMap::new();
-        let mut wires = BTreeMap::new();
-        let mut timescale = None;
-        // Declarations.
-        loop {
-            let keyword = tokens.next().expect("$enddefinitions");
-            let words: Vec<&str> = tokens
-                .by_ref()
-                .take_while(|&token| token != "$end")
-                .collect();
-            match keyword {
-                "$comment" => {}
-                "$timescale" => timescale = Some(words.join(" ")),
-                "$scope" => {
-                    assert_eq!((words[0], words.len()), ("module", 2));
-                    scopes.push(words[1].to_owned());
-                }
-                "$upscope" => drop(scopes.pop().expect("a scope")),
-                "$var" => {
-                    let [kind, bits, id, name] = words[..] else {
-                        panic!("{words:?}")
-                    };
-                    assert_eq!(kind, "wire");
+        let (declared, values) = text.split_once("$enddefinitions $end").unwrap();
+        assert!(declared.contains("$timescale 1 ns $end"));
+        let (mut scopes, mut by_id) = (Vec::new(), BTreeMap::new());
+        let mut dump = Self::default();
+        for declaration in declared.split("$end").map(str::trim) {
+            let words: Vec<&str> = declaration.split_whitespace().collect();
+            match words[..] {
+                ["$scope", "module", name] => scopes.push(name),
+                ["$upscope"] => drop(scopes.pop().unwrap()),
+                ["$var", "wire", bits, id, name] => {
                     assert!(id.bytes().all(|byte| (33..=126).contains(&byte)));
                     let path = format!("{}.{name}", scopes.join("."));
-                    assert!(
-                        by_id.insert(id.to_owned(), path.clone()).is_none(),
-                        "{id} twice"
-                    );
-                    wires.insert(path, (bits.parse().unwrap(), Vec::new()));
+                    assert!(by_id.insert(id, path.clone()).is_none(), "{id} twice");
+                    dump.0.insert(path, (bits.parse().unwrap(), Vec::new()));
                 }
-                "$enddefinitions" => break,
-                other => panic!("{other}"),
+                _ => assert!(matches!(
+                    words.first(),
+                    None | Some(&"$comment" | &"$timescale")
+                )),
             }
         }
         assert!(scopes.is_empty());
-        assert_eq!(timescale.as_deref(), Some("1 ns"));
-        // Values.
         let mut now = 0;
+        let mut tokens = values.split_whitespace();
         while let Some(token) = tokens.next() {
-            let (value, id) = match token.as_bytes()[0] {
-                b'$' => {
-                    assert!(token == "$dumpvars" || token == "$end", "{token}");
-                    continue;
-                }
-                b'#' => {
-                    let time = token[1..].parse().unwrap();
+            let (first, rest) = token.split_at(1);
+            let (value, id) = match first {
+                "$" => continue,
+                "#" => {
+                    let time = rest.parse().unwrap();
                     assert!(time > now || now == 0, "time goes on");
                     now = time;
                     continue;
                 }
-                b'b' => {
-                    let value = u64::from_str_radix(&token[1..], 2).unwrap();
-                    (value, tokens.next().expect("an id"))
-                }
-                _ => (token[..1].parse().unwrap(), &token[1..]),
+                "b" => (
+                    u64::from_str_radix(rest, 2).unwrap(),
+                    tokens.next().unwrap(),
+                ),
+                _ => (first.parse().unwrap(), rest),
             };
-            let (bits, values): &mut (u32, Vec<(u64, u64)>) = wires.get_mut(&by_id[id]).unwrap();
+            let (bits, values) = dump.0.get_mut(&by_id[id]).unwrap();
             assert!(
                 *bits == 64 || value >> *bits == 0,
                 "{id}: {value} in {bits} bits"
             );
             values.push((now, value));
         }
-        Self { wires }
+        dump
     }
 
     /// A wire's value at a time.
     fn at(&self, path: &str, time: u64) -> u64 {
-        let (_, values) = &self.wires[path];
-        values
-            .iter()
-            .take_while(|(t, _)| *t <= time)
-            .last()
-            .expect("a value")
-            .1
+        let values = self.0[path].1.iter();
+        values.take_while(|(t, _)| *t <= time).last().unwrap().1
     }
 }
 
@@ -137,7 +111,7 @@ fn the_dump_says_what_the_visits_say() {
     let mut text = Vec::new();
     recorder.write_vcd(&hardware, &mut text).unwrap();
     let dump = Dump::read(&String::from_utf8(text).unwrap());
-    assert_eq!(dump.wires.len(), 2 * (2 + Stage::ALL.len() + 3 * 3));
+    assert_eq!(dump.0.len(), 2 * (2 + Stage::ALL.len() + 3 * 3));
     assert!(recorder.visits().len() == 4 * 73);
     let mut waits = 0;
     for visit in recorder.visits() {
@@ -175,7 +149,7 @@ fn the_dump_says_what_the_visits_say() {
         .map(|visit| visit.ends)
         .max()
         .unwrap();
-    for (path, (bits, _)) in &dump.wires {
+    for (path, (bits, _)) in &dump.0 {
         let rest = if *bits == 4 { 15 } else { 0 };
         assert!(*bits == 64 || dump.at(path, end) == rest, "{path}");
     }
@@ -218,27 +192,21 @@ fn trace_events_are_json_and_complete() {
 
 #[test]
 fn a_limit_keeps_the_first_records_or_a_window() {
-    let first = recorded(TraceLimit {
-        records: 5,
-        ..TraceLimit::default()
-    })
-    .1;
+    let visits = |records: u64, cycles: std::ops::Range<u64>| {
+        let (_, recorder) = recorded(TraceLimit { records, cycles });
+        recorder.visits().to_vec()
+    };
+    let first = visits(5, TraceLimit::default().cycles);
     assert!(
         first
-            .visits()
             .iter()
             .all(|visit| visit.record < 5 || visit.record == START)
     );
-    assert!(first.visits().iter().any(|visit| visit.record == 4));
-    let window = recorded(TraceLimit {
-        records: u64::MAX,
-        cycles: 100..150,
-    })
-    .1;
-    assert!(!window.visits().is_empty());
+    assert!(first.iter().any(|visit| visit.record == 4));
+    let window = visits(u64::MAX, 100..150);
+    assert!(!window.is_empty());
     assert!(
         window
-            .visits()
             .iter()
             .all(|visit| (100..150).contains(&visit.begins))
     );
