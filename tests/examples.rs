@@ -11,7 +11,7 @@ fn built() -> PathBuf {
     folder.join("examples")
 }
 
-/// Runs an example in an empty folder; the files that it left, and what it printed.
+/// Runs an example in an empty folder; returns the files that it left and its output.
 fn run(name: &str) -> (Vec<String>, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let program = built().join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
@@ -41,7 +41,7 @@ fn run(name: &str) -> (Vec<String>, String) {
     (files, said)
 }
 
-/// Name, files that it leaves, and a part of what it prints.
+/// Name, files that it leaves, and a part of its output.
 const EXAMPLES: [(&str, &str, &str); 8] = [
     ("picture", "picture.png", "hash"),
     (

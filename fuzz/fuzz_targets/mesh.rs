@@ -1,5 +1,5 @@
-//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and
-//! of a small mesh voxels; never a panic, never memory that the file does not justify.
+//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and voxels of a small mesh. No panic, and no
+//! memory that the file does not justify.
 #![no_main]
 
 use std::io;

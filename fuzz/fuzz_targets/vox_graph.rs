@@ -1,5 +1,5 @@
-//! A `.vox` whose scene graph shares nodes: a few bytes can place a model without end, which bytes at random never do. It is
-//! read for what it comes to, or refused, within the voxels that are wanted.
+//! A `.vox` whose scene graph shares nodes: a few bytes can place a model without end, which bytes at random never do.
+//! It is read or rejected, within the limit of voxels.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

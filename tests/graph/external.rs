@@ -208,7 +208,7 @@ fn files_of_every_format_are_built_the_same() {
     assert!(refused.unwrap_err().to_string().contains(".vxg graph"));
 }
 
-/// What 32 bits cannot number is refused before anything is made of it.
+/// A scene of more nodes than 32 bits can number is rejected at once.
 #[test]
 fn scenes_beyond_all_numbers_are_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();

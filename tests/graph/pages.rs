@@ -61,7 +61,7 @@ fn outside_view(graph: &Graph, pixels: u32) -> FrameSetup {
     .unwrap()
 }
 
-/// What a frame touched.
+/// Nodes and pages that a frame touched.
 struct Touched {
     /// Distinct nodes whose mask or child list the machine fetched.
     fetched: u64,

@@ -36,7 +36,7 @@ fn at(index: [i32; 3]) -> Voxel {
     }
 }
 
-/// What each index shows, by walking.
+/// Colour and normal of each index, found by walking.
 fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
     let mut seen = BTreeMap::new();
     for cell in graph.voxels() {
@@ -317,8 +317,8 @@ fn a_sierpinski_tetrahedron_is_one_node() {
     assert_eq!(sierpinski(30).voxels().take(1000).count(), 1000);
 }
 
-/// Random graphs, cyclic ones among them, with their lists side by side: the same cells and colours; a node is where
-/// `links` had it.
+/// Random graphs, some of them cyclic, have the same cells and colours when their lists lie side by side. A node is
+/// where `links` had it.
 #[test]
 fn lists_side_by_side_are_the_same_object() {
     for seed in 1..60u64 {

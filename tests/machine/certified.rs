@@ -18,8 +18,8 @@ use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 /// Samples that are compared unless the environment sets another number.
 const SAMPLES: u64 = 4_000_000;
 
-/// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or
-/// in its middle, looking along an axis or at a corner.
+/// A camera anywhere, or where ties abound: on a voxel's corner, edge, face or in its middle, looking along an axis or
+/// at a corner.
 fn camera(graph: &Graph, dice: &mut Dice) -> Camera {
     let (corner, side) = cube(graph);
     let voxel = any_voxel(graph, dice);

@@ -89,7 +89,7 @@ fn cycles_count_what_a_counter_counts() {
     }
 }
 
-/// Lanes help, until the span or the order stands in the way.
+/// More lanes save cycles down to the span.
 #[test]
 fn cycles_fall_with_lanes_down_to_the_span() {
     let (graph, setup) = terrain(&SetupOptions::default(), 128);

@@ -1,8 +1,8 @@
 //! A tiny scene on simulated hardware, worked out by hand from the rules of `hwmodel::cycles` for each organisation.
 //!
-//! Three voxels of a cube of 4 x 4 x 4, seen from the front at 4 x 4 samples: the root A has one child B, and this the
-//! voxels C and D, seen at samples (0, 2) and (0, 3), and E behind D. Every operation is a wire and there is one context,
-//! so a visit takes a cycle, and:
+//! Three voxels of a cube of 4 x 4 x 4, seen from the front at 4 x 4 samples: the root A has one child B. Its children
+//! are the voxels C and D, seen at samples (0, 2) and (0, 3), and E behind D. Every operation is a wire and there is
+//! one context, so a visit takes a cycle, and:
 //!
 //! - one more for each further access at the port of a memory that is read or written several times;
 //! - 11 where a line of nodes (A's, which holds all) or of attributes (C's, which holds all) is missed;
@@ -150,7 +150,7 @@ fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycle
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-    // What the visits should be, from the lists.
+    // The expected visits.
     let starts = organisation.tile_levels == 0;
     let lines = turns.lines().skip(1).enumerate();
     let listed = lines.flat_map(|(number, line)| {

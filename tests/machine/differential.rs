@@ -1,9 +1,9 @@
 //! One property: every way to draw a frame gives the same frame.
 //!
-//! [`Scene::agree`] draws a frame on the machine and compares with it: the oracle in some pool of threads, the fast
-//! engine with each instruction set, the other cage, the machine that rejects nothing, the machine in another
-//! organisation, and the machine on simulated hardware. Frames are of every scene of the table, of random graphs, and
-//! of voxel files in the folder `SHIFTVOX_DATA`.
+//! [`Scene::agree`] draws a frame on the machine. It compares the oracle in a pool of threads, the fast engine with
+//! each instruction set, the other cage, and the machine without rejection, in another organisation and on simulated
+//! hardware. Frames are of every scene of the table, of random graphs, and of voxel files in the folder
+//! `SHIFTVOX_DATA`.
 //!
 //! `SHIFTVOX_ROUNDS` sets the number of cameras at each place, `SHIFTVOX_CASES` multiplies the random frames.
 
@@ -166,7 +166,7 @@ fn same(what: &str, frame: &Frame, right: &Frame) -> Result<(), String> {
     ))
 }
 
-/// The fast engine's frame, and whether it was drawn by the fallback. What it draws in colours are the nodes' colours.
+/// The fast engine's frame, and whether it was drawn by the fallback. Its picture in colours has the nodes' colours.
 fn draw_fast(
     options: FastOptions,
     view: &GraphView<'_>,

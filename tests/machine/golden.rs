@@ -1,5 +1,5 @@
-//! Golden pictures: what is drawn today is what was drawn when `tests/golden/pictures.txt` was written, in every build
-//! profile and on any number of threads. After a change that is meant to show:
+//! Golden pictures: the rows of `tests/golden/pictures.txt` are drawn to the same bits in every build profile and on
+//! any number of threads. After a change that is meant to show:
 //!
 //! ```text
 //! SHIFTVOX_BLESS=1 cargo test --release -p shiftvox --test machine golden
@@ -141,7 +141,7 @@ fn pictures_are_the_golden_ones() {
 
 /// Frames that [`RECORDED_SAMPLES`] is of.
 const RECORDED_FRAMES: u32 = 400;
-/// XXH3-128 of what the image-order paper's rules draw of them, or how they end.
+/// XXH3-128 of their pictures under the image-order paper's rules, or of their errors.
 const RECORDED_SAMPLES: u128 = 0x18d0_8acf_1d8c_47b5_7535_f004_11f5_07de;
 
 /// The rules `any` and `center`, at all tolerances, in words of many widths.

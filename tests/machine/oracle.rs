@@ -86,7 +86,7 @@ fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {
     (0..3).map(|c| &a[c] * &b[c]).sum()
 }
 
-/// The view in big integers, solved anew from the set-up's clip vectors.
+/// The view in big integers, solved from the set-up's clip vectors.
 struct Exact {
     /// Determinant of the edges, made positive.
     whole: BigInt,
@@ -239,7 +239,7 @@ fn random_graphs_from_random_cameras() {
     assert!(drawn > 500, "only {drawn} samples show anything");
 }
 
-/// Coarse clip vectors, oblong pictures, several samples a pixel, a scene of one voxel.
+/// Coarse clip vectors, oblong pictures, several samples per pixel, a scene of one voxel.
 #[test]
 fn coarse_views_are_exact_for_their_own_integers() {
     let mut dice = Dice::new(6);

@@ -83,8 +83,7 @@ fn the_criterion_agrees_with_rays() {
     assert!(visits > 1000, "only {visits} pairs were met");
 }
 
-/// Which arrays are occlusion orders: those in which no child comes after
-/// one that it may hide, that is, whose bits are a part of its own.
+/// An array is an occlusion order if no child comes after one that it may hide: one whose bits include its own.
 #[test]
 fn other_arrays_are_told_from_occlusion_orders() {
     let mut wrong = 0;

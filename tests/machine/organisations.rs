@@ -1,4 +1,4 @@
-//! What each setting of an organisation is for: fewer reads and writes of the same picture, and tiles one after the other.
+//! Each setting of an organisation saves reads and writes of the same picture. Tiles are drawn one after the other.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Organisation, StackHolds};
@@ -17,7 +17,7 @@ fn machine(organisation: Organisation) -> Machine {
     })
 }
 
-/// Reads and writes of a picture by memory: the stack, nodes, fill vectors; and its statistics.
+/// Reads and writes of the stack, nodes and fill vectors for a picture, and its statistics.
 fn accesses(organisation: Organisation) -> ([(u64, u64); 3], impl Fn(&str) -> u64) {
     let graph = graph_of_spec("gen:terrain,depth=7");
     let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
@@ -33,7 +33,7 @@ fn accesses(organisation: Organisation) -> ([(u64, u64); 3], impl Fn(&str) -> u6
     (all, move |name| stat(&stats, name))
 }
 
-/// What each setting is for, on the same picture.
+/// The settings in turn, on the same picture.
 #[test]
 fn each_setting_saves_reads_and_writes() {
     let mut organisation = Organisation::default();

@@ -1,4 +1,4 @@
-//! The scenes that every engine must draw alike, listed once.
+//! The scenes that every engine must draw to the same bits.
 //!
 //! Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic, 30 levels
 //! deep, a million voxels from the origin, and voxel files.
@@ -13,7 +13,7 @@ use crate::scenes::{graph_of_file, graph_of_spec};
 
 /// A scene of the table. Its graph is made when it is first needed.
 pub(crate) struct TestScene {
-    /// What messages call it.
+    /// The name in messages.
     pub(crate) name: &'static str,
     source: Source,
     graph: OnceLock<Graph>,

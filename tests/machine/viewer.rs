@@ -75,7 +75,7 @@ fn fast() -> Fast {
     Fast::new(options, Box::new(Machine::default()))
 }
 
-/// What a new engine draws into a new frame.
+/// The frame of a new engine.
 fn anew(graph: &Graph, setup: &FrameSetup, with_records: bool) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, with_records);
     let drawn = fast().render(&graph.view(), setup, &mut frame);
@@ -87,12 +87,12 @@ fn unchanged(stats: &Stats) -> u64 {
     stat(stats, FRAMES_UNCHANGED)
 }
 
-/// What may happen between two pictures.
+/// An event between two pictures.
 #[derive(Debug, Clone, Copy)]
 enum Step {
     /// A camera and settings of those that there are; whether it is counted.
     Draw(usize, usize, bool),
-    /// The viewer is asked to forget.
+    /// The viewer drops its frame.
     Forget,
     /// The engine fails once.
     Fail(usize, usize),

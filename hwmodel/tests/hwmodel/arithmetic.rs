@@ -170,7 +170,7 @@ proptest! {
         check("shr", bits, halved(a, places), |dp| dp.shr(WideWord::of(a), places));
     }
 
-    /// The host may hand over any 64-bit number; what does not fit overflows.
+    /// The host may load any 64-bit number. One that does not fit overflows.
     #[test]
     fn loads(bits in widths(), value in any::<i64>(), less in 0..64u32) {
         let value = value >> less;

@@ -81,8 +81,7 @@ proptest! {
     }
 }
 
-/// Long enough that times are numbered anew many times over, with more lines
-/// than the first table has room for.
+/// Long enough that times are renumbered many times, with more lines than the first table holds.
 #[test]
 fn a_long_run_agrees_too() {
     let mut state = 12345u64;

@@ -1,5 +1,5 @@
-//! What the tests of the datapath share: a reference in 128-bit integers,
-//! numbers worth testing, and a probe that writes everything down.
+//! Helpers of the tests of the datapath: a reference in 128-bit integers, edge cases, and a probe that records every
+//! event.
 
 use hwmodel::{
     Datapath, Format, MAX_BITS, MIN_BITS, Memory, NoProbe, Number, OpClass, Overflow, Probe,
@@ -53,7 +53,7 @@ pub(crate) fn widths() -> std::ops::RangeInclusive<u32> {
     MIN_BITS..=MAX_BITS
 }
 
-/// A datapath that nobody watches.
+/// A datapath without a probe.
 pub(crate) fn datapath(bits: u32, policy: Overflow) -> Datapath<NoProbe> {
     Datapath::new(format(bits), policy, NoProbe)
 }
@@ -68,8 +68,7 @@ pub(crate) fn greatest(bits: u32) -> i128 {
     (1i128 << (bits - 1)) - 1
 }
 
-/// What an exact result becomes in a word of `bits` bits, and whether it did
-/// not fit. After a trap the word is the wrapped one.
+/// An exact result in a word of `bits` bits, and whether it overflowed. After a trap the word is the wrapped one.
 pub(crate) fn fit(exact: i128, bits: u32, policy: Overflow) -> (i64, bool) {
     let overflowed = exact < least(bits) || exact > greatest(bits);
     let kept = match policy {
@@ -114,7 +113,7 @@ pub(crate) fn edge_cases(bits: u32) -> Vec<i64> {
         .to_vec()
 }
 
-/// Any number of `bits` bits, small and large ones alike.
+/// Any number of `bits` bits, small or large.
 pub(crate) fn any_value(bits: u32) -> impl Strategy<Value = i64> {
     let spare = 64 - bits;
     prop_oneof![
@@ -136,7 +135,7 @@ pub(crate) fn any_wide_pair() -> impl Strategy<Value = (u32, i64, i64)> {
     })
 }
 
-/// One thing that a probe was told.
+/// An event of a probe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Event {
     Op(OpClass, u32, StageLevel, u32),

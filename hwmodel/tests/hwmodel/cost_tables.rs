@@ -1,5 +1,4 @@
-//! Cost tables: shipped figures, what lies between them, a user's own, and
-//! what is refused.
+//! Cost tables: shipped figures, interpolation, a user's own rows, and errors.
 
 use crate::costs_common::{near, shipped};
 use hwmodel::cost::{CostError, CostTable, Fit, Goal, Quantity};
@@ -271,7 +270,7 @@ fn a_table_of_one_s_own() {
         400.0,
     );
     assert!(table.operations().contains(&"square_root"));
-    // A name that only `quadratic` has is told too, for who looks for slips.
+    // A name that only `quadratic` has is listed too.
     let listed = CostTable::empty().with_overrides("mine.toml", "quadratic = [\"ad\"]");
     assert_eq!(listed.unwrap().operations(), ["ad"]);
 }

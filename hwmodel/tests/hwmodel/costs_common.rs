@@ -1,4 +1,4 @@
-//! What the tests of costs share.
+//! Helpers of the tests of costs.
 
 use hwmodel::cost::CostTable;
 

@@ -1,4 +1,4 @@
-//! The counter against a list of what it was told.
+//! The counter against a list of its events.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 type Cells = BTreeMap<(u32, u32, Stage, OpClass), u64>;
 
-/// Keeps a map of what it is told, one call at a time.
+/// Keeps a map of all events, one call at a time.
 #[derive(Debug, Default)]
 struct Plain {
     ops: Cells,
@@ -62,7 +62,7 @@ fn compare(counter: &Counter, plain: &Plain) {
     assert_eq!(counter.widest(), widest.unwrap_or(0));
 }
 
-/// One thing that a datapath can be told to do.
+/// A call of a datapath.
 #[derive(Debug, Clone, Copy)]
 enum Act {
     Record(u32),

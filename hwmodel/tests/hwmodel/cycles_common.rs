@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use hwmodel::cycles::{Child, Hardware, ImageNode, TurnLog, Workload};
 use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 
-/// What a record does in its turn.
+/// An act of a record in its turn.
 #[derive(Debug, Clone)]
 pub(crate) enum Does {
     /// So many operations of a class and width.
@@ -20,7 +20,7 @@ pub(crate) enum Does {
     Step(Stage, u32),
 }
 
-/// A record: what it does, and its children: record, place, region.
+/// A record: its acts, and record, place and region of each child.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Node {
     pub does: Vec<Does>,

@@ -1,4 +1,4 @@
-//! Hardware descriptions: those that ship, and what is wrong with others.
+//! Hardware descriptions: the presets, and errors in others.
 use hwmodel::cycles::{Hardware, Independence, PRESETS, StackOverflow};
 use hwmodel::{OpClass, Stage};
 
@@ -47,7 +47,7 @@ fn complaint(from: &str, to: &str) -> String {
         .to_string()
 }
 
-/// What is replaced in the tiny hardware, by what, and a part of the complaint.
+/// A part of the tiny hardware, its replacement, and a part of the error.
 const WRONG: &str = r#"lanes = 1 -> lanes = 0 -> lanes is 0; it must be 1 to 256
 contexts = 1 -> contexts = 65 -> contexts is 65; it must be 1 to 64
 clock_mhz = 50.0 -> clock_mhz = nan -> clock_mhz is NaN; it must be 0.001 to 1000000
@@ -88,7 +88,7 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         assert!(text.contains(expected), "{to}: {text}");
         assert!(text.starts_with("hardware description: "), "{text}");
     }
-    // What was changed after reading is examined before anything runs.
+    // A value that was changed after reading is checked before anything runs.
     let mut hardware = Hardware::preset("tiny").unwrap();
     hardware.contexts = 0;
     assert!(hardware.check().is_err());

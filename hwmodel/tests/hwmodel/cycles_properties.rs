@@ -1,4 +1,4 @@
-//! What holds of every simulation, on random records and random hardware.
+//! Properties of every simulation, on random records and random hardware.
 use std::collections::BTreeMap;
 
 use crate::cycles_common::{Does, Listed, Node};
@@ -300,9 +300,8 @@ fn improve(hardware: &mut Hardware, which: usize) {
     }
 }
 
-/// With several contexts a better part may make a frame slower: records then
-/// meet in another order (Graham's anomalies of list scheduling). How often,
-/// and by how much, on these records; the figures stand in the model's documents.
+/// With several contexts a better part may make a frame slower: records then meet in another order (Graham's anomalies
+/// of list scheduling). The test fixes how often, and by how much, on these records.
 #[test]
 fn anomalies_with_several_contexts_are_rare_and_small() {
     let (mut slower, mut worst, mut runs) = (0, 1.0f64, 0);

@@ -1,5 +1,4 @@
-//! What a probe is told: each operation is exactly one event of its class and
-//! width (a midpoint is two), wires and constants are none.
+//! Events of a probe: one per operation, of its class and width (two for a midpoint), none for wires and constants.
 
 use crate::common::*;
 use hwmodel::count::Counter;
@@ -113,7 +112,7 @@ fn operations_of_words_alone() {
             assert_eq!(ops(bits, |dp| _ = dp.or_bits(width, 6, 3)), one);
             assert_eq!(ops(bits, |dp| _ = dp.xor_bits(width, 6, 3)), one);
         }
-        // Wires, and constants that the host hands over.
+        // Wires, and constants of the host.
         assert_eq!(ops(bits, |dp| _ = dp.shift_in(a, true)), []);
         assert_eq!(ops(bits, |dp| _ = dp.load(1 << 20)), []);
         assert_eq!(ops(bits, |dp| _ = dp.load_wide(1 << 20)), []);
@@ -183,7 +182,7 @@ fn everything<P: Probe>(dp: &mut Datapath<P>) -> Vec<i64> {
         .collect()
 }
 
-/// Panics as soon as it is told anything, but says that nobody listens.
+/// Is disabled, and panics at every event.
 struct Deaf;
 
 impl Probe for Deaf {

@@ -112,8 +112,7 @@ pub fn octree(depth: u32, is_filled: &dyn Fn([i32; 3]) -> bool) -> Graph {
     linked(depth, &nodes)
 }
 
-/// Random graphs: children may be any node, so most are cyclic; a graph ends
-/// at its depth.
+/// Random graphs. Children may be any node, so most are cyclic: a graph ends at its depth.
 pub fn any_graph(depths: std::ops::Range<u32>) -> impl Strategy<Value = Graph> {
     (depths, 1..8usize).prop_flat_map(|(depth, count)| {
         let child = prop_oneof![
@@ -167,8 +166,8 @@ pub fn any_mixed_octree(depth: u32) -> impl Strategy<Value = Graph> {
     })
 }
 
-/// Cameras about a cube of side `side`: outside, on faces and lattice points,
-/// inside; many aligned with an axis, so that ties abound.
+/// Cameras outside, inside, on faces and on lattice points of a cube of side `side`. Many are aligned with an axis, so
+/// that ties abound.
 pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
     let free = -2.0..3.0f64;
     let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
@@ -213,7 +212,7 @@ pub fn up_of(forward: DVec3) -> DVec3 {
     }
 }
 
-/// A camera at `eye` that looks at `target`, 60 degrees, square.
+/// A camera at `eye` towards `target`, 60 degrees, square.
 pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
     Camera {
         eye: DVec3::from_array(eye),
@@ -277,7 +276,7 @@ pub fn draw_with(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
     if options == MachineOptions::default() {
-        // What a test shows for the machine holds for the default engine too.
+        // Each test of the machine tests the default engine too.
         let mut fast = Frame::new(setup.width, setup.height, false);
         Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
             .render(&graph.view(), setup, &mut fast)

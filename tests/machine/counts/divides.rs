@@ -2,9 +2,8 @@
 
 use super::*;
 
-/// The one change to screen space, of the object's own record: with an
-/// infinite tolerance it is the first and the only one, and takes one divide
-/// for each vertex and coordinate that the cage has to project.
+/// With an infinite tolerance only the object's own record changes to screen space. It takes one divide per vertex and
+/// coordinate of the cage.
 #[test]
 fn only_the_change_to_screen_space_divides() {
     for (cage, vertices) in [(CageKind::Corners, 8), (CageKind::Frame, 4)] {
@@ -22,8 +21,8 @@ fn only_the_change_to_screen_space_divides() {
                 }
             }
             assert_eq!(probe.before.count(Stage::ToScreen, OpClass::DivideStep), 0);
-            // The object lies across the picture's bisectors, so that its node
-            // is the root: 4 integer bits, a bit a level, and the fraction.
+            // The object lies across the picture's bisectors, so that its node is the root: 4 integer bits, a bit per
+            // level, and the fraction.
             let steps = 4 + setup.levels + setup.format.frac();
             let first = &probe.turns[0];
             let divides = first.count(Stage::ToScreen, OpClass::DivideStep);

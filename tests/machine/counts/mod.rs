@@ -1,10 +1,9 @@
 //! How much the machine does for a record: known answers, counted while it
 //! draws.
 //!
-//! A probe of this test's own keeps the events of each record apart. What a
-//! subdivided record costs is fixed by the algorithm. `c` is the number of
-//! children that exist, `t` the number of quadtree nodes against whose
-//! bisectors a child's box is tested (one per descent, and one at the end):
+//! A probe of this test's own keeps the events of each record apart. The algorithm fixes the cost of a subdivided
+//! record. `c` is the number of children that exist, `t` the number of quadtree nodes against whose bisectors a child's
+//! box is tested (one per descent, and one at the end):
 //!
 //! | stage | corners (the image-order paper) | frame |
 //! |---|---|---|
@@ -15,10 +14,9 @@
 //! | child box, a child and coordinate | 14 min/max (7 + 7) | 6 min/max (3 + 3), 6 adds |
 //! | quadtree fit, screen space | 4 `t` compares, `t` logic of 4 bits | the same |
 //!
-//! Coordinates are two in screen space (x, y) and three in clip space (X, Y,
-//! W). In clip space the child box finds the span of W alone, and compares it
-//! once with the near plane; those of X and Y follow in the fit, relative to
-//! each bisector. Every test of the fit then takes, a coordinate:
+//! Coordinates are two in screen space (x, y) and three in clip space (X, Y, W). In clip space the child box finds the
+//! span of W alone, and compares it once with the near plane. The spans of X and Y follow in the fit, relative to each
+//! bisector. Every test of the fit then takes, a coordinate:
 //!
 //! | | corners | frame |
 //! |---|---|---|
@@ -26,14 +24,11 @@
 //! | span | 14 min/max | 6 min/max, 6 adds |
 //! | side | 2 compares | the same |
 //!
-//! and where the child goes on to the left (upper) half, its coordinates are
-//! doubled once more, by 8 shifts (4 for frames).
+//! If the child lies in the left (upper) half, its coordinates are doubled once more, by 8 shifts (4 for frames).
 //!
-//! All of that is under the image-order paper's drawing rule (`Coverage::Any`), for boxes
-//! inside the picture: one that leaves it is also compared with the picture's
-//! four edges, and the exact rule carries silhouette planes along. A screen
-//! position is divided for once, bit by bit, in a stage of its own; nothing
-//! is ever multiplied.
+//! All of that is under the image-order paper's drawing rule (`Coverage::Any`), for boxes inside the picture. A box
+//! that leaves it is also compared with the picture's four edges. The exact rule also moves silhouette planes. A screen
+//! position is divided for once, bit by bit, in a stage of its own; nothing is ever multiplied.
 
 mod divides;
 mod records;
@@ -69,7 +64,7 @@ struct Turn {
 /// Keeps the events of each record apart.
 #[derive(Debug, Default)]
 struct ByRecord {
-    /// What is done before the first record: the object's own fit.
+    /// Events before the first record: the object's own fit.
     before: Turn,
     turns: Vec<Turn>,
 }
@@ -136,9 +131,8 @@ impl Turn {
         sum(self.of(stage))
     }
 
-    /// The fits of a subdivided record's children. What comes before the
-    /// subdivision in the same stage is the record's own search for an open
-    /// sample, in case it is hidden across a bisector.
+    /// The fits of a subdivided record's children. Earlier events of that stage are the record's own search for an open
+    /// sample.
     fn children_s_fits(&self) -> Vec<Event> {
         self.events
             .iter()
@@ -260,7 +254,7 @@ fn check_centre_and_order(setup: &FrameSetup, turn: &Turn) {
     assert_eq!(turn.ops(Stage::Push), ops(&[]));
 }
 
-/// Tests of the children's fits: each looks at one quadtree node's fill vector.
+/// Tests of the children's fits: each reads one fill vector.
 fn fit_tests(turn: &Turn) -> u64 {
     turn.children_s_fits()
         .iter()

@@ -15,9 +15,8 @@ fn every_record_has_one_turn() {
     }
 }
 
-/// The image-order paper's box of a child takes 7 minima and 7 maxima a coordinate, or 10
-/// compares when the eight vertices are taken in pairs; the frame cage has no
-/// eight vertices to pair.
+/// The image-order paper's box of a child takes 7 minima and 7 maxima per coordinate, or 10 compares when the eight
+/// vertices are taken in pairs. The frame cage has no eight vertices to pair.
 #[test]
 fn ten_compares_in_pairs() {
     let pairs = Costing {

@@ -35,8 +35,7 @@ pub fn vox_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A voxel file as a graph, without normals, which no engine looks at; the
-/// importer's complaint where it is none.
+/// A voxel file as a graph, without normals, which no engine reads, or the importer's error.
 pub fn graph_of_file(path: &Path) -> Result<Graph, String> {
     let mut builder = builder();
     let read = ReadOptions::default();

@@ -16,7 +16,7 @@ pub(crate) fn command() -> Command {
 
 /// Runs a command to its end.
 pub(crate) trait Run {
-    /// What it printed and how it ended.
+    /// Its output and exit code.
     fn assert(&mut self) -> Assert;
 }
 

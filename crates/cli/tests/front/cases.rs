@@ -20,7 +20,7 @@ struct Case {
     folder: tempfile::TempDir,
     /// Kept outputs, by name.
     kept: BTreeMap<String, String>,
-    /// Limit of address space, MB; 0: none.
+    /// Limit of address space, MB. 0 stands for none.
     memory: u32,
     is_on_small_disk: bool,
     last: Option<Output>,
@@ -115,7 +115,7 @@ impl Case {
             output.status.code() == Some(code) && !stderr.contains("panicked"),
             all,
         )?;
-        // Failures are told in words, and a wrong line prints nothing but a document.
+        // A failure has a message. A wrong line prints only a document.
         let may_print = code != 2 || rest.starts_with(" compare") || stdout.starts_with('{');
         holds(code == 0 || !stderr.is_empty(), all)?;
         holds(may_print || stdout.is_empty(), all)?;

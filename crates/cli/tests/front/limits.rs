@@ -1,4 +1,4 @@
-//! Too little memory, and files that never end: told with figures and exit codes, never by a killed process.
+//! Too little memory, and files that never end: an error with figures and an exit code, never a killed process.
 #![cfg(unix)]
 
 use std::fs;
@@ -48,7 +48,7 @@ fn patient(folder: &Path, line: &[&str]) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// What does not fit is a limit (exit code 5), and no fault of a file.
+/// Want of memory is a limit (exit code 5), and no fault of a file.
 #[test]
 fn no_limit_of_memory_kills() {
     let folder = tempfile::tempdir().unwrap();

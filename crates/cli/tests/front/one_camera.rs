@@ -13,7 +13,7 @@ use shiftvox_mesh::{LoadOptions, mesh_box};
 
 use crate::common::Run;
 
-/// What a command prints, without the last line's end.
+/// The output of a command, without the last line's end.
 fn printed(folder: &Path, line: &str) -> String {
     let mut command = crate::common::command();
     let assert = command.current_dir(folder).args(line.split(' ')).assert();

@@ -1,4 +1,4 @@
-//! What is refused, when and in which words: before the work, naming what is to blame, in JSON too.
+//! Names in bytes, files that belong together, terminals and full disks. (`cases/refused.txt` has the rest.)
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! Every command under bad conditions, drawn from a seed: little memory, small files, full disks, folders that cannot be
-//! written, closed pipes, signals at any time. It ends by itself with an exit code, or by the signal; it never panics; and
-//! whatever file there is, is whole.
+//! Every command under bad conditions, drawn from a seed: little memory, small files, full disks, folders that cannot
+//! be written, closed pipes, signals at any time. It ends by itself with an exit code, or by the signal. It never
+//! panics, and every file is whole.
 //!
 //! `SHIFTVOX_ROBUST` is the number of runs, where more than the usual few are wanted.
 #![cfg(unix)]
@@ -18,7 +18,7 @@ use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::TexturedFile;
 
-/// What is run: every command, on inputs from `../in`.
+/// Every command, on inputs from `../in`.
 const LINES: [&str; 33] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
@@ -67,7 +67,7 @@ const INPUTS: [&str; 7] = [
 /// The longest that a run may take.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// What is bad about a run.
+/// The bad condition of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Condition {
     /// A limit of address space, MB.
@@ -97,7 +97,7 @@ impl Condition {
         }
     }
 
-    /// What a shell does before and after the command; `None` where this system cannot.
+    /// The shell's script around the command. `None` where this system cannot run it.
     fn script(self, can: Can) -> Option<String> {
         let run = "exec \"$0\" \"$@\"";
         Some(match self {
@@ -121,7 +121,7 @@ impl Condition {
     }
 }
 
-/// What this system lets a test do.
+/// The rights of a test on this system.
 #[derive(Debug, Clone, Copy)]
 struct Can {
     mount: bool,
@@ -240,7 +240,7 @@ fn inspect(folder: &Path, what: &str) -> bool {
     has_unfinished
 }
 
-/// What runs came to.
+/// Counts of runs by their ends.
 #[derive(Debug, Default)]
 struct Counts {
     runs: u64,
@@ -294,7 +294,7 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
             Condition::Signal(number, ms) => signal = Some((number, ms)),
             _ => {}
         }
-        // What it prints is read as it comes.
+        // Its output is read as it comes.
         let reader = child.stdout.take().map(|mut stdout| {
             std::thread::spawn(move || std::io::copy(&mut stdout, &mut std::io::sink()))
         });
@@ -325,7 +325,7 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
         let was_killed = status.signal() == Some(9);
         let is_tidy = !inspect(&looked_at, &what);
         assert!(is_tidy || was_killed, "{what}: unfinished files, {status}");
-        // What was killed is tidied up by who writes there next.
+        // The next run there removes the files of a killed one.
         if was_killed && !is_tidy {
             let status = wait(
                 &mut start(&at("work"), "exec \"$0\" \"$@\" > /dev/null", line),
@@ -367,7 +367,7 @@ fn every_command_is_run() {
         let help = String::from_utf8(output.stdout).unwrap();
         let list = help.split("Commands:\n").nth(1).unwrap();
         let list = list.split("\n\n").next().unwrap().lines();
-        // Other lines go on with what a command is for.
+        // Other lines continue the description of a command.
         let names = list.filter_map(|line| {
             line.strip_prefix("  ")
                 .filter(|rest| !rest.starts_with(' '))

@@ -1,4 +1,4 @@
-//! The page in a real browser. `SHIFTVOX_SHOTS` is a folder for pictures of what it looks like.
+//! The page in a real browser. `SHIFTVOX_SHOTS` is a folder for pictures of the page.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

@@ -20,7 +20,7 @@ pub(crate) struct Browser {
     child: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     count: u64,
-    /// What pages complained of: errors of scripts, refused resources.
+    /// Errors of pages: errors of scripts, refused resources.
     pub(crate) complaints: Vec<String>,
     _profile: TempDir,
 }
@@ -63,7 +63,7 @@ impl Browser {
                 .map(str::to_owned)
         });
         let address = address.expect("a browser that starts");
-        // What it says is read on, so that it does not wait.
+        // The rest of its output is read, so that it does not block.
         std::thread::spawn(move || lines.map_while(Result::ok).count());
         let (socket, _) = tungstenite::connect(address).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
@@ -131,7 +131,7 @@ impl Browser {
     /// Waits until an expression is true.
     pub(crate) fn wait(&mut self, tab: &Tab, script: &str) {
         let until = Instant::now() + PATIENCE;
-        // What does not exist yet is not true yet.
+        // An element that does not exist yet counts as false.
         let script = format!(
             "(() => {{ try {{ return Boolean({script}); }} catch {{ return false; }} }})()"
         );

@@ -1,4 +1,4 @@
-//! What pages are shown is what `render` draws.
+//! A page's picture is that of `render`.
 
 use std::process::Command;
 
@@ -160,7 +160,7 @@ fn overlays_are_buffers_as_colours() {
             "{head}"
         );
         seen.push(rgba);
-        // What is shown changes nothing of the picture's identity.
+        // The buffer that is shown does not change the picture's hash.
         assert_eq!(
             head["hash"],
             run_command(head["command"].as_str().unwrap()).1

@@ -70,7 +70,7 @@ impl Program {
             .unwrap_or_else(|| panic!("{answer}"))
     }
 
-    /// Opens a socket as the page does; what stands in its way is an HTTP status.
+    /// Opens a socket as the page does, or returns the HTTP status of the refusal.
     pub(crate) fn try_page(&self) -> Result<Page, u16> {
         let host = format!("127.0.0.1:{}", self.port);
         let origin = format!("http://{host}");

@@ -1,4 +1,4 @@
-//! What is refused, and that nothing else suffers from it.
+//! Rejected requests, which disturb no other page.
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
@@ -38,7 +38,7 @@ fn a_page_is_for_who_knows_the_token_and_asks_by_address() {
     for path in wrong.split(' ') {
         assert_eq!(status(path, &own), 403, "{path}");
     }
-    // As a tunnel is asked: another port.
+    // As through a tunnel: another port.
     for name in ["127.0.0.1", "localhost", "localhost:9000", "[::1]:80"] {
         assert_eq!(status(&page, name), 200, "{name}");
     }
