@@ -1,14 +1,11 @@
 //! The level that is chosen by itself is about as good as the triangles.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 use shiftvox_mesh::textured::view::{Detail, ViewOptions, draw};
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
-use shiftvox_mesh::{LoadOptions, Material, Mesh, MeshBuilder};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::scenes::file_of;
 use super::view::view;

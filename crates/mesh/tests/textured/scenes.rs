@@ -103,3 +103,10 @@ fn ball(middle: [f32; 3], radius: f32, triangles: &mut Vec<[[f32; 3]; 3]>) {
         }
     }
 }
+
+/// A model in the folder `SHIFTVOX_DATA`.
+pub fn model(name: &str) -> PathBuf {
+    let folder =
+        std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with mesh/");
+    PathBuf::from(folder).join("mesh").join(name)
+}
