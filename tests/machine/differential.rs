@@ -529,7 +529,7 @@ fn any_scene() -> impl Strategy<Value = Graph> {
 }
 
 proptest! {
-    #![proptest_config(cases(200))]
+    #![proptest_config(cases(600))]
 
     #[test]
     fn random_scenes_are_drawn_alike(

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use hwmodel::cycles::{Organisation, StackHolds};
 use rayon::prelude::*;
 use shiftvox::frame::Frame;
-use shiftvox::machine::{Machine, MachineOptions, NumberSpans, RecordNumber, proven_widths};
-use shiftvox::project::{CageKind, Coverage, FrameSetup, SetupOptions};
+use shiftvox::machine::{
+    Machine, MachineOptions, NumberSpans, RecordNumber, narrowed, proven_widths,
+};
+use shiftvox::project::{CageKind, Coverage, Engine, FrameSetup, SetupOptions};
 
 use crate::scene_table::SCENES;
 use crate::scenes::*;
@@ -102,4 +104,20 @@ fn no_record_needs_more_bits_than_are_proven() {
         least_spare.values().all(|&(spare, _)| spare <= 3),
         "{least_spare:?}"
     );
+}
+
+/// Wide words of the proven width hold all sums on planes (`differential.rs` draws in them). Narrower ones trap.
+#[test]
+fn wide_words_are_hardly_wider_than_needed() {
+    let fewest = frames().filter_map(|(graph, setup)| {
+        let bits = narrowed(&setup).format.wide().bits();
+        let draws = |spare: u32| {
+            let mut setup = setup.clone();
+            setup.format = setup.format.with_wide_bits(bits - spare);
+            let mut frame = Frame::new(setup.width, setup.height, false);
+            machine().render(&graph.view(), &setup, &mut frame).is_ok()
+        };
+        (0..5).find(|&spare| !draws(spare))
+    });
+    assert!(fewest.min().is_some_and(|spare| spare > 0));
 }
