@@ -10,7 +10,7 @@ use serde_json::json;
 use tungstenite::Message;
 use tungstenite::protocol::frame::coding::CloseCode;
 
-use crate::program::{Page, Program, question};
+use crate::program::{Page, Program, question, shiftvox};
 
 /// A page gets a picture.
 fn assert_serves(program: &Program) {
@@ -328,17 +328,12 @@ fn pages_that_vanish_leave_nothing() {
 fn a_port_in_use_and_wrong_flags_are_told() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
-    let told = |words: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
-        let command = command
-            .arg("view")
-            .args(words)
-            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-        let output = command.output().unwrap();
+    let told = |line: &str| {
+        let output = shiftvox(&format!("view {line}"));
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         (output.status.code(), text, output.stdout)
     };
-    let (code, text, stdout) = told(&["tests/data/axes.vox", "--port", &port]);
+    let (code, text, stdout) = told(&format!("tests/data/axes.vox --port {port}"));
     assert_eq!(code, Some(1), "{text}");
     assert!(
         text.contains(&format!("cannot listen on 127.0.0.1:{port}")) && text.contains("--port"),
@@ -356,7 +351,7 @@ fn a_port_in_use_and_wrong_flags_are_told() {
         ("tests/data/axes.vox --size 2049x2048", 5),
         ("tests/data/axes.vox --size 2048 --aa 4", 5),
     ] {
-        let (code, text, _) = told(&line.split(' ').collect::<Vec<_>>());
+        let (code, text, _) = told(line);
         assert_eq!(code, Some(expected), "{line}: {text}");
         assert!(!text.contains("panicked"), "{text}");
     }
