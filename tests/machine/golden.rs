@@ -7,12 +7,9 @@
 //!
 //! Say in the commit why which rows changed.
 
-use std::path::Path;
-
 use crate::scenes::*;
 use glam::DVec3;
 use shiftvox::frame::Frame;
-use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions as Options,
@@ -55,14 +52,6 @@ fn settings(text: &str) -> (Options, bool) {
         }
     }
     (options, is_oracle)
-}
-
-fn graph_of(scene: &str) -> Graph {
-    if scene.starts_with("gen:") {
-        return graph_of_spec(scene);
-    }
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    graph_of_file(&data.join(scene)).expect(scene)
 }
 
 /// The frame of a row, drawn by a new machine and by one that drew others, which draws over its own picture.

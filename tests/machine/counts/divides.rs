@@ -7,14 +7,10 @@ use super::*;
 #[test]
 fn only_the_change_to_screen_space_divides() {
     for (cage, vertices) in [(CageKind::Corners, 8), (CageKind::Frame, 4)] {
-        for Scene {
-            name,
-            graph,
-            camera,
-        } in scenes()
-        {
-            let setup = setup(&graph, &camera, &options(cage, f64::INFINITY));
-            let (_, probe) = watch(&graph, &setup, ByRecord::default());
+        for scene in scenes() {
+            let name = scene.name;
+            let setup = setup(&scene.graph, &scene.camera, &options(cage, f64::INFINITY));
+            let (_, probe) = watch(&scene.graph, &setup, ByRecord::default());
             for turn in &probe.turns {
                 for stage in Stage::ALL.into_iter().filter(|s| *s != Stage::ToScreen) {
                     assert_eq!(turn.count(stage, OpClass::DivideStep), 0, "{name}");

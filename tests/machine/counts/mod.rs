@@ -193,47 +193,46 @@ struct Scene {
 
 /// All children, half of them, and few of them; seen askew and straight on.
 fn scenes() -> Vec<Scene> {
+    let scene = |name, graph: Graph, eye, size| {
+        let middle = f64::from(1u32 << graph.depth) / 2.0;
+        let camera = camera(eye, [middle; 3], size);
+        Scene {
+            name,
+            graph,
+            camera,
+        }
+    };
     let diagonal = |[x, y, z]: [i32; 3]| (x + y + z) % 4 == 0;
     vec![
-        Scene {
-            name: "solid cube",
-            graph: solid(2),
-            camera: camera([13.0, 9.0, 11.0], [2.0, 2.0, 2.0], 32),
-        },
-        Scene {
-            name: "Sierpinski tetrahedron",
-            graph: sierpinski(3),
-            camera: camera([-9.0, 16.0, 21.0], [4.0, 4.0, 4.0], 32),
-        },
-        Scene {
-            name: "diagonals",
-            graph: octree(3, &diagonal),
-            camera: camera([4.0, 4.0, 30.0], [4.0, 4.0, 4.0], 64),
-        },
-        Scene {
-            name: "one voxel",
-            graph: octree(3, &|at| at == [5, 2, 7]),
-            camera: camera([30.0, -5.0, 8.0], [4.0, 4.0, 4.0], 64),
-        },
+        scene("solid cube", solid(2), [13.0, 9.0, 11.0], 32),
+        scene(
+            "Sierpinski tetrahedron",
+            sierpinski(3),
+            [-9.0, 16.0, 21.0],
+            32,
+        ),
+        scene("diagonals", octree(3, &diagonal), [4.0, 4.0, 30.0], 64),
+        scene(
+            "one voxel",
+            octree(3, &|at| at == [5, 2, 7]),
+            [30.0, -5.0, 8.0],
+            64,
+        ),
     ]
 }
 
 /// Runs a check on each subdivided record of each scene; the check is given
 /// scene, set-up, turn and children.
 fn each_subdivided(options: &SetupOptions, check: impl Fn(&str, &FrameSetup, &Turn, u64)) {
-    for Scene {
-        name,
-        graph,
-        camera,
-    } in scenes()
-    {
-        let setup = setup(&graph, &camera, options);
-        let (frame, probe) = watch(&graph, &setup, ByRecord::default());
+    for scene in scenes() {
+        let (name, graph) = (scene.name, &scene.graph);
+        let setup = setup(graph, &scene.camera, options);
+        let (frame, probe) = watch(graph, &setup, ByRecord::default());
         assert!(frame.node.iter().any(|&n| n != frame.node[0]), "{name}");
         let turns: Vec<_> = probe.turns.iter().filter(|t| t.is_subdivided()).collect();
         assert!(turns.len() >= 10, "{name}: {} subdivided", turns.len());
         for turn in turns {
-            check(name, &setup, turn, turn.children(&graph));
+            check(name, &setup, turn, turn.children(graph));
         }
     }
 }

@@ -57,6 +57,15 @@ pub fn graph_of_spec(spec: &str) -> Graph {
     builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
 }
 
+/// The graph of a generator, or of a file of `tests/data`.
+pub fn graph_of(name: &str) -> Graph {
+    if name.starts_with("gen:") {
+        return graph_of_spec(name);
+    }
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    graph_of_file(&data.join(name)).expect(name)
+}
+
 fn builder() -> Builder {
     Builder::new(BuildOptions {
         normals: Normals::None,

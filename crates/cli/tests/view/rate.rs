@@ -56,12 +56,9 @@ fn rate_of_frames_at_1024() {
     }
     drop(page);
     let mut browser = Browser::start();
-    let tab = browser.open(&program.address);
-    browser.wait(
-        &tab,
-        "view.camera && shown.still === view.version && shown.figures === view.version",
-    );
-    shot(&mut browser, &tab, "page.png");
+    browser.open(&program.address);
+    browser.wait("view.camera && shown.still === view.version && shown.figures === view.version");
+    shot(&mut browser, "page.png");
     // Turns with every frame of the screen for three seconds, as a hand does; pictures stay whole.
     let turn = "new Promise((done) => {
         const kept = [], note = noteFrame, began = performance.now();
@@ -76,7 +73,7 @@ fn rate_of_frames_at_1024() {
         step();
     })";
     for run in 1..=2 {
-        let result = browser.value(&tab, turn);
+        let result = browser.value(turn);
         let kept = result["kept"].as_array().unwrap();
         let whole: Vec<f64> = kept
             .iter()
@@ -94,6 +91,6 @@ fn rate_of_frames_at_1024() {
                 told(whole.clone())
             }
         );
-        browser.wait(&tab, "shown.still === view.version");
+        browser.wait("shown.still === view.version");
     }
 }
