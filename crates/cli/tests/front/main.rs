@@ -8,7 +8,6 @@ mod cases;
 mod common;
 mod damaged;
 mod explore;
-mod knot;
 mod limits;
 mod model;
 mod one_camera;
