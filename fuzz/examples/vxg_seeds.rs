@@ -1,9 +1,6 @@
 //! Writes small seed files for the target `vxg` into corpus/vxg; run in fuzz/.
 //!
-//! Each is a file stored by the program, or a few bytes from which the target composes one.
-
-#[path = "../fuzz_targets/vxg_file.rs"]
-mod vxg_file;
+//! Each is a file of the current format, stored by the program and checked.
 
 use std::error::Error;
 use std::fs;
@@ -31,19 +28,6 @@ fn cyclic() -> Result<Graph, Box<dyn Error>> {
     Ok(graph.build()?)
 }
 
-/// Depth, root, counts of level entries, masks, links and nodes; then the arrays.
-const COMPOSED: [(&str, &[u8]); 4] = [
-    ("leaf", &[0, 0, 0, 0, 0, 1, 7]),
-    ("tree", &[1, 0, 3, 1, 0, 3, 0, 1, 3, 9, 1, 5, 6, 7]),
-    (
-        "dag",
-        &[
-            2, 0, 4, 2, 4, 3, 0, 1, 2, 3, 6, 9, 0, 2, 1, 1, 2, 2, 5, 6, 7,
-        ],
-    ),
-    ("sponge", &[30, 0, 0, 1, 4, 1, 105, 0, 0, 0, 0, 0, 5]),
-];
-
 fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all("corpus/vxg")?;
     let corners = tree(&[[0; 3], [1, 0, 0], [1, 1, 0], [-5, 3, 2], [6; 3], [7, 6, 6]])?;
@@ -64,11 +48,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             let seed = [&[choice], &bytes[..]].concat();
             fs::write(format!("corpus/vxg/{name}_{choice}"), seed)?;
         }
-    }
-    for (name, bytes) in COMPOSED {
-        vxg::from_bytes(&vxg_file::file_of(&vxg_file::graph_of(bytes)))?;
-        let seed = [&[2], bytes].concat();
-        fs::write(format!("corpus/vxg/composed_{name}"), seed)?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
-//! Edits fields of sound `.vxg`, `.far` and `.tvx` files, corrects lengths and checksums, and draws accepted files. Eight
-//! bytes select the file, and eight more each edit: `crates/mesh/tests/sealed/`.
+//! Reads bytes as `.far` and `.tvx` files. Then edits fields of sound `.vxg`, `.far` and `.tvx` files, repairs lengths and
+//! checksums, and draws what is accepted. Eight bytes choose the file, and eight more each edit:
+//! `crates/mesh/tests/sealed/`.
 #![no_main]
 #![allow(clippy::unwrap_used)]
 
@@ -11,8 +12,12 @@ mod exercise;
 mod seal;
 
 use libfuzzer_sys::fuzz_target;
+use shiftvox_mesh::far::FarFile;
+use shiftvox_mesh::textured::TexturedFile;
 
 fuzz_target!(|data: &[u8]| {
+    let is_sound = FarFile::from_bytes(data).is_ok_and(|file| file.verify().is_ok());
+    std::hint::black_box((is_sound, TexturedFile::from_bytes(data).is_ok()));
     let (choices, _) = data.as_chunks();
     let choices = choices.iter().map(|&choice| u64::from_le_bytes(choice));
     if let Some((format, bytes)) = exercise::edited(choices) {

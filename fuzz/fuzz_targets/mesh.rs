@@ -1,5 +1,5 @@
-//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, without panics or unjustified memory. Small meshes
-//! are voxelised.
+//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and voxels of a small mesh. No panic, and no
+//! memory that the file does not justify.
 #![no_main]
 
 use std::io;
@@ -9,7 +9,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::voxelize::{Grid, voxelize};
 use shiftvox_mesh::{Beside, LoadOptions, MeshFormat, read};
 
-/// Other files are the rest of the input.
+/// Every other file is the rest of the input.
 struct Rest<'a>(&'a [u8]);
 
 impl Beside for Rest<'_> {

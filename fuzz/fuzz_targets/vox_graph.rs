@@ -1,14 +1,14 @@
-//! A `.vox` whose scene graph shares nodes, so that a few bytes can place a model endlessly. It is read within the limit of
-//! voxels, or rejected.
+//! A `.vox` whose scene graph shares nodes: a few bytes can place a model without end, which bytes at random never do.
+//! It is read or rejected, within the limit of voxels.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{ReadOptions, read_voxels_from};
 
-/// Limit of voxels.
+/// Most voxels that are wanted.
 const MOST: u64 = 1 << 16;
-/// Limit of nodes, shapes included.
+/// Most nodes, shapes included.
 const NODES: usize = 64;
 
 /// Bytes, then zeros.
@@ -40,7 +40,7 @@ fn text(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// A node. Children have higher numbers, unless a byte allows others.
+/// A node; children have higher numbers, unless a byte says that they need not.
 fn node(file: &mut Vec<u8>, number: usize, nodes: usize, models: usize, choices: &mut Choices<'_>) {
     let mut content = numbers(&[number as u32, 0]);
     let child = |choices: &mut Choices<'_>| match choices.byte() {

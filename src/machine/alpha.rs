@@ -234,9 +234,9 @@ impl BlendColor {
         let sums = sample.light;
         for (sum, light) in sample.light.iter_mut().zip(self.light) {
             let before = Narrow::from_host(*sum);
-            *sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host();
+            *sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host(); // host: the sample's memory
         }
-        sample.left = rest.to_host() as u16;
+        sample.left = rest.to_host() as u16; // host: the sample's memory
         let lights_shown = |sums: [u32; 3]| sums.map(|sum| Short::unsigned(sum, LIGHT_BITS));
         dp.tap(
             Block::BlendSample,

@@ -126,23 +126,23 @@ impl CageCoordinate for Corners {
         let mut pool = [Word::ZERO; 27];
         for (corner, &value) in self.0.iter().enumerate() {
             let (i, j, k) = (corner >> 2, corner >> 1 & 1, corner & 1);
-            pool[18 * i + 6 * j + 2 * k] = value;
+            pool[18 * i + 6 * j + 2 * k] = value; // host: an index
         }
         for j in [0, 2] {
             for k in [0, 2] {
-                let at = 3 * j + k;
+                let at = 3 * j + k; // host: an index
                 pool[9 + at] = dp.midpoint(pool[at], pool[18 + at]);
             }
         }
         for i in 0..3 {
             for k in [0, 2] {
-                let at = 9 * i + k;
+                let at = 9 * i + k; // host: an index
                 pool[at + 3] = dp.midpoint(pool[at], pool[at + 6]);
             }
         }
         for i in 0..3 {
             for j in 0..3 {
-                let at = 9 * i + 3 * j;
+                let at = 9 * i + 3 * j; // host: an index
                 pool[at + 1] = dp.midpoint(pool[at], pool[at + 2]);
             }
         }
@@ -166,7 +166,7 @@ impl CageCoordinate for Corners {
         let low = usize::from(LOWEST[octant & 7]);
         Self(std::array::from_fn(|corner| {
             let (a, b, c) = (corner >> 2, corner >> 1 & 1, corner & 1);
-            pool[low + 9 * a + 3 * b + c]
+            pool[low + 9 * a + 3 * b + c] // host: an index
         }))
     }
 

@@ -43,7 +43,7 @@ impl Canvas<'_> {
             counts.samples_already_drawn += 1;
             return;
         }
-        let at = sample.y as usize * self.frame.width as usize + sample.x as usize;
+        let at = sample.y as usize * self.frame.width as usize + sample.x as usize; // host: a sample's address
         if let Some(color) = &paint.color {
             if !self.blend(dp, counts, at, color, paint) {
                 return;

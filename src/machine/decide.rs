@@ -149,7 +149,7 @@ fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Pai
     let cube = &record.cube;
     let side_log2 = c.depth - cube.voxel_level;
     let [x, y, z] = cube.min.map(|min| {
-        let voxel = min.to_host() >> c.sub_levels;
+        let voxel = min.to_host() >> c.sub_levels; // host: the voxel's number in the picture
         (voxel >> side_log2 << side_log2) as i32
     });
     Paint {

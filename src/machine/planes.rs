@@ -160,7 +160,7 @@ impl Silhouette {
             axis.map(|v| dp.shl(v, side_shift))
         });
         let edges = [0, 1, 2].map(|j| {
-            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
             let here = planes.edge[j];
             // (A + E_k) x e_j = A x e_j - E_j x e_k, and E_l x e_j = E_k-plane.
             let moved_k = combine(dp, here, across[l], false);
@@ -303,7 +303,7 @@ pub(super) fn of_child<P: Probe>(
     let half_shift = constants.depth - parent_level - 1;
     let mut planes = *parent;
     for j in 0..3 {
-        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+        let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
         for (axis, of, add) in [(k, l, false), (l, k, true)] {
             if octant >> (2 - axis) & 1 != 0 {
                 let across = axis_plane(constants, parent, of).map(|v| dp.shl(v, half_shift));
@@ -328,7 +328,7 @@ pub(super) fn to_parent<P: Probe>(
 ) {
     let half_shift = constants.depth - parent_level - 1;
     for j in 0..3 {
-        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+        let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
         for (axis, of, add) in [(k, l, true), (l, k, false)] {
             if octant >> (2 - axis) & 1 != 0 {
                 let across = axis_plane(constants, planes, of).map(|v| dp.shl(v, half_shift));

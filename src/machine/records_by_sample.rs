@@ -27,13 +27,13 @@ impl RecordsBySample {
     pub(super) fn write_shares(&self, width: u32, shares: &mut [f32]) {
         let width = width as usize;
         for (at, share) in shares.iter_mut().enumerate() {
-            let (level, x, y) = (self.levels, (at % width) as u32, (at / width) as u32);
+            let (level, x, y) = (self.levels, (at % width) as u32, (at / width) as u32); // host: a map of work
             let sample = QuadNode { level, x, y };
             *share = (0..=self.levels)
                 .map(|level| {
                     let below = self.levels - level;
-                    let samples = f64::from(1u32 << below) * f64::from(1u32 << below);
-                    f64::from(self.turns[sample.ancestor(level).address()]) / samples
+                    let samples = f64::from(1u32 << below) * f64::from(1u32 << below); // host: a map of work
+                    f64::from(self.turns[sample.ancestor(level).address()]) / samples // host: a map of work
                 })
                 .sum::<f64>() as f32;
         }

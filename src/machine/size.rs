@@ -143,7 +143,7 @@ pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
             Short::unsigned(below, LEVEL_BITS),
         );
         dp.tap(Block::CentreSample, &(centre, node), &position);
-        Some(position.to_host() as u32)
+        Some(position.to_host() as u32) // host: a sample's address
     };
     let x = column(&screen.x, place.quad.x)?;
     let y = column(&screen.y, place.quad.y)?;

@@ -1,5 +1,4 @@
 //! A file built by external sort is the one that is built in memory.
-#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::fs;
 use std::path::Path;
@@ -7,11 +6,13 @@ use std::path::Path;
 use proptest::prelude::*;
 use shiftvox::graph::{
     BuildError, BuildOptions, Builder, ExternalBuilder, ExternalError, ExternalOptions,
-    ExternalReport, Normals, PackedNormal, Silent, Voxel, vxg,
+    ExternalReport, Normals, Silent, Voxel, vxg,
 };
 use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{self, BuiltFile, NoMeshes, OpenError, OpenOptions, Source};
+
+use crate::voxels;
 
 const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
@@ -51,23 +52,6 @@ fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }
 
-/// Clusters and strays, with repeated indices, a few colours, some normals.
-fn voxels() -> impl Strategy<Value = Vec<Voxel>> {
-    let near = prop::array::uniform3(-6..6i32);
-    let wide = prop::array::uniform3(-40..60i32);
-    let far = prop::array::uniform3(-900_000..900_000i32);
-    let index = prop_oneof![30 => near, 10 => wide, 1 => far];
-    let color = prop_oneof![Just([1, 2, 3]), any::<[u8; 3]>()];
-    let normal =
-        prop_oneof![4 => Just(None), 1 => (1..=u16::MAX).prop_map(|n| Some(PackedNormal(n)))];
-    let voxel = (index, color, normal).prop_map(|(index, color, normal)| Voxel {
-        index,
-        color,
-        normal,
-    });
-    prop::collection::vec(voxel, 1..400)
-}
-
 /// Memory from nothing, for runs of two voxels, to more than enough.
 const MEMORY: [u64; 6] = [0, 3000, 12_000, 50_000, 400_000, 64 << 20];
 
@@ -75,34 +59,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn every_byte_is_that_of_the_file_built_in_memory(voxels in voxels(), which in 0..MEMORY.len()) {
+    fn every_byte_is_that_of_the_file_built_in_memory(voxels in voxels(400), which in 0..MEMORY.len()) {
         for normals in [Normals::FromSurface, Normals::None] {
             let (file, report) = external(&voxels, MEMORY[which], normals);
             let expected = in_memory(&voxels, normals);
             prop_assert_eq!(difference(&file, &expected), None);
             prop_assert_eq!(report.pushed, voxels.len() as u64);
             prop_assert_eq!(report.bytes, file.len() as u64);
-        }
-    }
-}
-
-#[test]
-fn small_objects_of_every_depth() {
-    let row = |length: i32| -> Vec<Voxel> {
-        (0..length)
-            .map(|i| Voxel {
-                index: [-i, i, 7],
-                color: [i as u8, 255 - i as u8, 9],
-                normal: None,
-            })
-            .collect()
-    };
-    for length in [1, 2, 3, 4, 5, 8, 9, 16, 17, 33, 65] {
-        let voxels = row(length);
-        for memory in MEMORY {
-            let (file, _) = external(&voxels, memory, Normals::FromSurface);
-            let expected = in_memory(&voxels, Normals::FromSurface);
-            assert_eq!(difference(&file, &expected), None, "{length}, {memory}");
         }
     }
 }
@@ -245,7 +208,7 @@ fn files_of_every_format_are_built_the_same() {
     assert!(refused.unwrap_err().to_string().contains(".vxg graph"));
 }
 
-/// What 32 bits cannot number is refused before anything is made of it.
+/// A scene of more nodes than 32 bits can number is rejected at once.
 #[test]
 fn scenes_beyond_all_numbers_are_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();

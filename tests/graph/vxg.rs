@@ -1,5 +1,4 @@
 //! `.vxg` files return what was stored, and damage is found or harmless.
-#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::fs;
 use std::path::Path;
@@ -11,6 +10,8 @@ use shiftvox::graph::{
     merge,
 };
 use shiftvox::scene::{FileKind, detect};
+
+use crate::parts;
 
 fn build(indices: &[[i32; 3]]) -> Graph {
     let mut builder = Builder::new(BuildOptions::default());
@@ -52,23 +53,6 @@ fn small_graphs() -> Vec<Graph> {
     let span = ([-1.0, 0.5, 1e6], [2.0, 0.75, 1e6 + 1.0]);
     of_mesh.placement.mesh = Some(MeshBox::new(span, [0, 1, 2, 3, 4, 5, 6, 255], true));
     vec![tree, dag, cyclic, build(&[[-3, 4, 5]]), airy, of_mesh]
-}
-
-fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
-    (
-        (graph.depth, graph.root, graph.voxels, graph.placement),
-        (
-            graph.mask.to_vec(),
-            graph.first.to_vec(),
-            graph.links.to_vec(),
-        ),
-        (
-            graph.color.to_vec(),
-            graph.normal.to_vec(),
-            graph.opacity.to_vec(),
-        ),
-        graph.level_start.clone(),
-    )
 }
 
 fn bytes_of(graph: &Graph) -> Vec<u8> {

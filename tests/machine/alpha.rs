@@ -1,5 +1,4 @@
-//! The rule that blends: against a plain reference, by hand, by property, and
-//! what it costs.
+//! The rule that blends: against a plain reference, by hand, by property, and its cost.
 
 use crate::common::*;
 use hwmodel::count::Counter;
@@ -47,8 +46,7 @@ fn slabs(eye: [f64; 3], ray: [f64; 3], corner: [i64; 3]) -> (f64, f64) {
     (enter, leave)
 }
 
-/// What a ray takes of the voxels that it meets, nearest first: `SPEC.md`,
-/// section 11, in products and quotients. `None`: it grazes one.
+/// The blend of a ray, nearest voxel first: `SPEC.md`, section 11, in products and quotients. `None`: it grazes one.
 fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -> Option<Blend> {
     let axes = camera.axes().expect("a camera");
     let across = at[0] - f64::from(camera.width) / 2.0;
@@ -218,16 +216,14 @@ fn two_voxels_by_hand() {
     let blended = |upper: u8, lower: u8| {
         let mut graph = opacities_of(graph.clone(), &[[0; 3]]);
         let mut opacity = graph.opacity.to_vec();
-        let top = cells(&graph)
-            .iter()
-            .find(|c| c.1[2] == 7)
-            .expect("a voxel")
-            .0;
-        let bottom = cells(&graph)
-            .iter()
-            .find(|c| c.1[2] == 0)
-            .expect("a voxel")
-            .0;
+        let of_height = |z: i64| {
+            cells(&graph)
+                .iter()
+                .find(|cell| cell.1[2] == z)
+                .expect("a voxel")
+                .0
+        };
+        let (top, bottom) = (of_height(7), of_height(0));
         // Seen from above: the high side of z. Other sides must not count, as they are not opaque.
         opacity[top as usize] = Opacity([238, 238, upper << 4 | 15]);
         opacity[bottom as usize] = Opacity([238, 238, lower << 4 | 15]);
@@ -241,14 +237,14 @@ fn two_voxels_by_hand() {
         let blend = frame.blend.expect("blended")[at];
         (blend.left, blend.light, first == top, first == bottom)
     };
-    // Nothing; all of the upper; all of the lower.
+    // Nothing, all of the upper, all of the lower.
     assert_eq!(blended(0, 0), (256, [0; 3], false, false));
     assert_eq!(blended(15, 3), (0, [256_000, 0, 7 * 256], true, false));
     assert_eq!(blended(0, 15), (0, [0, 256, 7 * 256], false, true));
     // 4 is 64 of 256: 192 are left, of which the lower takes 48.
     assert_eq!(blended(4, 4), (144, [64_000, 48, 7 * 112], true, false));
-    // 8 is nine sixteenths, 144; 112 are left, of which 63 would be taken; 49
-    // are too few to go on for, so the lower takes them too.
+    // 8 is nine sixteenths, 144. Of the 112 that are left the lower would take 63. The other 49 are too few to
+    // continue, so it takes them too.
     assert_eq!(blended(8, 8), (0, [144_000, 112, 7 * 256], true, false));
     // 1 is 16; of 240 it takes 15.
     assert_eq!(blended(1, 1), (225, [16_000, 15, 7 * 31], true, false));
@@ -269,8 +265,7 @@ fn what_blending_costs() {
         assert_eq!(solids, 1, "{size}: {stats:?}");
         assert!(blended > 0);
         let count = |class| counter.ops_at(Stage::Blend, class);
-        // What the sides count for, made once for the voxel: the way, its shares, their squares, a
-        // root, three quotients.
+        // The weights of the sides, once per voxel: the way, its shares, their squares, a root, three quotients.
         let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
         let sub = 3 + 3 + 2;
         let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;

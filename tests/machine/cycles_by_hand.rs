@@ -1,8 +1,8 @@
 //! A tiny scene on simulated hardware, worked out by hand from the rules of `hwmodel::cycles` for each organisation.
 //!
-//! Three voxels of a cube of 4 x 4 x 4, seen from the front at 4 x 4 samples: the root A has one child B, and this the
-//! voxels C and D, seen at samples (0, 2) and (0, 3), and E behind D. Every operation is a wire and there is one context,
-//! so a visit takes a cycle, and:
+//! Three voxels of a cube of 4 x 4 x 4, seen from the front at 4 x 4 samples: the root A has one child B. Its children
+//! are the voxels C and D, seen at samples (0, 2) and (0, 3), and E behind D. Every operation is a wire and there is
+//! one context, so a visit takes a cycle, and:
 //!
 //! - one more for each further access at the port of a memory that is read or written several times;
 //! - 11 where a line of nodes (A's, which holds all) or of attributes (C's, which holds all) is missed;
@@ -19,6 +19,7 @@
 //! which is read once a turn, for the fit; the sample's attributes are a step after it was found open. The way back from B
 //! to A is out of a quadrant and up a level.
 
+use hwmodel::OpClass;
 use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};
 use shiftvox::frame::Frame;
 use shiftvox::machine::{Machine, MachineOptions};
@@ -26,49 +27,20 @@ use shiftvox::project::SetupOptions;
 
 use crate::common::{camera, octree, setup};
 
-const HARDWARE: &str = r#"
-name = "by hand"
-clock_mhz = 1.0
-lanes = 1
-contexts = 1
-independence = "none"
-steal_cycles = 0
-wires = ["add", "sub", "compare", "min_max", "select", "shift", "logic", "divide_step"]
-[units]
-[stack]
-entries = 16
-ports = 1
-latency = 1
-overflow = "error"
-spill_cycles = 5
-[node_cache]
-bytes = 4096
-ways = 1
-line_bytes = 64
-entry_bytes = 8
-ports = 1
-hit_latency = 1
-miss_latency = 10
-misses = 1
-[attribute_cache]
-bytes = 4096
-ways = 1
-line_bytes = 64
-entry_bytes = 4
-ports = 1
-hit_latency = 1
-miss_latency = 10
-misses = 1
-[fill_vectors]
-banks = 1
-read_ports = 1
-write_ports = 1
-latency = 1
-[pixels]
-write_ports = 1
-buffer = 16
-drain_interval = 1
-"#;
+/// One record at a time, operations that cost nothing, memories of one port.
+fn hardware() -> Hardware {
+    let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.wires = OpClass::ALL.to_vec();
+    hardware.units.clear();
+    let caches = [&mut hardware.node_cache, &mut hardware.attribute_cache];
+    for (cache, entry_bytes) in caches.into_iter().zip([8, 4]) {
+        (cache.bytes, cache.line_bytes, cache.entry_bytes) = (4096, 64, entry_bytes);
+        cache.miss_latency = 10;
+    }
+    (hardware.pixels.buffer, hardware.pixels.drain_interval) = (16, 1);
+    hardware.outer_memory.bytes_per_cycle = 0;
+    hardware
+}
 
 /// Turns, a line each: stages in order, with their cycles where these are not 1.
 const CHILDREN: &str = "
@@ -131,54 +103,28 @@ const SEQUENTIAL: &str = "
 
 #[test]
 fn a_tiny_scene_in_each_organisation() {
-    let paper = Organisation::default();
-    let parents = Organisation {
-        stack: StackHolds::Parents,
-        ..paper
-    };
-    let leaf_masks = Organisation {
-        leaf_masks: true,
-        ..parents
-    };
-    let path = Organisation {
-        stack: StackHolds::Path,
-        ..leaf_masks
-    };
-    let hidden_unread = Organisation {
-        hidden_unread: true,
-        ..path
-    };
-    let bricks = Organisation {
-        bricks: true,
-        ..hidden_unread
-    };
-    let joined_fill = Organisation {
-        joined_fill: true,
-        ..bricks
-    };
-    let tiles = Organisation {
-        tile_levels: 1,
-        ..bricks
-    };
-    for (organisation, turns, cycles) in [
-        (paper, CHILDREN, 84),
-        (parents, PARENTS, 78),
-        (leaf_masks, LEAF_MASKS, 76),
-        (path, LEAF_MASKS, 76),
-        (hidden_unread, HIDDEN_UNREAD, 79),
-        // B's voxels are in its own mask: a brick of one level.
-        (bricks, HIDDEN_UNREAD, 79),
-        (joined_fill, JOINED_FILL, 53),
-        (tiles, TILES, 115),
-    ] {
-        let hardware = Hardware::from_toml(HARDWARE).unwrap();
-        follow(hardware, organisation, turns, cycles);
-    }
+    let mut organisation = Organisation::default();
+    follow(hardware(), organisation, CHILDREN, 84);
+    organisation.stack = StackHolds::Parents;
+    follow(hardware(), organisation, PARENTS, 78);
+    organisation.leaf_masks = true;
+    follow(hardware(), organisation, LEAF_MASKS, 76);
+    organisation.stack = StackHolds::Path;
+    follow(hardware(), organisation, LEAF_MASKS, 76);
+    organisation.hidden_unread = true;
+    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
+    // B's voxels are in its own mask: a brick of one level.
+    organisation.bricks = true;
+    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
+    organisation.tile_levels = 1;
+    follow(hardware(), organisation, TILES, 115);
+    (organisation.tile_levels, organisation.joined_fill) = (0, true);
+    follow(hardware(), organisation, JOINED_FILL, 53);
 }
 
 #[test]
 fn a_tiny_scene_step_by_step() {
-    let mut hardware = Hardware::from_toml(HARDWARE).unwrap();
+    let mut hardware = hardware();
     hardware.sequential = true;
     let organisation = Organisation {
         stack: StackHolds::Path,
@@ -204,7 +150,7 @@ fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycle
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-    // What the visits should be, from the lists.
+    // The expected visits.
     let starts = organisation.tile_levels == 0;
     let lines = turns.lines().skip(1).enumerate();
     let listed = lines.flat_map(|(number, line)| {

@@ -9,70 +9,32 @@ use shiftvox::graph::{Graph, GraphView, Placement};
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-/// A linked graph from child lists of `(octant, node)`; colours are of no concern.
-fn linked(depth: u32, children: &[Vec<(u8, u32)>]) -> Graph {
-    let mut links = Vec::new();
-    let (mask, first): (Vec<u8>, Vec<u32>) = children
-        .iter()
-        .map(|list| {
-            let first = links.len() as u32;
-            let mut list = list.clone();
-            list.sort_unstable();
-            links.extend(list.iter().map(|&(_, node)| node));
-            let mask = list.iter().fold(0, |mask, &(octant, _)| mask | 1 << octant);
-            (mask, first)
-        })
-        .unzip();
-    let nodes = children.len();
-    Graph {
-        depth,
-        root: 0,
-        mask: mask.into(),
-        first: first.into(),
-        links: links.into(),
-        color: vec![[0; 3]; nodes].into(),
-        normal: vec![Default::default(); nodes].into(),
-        opacity: Vec::new().into(),
-        level_start: Vec::new(),
-        voxels: 0,
-        placement: Placement::default(),
-    }
-}
+use crate::common::{self, linked, sierpinski};
+use crate::scenes::Dice;
 
-/// Small reproducible random numbers.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, sides: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 33) % sides
-    }
-
-    fn real(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.roll(1 << 30) as f64 / (1u64 << 30) as f64
-    }
+/// A graph from lists of children, `(octant, node)`.
+fn listed(depth: u32, lists: &[&[(usize, u32)]]) -> Graph {
+    let children = |list: &&[(usize, u32)]| {
+        let mut children = [None; 8];
+        for &(octant, node) in *list {
+            children[octant] = Some(node);
+        }
+        children
+    };
+    linked(depth, &lists.iter().map(children).collect::<Vec<_>>())
 }
 
 /// Any node may be any other's child: trees, shared subtrees and cycles.
 fn random_graph(dice: &mut Dice, depth: u32) -> Graph {
-    let nodes = 2 + dice.roll(6);
-    let children: Vec<Vec<(u8, u32)>> = (0..nodes)
-        .map(|node| {
-            if node > 0 && dice.roll(3) == 0 {
-                return Vec::new();
-            }
-            (0..8u8)
-                .filter_map(|octant| {
-                    let child = dice.roll(nodes) as u32;
-                    (dice.roll(100) < 45).then_some((octant, child))
-                })
-                .collect()
+    let nodes = 2 + dice.below(6);
+    let children = |node: u32| {
+        let is_leaf = node > 0 && dice.below(3) == 0;
+        [0; 8].map(|_| {
+            let child = dice.below(nodes);
+            (!is_leaf && dice.below(100) < 45).then_some(child)
         })
-        .collect();
-    linked(depth, &children)
+    };
+    linked(depth, &(0..nodes).map(children).collect::<Vec<_>>())
 }
 
 /// A solid cell: node, lowest corner, level.
@@ -124,7 +86,7 @@ fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {
     (0..3).map(|c| &a[c] * &b[c]).sum()
 }
 
-/// The view in big integers, solved anew from the set-up's clip vectors.
+/// The view in big integers, solved from the set-up's clip vectors.
 struct Exact {
     /// Determinant of the edges, made positive.
     whole: BigInt,
@@ -207,12 +169,9 @@ impl Exact {
 
 fn camera(eye: [f64; 3], target: [f64; 3], up: [f64; 3], fov_degrees: f64, size: u32) -> Camera {
     Camera {
-        eye: DVec3::from_array(eye),
-        target: DVec3::from_array(target),
         up: DVec3::from_array(up),
         fov_degrees,
-        width: size,
-        height: size,
+        ..common::camera(eye, target, size)
     }
 }
 
@@ -263,41 +222,41 @@ fn assert_exact(graph: &Graph, setup: &FrameSetup) -> usize {
 
 #[test]
 fn random_graphs_from_random_cameras() {
-    let mut dice = Dice(1);
+    let mut dice = Dice::new(1);
     let mut drawn = 0;
     for _ in 0..60 {
-        let depth = 1 + dice.roll(3) as u32;
+        let depth = 1 + dice.below(3);
         let graph = random_graph(&mut dice, depth);
         let side = f64::from(1u32 << depth);
         // Inside, near and farther away.
-        let reach = [0.0, 0.5, 3.0][dice.roll(3) as usize] * side;
-        let eye = [(); 3].map(|()| dice.real(-reach, side + reach));
-        let target = [(); 3].map(|()| dice.real(0.0, side));
-        let up = [(); 3].map(|()| dice.real(-1.0, 1.0));
-        let fov = dice.real(10.0, 120.0);
+        let reach = [0.0, 0.5, 3.0][dice.below(3) as usize] * side;
+        let eye = [(); 3].map(|()| dice.between(-reach, side + reach));
+        let target = [(); 3].map(|()| dice.between(0.0, side));
+        let up = [(); 3].map(|()| dice.between(-1.0, 1.0));
+        let fov = dice.between(10.0, 120.0);
         drawn += assert_exact(&graph, &set_up(&camera(eye, target, up, fov, 9), depth));
     }
     assert!(drawn > 500, "only {drawn} samples show anything");
 }
 
-/// Coarse clip vectors, oblong pictures, several samples a pixel, a scene of one voxel.
+/// Coarse clip vectors, oblong pictures, several samples per pixel, a scene of one voxel.
 #[test]
 fn coarse_views_are_exact_for_their_own_integers() {
-    let mut dice = Dice(6);
+    let mut dice = Dice::new(6);
     let mut drawn = 0;
     let mut views = 0;
     while views < 60 {
-        let depth = dice.roll(4) as u32;
+        let depth = dice.below(4);
         let graph = random_graph(&mut dice, depth);
         let side = f64::from(1u32 << depth);
-        let eye = [(); 3].map(|()| dice.real(-side, 2.0 * side));
-        let target = [(); 3].map(|()| dice.real(0.0, side));
-        let mut camera = camera(eye, target, [0.3, -0.2, 1.0], dice.real(40.0, 100.0), 9);
-        camera.height = 1 + dice.roll(9) as u32;
+        let eye = [(); 3].map(|()| dice.between(-side, 2.0 * side));
+        let target = [(); 3].map(|()| dice.between(0.0, side));
+        let mut camera = camera(eye, target, [0.3, -0.2, 1.0], dice.between(40.0, 100.0), 9);
+        camera.height = 1 + dice.below(9);
         let options = SetupOptions {
-            bits: 16 + dice.roll(20) as u32,
-            frac: Some(dice.roll(6) as u32),
-            aa_log2: dice.roll(2) as u32,
+            bits: 16 + dice.below(20),
+            frac: Some(dice.below(6)),
+            aa_log2: dice.below(2),
             ..SetupOptions::default()
         };
         // Some of these views have no volume left.
@@ -313,20 +272,20 @@ fn coarse_views_are_exact_for_their_own_integers() {
 /// degrees: every ray through a corner, an edge or along a face is met.
 #[test]
 fn ties_everywhere() {
-    let mut dice = Dice(2);
+    let mut dice = Dice::new(2);
     let mut drawn = 0;
     for round in 0..240 {
         let depth = 2 + round % 2;
         let graph = random_graph(&mut dice, depth);
-        let side = 1u64 << depth;
+        let side = 1u32 << depth;
         // Whole and half voxels, from two voxels outside to two inside the far side.
-        let eye = [(); 3].map(|()| dice.roll(2 * side + 9) as f64 / 2.0 - 2.0);
-        let axis = dice.roll(3) as usize;
-        let sign = if dice.roll(2) == 0 { 1.0 } else { -1.0 };
+        let eye = [(); 3].map(|()| f64::from(dice.below(2 * side + 9)) / 2.0 - 2.0);
+        let axis = dice.below(3) as usize;
+        let sign = if dice.below(2) == 0 { 1.0 } else { -1.0 };
         let mut target = eye;
         target[axis] += sign;
         let mut up = [0.0; 3];
-        up[(axis + 1 + dice.roll(2) as usize) % 3] = if dice.roll(2) == 0 { 1.0 } else { -1.0 };
+        up[(axis + 1 + dice.below(2) as usize) % 3] = if dice.below(2) == 0 { 1.0 } else { -1.0 };
         let size = [8, 7, 8, 16][round as usize % 4];
         drawn += assert_exact(&graph, &set_up(&camera(eye, target, up, 90.0, size), depth));
     }
@@ -337,7 +296,7 @@ fn ties_everywhere() {
 /// others exactly along cell edges through the eye.
 #[test]
 fn the_axis_itself_is_decided_by_the_tie_rule() {
-    let graph = linked(1, &[(0..8).map(|octant| (octant, 1)).collect(), Vec::new()]);
+    let graph = linked(1, &[[Some(1); 8], [None; 8]]);
     let mut setup = set_up(
         &camera([1.0, -1.0, 1.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0], 90.0, 2),
         1,
@@ -358,7 +317,6 @@ fn the_axis_itself_is_decided_by_the_tie_rule() {
 
 #[test]
 fn a_cycle_ends_at_the_finest_level() {
-    let sierpinski = |depth| linked(depth, &[[0, 3, 5, 6].map(|octant| (octant, 0)).to_vec()]);
     for (eye, fov) in [
         ([40.0, -17.0, 25.0], 30.0),
         ([0.0, 0.0, 0.0], 90.0),
@@ -386,14 +344,14 @@ fn a_cycle_ends_at_the_finest_level() {
 
 #[test]
 fn the_eye_is_where_the_set_up_says() {
-    let mut dice = Dice(3);
+    let mut dice = Dice::new(3);
     for _ in 0..200 {
-        let depth = 1 + dice.roll(12) as u32;
+        let depth = 1 + dice.below(12);
         let side = f64::from(1u32 << depth);
-        let eye = [(); 3].map(|()| dice.real(-2.0 * side, 3.0 * side));
-        let target = [(); 3].map(|()| dice.real(0.0, side));
+        let eye = [(); 3].map(|()| dice.between(-2.0 * side, 3.0 * side));
+        let target = [(); 3].map(|()| dice.between(0.0, side));
         let setup = set_up(
-            &camera(eye, target, [0.1, 0.2, 1.0], dice.real(5.0, 140.0), 64),
+            &camera(eye, target, [0.1, 0.2, 1.0], dice.between(5.0, 140.0), 64),
             depth,
         );
         let exact = Exact::new(&setup);
@@ -422,19 +380,19 @@ fn the_eye_is_where_the_set_up_says() {
 #[test]
 fn a_picture_by_hand() {
     // x << 2 | y << 1 | z of the halves, then of the voxels in them.
-    let graph = linked(
+    let graph = listed(
         2,
         &[
-            vec![(0b000, 7), (0b101, 8), (0b110, 3), (0b011, 9)],
-            Vec::new(), // 1, at (0, 0, 0)
-            Vec::new(), // 2, at (3, 0, 3)
-            Vec::new(), // 3, at (2, 2, 0)
-            Vec::new(), // 4, at (1, 3, 2)
-            Vec::new(), // 5, at (1, 0, 0)
-            Vec::new(), // 6, at (0, 1, 0)
-            vec![(0b000, 1), (0b100, 5), (0b010, 6)],
-            vec![(0b101, 2)],
-            vec![(0b110, 4)],
+            &[(0b000, 7), (0b101, 8), (0b110, 3), (0b011, 9)],
+            &[], // 1, at (0, 0, 0)
+            &[], // 2, at (3, 0, 3)
+            &[], // 3, at (2, 2, 0)
+            &[], // 4, at (1, 3, 2)
+            &[], // 5, at (1, 0, 0)
+            &[], // 6, at (0, 1, 0)
+            &[(0b000, 1), (0b100, 5), (0b010, 6)],
+            &[(0b101, 2)],
+            &[(0b110, 4)],
         ],
     );
     let fov = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
@@ -468,30 +426,4 @@ fn a_picture_by_hand() {
     let records = frame.records.expect("asked for");
     assert!(records.iter().all(|&tested| tested >= 1.0));
     assert_exact(&graph, &setup);
-}
-
-/// Clip vectors times a power of two are the same view; large ones leave 128 bits.
-#[test]
-fn views_beyond_128_bits_give_the_same_picture() {
-    let mut dice = Dice(5);
-    for _ in 0..6 {
-        let graph = random_graph(&mut dice, 3);
-        let eye = [(); 3].map(|()| dice.roll(33) as f64 / 2.0 - 4.0);
-        let target = [eye[0] + 1.0, eye[1], eye[2]];
-        let setup = set_up(&camera(eye, target, [0.0, 0.0, 1.0], 90.0, 16), 3).without_detail();
-        let largest = |setup: &FrameSetup| {
-            let edges = setup.edge_clip.iter().flatten().map(|c| c.abs()).max();
-            edges
-                .into_iter()
-                .chain(setup.origin_clip.map(i64::abs))
-                .max()
-                .expect("some")
-        };
-        let spare = largest(&setup).leading_zeros() - 3;
-        let mut scaled = setup.clone();
-        scaled.origin_clip = setup.origin_clip.map(|c| c << spare);
-        scaled.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
-        assert_eq!(draw(&graph, &setup), draw(&graph, &scaled));
-        assert_exact(&graph, &scaled);
-    }
 }

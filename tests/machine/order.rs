@@ -1,10 +1,7 @@
-//! Occlusion order (image-order paper, 3.2): proved for every position of the eye, and
-//! seen at work on random graphs.
+//! Occlusion order (image-order paper, 3.2), proved for every position of the eye.
 
 use crate::common::*;
-use proptest::prelude::*;
 use shiftvox::frame::Frame;
-use shiftvox::graph::GraphView;
 use shiftvox::machine::{MachineOptions, OCCLUSION_ORDER};
 use shiftvox::project::{Engine, SetupOptions};
 use shiftvox::rays::Rays;
@@ -86,8 +83,7 @@ fn the_criterion_agrees_with_rays() {
     assert!(visits > 1000, "only {visits} pairs were met");
 }
 
-/// Which arrays are occlusion orders: those in which no child comes after
-/// one that it may hide, that is, whose bits are a part of its own.
+/// An array is an occlusion order if no child comes after one that it may hide: one whose bits include its own.
 #[test]
 fn other_arrays_are_told_from_occlusion_orders() {
     let mut wrong = 0;
@@ -107,73 +103,6 @@ fn other_arrays_are_told_from_occlusion_orders() {
         }
     }
     assert!(wrong > 10, "only {wrong} disturbed arrays are wrong");
-}
-
-/// Solid cells in the order in which the machine would draw them.
-fn cells_in_order(graph: &GraphView<'_>, eye: [f64; 3]) -> Vec<([f64; 3], f64)> {
-    fn visit(
-        graph: &GraphView<'_>,
-        eye: [f64; 3],
-        (node, level): (u32, u32),
-        (low, side): ([f64; 3], f64),
-        cells: &mut Vec<([f64; 3], f64)>,
-    ) {
-        if level == graph.depth || graph.mask(node) == 0 {
-            cells.push((low, side));
-            return;
-        }
-        let half = side / 2.0;
-        let octant = (0..3).fold(0u8, |bits, k| bits << 1 | u8::from(low[k] + half > eye[k]));
-        for nearest in OCCLUSION_ORDER {
-            let child = octant ^ nearest;
-            if let Some(node) = graph.child(node, child) {
-                let corner =
-                    std::array::from_fn(|k| low[k] + half * f64::from(child >> (2 - k) & 1));
-                visit(graph, eye, (node, level + 1), (corner, half), cells);
-            }
-        }
-    }
-    let side = f64::from(1u32 << graph.depth);
-    let mut cells = Vec::new();
-    visit(graph, eye, (graph.root, 0), ([0.0; 3], side), &mut cells);
-    cells
-}
-
-/// Where a ray enters a cell, if it passes through more than a touch of it.
-fn entry(eye: [f64; 3], towards: [f64; 3], (low, side): ([f64; 3], f64)) -> Option<f64> {
-    let (mut near, mut far) = (0.0f64, f64::INFINITY);
-    for k in 0..3 {
-        let step = towards[k] - eye[k];
-        let (a, b) = ((low[k] - eye[k]) / step, (low[k] + side - eye[k]) / step);
-        near = near.max(a.min(b));
-        far = far.min(a.max(b));
-    }
-    (far - near > 1e-9).then_some(near)
-}
-
-proptest! {
-    #![proptest_config(cases(150))]
-
-    #[test]
-    fn rays_through_random_graphs_meet_leaves_in_order(
-        graph in any_graph(1..5),
-        eye in proptest::array::uniform3(-2.0..3.0f64),
-        targets in proptest::collection::vec(proptest::array::uniform3(0.0..1.0f64), 40),
-    ) {
-        let side = f64::from(1u32 << graph.depth);
-        let eye = eye.map(|c| c * side);
-        let cells = cells_in_order(&graph.view(), eye);
-        for target in targets {
-            let target = target.map(|c| c * side);
-            let mut last = f64::NEG_INFINITY;
-            for &cell in &cells {
-                if let Some(t) = entry(eye, target, cell) {
-                    prop_assert!(t >= last - 1e-9, "cell {cell:?} at {t} after {last}");
-                    last = t;
-                }
-            }
-        }
-    }
 }
 
 #[test]

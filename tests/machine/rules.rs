@@ -1,5 +1,4 @@
-//! Properties of the machine's rules: cages agree, rejection does not show,
-//! nothing has holes, every input ends, narrow words trap.
+//! Properties of the machine's rules: nothing has holes, every input ends, narrow words trap, a tolerance has its rules.
 
 use crate::common::*;
 use hwmodel::{Overflow, Probe};
@@ -8,7 +7,7 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{
-    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions,
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupError, SetupOptions,
 };
 use shiftvox::rays::Rays;
 
@@ -51,53 +50,6 @@ fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
 proptest! {
     #![proptest_config(cases(50))]
 
-    /// In clip space, `corners` and `frame` are the same to the bit.
-    #[test]
-    fn cages_agree_in_clip_space(
-        graph in any_octree(3, 0.2),
-        camera in any_camera(8.0, 1..32),
-        coverage in any_coverage(),
-        lod_px in prop_oneof![Just(0.0), Just(0.5), Just(1.0), Just(3.0)],
-    ) {
-        let with = |cage| {
-            let options = SetupOptions {
-                cage, coverage, lod_px, tolerance_px: 0.0, ..SetupOptions::of(coverage)
-            };
-            let setup = setup(&graph, &camera, &options);
-            draw_with(MachineOptions::default(), &graph, &setup).expect("no overflow")
-        };
-        let (corners, corner_stats) = with(CageKind::Corners);
-        let (frame, frame_stats) = with(CageKind::Frame);
-        prop_assert_eq!(corners.voxel, frame.voxel);
-        prop_assert_eq!(corner_stats, frame_stats);
-    }
-
-    /// Full quadrants reject records; the picture is the same without.
-    #[test]
-    fn rejection_does_not_show(
-        graph in any_octree(2, 0.3),
-        camera in any_camera(4.0, 1..24),
-        coverage in any_coverage(),
-        cage in any_cage(),
-        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
-        lod_px in prop_oneof![Just(0.0), Just(0.5), Just(1.0)],
-    ) {
-        let tolerance_px = tolerance_of(coverage, tolerance_px);
-        // Few fraction bits, so that a solid has few levels below it.
-        let frac = (coverage == Coverage::Any).then_some(6);
-        let options = SetupOptions {
-            bits: 48, frac, cage, coverage, lod_px, tolerance_px, ..SetupOptions::of(coverage)
-        };
-        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
-            return Ok(()); // Six bits do not hold every view.
-        };
-        let (with, some) = draw_with(MachineOptions::default(), &graph, &setup).expect("a frame");
-        let all = MachineOptions { reject_filled: false, ..MachineOptions::default() };
-        let (without, more) = draw_with(all, &graph, &setup).expect("a frame");
-        prop_assert_eq!(with.voxel, without.voxel);
-        prop_assert!(stat(&some, "records") <= stat(&more, "records"));
-    }
-
     /// Every input ends: cyclic graphs, all formats, all policies.
     #[test]
     fn every_frame_ends(
@@ -132,33 +84,23 @@ proptest! {
         }
     }
 
-    /// Dense planes at all angles under `center`: a sample whose neighbours
-    /// are all covered is drawn.
+    /// Dense planes at all angles, and a sphere's shell that is thick enough to be closed, under `center`: a sample
+    /// whose neighbours are all covered is drawn.
     #[test]
-    fn planes_have_no_holes(
-        axis in 0..3usize,
+    fn surfaces_have_no_holes(
+        which in 0..4usize,
         from in proptest::array::uniform3(-1.0..1.0f64),
         distance in 1.2..6.0f64,
         tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
         cage in any_cage(),
         lod_px in prop_oneof![Just(0.0), Just(1.0)],
     ) {
-        let graph = octree(4, &|at| at[axis] == 8);
-        no_holes(&graph, from, distance, tolerance_px, cage, lod_px)?;
-    }
-
-    #[test]
-    fn closed_surfaces_have_no_holes(
-        from in proptest::array::uniform3(-1.0..1.0f64),
-        distance in 1.2..6.0f64,
-        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
-        cage in any_cage(),
-        lod_px in prop_oneof![Just(0.0), Just(1.0)],
-    ) {
-        // A sphere's shell, thick enough to be closed.
-        let graph = octree(4, &|at| {
-            let square: i32 = at.iter().map(|c| (2 * c - 15) * (2 * c - 15)).sum();
-            (11 * 11..15 * 15).contains(&square)
+        let graph = octree(4, &|at| match which {
+            3 => {
+                let square: i32 = at.iter().map(|c| (2 * c - 15) * (2 * c - 15)).sum();
+                (11 * 11..15 * 15).contains(&square)
+            }
+            axis => at[axis] == 8,
         });
         no_holes(&graph, from, distance, tolerance_px, cage, lod_px)?;
     }
@@ -287,4 +229,30 @@ fn wrapping_and_saturating_words_finish_where_trapping_ones_stop() {
         let (_, stats) = draw_with(machine, &graph, &setup).expect("no trap");
         assert!(stat(&stats, "overflows") > 0);
     }
+}
+
+/// There is no other tolerance than 0 to ask for.
+#[test]
+fn a_tolerance_is_refused_with_the_reason() {
+    let graph = solid(2);
+    let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
+    for coverage in [Coverage::Exact, Coverage::Alpha] {
+        for tolerance_px in [1.0 / 256.0, 0.125, f64::INFINITY] {
+            let options = SetupOptions {
+                tolerance_px,
+                ..SetupOptions::of(coverage)
+            };
+            let error = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)
+                .expect_err("no such frame");
+            assert_eq!(error, SetupError::Tolerance(tolerance_px));
+            assert!(
+                error.to_string().contains("approximates nothing"),
+                "{error}"
+            );
+        }
+    }
+    for coverage in [Coverage::Any, Coverage::Center] {
+        assert_eq!(SetupOptions::of(coverage).tolerance_px, 0.125);
+    }
+    assert_eq!(SetupOptions::default().tolerance_px, 0.0);
 }

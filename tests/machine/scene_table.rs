@@ -1,74 +1,47 @@
-//! The scenes that every engine must draw alike, listed once.
+//! The scenes that every engine must draw to the same bits.
 //!
 //! Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic, 30 levels
 //! deep, a million voxels from the origin, and voxel files.
 
-use std::path::Path;
 use std::sync::OnceLock;
 
 use shiftvox::graph::Graph;
 
 use crate::common::{octree, sierpinski, solid};
-use crate::scenes::{graph_of_file, graph_of_spec};
+use crate::scenes::graph_of;
 
-/// A scene of the table. Its graph is made when it is first needed.
+/// A scene of the table: its name, and its graph, which is made when it is first needed.
 pub(crate) struct TestScene {
-    /// What messages call it.
     pub(crate) name: &'static str,
-    source: Source,
     graph: OnceLock<Graph>,
 }
 
-#[derive(Clone, Copy)]
-enum Source {
-    /// A generator: the name is the specification.
-    Spec,
-    /// A file of `tests/data`, by its name.
-    File,
-    /// Made by hand.
-    Made(fn() -> Graph),
-}
-
-const fn scene(name: &'static str, source: Source) -> TestScene {
+const fn scene(name: &'static str) -> TestScene {
     TestScene {
         name,
-        source,
         graph: OnceLock::new(),
     }
 }
 
-/// All scenes.
+/// All scenes: generators, files of `tests/data`, and graphs by hand.
 pub(crate) static SCENES: [TestScene; 17] = [
-    scene("gen:checker,depth=5", Source::Spec),
-    scene("gen:maze,depth=6", Source::Spec),
-    scene("gen:menger,depth=4", Source::Spec),
-    scene("gen:random,depth=6,density=3,seed=5", Source::Spec),
-    scene("gen:shell,depth=7", Source::Spec),
-    scene("gen:sierpinski,depth=16", Source::Spec),
-    scene("gen:sphere,depth=6", Source::Spec),
-    scene("gen:terrain,depth=9", Source::Spec),
-    scene("gen:truss,depth=7", Source::Spec),
-    scene("gen:wires,depth=7", Source::Spec),
-    scene("axes.vox", Source::File),
-    scene("extended.vox", Source::File),
-    scene("sphere.vox", Source::File),
-    scene(
-        "a Sierpinski tetrahedron of 30 levels",
-        Source::Made(|| sierpinski(30)),
-    ),
-    scene("a solid cube of one node", Source::Made(|| solid(3))),
-    scene(
-        "voxels in diagonal planes",
-        Source::Made(|| octree(4, &|[x, y, z]| (x + 2 * y + 3 * z) % 5 == 0)),
-    ),
-    scene(
-        "a terrain far from the origin",
-        Source::Made(|| {
-            let mut graph = graph_of_spec("gen:terrain,depth=6");
-            graph.placement.origin_index = [1 << 20, -(1 << 20), 1 << 20];
-            graph
-        }),
-    ),
+    scene("gen:checker,depth=5"),
+    scene("gen:maze,depth=6"),
+    scene("gen:menger,depth=4"),
+    scene("gen:random,depth=6,density=3,seed=5"),
+    scene("gen:shell,depth=7"),
+    scene("gen:sierpinski,depth=16"),
+    scene("gen:sphere,depth=6"),
+    scene("gen:terrain,depth=9"),
+    scene("gen:truss,depth=7"),
+    scene("gen:wires,depth=7"),
+    scene("axes.vox"),
+    scene("extended.vox"),
+    scene("sphere.vox"),
+    scene("a Sierpinski tetrahedron of 30 levels"),
+    scene("a solid cube of one node"),
+    scene("voxels in diagonal planes"),
+    scene("a terrain far from the origin"),
 ];
 
 impl TestScene {
@@ -83,13 +56,16 @@ impl TestScene {
     }
 
     fn build(&self) -> Graph {
-        match self.source {
-            Source::Spec => graph_of_spec(self.name),
-            Source::File => {
-                let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-                graph_of_file(&data.join(self.name)).expect(self.name)
+        match self.name {
+            "a Sierpinski tetrahedron of 30 levels" => sierpinski(30),
+            "a solid cube of one node" => solid(3),
+            "voxels in diagonal planes" => octree(4, &|[x, y, z]| (x + 2 * y + 3 * z) % 5 == 0),
+            "a terrain far from the origin" => {
+                let mut graph = graph_of("gen:terrain,depth=6");
+                graph.placement.origin_index = [1 << 20, -(1 << 20), 1 << 20];
+                graph
             }
-            Source::Made(make) => make(),
+            name => graph_of(name),
         }
     }
 }

@@ -42,7 +42,7 @@ fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, SetupOptions) {
         lod_px: dice.of(&[0.0, 0.5, 1.0, 3.3]),
         aa_log2: dice.of(&[0, 0, 0, 0, 0, 1, 1, 2, 2, 3]),
     };
-    // What draws outlines has one tolerance alone; what no rule takes is left.
+    // Rules that draw outlines have one tolerance. A value that no rule accepts stays.
     if options.coverage.draws_outlines() && options.tolerance_px != 4097.0 {
         options.tolerance_px = 0.0;
     }

@@ -1,38 +1,45 @@
 //! A viewer draws nothing where nothing changed, and never shows a stale picture.
 
 use std::cell::Cell;
-use std::rc::Rc;
 
 use crate::common::*;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
-use shiftvox::machine::Machine;
+use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{
     Camera, Contents, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats, Viewer,
     viewer::FRAMES_UNCHANGED,
 };
 use shiftvox::rays::Rays;
 
-/// An engine that counts its frames, and fails on request.
-struct Watched<E> {
-    engine: E,
-    frames: Rc<Cell<u32>>,
-    fails: Rc<Cell<bool>>,
+/// The fast engine on one thread, which counts its frames, and fails on request.
+struct Watched<'w> {
+    engine: Fast,
+    frames: &'w Cell<u32>,
+    fails: &'w Cell<bool>,
 }
 
-impl<E: Engine> Engine for Watched<E> {
+impl Watched<'_> {
+    fn begin(&self) -> Result<(), EngineError> {
+        self.frames.set(self.frames.get() + 1);
+        if self.fails.get() {
+            Err(trap())
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl Engine for Watched<'_> {
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
-        self.frames.set(self.frames.get() + 1);
-        if self.fails.get() {
-            return Err(trap());
-        }
+        self.begin()?;
         self.engine.draw(graph, setup, frame)
     }
 
@@ -42,11 +49,7 @@ impl<E: Engine> Engine for Watched<E> {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
-        self.frames.set(self.frames.get() + 1);
-        if self.fails.get() {
-            frame.node.fill(7);
-            return Err(trap());
-        }
+        self.begin().inspect_err(|_| frame.node.fill(7))?;
         self.engine.render(graph, setup, frame)
     }
 }
@@ -57,15 +60,11 @@ fn trap() -> EngineError {
     let options = SetupOptions {
         bits: 20,
         frac: Some(14),
-        coverage: Coverage::Any,
         tolerance_px: f64::INFINITY,
         ..SetupOptions::of(Coverage::Any)
     };
-    let camera = camera([-3.0, 4.0, 4.0], [4.0, 4.0, 4.0], 64);
-    let setup = setup(&graph, &camera, &options);
-    let mut frame = Frame::new(64, 64, false);
-    let drawn = Machine::default().render(&graph.view(), &setup, &mut frame);
-    drawn.expect_err("a trap")
+    let setup = setup(&graph, &camera([-3.0, 4.0, 4.0], [4.0; 3], 64), &options);
+    draw_with(MachineOptions::default(), &graph, &setup).expect_err("a trap")
 }
 
 fn fast() -> Fast {
@@ -76,7 +75,7 @@ fn fast() -> Fast {
     Fast::new(options, Box::new(Machine::default()))
 }
 
-/// What a new engine draws into a new frame.
+/// The frame of a new engine.
 fn anew(graph: &Graph, setup: &FrameSetup, with_records: bool) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, with_records);
     let drawn = fast().render(&graph.view(), setup, &mut frame);
@@ -88,12 +87,12 @@ fn unchanged(stats: &Stats) -> u64 {
     stat(stats, FRAMES_UNCHANGED)
 }
 
-/// What may happen between two pictures.
+/// An event between two pictures.
 #[derive(Debug, Clone, Copy)]
 enum Step {
     /// A camera and settings of those that there are; whether it is counted.
     Draw(usize, usize, bool),
-    /// The viewer is asked to forget.
+    /// The viewer drops its frame.
     Forget,
     /// The engine fails once.
     Fail(usize, usize),
@@ -139,11 +138,11 @@ proptest! {
             true => Camera { width: first.width, height: first.height, ..camera },
             false => camera,
         });
-        let (frames, fails) = (Rc::new(Cell::new(0)), Rc::new(Cell::new(false)));
+        let (frames, fails) = (Cell::new(0), Cell::new(false));
         let engine = Watched {
             engine: fast(),
-            frames: Rc::clone(&frames),
-            fails: Rc::clone(&fails),
+            frames: &frames,
+            fails: &fails,
         };
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
         let mut viewer = Viewer::new(graph.view(), engine, contents);
@@ -195,11 +194,30 @@ proptest! {
 #[test]
 fn every_part_of_a_setup_counts() {
     let graph = octree(3, &|[x, y, z]| (x + y + z) % 3 == 0);
-    let camera = camera([-5.0, -3.0, 9.0], [4.0, 4.0, 4.0], 48);
-    let usual = SetupOptions::default();
+    let first = camera([-5.0, -3.0, 9.0], [4.0, 4.0, 4.0], 48);
+    let wider = Camera { width: 49, ..first };
+    let moved = Camera {
+        eye: first.eye + glam::DVec3::X * 1e-6,
+        ..wider
+    };
+    let other_field = Camera {
+        fov_degrees: 60.5,
+        ..moved
+    };
+    let [usual, lod, _] = settings();
     let mut viewer = Viewer::new(graph.view(), fast(), Contents::default());
-    let mut expect = |camera: &Camera, options: &SetupOptions, is_new: bool| {
-        let setup = setup(&graph, camera, options);
+    for (camera, options, is_new) in [
+        (first, usual, true),
+        (first, usual, false),
+        (first, lod, true),
+        (first, usual, true),
+        (wider, usual, true),
+        (moved, usual, true),
+        (moved, usual, false),
+        (other_field, usual, true),
+        (moved, usual, true),
+    ] {
+        let setup = setup(&graph, &camera, &options);
         let stats = viewer.render(&setup).expect("a frame");
         assert_eq!(unchanged(&stats), u64::from(!is_new));
         assert_eq!(
@@ -208,32 +226,7 @@ fn every_part_of_a_setup_counts() {
             "an unchanged frame is no work"
         );
         assert!(viewer.frame() == Some(&anew(&graph, &setup, false)));
-    };
-    expect(&camera, &usual, true);
-    expect(&camera, &usual, false);
-    let lod = SetupOptions {
-        lod_px: 2.0,
-        ..usual
-    };
-    expect(&camera, &lod, true);
-    expect(&camera, &usual, true);
-    let wider = Camera {
-        width: 49,
-        ..camera
-    };
-    expect(&wider, &usual, true);
-    let turned = Camera {
-        eye: camera.eye + glam::DVec3::X * 1e-6,
-        ..wider
-    };
-    expect(&turned, &usual, true);
-    expect(&turned, &usual, false);
-    let other_field = Camera {
-        fov_degrees: 60.5,
-        ..turned
-    };
-    expect(&other_field, &usual, true);
-    expect(&turned, &usual, true);
+    }
 }
 
 #[test]

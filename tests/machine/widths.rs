@@ -106,23 +106,18 @@ fn no_record_needs_more_bits_than_are_proven() {
     );
 }
 
-/// Wide words of the proven width hold all sums on planes: a narrower one traps.
+/// Wide words of the proven width hold all sums on planes (`differential.rs` draws in them). Narrower ones trap.
 #[test]
-fn wide_words_of_the_proven_width_do_not_overflow() {
-    let fewest = frames()
-        .map(|(graph, setup)| {
-            let narrow = narrowed(&setup);
-            let bits = narrow.format.wide().bits();
-            let draws = |bits: u32| {
-                let mut setup = setup.clone();
-                setup.format = setup.format.with_wide_bits(bits);
-                let mut frame = Frame::new(setup.width, setup.height, false);
-                machine().render(&graph.view(), &setup, &mut frame).is_ok()
-            };
-            assert!(draws(bits), "{bits} bits are not enough for {setup:?}");
-            (1..8).find(|spare| !draws(bits - spare)).unwrap_or(8)
-        })
-        .min();
-    eprintln!("a frame traps with {fewest:?} bits fewer");
-    assert!(fewest.is_some_and(|spare| spare <= 4), "{fewest:?}");
+fn wide_words_are_hardly_wider_than_needed() {
+    let fewest = frames().filter_map(|(graph, setup)| {
+        let bits = narrowed(&setup).format.wide().bits();
+        let draws = |spare: u32| {
+            let mut setup = setup.clone();
+            setup.format = setup.format.with_wide_bits(bits - spare);
+            let mut frame = Frame::new(setup.width, setup.height, false);
+            machine().render(&graph.view(), &setup, &mut frame).is_ok()
+        };
+        (0..5).find(|&spare| !draws(spare))
+    });
+    assert!(fewest.min().is_some_and(|spare| spare > 0));
 }

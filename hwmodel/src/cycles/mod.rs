@@ -77,7 +77,7 @@
 //! Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context, no faster
 //! or wider part makes a frame slower. With several contexts it can, because records meet in another order (the
 //! anomalies of list scheduling, Graham 1969): 117 of 2000 random improvements did, at worst by 19 %
-//! (`tests/cycles_properties.rs`).
+//! (`tests/hwmodel/cycles_properties.rs`).
 //!
 //! # Simplifications
 //!

@@ -79,7 +79,7 @@ impl Descent {
     /// Fails if a word has overflowed.
     pub(super) fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
         let dp = &mut self.dp;
-        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);
+        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host); // host: read by an experiment
         let cage = match held {
             CageWords::Clip(coordinates) => Cage::Clip(coordinates.map(&mut vertices)),
             CageWords::Screen(coordinates) => Cage::Screen(coordinates.map(&mut vertices)),

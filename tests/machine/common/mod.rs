@@ -6,9 +6,10 @@ use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{Graph, Opacity, PackedNormal, Placement};
+use shiftvox::graph::{Graph, LinkedGraph, Opacity};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats};
+use shiftvox::split_mix::SplitMix;
 
 /// How many times as many cases as usual `SHIFTVOX_CASES` asks for.
 pub fn times() -> u32 {
@@ -22,39 +23,11 @@ pub fn cases(usual: u32) -> ProptestConfig {
 
 /// A graph from each node's children by octant; a node without any is a leaf.
 pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
-    let mut masks = Vec::new();
-    let mut firsts = Vec::new();
-    let mut links = Vec::new();
-    for children in nodes {
-        let mut mask = 0u8;
-        firsts.push(links.len() as u32);
-        for (octant, child) in children.iter().enumerate() {
-            if let Some(child) = child {
-                mask |= 1 << octant;
-                links.push(*child);
-            }
-        }
-        masks.push(mask);
+    let mut graph = LinkedGraph::new(depth);
+    for (node, children) in nodes.iter().enumerate() {
+        graph.add_node([node as u8, 100, 200], *children);
     }
-    if links.is_empty() {
-        links.push(0);
-    }
-    Graph {
-        depth,
-        root: 0,
-        color: (0..nodes.len())
-            .map(|i| [i as u8, 100, 200])
-            .collect::<Vec<_>>()
-            .into(),
-        normal: vec![PackedNormal(0); nodes.len()].into(),
-        opacity: Vec::new().into(),
-        mask: masks.into(),
-        first: firsts.into(),
-        links: links.into(),
-        level_start: Vec::new(),
-        voxels: 0,
-        placement: Placement::default(),
-    }
+    graph.build().expect("a graph")
 }
 
 /// A dense cube: one node, all of whose children are itself.
@@ -112,8 +85,7 @@ pub fn octree(depth: u32, is_filled: &dyn Fn([i32; 3]) -> bool) -> Graph {
     linked(depth, &nodes)
 }
 
-/// Random graphs: children may be any node, so most are cyclic; a graph ends
-/// at its depth.
+/// Random graphs. Children may be any node, so most are cyclic: a graph ends at its depth.
 pub fn any_graph(depths: std::ops::Range<u32>) -> impl Strategy<Value = Graph> {
     (depths, 1..8usize).prop_flat_map(|(depth, count)| {
         let child = prop_oneof![
@@ -156,19 +128,16 @@ pub fn any_mixed_octree(depth: u32) -> impl Strategy<Value = Graph> {
         me as u32
     }
     any::<u64>().prop_map(move |seed| {
-        let mut state = seed | 1;
-        let mut next = || {
-            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-            state >> 40
-        };
+        let mut numbers = SplitMix::new(seed);
+        let mut next = || numbers.below(1 << 24);
         let mut nodes = Vec::new();
         node(&mut nodes, 1 << depth, &mut next);
         linked(depth, &nodes)
     })
 }
 
-/// Cameras about a cube of side `side`: outside, on faces and lattice points,
-/// inside; many aligned with an axis, so that ties abound.
+/// Cameras outside, inside, on faces and on lattice points of a cube of side `side`. Many are aligned with an axis, so
+/// that ties abound.
 pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
     let free = -2.0..3.0f64;
     let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
@@ -213,7 +182,7 @@ pub fn up_of(forward: DVec3) -> DVec3 {
     }
 }
 
-/// A camera at `eye` that looks at `target`, 60 degrees, square.
+/// A camera at `eye` towards `target`, 60 degrees, square.
 pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
     Camera {
         eye: DVec3::from_array(eye),
@@ -277,7 +246,7 @@ pub fn draw_with(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
     if options == MachineOptions::default() {
-        // What a test shows for the machine holds for the default engine too.
+        // Each test of the machine tests the default engine too.
         let mut fast = Frame::new(setup.width, setup.height, false);
         Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
             .render(&graph.view(), setup, &mut fast)

@@ -1,10 +1,9 @@
 //! How much the machine does for a record: known answers, counted while it
 //! draws.
 //!
-//! A probe of this test's own keeps the events of each record apart. What a
-//! subdivided record costs is fixed by the algorithm. `c` is the number of
-//! children that exist, `t` the number of quadtree nodes against whose
-//! bisectors a child's box is tested (one per descent, and one at the end):
+//! A probe of this test's own keeps the events of each record apart. The algorithm fixes the cost of a subdivided
+//! record. `c` is the number of children that exist, `t` the number of quadtree nodes against whose bisectors a child's
+//! box is tested (one per descent, and one at the end):
 //!
 //! | stage | corners (the image-order paper) | frame |
 //! |---|---|---|
@@ -15,10 +14,9 @@
 //! | child box, a child and coordinate | 14 min/max (7 + 7) | 6 min/max (3 + 3), 6 adds |
 //! | quadtree fit, screen space | 4 `t` compares, `t` logic of 4 bits | the same |
 //!
-//! Coordinates are two in screen space (x, y) and three in clip space (X, Y,
-//! W). In clip space the child box finds the span of W alone, and compares it
-//! once with the near plane; those of X and Y follow in the fit, relative to
-//! each bisector. Every test of the fit then takes, a coordinate:
+//! Coordinates are two in screen space (x, y) and three in clip space (X, Y, W). In clip space the child box finds the
+//! span of W alone, and compares it once with the near plane. The spans of X and Y follow in the fit, relative to each
+//! bisector. Every test of the fit then takes, a coordinate:
 //!
 //! | | corners | frame |
 //! |---|---|---|
@@ -26,14 +24,11 @@
 //! | span | 14 min/max | 6 min/max, 6 adds |
 //! | side | 2 compares | the same |
 //!
-//! and where the child goes on to the left (upper) half, its coordinates are
-//! doubled once more, by 8 shifts (4 for frames).
+//! If the child lies in the left (upper) half, its coordinates are doubled once more, by 8 shifts (4 for frames).
 //!
-//! All of that is under the image-order paper's drawing rule (`Coverage::Any`), for boxes
-//! inside the picture: one that leaves it is also compared with the picture's
-//! four edges, and the exact rule carries silhouette planes along. A screen
-//! position is divided for once, bit by bit, in a stage of its own; nothing
-//! is ever multiplied.
+//! All of that is under the image-order paper's drawing rule (`Coverage::Any`), for boxes inside the picture. A box
+//! that leaves it is also compared with the picture's four edges. The exact rule also moves silhouette planes. A screen
+//! position is divided for once, bit by bit, in a stage of its own; nothing is ever multiplied.
 
 mod divides;
 mod records;
@@ -69,7 +64,7 @@ struct Turn {
 /// Keeps the events of each record apart.
 #[derive(Debug, Default)]
 struct ByRecord {
-    /// What is done before the first record: the object's own fit.
+    /// Events before the first record: the object's own fit.
     before: Turn,
     turns: Vec<Turn>,
 }
@@ -136,9 +131,8 @@ impl Turn {
         sum(self.of(stage))
     }
 
-    /// The fits of a subdivided record's children. What comes before the
-    /// subdivision in the same stage is the record's own search for an open
-    /// sample, in case it is hidden across a bisector.
+    /// The fits of a subdivided record's children. Earlier events of that stage are the record's own search for an open
+    /// sample.
     fn children_s_fits(&self) -> Vec<Event> {
         self.events
             .iter()
@@ -199,47 +193,46 @@ struct Scene {
 
 /// All children, half of them, and few of them; seen askew and straight on.
 fn scenes() -> Vec<Scene> {
+    let scene = |name, graph: Graph, eye, size| {
+        let middle = f64::from(1u32 << graph.depth) / 2.0;
+        let camera = camera(eye, [middle; 3], size);
+        Scene {
+            name,
+            graph,
+            camera,
+        }
+    };
     let diagonal = |[x, y, z]: [i32; 3]| (x + y + z) % 4 == 0;
     vec![
-        Scene {
-            name: "solid cube",
-            graph: solid(2),
-            camera: camera([13.0, 9.0, 11.0], [2.0, 2.0, 2.0], 32),
-        },
-        Scene {
-            name: "Sierpinski tetrahedron",
-            graph: sierpinski(3),
-            camera: camera([-9.0, 16.0, 21.0], [4.0, 4.0, 4.0], 32),
-        },
-        Scene {
-            name: "diagonals",
-            graph: octree(3, &diagonal),
-            camera: camera([4.0, 4.0, 30.0], [4.0, 4.0, 4.0], 64),
-        },
-        Scene {
-            name: "one voxel",
-            graph: octree(3, &|at| at == [5, 2, 7]),
-            camera: camera([30.0, -5.0, 8.0], [4.0, 4.0, 4.0], 64),
-        },
+        scene("solid cube", solid(2), [13.0, 9.0, 11.0], 32),
+        scene(
+            "Sierpinski tetrahedron",
+            sierpinski(3),
+            [-9.0, 16.0, 21.0],
+            32,
+        ),
+        scene("diagonals", octree(3, &diagonal), [4.0, 4.0, 30.0], 64),
+        scene(
+            "one voxel",
+            octree(3, &|at| at == [5, 2, 7]),
+            [30.0, -5.0, 8.0],
+            64,
+        ),
     ]
 }
 
 /// Runs a check on each subdivided record of each scene; the check is given
 /// scene, set-up, turn and children.
 fn each_subdivided(options: &SetupOptions, check: impl Fn(&str, &FrameSetup, &Turn, u64)) {
-    for Scene {
-        name,
-        graph,
-        camera,
-    } in scenes()
-    {
-        let setup = setup(&graph, &camera, options);
-        let (frame, probe) = watch(&graph, &setup, ByRecord::default());
+    for scene in scenes() {
+        let (name, graph) = (scene.name, &scene.graph);
+        let setup = setup(graph, &scene.camera, options);
+        let (frame, probe) = watch(graph, &setup, ByRecord::default());
         assert!(frame.node.iter().any(|&n| n != frame.node[0]), "{name}");
         let turns: Vec<_> = probe.turns.iter().filter(|t| t.is_subdivided()).collect();
         assert!(turns.len() >= 10, "{name}: {} subdivided", turns.len());
         for turn in turns {
-            check(name, &setup, turn, turn.children(&graph));
+            check(name, &setup, turn, turn.children(graph));
         }
     }
 }
@@ -260,7 +253,7 @@ fn check_centre_and_order(setup: &FrameSetup, turn: &Turn) {
     assert_eq!(turn.ops(Stage::Push), ops(&[]));
 }
 
-/// Tests of the children's fits: each looks at one quadtree node's fill vector.
+/// Tests of the children's fits: each reads one fill vector.
 fn fit_tests(turn: &Turn) -> u64 {
     turn.children_s_fits()
         .iter()

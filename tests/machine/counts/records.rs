@@ -1,9 +1,9 @@
-//! What a subdivided record costs, in both spaces and seen from within.
+//! The cost of a subdivided record, in both spaces and seen from within.
 
 use super::*;
 
-/// What a cage coordinate costs: halvings and additions of the vertex pool, numbers that are held,
-/// minima, maxima and additions of a span.
+/// The cost of a cage coordinate: halvings and additions of the vertex pool, numbers held, minima, maxima and additions
+/// of a span.
 const CAGES: [(CageKind, [u64; 5]); 2] = [
     (CageKind::Corners, [19, 0, 8, 7 + 7, 0]),
     (CageKind::Frame, [3, 7, 4, 3 + 3, 6]),
@@ -59,7 +59,7 @@ fn a_subdivided_record_costs_what_the_table_says() {
     }
 }
 
-/// Test by test: two compares an axis, one look at a fill vector, one and.
+/// Test by test: two compares per axis, one read of a fill vector, one and.
 #[test]
 fn the_fit_is_one_small_step_over_and_over() {
     each_subdivided(
@@ -106,9 +106,8 @@ fn check_clip_fit(name: &str, setup: &FrameSetup, turn: &Turn, [numbers, min_max
     assert!(doubled <= 2 * numbers * tests, "{name}");
 }
 
-/// From within the object, where records lie behind the eye, across the near
-/// plane and beyond the picture, and change to screen space one by one, the
-/// stages before the children's boxes cost what they cost elsewhere.
+/// From within the object, records lie behind the eye, across the near plane and beyond the picture, and change to
+/// screen space one by one. The stages before the children's boxes cost the same.
 #[test]
 fn the_view_from_within_costs_the_same() {
     let walls = |[x, y, z]: [i32; 3]| x == 0 || y == 15 || z == 0;

@@ -15,9 +15,8 @@ fn every_record_has_one_turn() {
     }
 }
 
-/// The image-order paper's box of a child takes 7 minima and 7 maxima a coordinate, or 10
-/// compares when the eight vertices are taken in pairs; the frame cage has no
-/// eight vertices to pair.
+/// The image-order paper's box of a child takes 7 minima and 7 maxima per coordinate, or 10 compares when the eight
+/// vertices are taken in pairs. The frame cage has no eight vertices to pair.
 #[test]
 fn ten_compares_in_pairs() {
     let pairs = Costing {
@@ -63,10 +62,9 @@ fn ten_compares_in_pairs() {
     assert!(refused.count() > 0);
 }
 
-/// The probe of the memories sees what the counter counts, and a stack that
-/// ends empty.
+/// At each level seven siblings wait, at most, and one has its turn. Every record is pushed.
 #[test]
-fn traffic_agrees_with_the_counts() {
+fn the_stack_is_as_deep_as_its_levels() {
     let widths = Widths {
         stack_bits: 1000,
         node_bits: 64,
@@ -75,34 +73,17 @@ fn traffic_agrees_with_the_counts() {
         pixel_bits: 24,
     };
     for scene in scenes() {
-        let setup = setup(
-            &scene.graph,
-            &scene.camera,
-            &options(CageKind::Corners, f64::INFINITY),
-        );
-        let memory = MemoryProbe::new(widths).with_curve(Memory::Node, 64);
-        let both = (Counter::new(), memory);
+        let options = options(CageKind::Corners, f64::INFINITY);
+        let setup = setup(&scene.graph, &scene.camera, &options);
+        let both = (Counter::new(), MemoryProbe::new(widths));
         let (_, (counter, memory)) = watch(&scene.graph, &setup, both);
-        for kind in Memory::ALL {
-            assert_eq!(memory.reads(kind), counter.reads(kind));
-            assert_eq!(memory.writes(kind), counter.writes(kind));
-        }
-        assert_eq!(
-            memory.writes(Memory::Stack),
-            counter.records(),
-            "{}",
-            scene.name
-        );
-        // At each level seven siblings wait, at most, and one has its turn.
+        let pushes: u64 = memory.stack_depths().iter().sum();
+        assert_eq!(pushes, counter.records(), "{}", scene.name);
         let lowest = counter.records_by_level().map(|(level, _)| level).max();
         let most = 1 + 7 * u64::from(lowest.expect("records"));
         let deepest = memory.deepest_stack();
         assert!((8..=most).contains(&deepest) || scene.name == "one voxel");
         assert!(deepest <= most, "{}: {deepest} of {most}", scene.name);
-        let curve = &memory.curves()[0].1;
-        assert_eq!(curve.accesses(), counter.reads(Memory::Node));
-        assert_eq!(curve.misses(1 << 20), curve.distinct_lines());
-        assert!(memory.distinct(Memory::Node) <= scene.graph.len() as u64);
     }
 }
 
@@ -153,23 +134,13 @@ fn compare_probes(graph: &Graph, setup: &FrameSetup) {
         assert_eq!(stat(&stats, "samples_drawn"), counter.writes(Memory::Pixel));
     }
 
+    // The counter adds up what a probe of single events sees.
     let (_, log) = watch(graph, setup, ByRecord::default());
-    assert_eq!(log.turns.len() as u64, counter.records());
-    let mut by_hand: BTreeMap<(Stage, OpClass), u64> = BTreeMap::new();
     let mut cells: BTreeMap<(u32, u32, Stage, OpClass), u64> = BTreeMap::new();
-    let mut reads: BTreeMap<Memory, u64> = BTreeMap::new();
-    let mut writes: BTreeMap<Memory, u64> = BTreeMap::new();
-    let mut widest = 0;
     for turn in log.turns.iter().chain([&log.before]) {
         for &(stage, event) in &turn.events {
-            match event {
-                Event::Op(class, bits) => {
-                    *by_hand.entry((stage, class)).or_default() += 1;
-                    *cells.entry((bits, turn.level, stage, class)).or_default() += 1;
-                    widest = widest.max(bits);
-                }
-                Event::Read(memory, _) => *reads.entry(memory).or_default() += 1,
-                Event::Write(memory) => *writes.entry(memory).or_default() += 1,
+            if let Event::Op(class, bits) = event {
+                *cells.entry((bits, turn.level, stage, class)).or_default() += 1;
             }
         }
     }
@@ -177,25 +148,5 @@ fn compare_probes(graph: &Graph, setup: &FrameSetup) {
         .cells()
         .map(|cell| ((cell.bits, cell.level, cell.stage, cell.class), cell.times));
     assert!(counted.eq(cells), "by width, level, stage and class");
-    let mut levels: BTreeMap<u32, u64> = BTreeMap::new();
-    for turn in &log.turns {
-        *levels.entry(turn.level).or_default() += 1;
-    }
-    assert!(counter.records_by_level().eq(levels));
-    let none = 0;
-    for stage in Stage::ALL {
-        for class in OpClass::ALL {
-            let expected = by_hand.get(&(stage, class)).unwrap_or(&none);
-            assert_eq!(counter.ops_at(stage, class), *expected);
-        }
-    }
-    for memory in Memory::ALL {
-        assert_eq!(counter.reads(memory), *reads.get(&memory).unwrap_or(&none));
-        assert_eq!(
-            counter.writes(memory),
-            *writes.get(&memory).unwrap_or(&none)
-        );
-    }
-    assert_eq!(counter.ops(), by_hand.values().sum::<u64>());
-    assert_eq!(counter.widest(), widest);
+    assert_eq!(log.turns.len() as u64, counter.records());
 }

@@ -12,15 +12,6 @@ use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
 use shiftvox::split_mix::SplitMix;
 
-/// The test data that are kept beside the repository, if they are there.
-pub fn shared_data() -> Option<PathBuf> {
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
-    folder.is_dir().then_some(folder)
-}
-
 /// The `.vox` files that come with the repository, by name.
 pub fn shipped_files() -> Vec<PathBuf> {
     vox_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"))
@@ -44,8 +35,7 @@ pub fn vox_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A voxel file as a graph, without normals, which no engine looks at; the
-/// importer's complaint where it is none.
+/// A voxel file as a graph, without normals, which no engine reads, or the importer's error.
 pub fn graph_of_file(path: &Path) -> Result<Graph, String> {
     let mut builder = builder();
     let read = ReadOptions::default();
@@ -65,6 +55,15 @@ pub fn graph_of_spec(spec: &str) -> Graph {
     let mut builder = builder();
     parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
     builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
+}
+
+/// The graph of a generator, or of a file of `tests/data`.
+pub fn graph_of(name: &str) -> Graph {
+    if name.starts_with("gen:") {
+        return graph_of_spec(name);
+    }
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    graph_of_file(&data.join(name)).expect(name)
 }
 
 fn builder() -> Builder {

@@ -16,7 +16,7 @@ pub(crate) fn command() -> Command {
 
 /// Runs a command to its end.
 pub(crate) trait Run {
-    /// What it printed and how it ended.
+    /// Its output and exit code.
     fn assert(&mut self) -> Assert;
 }
 
@@ -72,4 +72,17 @@ impl Assert {
         let Output { stdout, stderr, .. } = &self.output;
         format!("{}\n{}{}", self.line, words(stdout), words(stderr))
     }
+}
+
+/// A rough sheet of so many vertices along each side, as a Wavefront file.
+pub(crate) fn sheet(side: usize) -> String {
+    let mut text = String::new();
+    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
+        text += &format!("v {x} {} {z}\n", (x * z) % 3);
+    }
+    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
+        let a = z * side + x;
+        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
+    }
+    text
 }

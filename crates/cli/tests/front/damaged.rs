@@ -93,7 +93,7 @@ fn who_reads_all_of_a_graph_checks_all_of_it_at_any_size() {
     assert!(!folder.path().join("b.ply").exists());
 }
 
-/// Far voxels by node, textured voxels by grid; of what is not drawn nothing is read.
+/// Far voxels are checked by node, textured voxels by grid. Parts that are not drawn are not read.
 #[test]
 fn what_is_read_in_parts_is_checked_where_it_is_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,7 +108,7 @@ fn what_is_read_in_parts_is_checked_where_it_is_read() {
         &["--erosion", "0", "--erosion-grid", "4"][..],
         &["--erosion", "0", "--erosion-grid", "8"][..],
     );
-    // The end of the file: a leaf's triangles, seen from near; texels of the second grid.
+    // The end of the file: a leaf's triangles, seen from near, or texels of the second grid.
     for (made, end, is_read, is_not) in [
         (
             &["a.far", "--leaf-triangles", "100", "--rays", "20000"][..],

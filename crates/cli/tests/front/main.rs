@@ -3,15 +3,12 @@
 
 mod bench;
 mod buffers;
+mod cases;
 #[path = "../common/mod.rs"]
 mod common;
 mod damaged;
-mod disk;
 mod explore;
-mod external;
-mod knot;
 mod limits;
-mod manners;
 mod model;
 mod one_camera;
 mod printed;

@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use glam::DVec3;
-use serde_json::Value;
 use shiftvox::graph::Silent;
 use shiftvox::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 use shiftvox::{Camera, Renderer, Scene};
@@ -14,7 +13,7 @@ use shiftvox_mesh::{LoadOptions, mesh_box};
 
 use crate::common::Run;
 
-/// What a command prints, without the last line's end.
+/// The output of a command, without the last line's end.
 fn printed(folder: &Path, line: &str) -> String {
     let mut command = crate::common::command();
     let assert = command.current_dir(folder).args(line.split(' ')).assert();
@@ -22,59 +21,11 @@ fn printed(folder: &Path, line: &str) -> String {
     String::from_utf8(output).unwrap().trim_end().to_owned()
 }
 
-fn camera_of(folder: &Path, scene: &str) -> String {
-    printed(
-        folder,
-        &format!("render {scene} --size 40x30 --print-camera"),
-    )
-}
-
 fn put_knot(folder: &Path) {
     let assets = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("assets");
     for name in ["knot.obj", "knot.mtl"] {
         fs::copy(assets.join(name), folder.join(name)).unwrap();
     }
-}
-
-#[test]
-fn a_mesh_and_all_that_is_made_of_it_have_one_camera() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    put_knot(folder);
-    // Far from the origin, where files keep less of a coordinate than a mesh does.
-    let far_off = "v 4000 0.1 -0.7\nv 4003 0.3 0.7\nv 4001 1.9 0.33\nf 1 2 3\n";
-    fs::write(folder.join("off.obj"), far_off).unwrap();
-    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 3 0 1\nvertex 1 2 5\n\
-               endloop\nendfacet\nendsolid a\n";
-    fs::write(folder.join("flat.stl"), stl).unwrap();
-    let mut seen = Vec::new();
-    for mesh in ["knot.obj", "off.obj", "flat.stl", "knot.obj --mesh-up z"] {
-        let expected = camera_of(folder, &format!("{mesh} --depth 5"));
-        let made = [
-            "a.vxg --depth 6",
-            "b.vxg --depth 7 --memory 64M",
-            "a.far",
-            "a.tvx",
-        ];
-        for made in made {
-            let name = made.split(' ').next().unwrap();
-            let (file, flags) = mesh.split_once(' ').unwrap_or((mesh, ""));
-            let line = format!("convert {file} {made} --force {flags}");
-            printed(folder, line.trim_end());
-            assert_eq!(camera_of(folder, name), expected, "{mesh}: {made}");
-        }
-        printed(folder, "convert a.vxg again.vxg --force");
-        assert_eq!(camera_of(folder, "again.vxg"), expected, "{mesh}: again");
-        let triangles = format!("triangles {mesh} -o a.png --force --size 40x30 --json");
-        let document: Value = serde_json::from_str(&printed(folder, &triangles)).unwrap();
-        assert_eq!(document["camera"], expected, "{mesh}: triangles");
-        seen.push(expected);
-    }
-    assert!(seen[0] != seen[3], "which axis is up is seen");
-    // What a file says can be overruled, and what was said is kept in what is made of it.
-    assert_eq!(camera_of(folder, "a.vxg --mesh-up y"), seen[0]);
-    printed(folder, "convert a.vxg y.vxg --mesh-up y");
-    assert_eq!(camera_of(folder, "y.vxg"), seen[0]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Every command that README and docs print does what it says, in a fresh folder, and does it again.
 //!
-//! Commands are the lines that begin with `shiftvox` (or `sed`) in blocks of code. Before a block, `<!-- takes 5 min -->` says that
-//! it is long: it is run only where `SHIFTVOX_PRINTED` is `all`; `<!-- forms -->` says that it has placeholders.
+//! Commands are the lines that begin with `shiftvox` (or `sed`) in blocks of code. A block after `<!-- takes 5 min -->`
+//! is long: it runs only where `SHIFTVOX_PRINTED` is `all`. A block after `<!-- forms -->` has placeholders.
 #![cfg(unix)]
 
 use std::collections::HashSet;
@@ -12,7 +12,7 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-/// What is said of a block of code.
+/// The mark of a block of code.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mark {
     Runs,

@@ -1,4 +1,4 @@
-//! The program, and what it said.
+//! The program, and its output.
 
 use std::path::Path;
 

@@ -12,7 +12,7 @@ use shiftvox::picture::{
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox_mesh::open::{OpenOptions, open};
 
-/// Three voxels without children: red, green, blue; the last one with a normal along +X.
+/// Three voxels without children: red, green and blue. The last one has a normal along +X.
 fn graph(placement: Placement) -> Graph {
     Graph {
         depth: 2,
@@ -103,8 +103,8 @@ fn depth_is_where_the_ray_enters() {
     };
     let setup = setup(&placement, 3, 0);
     let mut frame = Frame::new(3, 3, false);
-    // The middle ray runs along +Y through (2, y, 2): on the edge of four voxels; the whole
-    // object, and one of its octants, are cubes that it enters or touches.
+    // The middle ray runs along +Y through (2, y, 2), on the edge of four voxels. It enters or touches the whole object
+    // and one of its octants.
     see(&mut frame, 1, 1, 0, [0, 0, 0, 0]);
     // Missed by its ray: the depth of the centre, (0.5, 3.5, 0.5).
     see(&mut frame, 2, 0, 1, [0, 3, 0, 2]);
@@ -279,7 +279,7 @@ fn colours_are_those_of_the_plain_rule() {
                         let picture = resolve(&frame, graph, &setup, shading, background).unwrap();
                         assert_eq!(picture.rgba, plain, "{scene} {eye:?} {aa_log2} {lod_px}");
                         compared += picture.drawn();
-                        // Nodes tell as much as nodes and voxels, where each is in one place.
+                        // Nodes alone suffice where each is in one place.
                         let of_nodes = resolve(&nodes, graph, &setup, shading, background);
                         match graph.links.is_empty() {
                             true => assert_eq!(of_nodes.unwrap(), picture),

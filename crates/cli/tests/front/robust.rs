@@ -1,6 +1,6 @@
-//! Every command under bad conditions, drawn from a seed: little memory, small files, full disks, folders that cannot be
-//! written, closed pipes, signals at any time. It ends by itself with an exit code, or by the signal; it never panics; and
-//! whatever file there is, is whole.
+//! Every command under bad conditions, drawn from a seed: little memory, small files, full disks, folders that cannot
+//! be written, closed pipes, signals at any time. It ends by itself with an exit code, or by the signal. It never
+//! panics, and every file is whole.
 //!
 //! `SHIFTVOX_ROBUST` is the number of runs, where more than the usual few are wanted.
 #![cfg(unix)]
@@ -64,7 +64,7 @@ const INPUTS: [&str; 7] = [
 /// The longest that a run may take.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// What is bad about a run.
+/// The bad condition of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 enum Condition {
     /// A limit of address space, MB.
@@ -94,7 +94,7 @@ impl Condition {
         }
     }
 
-    /// What a shell does before and after the command; `None` where this system cannot.
+    /// The shell's script around the command. `None` where this system cannot run it.
     fn script(self, can: Can) -> Option<String> {
         let run = "exec \"$0\" \"$@\"";
         Some(match self {
@@ -118,7 +118,7 @@ impl Condition {
     }
 }
 
-/// What this system lets a test do.
+/// The rights of a test on this system.
 #[derive(Debug, Clone, Copy)]
 struct Can {
     mount: bool,
@@ -237,15 +237,8 @@ fn inspect(folder: &Path, what: &str) -> bool {
     has_unfinished
 }
 
-/// What runs came to.
-#[derive(Debug, Default)]
-struct Counts {
-    runs: u64,
-    stopped: u64,
-    refused: u64,
-    limits: u64,
-    not_possible: u64,
-}
+/// Runs that a signal stopped, that were refused, and that a limit refused.
+type Counts = [u64; 3];
 
 /// Runs of the seeds that fall to one thread, in a shelter of its own.
 fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
@@ -280,10 +273,8 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
         let condition = Condition::drawn(&mut dice);
         let what = format!("run {seed}: {condition:?}: shiftvox {line}");
         let Some(script) = condition.script(can) else {
-            counts.not_possible += 1;
             continue;
         };
-        counts.runs += 1;
         if condition == Condition::ReadOnly {
             open(0o555);
         }
@@ -294,7 +285,7 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
             Condition::Signal(number, ms) => signal = Some((number, ms)),
             _ => {}
         }
-        // What it prints is read as it comes.
+        // Its output is read as it comes.
         let reader = child.stdout.take().map(|mut stdout| {
             std::thread::spawn(move || std::io::copy(&mut stdout, &mut std::io::sink()))
         });
@@ -306,14 +297,14 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
         match (status.code(), status.signal()) {
             (Some(0), None) => {}
             (Some(code @ (1 | 5)), None) => {
-                counts.refused += 1;
-                counts.limits += u64::from(code == 5);
+                counts[1] += 1;
+                counts[2] += u64::from(code == 5);
                 assert!(
                     !told.is_empty() || condition == Condition::StdoutClosed,
                     "{what}: nothing is told"
                 );
             }
-            (None, Some(by)) if signal.is_some_and(|(sent, _)| sent == by) => counts.stopped += 1,
+            (None, Some(by)) if signal.is_some_and(|(sent, _)| sent == by) => counts[0] += 1,
             // Too little for the program to be loaded.
             (Some(126 | 127), None) if matches!(condition, Condition::Memory(_)) => {}
             _ => panic!("{what}: {status}: {told}"),
@@ -325,7 +316,7 @@ fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
         let was_killed = status.signal() == Some(9);
         let is_tidy = !inspect(&looked_at, &what);
         assert!(is_tidy || was_killed, "{what}: unfinished files, {status}");
-        // What was killed is tidied up by who writes there next.
+        // The next run there removes the files of a killed one.
         if was_killed && !is_tidy {
             let status = wait(
                 &mut start(&at("work"), "exec \"$0\" \"$@\" > /dev/null", line),
@@ -347,33 +338,23 @@ fn whatever_happens_it_ends_in_order() {
         let threads = [0, 1].map(|first| scope.spawn(move || runs((first..all).step_by(2))));
         threads.map(|thread| thread.join().unwrap())
     });
-    eprintln!("{both:?}");
-    let sum = |of: fn(&Counts) -> u64| both.iter().map(of).sum::<u64>();
-    let (stopped, refused) = (sum(|counts| counts.stopped), sum(|counts| counts.refused));
-    assert!(
-        stopped > 0 && refused > 10 && sum(|counts| counts.limits) > 0,
-        "{both:?}"
-    );
+    let [stopped, refused, limits] = [0, 1, 2].map(|end| both[0][end] + both[1][end]);
+    assert!(stopped > 0 && refused > 10 && limits > 0, "{both:?}");
 }
 
 #[test]
 fn every_command_is_run() {
     let commands = |line: &[&str]| -> Vec<String> {
-        let output = Command::new(crate::common::program())
-            .args(line)
-            .arg("--help")
-            .output()
-            .unwrap();
+        let mut command = Command::new(crate::common::program());
+        let output = command.args(line).arg("--help").output().unwrap();
         let help = String::from_utf8(output.stdout).unwrap();
         let list = help.split("Commands:\n").nth(1).unwrap();
         let list = list.split("\n\n").next().unwrap().lines();
-        // Other lines go on with what a command is for.
-        let names = list.filter_map(|line| {
-            line.strip_prefix("  ")
-                .filter(|rest| !rest.starts_with(' '))
-        });
+        // Other lines continue the description of a command.
+        let lines = list.filter_map(|line| line.strip_prefix("  "));
+        let names = lines.filter(|line| !line.starts_with(' '));
         names
-            .map(|rest| rest.split_whitespace().next().unwrap().to_owned())
+            .map(|line| line.split(' ').next().unwrap().to_owned())
             .collect()
     };
     let known = [("", commands(&[]), 12), ("bench ", commands(&["bench"]), 2)];

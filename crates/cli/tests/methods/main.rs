@@ -13,4 +13,3 @@ mod mesh;
 #[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/shapes.rs"]
 mod shapes;
-mod textured;

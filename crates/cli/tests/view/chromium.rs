@@ -20,18 +20,19 @@ pub(crate) struct Browser {
     child: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     count: u64,
-    /// What pages complained of: errors of scripts, refused resources.
+    /// The page that calls are for.
+    pub(crate) page: Page,
+    /// Errors of pages: errors of scripts, refused resources.
     pub(crate) complaints: Vec<String>,
     _profile: TempDir,
 }
 
-/// A page of a browser.
-#[derive(Clone)]
-pub(crate) struct Tab(String);
+/// A page of a browser: its session.
+pub(crate) type Page = String;
 
 impl Browser {
-    /// Starts one; `None`, visibly, where there is none.
-    pub(crate) fn start() -> Option<Self> {
+    /// Starts one.
+    pub(crate) fn start() -> Self {
         let own = std::env::var("SHIFTVOX_BROWSER").ok();
         let names = own.into_iter().chain(NAMES.map(str::to_owned));
         let profile = tempfile::tempdir().unwrap();
@@ -56,40 +57,34 @@ impl Browser {
                 .spawn()
                 .ok()
         });
-        let Some(mut child) = started else {
-            eprintln!("SKIPPED: no browser (chromium, or SHIFTVOX_BROWSER)");
-            return None;
-        };
-        let mut lines = BufReader::new(child.stderr.take()?).lines();
+        let mut child = started.expect("chromium, or the browser SHIFTVOX_BROWSER");
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
         let address = lines.by_ref().map_while(Result::ok).find_map(|line| {
             line.strip_prefix("DevTools listening on ")
                 .map(str::to_owned)
         });
-        let Some(address) = address else {
-            let _ = child.wait();
-            eprintln!("SKIPPED: the browser does not start");
-            return None;
-        };
-        // What it says is read on, so that it does not wait.
+        let address = address.expect("a browser that starts");
+        // The rest of its output is read, so that it does not block.
         std::thread::spawn(move || lines.map_while(Result::ok).count());
         let (socket, _) = tungstenite::connect(address).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).unwrap();
         }
-        Some(Self {
+        Self {
             child,
             socket,
             count: 0,
+            page: Page::new(),
             complaints: Vec::new(),
             _profile: profile,
-        })
+        }
     }
 
-    fn call(&mut self, tab: Option<&Tab>, method: &str, parameters: Value) -> Value {
+    fn call(&mut self, method: &str, parameters: Value) -> Value {
         self.count += 1;
         let mut call = json!({ "id": self.count, "method": method, "params": parameters });
-        if let Some(Tab(session)) = tab {
-            call["sessionId"] = json!(session);
+        if !self.page.is_empty() && !method.starts_with("Target.") {
+            call["sessionId"] = json!(self.page);
         }
         self.socket.send(Message::text(call.to_string())).unwrap();
         loop {
@@ -111,39 +106,38 @@ impl Browser {
         }
     }
 
-    /// Opens an address in a page of 1200 x 800 pixels.
-    pub(crate) fn open(&mut self, address: &str) -> Tab {
-        let target = self.call(None, "Target.createTarget", json!({ "url": "about:blank" }));
+    /// Opens an address in a page of 1200 x 800 pixels, which calls are for from here on.
+    pub(crate) fn open(&mut self, address: &str) {
+        let target = self.call("Target.createTarget", json!({ "url": "about:blank" }));
         let target = json!({ "targetId": target["targetId"], "flatten": true });
-        let session = self.call(None, "Target.attachToTarget", target);
-        let tab = Tab(session["sessionId"].as_str().unwrap().to_owned());
+        let session = self.call("Target.attachToTarget", target);
+        self.page = session["sessionId"].as_str().unwrap().to_owned();
         for domain in ["Runtime.enable", "Log.enable", "Page.enable"] {
-            self.call(Some(&tab), domain, json!({}));
+            self.call(domain, json!({}));
         }
         let size = json!({ "width": 1200, "height": 800, "deviceScaleFactor": 1, "mobile": false });
-        self.call(Some(&tab), "Emulation.setDeviceMetricsOverride", size);
-        self.call(Some(&tab), "Page.navigate", json!({ "url": address }));
-        tab
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        self.call("Page.navigate", json!({ "url": address }));
     }
 
     /// The value of a script's expression, or of its promise.
-    pub(crate) fn value(&mut self, tab: &Tab, script: &str) -> Value {
+    pub(crate) fn value(&mut self, script: &str) -> Value {
         let parameters =
             json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
-        let result = self.call(Some(tab), "Runtime.evaluate", parameters);
+        let result = self.call("Runtime.evaluate", parameters);
         assert!(result["exceptionDetails"].is_null(), "{script}: {result}");
         result["result"]["value"].clone()
     }
 
     /// Waits until an expression is true.
-    pub(crate) fn wait(&mut self, tab: &Tab, script: &str) {
+    pub(crate) fn wait(&mut self, script: &str) {
         let until = Instant::now() + PATIENCE;
-        // What does not exist yet is not true yet.
+        // An element that does not exist yet counts as false.
         let script = format!(
             "(() => {{ try {{ return Boolean({script}); }} catch {{ return false; }} }})()"
         );
-        while self.value(tab, &script) != true {
-            let said = self.value(tab, "document.body?.innerText");
+        while self.value(&script) != true {
+            let said = self.value("document.body?.innerText");
             assert!(
                 Instant::now() < until,
                 "in vain: {script}\n{said}\n{:?}",
@@ -154,11 +148,11 @@ impl Browser {
     }
 
     /// Presses a button of the mouse, drags and releases it.
-    pub(crate) fn drag(&mut self, tab: &Tab, from: [f64; 2], to: [f64; 2], button: &str) {
+    pub(crate) fn drag(&mut self, from: [f64; 2], to: [f64; 2], button: &str) {
         let buttons = if button == "right" { 2 } else { 1 };
         let mut mouse = |kind: &str, [x, y]: [f64; 2], buttons: u32| {
             let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
-            self.call(Some(tab), "Input.dispatchMouseEvent", event);
+            self.call("Input.dispatchMouseEvent", event);
         };
         mouse("mousePressed", from, buttons);
         for step in 1..=4 {
@@ -170,16 +164,15 @@ impl Browser {
     }
 
     /// Turns the mouse's wheel.
-    pub(crate) fn wheel(&mut self, tab: &Tab, [x, y]: [f64; 2], by: f64) {
+    pub(crate) fn wheel(&mut self, [x, y]: [f64; 2], by: f64) {
         let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": by });
-        self.call(Some(tab), "Input.dispatchMouseEvent", event);
+        self.call("Input.dispatchMouseEvent", event);
     }
 
     /// Presses a key.
-    pub(crate) fn key(&mut self, tab: &Tab, key: &str) {
+    pub(crate) fn key(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
             self.call(
-                Some(tab),
                 "Input.dispatchKeyEvent",
                 json!({ "type": kind, "key": key }),
             );
@@ -187,14 +180,14 @@ impl Browser {
     }
 
     /// Moves fingers: each list has their places at one time.
-    pub(crate) fn touch(&mut self, tab: &Tab, places: &[Vec<[f64; 2]>]) {
+    pub(crate) fn touch(&mut self, places: &[Vec<[f64; 2]>]) {
         let mut touch = |kind: &str, points: &[[f64; 2]]| {
             let points: Vec<Value> = points
                 .iter()
                 .map(|[x, y]| json!({ "x": x, "y": y }))
                 .collect();
             let event = json!({ "type": kind, "touchPoints": points });
-            self.call(Some(tab), "Input.dispatchTouchEvent", event);
+            self.call("Input.dispatchTouchEvent", event);
         };
         touch("touchStart", &places[0]);
         for points in &places[1..] {
@@ -204,10 +197,10 @@ impl Browser {
     }
 
     /// A picture of a page, at 0.6 of its size, base64.
-    pub(crate) fn screenshot(&mut self, tab: &Tab) -> String {
+    pub(crate) fn screenshot(&mut self) -> String {
         let clip = json!({ "x": 0, "y": 0, "width": 1200, "height": 800, "scale": 0.6 });
         let parameters = json!({ "format": "png", "clip": clip });
-        let shot = self.call(Some(tab), "Page.captureScreenshot", parameters);
+        let shot = self.call("Page.captureScreenshot", parameters);
         shot["data"].as_str().unwrap().to_owned()
     }
 }

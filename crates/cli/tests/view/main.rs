@@ -1,4 +1,4 @@
-//! `view`: the page, its sockets, who may ask what; in a real browser too, where there is one.
+//! `view`: the page, its sockets and its permissions, also in a real browser.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod browser;

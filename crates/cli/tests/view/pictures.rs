@@ -1,11 +1,9 @@
-//! What pages are shown is what `render` draws.
-
-use std::process::Command;
+//! A page's picture is that of `render`.
 
 use serde_json::{Value, json};
 use shiftvox::picture::png;
 
-use crate::program::{Page, Program, run_command};
+use crate::program::{Page, Program, run_command, shiftvox};
 
 /// Asks for a picture as bytes and as PNG, and compares both, and the hash, with the command's.
 fn assert_is_renders(page: &mut Page, mut fields: Value) -> Value {
@@ -51,24 +49,14 @@ fn a_picture_is_that_of_its_command() {
 #[test]
 fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     let folder = tempfile::tempdir().unwrap();
-    let made = |name: &str, words: &[&str]| {
-        let path = folder.path().join(name);
-        let mut convert = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
-        let convert = convert
-            .args(["convert", "assets/knot.obj", "--quiet"])
-            .arg(&path)
-            .args(words);
-        assert!(
-            convert
-                .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-                .status()
-                .unwrap()
-                .success()
-        );
-        path.to_str().unwrap().to_owned()
+    let made = |name: &str, words: &str| {
+        let path = folder.path().join(name).to_str().unwrap().to_owned();
+        let line = format!("convert assets/knot.obj --quiet {path} {words}");
+        assert!(shiftvox(&line).status.success());
+        path
     };
-    let far = made("knot.far", &["--rays", "1000", "--leaf-triangles", "500"]);
-    let tvx = made("knot.tvx", &["--grid", "8", "--texels", "4"]);
+    let far = made("knot.far", "--rays 1000 --leaf-triangles 500");
+    let tvx = made("knot.tvx", "--grid 8 --texels 4");
     let program = Program::start(&["assets/knot.obj", &far, &tvx, "--lod", "2"]);
     let mut page = program.page();
     assert_eq!(page.hello["flags"], json!({ "lod": "2" }));
@@ -82,52 +70,30 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     let opaque = assert_is_renders(&mut page, json!({}));
     let blended = assert_is_renders(&mut page, json!({ "flags": { "coverage": "alpha" } }));
     assert_ne!(opaque["hash"], blended["hash"]);
-    let (head, _) = page.ask(json!({ "scene": 1, "flags": { "coverage": "any" } }));
-    assert!(
-        head["error"]
-            .as_str()
-            .unwrap()
-            .contains("--coverage changes nothing"),
-        "{head}"
-    );
-    let (head, _) = page.ask(json!({ "scene": 2, "show": "normal" }));
-    assert!(
-        head["error"]
-            .as_str()
-            .unwrap()
-            .contains("has no --aov normal"),
-        "{head}"
-    );
-    let (head, _) = page.ask(json!({ "scene": 1, "ask": "figures", "camera": opaque_camera() }));
-    assert!(
-        head["error"].as_str().unwrap().contains("has none"),
-        "{head}"
-    );
-}
-
-fn opaque_camera() -> Value {
-    json!({ "eye": [3, 4, 5], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 40 })
+    let camera = json!({ "eye": [3, 4, 5], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 40 });
+    for (fields, reason) in [
+        (
+            json!({ "scene": 1, "flags": { "coverage": "any" } }),
+            "--coverage changes nothing",
+        ),
+        (
+            json!({ "scene": 2, "show": "normal" }),
+            "has no --aov normal",
+        ),
+        (
+            json!({ "scene": 1, "ask": "figures", "camera": camera }),
+            "has none",
+        ),
+    ] {
+        let (head, _) = page.ask(fields);
+        assert!(head["error"].as_str().unwrap().contains(reason), "{head}");
+    }
 }
 
 #[test]
 fn the_flags_of_the_command_line_begin() {
-    let words = [
-        "tests/data/axes.vox",
-        "--paper",
-        "--bits",
-        "40",
-        "--shade",
-        "flat",
-        "--size",
-        "60x50",
-    ];
-    let program = Program::start(
-        &[
-            &words[..],
-            &["--aa", "2", "--azimuth", "10", "--mesh-up", "y"],
-        ]
-        .concat(),
-    );
+    let line = "tests/data/axes.vox --paper --bits 40 --shade flat --size 60x50 --aa 2 --azimuth 10 --mesh-up y";
+    let program = Program::start(&line.split(' ').collect::<Vec<_>>());
     let mut page = program.page();
     let flags = json!({ "bits": "40", "cage": "corners", "coverage": "any", "shade": "flat", "tolerance": "inf" });
     assert_eq!(page.hello["flags"], flags);
@@ -160,7 +126,7 @@ fn overlays_are_buffers_as_colours() {
             "{head}"
         );
         seen.push(rgba);
-        // What is shown changes nothing of the picture's identity.
+        // The buffer that is shown does not change the picture's hash.
         assert_eq!(
             head["hash"],
             run_command(head["command"].as_str().unwrap()).1
@@ -187,17 +153,9 @@ fn figures_are_those_of_the_model() {
         (&json!(256), &json!(128)),
         "{head}"
     );
-    let words = head["command"]
-        .as_str()
-        .unwrap()
-        .strip_prefix("shiftvox ")
-        .unwrap();
-    let model = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
-        .args(words.split(' '))
-        .arg("--json")
-        .output()
-        .unwrap();
-    let model: Value = serde_json::from_slice(&model.stdout).unwrap();
+    let command = head["command"].as_str().unwrap();
+    let line = format!("{} --json", command.strip_prefix("shiftvox ").unwrap());
+    let model: Value = serde_json::from_slice(&shiftvox(&line).stdout).unwrap();
     let figures = &head["figures"];
     let operations = model["operations"].as_array().unwrap().iter();
     let operations: u64 = operations.map(|row| row["times"].as_u64().unwrap()).sum();

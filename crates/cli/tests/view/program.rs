@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -70,7 +70,7 @@ impl Program {
             .unwrap_or_else(|| panic!("{answer}"))
     }
 
-    /// Opens a socket as the page does; what stands in its way is an HTTP status.
+    /// Opens a socket as the page does, or returns the HTTP status of the refusal.
     pub(crate) fn try_page(&self) -> Result<Page, u16> {
         let host = format!("127.0.0.1:{}", self.port);
         let origin = format!("http://{host}");
@@ -174,19 +174,21 @@ pub(crate) fn question(fields: Value) -> Value {
     question
 }
 
+/// Runs the program in the folder of the sources.
+pub(crate) fn shiftvox(line: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
+    command.args(line.split(' '));
+    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    command.output().unwrap()
+}
+
 /// Draws the picture of a printed command: its bytes, and its hash.
 pub(crate) fn run_command(command: &str) -> (Vec<u8>, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     let words = command.strip_prefix("shiftvox ").unwrap();
     let words = words.strip_suffix(" -o picture.png").unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
-        .args(words.split(' '))
-        .args(["--hash", "-o"])
-        .arg(&path)
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-        .output()
-        .unwrap();
+    let output = shiftvox(&format!("{words} --hash -o {}", path.display()));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command}: {told}");
     let hash = String::from_utf8(output.stdout).unwrap().trim().to_owned();

@@ -1,4 +1,4 @@
-//! What is refused, and that nothing else suffers from it.
+//! Rejected requests, which disturb no other page.
 
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
@@ -6,11 +6,11 @@ use std::os::unix::process::ExitStatusExt;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use serde_json::{Value, json};
+use serde_json::json;
 use tungstenite::Message;
 use tungstenite::protocol::frame::coding::CloseCode;
 
-use crate::program::{Page, Program, question};
+use crate::program::{Page, Program, question, shiftvox};
 
 /// A page gets a picture.
 fn assert_serves(program: &Program) {
@@ -29,52 +29,28 @@ fn a_page_is_for_who_knows_the_token_and_asks_by_address() {
     let (port, token) = (program.port, program.token.clone());
     let host = format!("Host: 127.0.0.1:{port}");
     let page = format!("/?token={token}");
-    let wrong = format!("/?token={}0", &token[..31]);
-    let short = format!("/?token={}", &token[..31]);
-    let prefixed = format!("/?xtoken={token}");
-    for path in [
-        "/",
-        "/?token=",
-        &wrong,
-        &short,
-        &prefixed,
-        "/socket",
-        "/socket?token=x",
-    ] {
-        assert_eq!(program.status(path, &[&host]), 403, "{path}");
+    let status = |path: &str, host: &str| program.status(path, &[&format!("Host: {host}")]);
+    let own = format!("127.0.0.1:{port}");
+    let begun = &token[..31];
+    let wrong = format!(
+        "/?token={begun}0 /?token={begun} /?xtoken={token} / /?token= /socket /socket?token=x"
+    );
+    for path in wrong.split(' ') {
+        assert_eq!(status(path, &own), 403, "{path}");
     }
-    // As a tunnel is asked: another port.
+    // As through a tunnel: another port.
     for name in ["127.0.0.1", "localhost", "localhost:9000", "[::1]:80"] {
-        assert_eq!(
-            program.status(&page, &[&format!("Host: {name}")]),
-            200,
-            "{name}"
-        );
+        assert_eq!(status(&page, name), 200, "{name}");
     }
     // A name that an attacker points here, another computer, two names, none.
-    for name in [
-        "evil.example",
-        "localhost.evil.example",
-        "192.168.1.7",
-        "127.0.0.1.nip.io:80",
-        "user@",
-        "",
-    ] {
-        assert_eq!(
-            program.status(&page, &[&format!("Host: {name}")]),
-            403,
-            "{name}"
-        );
+    let foreign = "evil.example localhost.evil.example 192.168.1.7 127.0.0.1.nip.io:80 user@ ";
+    for name in foreign.split(' ') {
+        assert_eq!(status(&page, name), 403, "{name}");
     }
     assert_eq!(program.status(&page, &[&host, "Host: evil.example"]), 400);
     assert_eq!(program.status(&page, &[]), 400);
-    for path in [
-        "/page.html",
-        "/../Cargo.toml",
-        "/assets/tree.vox",
-        "/?token=/etc/passwd",
-    ] {
-        let status = program.status(&format!("{path}&token={token}"), &[&host]);
+    for path in "/page.html /../Cargo.toml /assets/tree.vox /?token=/etc/passwd".split(' ') {
+        let status = status(&format!("{path}&token={token}"), &own);
         assert!(status == 404 || status == 403, "{path}: {status}");
     }
     let posted = program.raw(&format!(
@@ -105,30 +81,18 @@ fn the_page_loads_nothing_from_elsewhere() {
         .lines()
         .find_map(|line| line.strip_prefix("content-security-policy: "))
         .unwrap();
-    assert!(
-        policy.starts_with("default-src 'none'; script-src 'nonce-"),
-        "{policy}"
-    );
-    assert!(
-        policy.contains(&format!("connect-src ws://127.0.0.1:{port};")),
-        "{policy}"
-    );
-    assert!(
-        policy.contains("frame-ancestors 'none'") && !policy.contains("unsafe"),
-        "{policy}"
-    );
+    for part in [
+        "default-src 'none'; script-src 'nonce-",
+        &format!("connect-src ws://127.0.0.1:{port};"),
+        "frame-ancestors 'none'",
+    ] {
+        assert!(policy.contains(part), "{policy}");
+    }
+    assert!(!policy.contains("unsafe"), "{policy}");
     for header in ["nosniff", "no-referrer", "no-store", "same-origin"] {
         assert!(head.contains(header), "{header}: {head}");
     }
-    for from in [
-        "https://",
-        "http://",
-        "src=",
-        "@import",
-        "url(",
-        "innerHTML",
-        "eval(",
-    ] {
+    for from in "https:// http:// src= @import url( innerHTML eval(".split(' ') {
         assert!(!page.contains(from), "{from}");
     }
     assert!(!page.contains(token.as_str()) && !page.contains("{{nonce}}"));
@@ -143,31 +107,29 @@ fn a_socket_is_for_the_page_itself() {
     let secure = format!("https://{host}");
     let refused =
         |host: &str, origin: Option<&str>, token: &str| program.socket(host, origin, token).err();
-    for origin in [
-        None,
-        Some("null"),
-        Some("http://evil.example"),
-        Some(&secure),
-        Some("http://127.0.0.1:1"),
-        Some(""),
-    ] {
+    let foreign = [
+        "null",
+        "http://evil.example",
+        &secure,
+        "http://127.0.0.1:1",
+        "",
+    ]
+    .map(Some);
+    for origin in foreign.into_iter().chain([None]) {
         assert_eq!(
             refused(&host, origin, &program.token),
             Some(403),
             "{origin:?}"
         );
     }
+    let (evil, tunnel) = ("http://evil.example", "http://localhost:9000");
     assert_eq!(refused(&host, Some(&own), &"0".repeat(32)), Some(403));
     assert_eq!(
-        refused("evil.example", Some("http://evil.example"), &program.token),
+        refused("evil.example", Some(evil), &program.token),
         Some(403)
     );
     assert_eq!(
-        refused(
-            "localhost:9000",
-            Some("http://localhost:9000"),
-            &program.token
-        ),
+        refused("localhost:9000", Some(tunnel), &program.token),
         None
     );
     let plain = program.status(
@@ -176,6 +138,34 @@ fn a_socket_is_for_the_page_itself() {
     );
     assert!((400..500).contains(&plain), "{plain}");
 }
+
+/// Fields of a question, and a part of the refusal.
+const QUESTIONS: &str = r#"{"scene":7} -> no scene
+{"scene":"assets/tree.vox"} -> not understood
+{"file":"a.png"} -> not understood
+{"size":[0,10]} -> 1 to 32768
+{"size":[4000000000,4000000000]} -> at most 4194304 pixels
+{"size":[2049,2048]} -> at most 4194304 pixels
+{"size":[2048,2048],"aa":4} -> 16777216 samples
+{"size":[1.5,2]} -> not understood
+{"aa":3} -> aa
+{"aa":4000000000} -> samples
+{"flags":{"output":"x.png"}} -> may not set
+{"flags":{"config":"/etc/passwd"}} -> may not set
+{"flags":{"aov":"depth"}} -> may not set
+{"flags":{"coverage":"a b"}} -> no such value
+{"flags":{"lod":"1111111111111111111111111111111111111111111111111111111111111111111111111111111111"}} -> no such value
+{"flags":{"lod":"-1"}} -> 
+{"flags":{"bits":"99"}} -> 
+{"flags":{"coverage":"exact","tolerance":"2"}} -> 
+{"flags":{"engine":"far"}} -> 
+{"camera":{"eye":[null,0,0],TO,"fov":40}} -> not a finite number
+{"camera":{"eye":[0,0,0],TO,"fov":40}} -> same point
+{"camera":{"eye":[0,0,9],TO,"fov":40}} -> up direction
+{"camera":{"eye":[9,0,0],TO,"fov":180}} -> field of view
+{"camera":{"eye":[9,0,0],TO,"fov":null}} -> field of view
+{"camera":{"eye":[1e300,0,0],TO,"fov":40}} -> 
+{"ask":"figures"} -> placed camera"#;
 
 #[test]
 fn questions_that_make_no_sense_are_answered_with_the_reason() {
@@ -194,79 +184,23 @@ fn questions_that_make_no_sense_are_answered_with_the_reason() {
         "{",
         "[]",
         "null",
-        "\u{0}",
+        "\0",
         "{\"seq\":1}",
         "{\"seq\":-1,\"ask\":\"picture\"}",
     ] {
         refused(text, "not understood");
     }
-    let camera = |eye: Value, fov: Value| json!({ "eye": eye, "target": [0, 0, 0], "up": [0, 0, 1], "fov": fov });
-    for (fields, reason) in [
-        (json!({ "scene": 7 }), "no scene"),
-        (json!({ "scene": "assets/tree.vox" }), "not understood"),
-        (json!({ "file": "a.png" }), "not understood"),
-        (json!({ "size": [0, 10] }), "1 to 32768"),
-        (
-            json!({ "size": [4_000_000_000u32, 4_000_000_000u32] }),
-            "at most 4194304 pixels",
-        ),
-        (json!({ "size": [2049, 2048] }), "at most 4194304 pixels"),
-        (json!({ "size": [2048, 2048], "aa": 4 }), "16777216 samples"),
-        (json!({ "size": [1.5, 2] }), "not understood"),
-        (json!({ "aa": 3 }), "aa"),
-        (json!({ "aa": 4_000_000_000u32 }), "samples"),
-        (json!({ "flags": { "output": "x.png" } }), "may not set"),
-        (
-            json!({ "flags": { "config": "/etc/passwd" } }),
-            "may not set",
-        ),
-        (json!({ "flags": { "aov": "depth" } }), "may not set"),
-        (json!({ "flags": { "coverage": "a b" } }), "no such value"),
-        (
-            json!({ "flags": { "lod": "1".repeat(100) } }),
-            "no such value",
-        ),
-        (json!({ "flags": { "lod": "-1" } }), ""),
-        (json!({ "flags": { "bits": "99" } }), ""),
-        (
-            json!({ "flags": { "coverage": "exact", "tolerance": "2" } }),
-            "",
-        ),
-        (json!({ "flags": { "engine": "far" } }), ""),
-        (
-            json!({ "camera": camera(json!([null, 0, 0]), json!(40)) }),
-            "not a finite number",
-        ),
-        (
-            json!({ "camera": camera(json!([0, 0, 0]), json!(40)) }),
-            "same point",
-        ),
-        (
-            json!({ "camera": camera(json!([0, 0, 9]), json!(40)) }),
-            "up direction",
-        ),
-        (
-            json!({ "camera": camera(json!([9, 0, 0]), json!(180)) }),
-            "field of view",
-        ),
-        (
-            json!({ "camera": camera(json!([9, 0, 0]), json!(null)) }),
-            "field of view",
-        ),
-        (
-            json!({ "camera": camera(json!([1e300, 0, 0]), json!(40)) }),
-            "",
-        ),
-        (json!({ "ask": "figures" }), "placed camera"),
-    ] {
-        refused(&question(fields).to_string(), reason);
+    for line in QUESTIONS.lines() {
+        let (fields, reason) = line.split_once(" -> ").unwrap();
+        let fields = fields.replace("TO", r#""target":[0,0,0],"up":[0,0,1]"#);
+        refused(
+            &question(serde_json::from_str(&fields).unwrap()).to_string(),
+            reason,
+        );
     }
-    refused(
-        &question(json!({ "camera": camera(json!([9, 0, 0]), json!(40)) }))
-            .to_string()
-            .replace("[9,", "[1e999,"),
-        "",
-    );
+    let camera = json!({ "eye": [9, 0, 0], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 40 });
+    let far = question(json!({ "camera": camera })).to_string();
+    refused(&far.replace("[9,", "[1e999,"), "");
     let (head, _) = page.ask(json!({}));
     assert_eq!(head["ask"], "picture");
 }
@@ -281,34 +215,23 @@ fn long_messages_and_floods_close_their_socket_alone() {
     let mut page = program.page();
     page.socket.send(Message::binary(vec![0; 10])).unwrap();
     assert_eq!(page.closed(), Some(CloseCode::Unsupported));
-    let mut page = program.page();
-    for _ in 0..1000 {
-        if page
-            .socket
-            .write(Message::text(question(json!({})).to_string()))
-            .is_err()
-        {
-            break;
+    for message in [
+        Message::text(question(json!({})).to_string()),
+        Message::Ping(Vec::new().into()),
+    ] {
+        let mut page = program.page();
+        for _ in 0..1000 {
+            let _ = page.socket.write(message.clone());
         }
+        let _ = page.socket.flush();
+        let started = Instant::now();
+        let code = page.closed();
+        assert!(started.elapsed() < Duration::from_secs(20), "it stays open");
+        assert!(
+            code.is_none_or(|code| code == CloseCode::Policy),
+            "{code:?}"
+        );
     }
-    let _ = page.socket.flush();
-    let code = page.closed();
-    assert!(
-        code.is_none() || code == Some(CloseCode::Policy),
-        "{code:?}"
-    );
-    let mut pings = program.page();
-    for _ in 0..1000 {
-        let _ = pings.socket.write(Message::Ping(Vec::new().into()));
-    }
-    let _ = pings.socket.flush();
-    let started = Instant::now();
-    let code = pings.closed();
-    assert!(started.elapsed() < Duration::from_secs(20), "it stays open");
-    assert!(
-        code.is_none() || code == Some(CloseCode::Policy),
-        "{code:?}"
-    );
     let (head, _) = other.ask(json!({}));
     assert_eq!(head["ask"], "picture");
     assert_serves(&program);
@@ -359,51 +282,39 @@ fn a_slow_link_gets_a_large_picture() {
     assert!(count > 4 * 2048 * 2048, "{count} bytes came");
 }
 
-#[test]
-fn a_page_that_does_not_read_loses_its_place() {
-    let program = scene();
-    let mut pages: Vec<Page> = (0..8).map(|_| program.page()).collect();
-    assert_eq!(program.try_page().err(), Some(503));
-    // More than the buffers of a connection hold.
-    pages[0].send(&question(json!({ "size": [2048, 2048] })).to_string());
-    let until = Instant::now() + Duration::from_secs(25);
-    while program.try_page().is_err() {
-        assert!(Instant::now() < until, "the place stays taken");
-        std::thread::sleep(Duration::from_millis(100));
+/// Opens a page as soon as there is a place for it.
+fn page_in_time(program: &Program, seconds: u64) -> Page {
+    let until = Instant::now() + Duration::from_secs(seconds);
+    loop {
+        match program.try_page() {
+            Ok(page) => return page,
+            Err(status) => assert!(Instant::now() < until, "{status}: the places stay taken"),
+        }
+        std::thread::sleep(Duration::from_millis(20));
     }
-    let (head, _) = pages[7].ask(json!({}));
-    assert_eq!(head["ask"], "picture");
 }
 
 #[test]
-fn pages_have_a_number() {
+fn a_page_that_leaves_or_does_not_read_loses_its_place() {
     let program = scene();
     let mut pages: Vec<Page> = (0..8).map(|_| program.page()).collect();
     assert_eq!(program.try_page().err(), Some(503));
     let (head, _) = pages[7].ask(json!({}));
     assert_eq!(head["ask"], "picture");
     pages.remove(0);
-    let until = Instant::now() + Duration::from_secs(10);
-    while program.try_page().is_err() {
-        assert!(
-            Instant::now() < until,
-            "the place of a page that went stays taken"
-        );
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    pages.push(page_in_time(&program, 10));
+    // More than the buffers of a connection hold.
+    pages[0].send(&question(json!({ "size": [2048, 2048] })).to_string());
+    page_in_time(&program, 25);
+    let (head, _) = pages[7].ask(json!({}));
+    assert_eq!(head["ask"], "picture");
 }
 
 #[test]
 fn pages_that_vanish_leave_nothing() {
     let program = scene();
     for round in 0..24u32 {
-        let mut page = program.try_page();
-        let until = Instant::now() + Duration::from_secs(10);
-        while page.is_err() && Instant::now() < until {
-            std::thread::sleep(Duration::from_millis(20));
-            page = program.try_page();
-        }
-        let mut page = page.unwrap();
+        let mut page = page_in_time(&program, 10);
         page.send(&question(json!({ "size": [1024, 1024] })).to_string());
         // Before the picture is drawn, and while it is sent: more than the system holds for a socket.
         let wait = Duration::from_millis(u64::from(round % 4) * 15);
@@ -417,36 +328,31 @@ fn pages_that_vanish_leave_nothing() {
 fn a_port_in_use_and_wrong_flags_are_told() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
-    let told = |words: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
-        let command = command
-            .arg("view")
-            .args(words)
-            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-        let output = command.output().unwrap();
+    let told = |line: &str| {
+        let output = shiftvox(&format!("view {line}"));
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         (output.status.code(), text, output.stdout)
     };
-    let (code, text, stdout) = told(&["tests/data/axes.vox", "--port", &port]);
+    let (code, text, stdout) = told(&format!("tests/data/axes.vox --port {port}"));
     assert_eq!(code, Some(1), "{text}");
     assert!(
         text.contains(&format!("cannot listen on 127.0.0.1:{port}")) && text.contains("--port"),
         "{text}"
     );
     assert!(stdout.is_empty());
-    for (words, expected) in [
-        (&["no-such-file.vox"][..], 4),
-        (&[][..], 2),
-        (&["tests/data/axes.vox", "--port", "70000"], 2),
-        (&["tests/data/axes.vox", "--bind", "localhost"], 2),
-        (&["tests/data/axes.vox", "--aov", "depth"], 2),
-        (&["tests/data/axes.vox", "--far-opacity", "six"], 2),
-        (&["tests/data/axes.vox", "--bind", "192.0.2.1"], 1),
-        (&["tests/data/axes.vox", "--size", "2049x2048"], 5),
-        (&["tests/data/axes.vox", "--size", "2048", "--aa", "4"], 5),
+    for (line, expected) in [
+        ("no-such-file.vox", 4),
+        ("--quiet", 2),
+        ("tests/data/axes.vox --port 70000", 2),
+        ("tests/data/axes.vox --bind localhost", 2),
+        ("tests/data/axes.vox --aov depth", 2),
+        ("tests/data/axes.vox --far-opacity six", 2),
+        ("tests/data/axes.vox --bind 192.0.2.1", 1),
+        ("tests/data/axes.vox --size 2049x2048", 5),
+        ("tests/data/axes.vox --size 2048 --aa 4", 5),
     ] {
-        let (code, text, _) = told(words);
-        assert_eq!(code, Some(expected), "{words:?}: {text}");
+        let (code, text, _) = told(line);
+        assert_eq!(code, Some(expected), "{line}: {text}");
         assert!(!text.contains("panicked"), "{text}");
     }
 }

@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
+use shiftvox_mesh::LoadOptions;
 use shiftvox_mesh::voxelize::{Grid, voxelize};
-use shiftvox_mesh::{Instances, LoadOptions, Surface};
 
 use super::shapes::model;
 
@@ -20,10 +19,11 @@ const MODELS: [(&str, u64, usize, u64); 6] = [
 ];
 
 #[test]
+#[ignore = "needs the folder SHIFTVOX_DATA"]
 fn models_have_their_triangles_and_voxels() {
     eprintln!("model                  triangles  load ms  mesh MB   depth 8 voxels  touches    ms");
     for (name, in_file, drawn, voxels) in MODELS {
-        let Some(path) = model(name) else { continue };
+        let path = model(name);
         let started = Instant::now();
         let (mesh, y_up) =
             shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
@@ -64,42 +64,4 @@ fn models_have_their_triangles_and_voxels() {
         assert_eq!(low, [0; 3], "{name}");
         assert_eq!(high.iter().max(), Some(&255), "{name}");
     }
-}
-
-/// A fleet of 165 ships, 29.7 million triangles: `-- --ignored fleet --nocapture`.
-#[test]
-#[ignore = "long: thirty million triangles, three depths"]
-fn a_fleet_is_voxelised_in_bounded_memory() {
-    let Some(path) = model("CG-57.obj") else {
-        return;
-    };
-    let (mesh, _) =
-        shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
-    let places = (0..165)
-        .map(|i| DVec3::new(f64::from(i % 11) * 200.0, 0.0, f64::from(i / 11) * 40.0))
-        .map(DAffine3::from_translation)
-        .collect();
-    let fleet = Instances::new(mesh, places);
-    for depth in [10, 11, 12] {
-        let grid = Grid::around(&fleet, depth).unwrap();
-        let started = Instant::now();
-        let mut voxels = 0u64;
-        let report = voxelize(&fleet, &grid, &mut |_| voxels += 1, &Silent);
-        eprintln!(
-            "{} triangles, depth {depth}: {voxels} voxels, {} touches, {:.1} s, peak {} MB",
-            fleet.len(),
-            report.touches,
-            started.elapsed().as_secs_f64(),
-            peak_mb()
-        );
-        assert!(voxels > 0);
-    }
-}
-
-/// The most memory that the process had so far.
-fn peak_mb() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
-    kib.unwrap_or(0) / 1024
 }

@@ -1,14 +1,11 @@
 //! The level that is chosen by itself is about as good as the triangles.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 use shiftvox_mesh::textured::view::{Detail, ViewOptions, draw};
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
-use shiftvox_mesh::{LoadOptions, Material, Mesh, MeshBuilder};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::scenes::file_of;
 use super::view::view;
@@ -180,22 +177,12 @@ fn drawn(file: &TexturedFile, view: &RasterCamera, detail: Detail) -> (Vec<[u8; 
 fn auto_is_about_as_good_as_triangles_at_one_sample() {
     let mut worst_by_texels: f64 = 0.0;
     let mut levels = 0;
-    let mut meshes = vec![
+    let meshes = [
         ("village", village()),
         ("tubes", tubes()),
         ("sphere", sphere()),
         ("foliage", foliage()),
     ];
-    let models = std::env::var_os("SHIFTVOX_MESHES").map(PathBuf::from);
-    for name in ["tree_Oak_Large.obj", "as_AC14-FZK-Haus.obj", "platform.obj"] {
-        match models.as_ref().map(|folder| folder.join(name)) {
-            Some(path) if path.exists() => {
-                let read = read_mesh(&path, &LoadOptions::default(), &Silent);
-                meshes.push((name, read.unwrap().0));
-            }
-            _ => eprintln!("skipped: SHIFTVOX_MESHES has no {name}"),
-        }
-    }
     for (name, mesh) in meshes {
         let grids = BuildOptions {
             grids: vec![4, 16, 64],

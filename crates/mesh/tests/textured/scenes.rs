@@ -104,15 +104,9 @@ fn ball(middle: [f32; 3], radius: f32, triangles: &mut Vec<[[f32; 3]; 3]>) {
     }
 }
 
-/// A model of the shared data, where it is.
-pub fn model(name: &str) -> Option<PathBuf> {
-    let beside =
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
-    let data = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
-    let path = data.join("mesh").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there", path.display());
-    None
+/// A model in the folder `SHIFTVOX_DATA`.
+pub fn model(name: &str) -> PathBuf {
+    let folder =
+        std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with mesh/");
+    PathBuf::from(folder).join("mesh").join(name)
 }
