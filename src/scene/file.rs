@@ -8,7 +8,7 @@ use super::emit::Emitter;
 use super::fault::{Problem, printable};
 use super::formats::{self, Contents, DETECT_BYTES, FileKind};
 use super::input::Input;
-use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate};
+use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate, ply};
 use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
@@ -116,7 +116,7 @@ impl<R: Read + Seek> SceneFile<R> {
         self.kind = formats::detect(&self.beginning, self.length);
         match self.kind {
             Some(FileKind::Ply) => {
-                if formats::has_faces(&mut BufReader::new(&mut self.stream)) {
+                if ply::has_faces(&mut BufReader::new(&mut self.stream)) {
                     self.kind = Some(FileKind::PlyMesh);
                 }
                 self.stream.seek(SeekFrom::Start(0))?;

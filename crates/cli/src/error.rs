@@ -11,7 +11,7 @@ use shiftvox::graph::file::FileError;
 use shiftvox::graph::vxg::VxgError;
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{EngineError, SetupError};
-use shiftvox::scene::{MeshFailure, OpenError, SceneError};
+use shiftvox::scene::{OpenError, SceneError};
 use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
 use shiftvox_mesh::drawing::MethodError;
@@ -212,8 +212,7 @@ impl From<OpenError> for CliError {
                 "{file}: this is a {kind} file: render and turntable draw it, info describes it"
             ))
             .advise("for anything else take the mesh that it was made of"),
-            OpenError::Mesh(MeshFailure { is_io: true, .. })
-            | OpenError::Scene(SceneError::Io { .. }) => {
+            OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
             OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::error::{MeshError, MeshFault, Place};
+use super::SceneError;
+use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh};
 use shiftvox::budget::{self, Shortage};
 
@@ -251,18 +252,18 @@ impl MeshBuilder {
     ///
     /// # Errors
     /// When no triangle is left, or when there are more than 2^32 of anything.
-    pub fn finish(mut self, file: &str) -> Result<Mesh, MeshError> {
+    pub fn finish(mut self, file: &str) -> Result<Mesh, SceneError> {
         self.show_hidden();
-        let in_file = |error: MeshError| error.in_file(file);
+        let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
-            let fault = MeshFault::new(
+            let fault = Fault::new(
                 "mesh",
                 Place::Whole,
                 "fewer than 2^32 positions and triangles",
                 "more",
                 "split the mesh",
             );
-            return Err(in_file(MeshError::Limit(fault)));
+            return Err(in_file(Problem::Limit(fault)));
         }
         let complaints = [
             (
@@ -289,7 +290,7 @@ impl MeshBuilder {
             } else {
                 format!("none that can be drawn: {}", told.join(", "))
             };
-            let fault = MeshFault::new(
+            let fault = Fault::new(
                 "mesh",
                 Place::Whole,
                 "at least one triangle",
@@ -304,7 +305,7 @@ impl MeshBuilder {
         let mut mesh = self.mesh;
         mesh.warnings.append(&mut told);
         if mesh.materials.is_empty() {
-            mesh.materials.push(Material::of_srgb("default", [200; 3]));
+            mesh.materials.push(Material::default_color());
         }
         for material in &mut mesh.material_of {
             if *material as usize >= mesh.materials.len() {

@@ -9,7 +9,6 @@
 mod builder;
 pub mod decimate;
 pub mod drawing;
-mod error;
 pub mod far;
 pub mod generate;
 mod load;
@@ -22,9 +21,9 @@ pub mod textured;
 pub mod voxelize;
 
 use glam::DVec3;
+use shiftvox::scene::SceneError;
 
 pub use builder::{BadIndex, MeshBuilder};
-pub use error::{MeshError, MeshFault, Place};
 pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;

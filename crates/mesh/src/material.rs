@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use shiftvox::scene::DEFAULT_COLOR;
 use shiftvox::srgb::to_linear;
 
 /// How the numbers of a colour in a file are meant.
@@ -36,6 +37,11 @@ impl Material {
             diffuse: color.map(srgb_to_linear),
             alpha: 1.0,
         }
+    }
+
+    /// The material of triangles without one.
+    pub(crate) fn default_color() -> Self {
+        Self::of_srgb("no material", DEFAULT_COLOR)
     }
 
     /// A material from three numbers of a file; what is not a number from 0 to 1 is made one.

@@ -6,6 +6,7 @@
 mod binvox;
 mod npy;
 mod ply;
+mod ply_write;
 mod vox;
 
 use std::fmt;
@@ -16,8 +17,7 @@ use super::input::Input;
 use super::{ReadOptions, SceneInfo};
 use crate::graph::vxg;
 
-pub(super) use ply::has_faces;
-pub use ply::write_ply;
+pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};
 
 /// Bytes of a file that [`detect`] examines; all of a shorter file.

@@ -12,8 +12,9 @@ use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use super::error::{MeshFault, Place};
-use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
+pub(super) use shiftvox::scene::{Fault, Place, Problem};
+
+use super::{ColorSpace, Mesh, MeshBuilder, SceneError};
 use shiftvox::bounded;
 use shiftvox::graph::Progress;
 
@@ -45,22 +46,11 @@ impl fmt::Display for MeshFormat {
 }
 
 /// How a mesh is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoadOptions {
-    /// sRGB colour of triangles without material.
-    pub default_color: [u8; 3],
     /// How an MTL's colours are meant; the format does not say. glTF has
     /// linear colours, vertex colours of PLY and OBJ are sRGB.
     pub mtl_colors: ColorSpace,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self {
-            default_color: [200; 3],
-            mtl_colors: ColorSpace::Srgb,
-        }
-    }
 }
 
 /// Reads the files that a mesh names: its material library, its buffers.
@@ -121,11 +111,11 @@ impl Beside for Nothing {
 const MOST_CORNERS: usize = 1 << 16;
 
 /// Refuses a face of more corners than may be.
-fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
+fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {
     if corners <= MOST_CORNERS {
         return Ok(());
     }
-    Err(MeshError::Limit(MeshFault::new(
+    Err(Problem::Limit(Fault::new(
         "face",
         place,
         format!("at most {MOST_CORNERS} corners"),
@@ -137,7 +127,7 @@ fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
 /// Reads a mesh that is in memory; `name` is what errors call it.
 ///
 /// # Errors
-/// [`MeshError`] where the content breaks its format's rules, names a position
+/// [`SceneError`] where the content breaks its format's rules, names a position
 /// that does not exist, or holds no triangle that can be drawn.
 pub fn read(
     bytes: &[u8],
@@ -146,15 +136,15 @@ pub fn read(
     beside: &dyn Beside,
     options: &LoadOptions,
     progress: &dyn Progress,
-) -> Result<Mesh, MeshError> {
+) -> Result<Mesh, SceneError> {
     progress.begin(&format!("reading {name}"), 0);
     let mut builder = MeshBuilder::new();
     let result = match format {
         MeshFormat::Obj => obj::read(bytes, beside, options, &mut builder),
-        MeshFormat::Ply => ply::read(bytes, options, &mut builder),
-        MeshFormat::Stl => stl::read(bytes, options, &mut builder),
-        MeshFormat::Gltf => gltf::read_json(bytes, beside, options, &mut builder),
-        MeshFormat::Glb => gltf::read_binary(bytes, beside, options, &mut builder),
+        MeshFormat::Ply => ply::read(bytes, &mut builder),
+        MeshFormat::Stl => stl::read(bytes, &mut builder),
+        MeshFormat::Gltf => gltf::read_json(bytes, beside, &mut builder),
+        MeshFormat::Glb => gltf::read_binary(bytes, beside, &mut builder),
     };
     progress.end();
     result.map_err(|error| error.in_file(name))?;

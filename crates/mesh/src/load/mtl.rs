@@ -3,6 +3,8 @@
 //! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `map_Kd`, `d`, `Tr`.
 //! All else is passed over.
 
+use shiftvox::scene::DEFAULT_COLOR;
+
 use super::{LoadOptions, text};
 use crate::Material;
 
@@ -66,7 +68,7 @@ impl Library {
             Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
             None => Material {
                 alpha: open.alpha.clamp(0.0, 1.0),
-                ..Material::of_srgb(open.name, options.default_color)
+                ..Material::of_srgb(open.name, DEFAULT_COLOR)
             },
         };
         self.materials.push(material);

@@ -11,8 +11,7 @@ use std::path::Path;
 use tobj::LoadError;
 
 use super::texture::Textures;
-use super::{Beside, LoadOptions, MOST_CORNERS, check_corners, mtl, text};
-use crate::error::{MeshError, MeshFault, Place};
+use super::{Beside, Fault, LoadOptions, MOST_CORNERS, Place, Problem, check_corners, mtl, text};
 use crate::{Material, MeshBuilder};
 
 /// Reads a file that is in memory.
@@ -21,7 +20,7 @@ pub(super) fn read(
     beside: &dyn Beside,
     options: &LoadOptions,
     builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
+) -> Result<(), Problem> {
     let text = text::decoded(bytes);
     refuse_cut_face(&text)?;
     refuse_far_back(&text)?;
@@ -43,7 +42,7 @@ pub(super) fn read(
     });
     let (models, _) = loaded.map_err(|error| understand(error, line.get(), &text))?;
     let libraries = libraries.into_inner();
-    let default = builder.material(Material::of_srgb("no material", options.default_color));
+    let default = builder.material(Material::default_color());
     let first = default + 1;
     for material in libraries.materials {
         builder.material(material);
@@ -165,7 +164,7 @@ impl Libraries {
 
 /// Refuses a file whose last line has no end and is part of a face only. `tobj` would read
 /// it as a face of other corners, or leave it out.
-fn refuse_cut_face(text: &str) -> Result<(), MeshError> {
+fn refuse_cut_face(text: &str) -> Result<(), Problem> {
     let (before, last) = text.rsplit_once('\n').unwrap_or(("", text));
     let mut words = last.split_whitespace();
     if words.next() != Some("f") {
@@ -179,7 +178,7 @@ fn refuse_cut_face(text: &str) -> Result<(), MeshError> {
         return Ok(());
     }
     let line = before.lines().count() as u64 + 1;
-    Err(MeshFault::new(
+    Err(Fault::new(
         "face",
         Place::Line(line),
         "three or more corners of one form in the last line, which has no end",
@@ -190,7 +189,7 @@ fn refuse_cut_face(text: &str) -> Result<(), MeshError> {
 }
 
 /// Refuses faces of so many corners that their fan would be slivers without end.
-fn refuse_huge_faces(text: &str) -> Result<(), MeshError> {
+fn refuse_huge_faces(text: &str) -> Result<(), Problem> {
     for (number, line) in text.lines().enumerate() {
         // A corner takes two letters.
         if line.len() / 2 > MOST_CORNERS && line.trim_start().starts_with("f ") {
@@ -204,7 +203,7 @@ fn refuse_huge_faces(text: &str) -> Result<(), MeshError> {
 }
 
 /// What `tobj` says, with the place and what to do.
-fn understand(error: LoadError, line: u64, text: &str) -> MeshError {
+fn understand(error: LoadError, line: u64, text: &str) -> Problem {
     let (part, expected) = match error {
         LoadError::PositionParseError => (
             "vertex",
@@ -217,7 +216,7 @@ fn understand(error: LoadError, line: u64, text: &str) -> MeshError {
         LoadError::FaceParseError => ("face", "\"f\" and corners such as 1, 1/2, 1//3 or 1/2/3"),
         LoadError::MaterialParseError => ("usemtl", "a material's name"),
         LoadError::FaceColorOutOfBounds => {
-            return MeshFault::new(
+            return Fault::new(
                 "vertices",
                 Place::Whole,
                 "a colour for every vertex of a face or for none",
@@ -233,7 +232,7 @@ fn understand(error: LoadError, line: u64, text: &str) -> MeshError {
         _ => ("file", "Wavefront text"),
     };
     let found = text.lines().nth(line.saturating_sub(1) as usize);
-    MeshFault::new(
+    Fault::new(
         part,
         Place::Line(line),
         expected,
@@ -244,7 +243,7 @@ fn understand(error: LoadError, line: u64, text: &str) -> MeshError {
 }
 
 /// Looks for the face of which `tobj`, at the end of its group, says that it is wrong.
-fn bad_face(error: LoadError, line: u64, text: &str) -> MeshError {
+fn bad_face(error: LoadError, line: u64, text: &str) -> Problem {
     let which = match error {
         LoadError::FaceNormalOutOfBounds => 2,
         LoadError::FaceTexCoordOutOfBounds => 1,
@@ -256,7 +255,7 @@ fn bad_face(error: LoadError, line: u64, text: &str) -> MeshError {
     if let Some(corner) = find_corner(text, |_| true, is_bad) {
         return corner;
     }
-    MeshFault::new(
+    Fault::new(
         "face",
         Place::Line(line),
         "corners that exist",
@@ -268,7 +267,7 @@ fn bad_face(error: LoadError, line: u64, text: &str) -> MeshError {
 
 /// Refuses a corner that counts back beyond the first: `tobj` would compute
 /// with a negative number that it takes for a large one.
-fn refuse_far_back(text: &str) -> Result<(), MeshError> {
+fn refuse_far_back(text: &str) -> Result<(), Problem> {
     let is_bad = |_, index: i64, count: i64| index < -count;
     find_corner(text, |line| line.contains('-'), is_bad).map_or(Ok(()), Err)
 }
@@ -280,7 +279,7 @@ fn find_corner(
     text: &str,
     of_interest: impl Fn(&str) -> bool,
     is_bad: impl Fn(usize, i64, i64) -> bool,
-) -> Option<MeshError> {
+) -> Option<Problem> {
     let mut counts = [0i64; 3];
     for (number, line) in text.lines().enumerate() {
         let mut words = line.split_whitespace();
@@ -306,13 +305,13 @@ fn find_corner(
     None
 }
 
-fn out_of_range(index: i64, positions: usize, line: u64) -> MeshError {
+fn out_of_range(index: i64, positions: usize, line: u64) -> Problem {
     let place = if line == 0 {
         Place::Whole
     } else {
         Place::Line(line)
     };
-    MeshFault::new(
+    Fault::new(
         "face",
         place,
         format!("a corner from 1 to {positions}, counted up to there"),

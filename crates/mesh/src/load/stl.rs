@@ -9,8 +9,7 @@ use std::io::Cursor;
 
 use shiftvox::scene::is_binary_stl;
 
-use super::LoadOptions;
-use crate::error::{MeshError, MeshFault, Place};
+use super::{Fault, Place, Problem};
 use crate::{Material, MeshBuilder};
 
 /// Bytes before the first triangle of a binary file.
@@ -19,12 +18,8 @@ const HEADER: u64 = 84;
 const TRIANGLE: u64 = 50;
 
 /// Reads a file that is in memory.
-pub(super) fn read(
-    bytes: &[u8],
-    options: &LoadOptions,
-    builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
-    builder.material(Material::of_srgb("no material", options.default_color));
+pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
+    builder.material(Material::default_color());
     let is_binary = is_binary_stl(bytes, bytes.len() as u64);
     if !is_binary && !bytes.starts_with(b"solid") {
         return Err(cut_binary(bytes).into());
@@ -53,11 +48,11 @@ pub(super) fn read(
 fn take(
     triangles: Box<dyn stl_io::TriangleIterator<Item = std::io::Result<stl_io::Triangle>> + '_>,
     builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
+) -> Result<(), Problem> {
     let mut numbers = std::collections::HashMap::new();
     for (count, triangle) in triangles.enumerate() {
         let triangle = triangle.map_err(|error| {
-            MeshFault::new(
+            Fault::new(
                 format!("triangle {}", count + 1),
                 Place::Whole,
                 "\"facet normal x y z\", \"outer loop\", three \"vertex x y z\", \"endloop\", \"endfacet\", \
@@ -89,8 +84,8 @@ fn normalized(bytes: &[u8]) -> String {
     format!("solid {name}\n{}", rest.to_ascii_lowercase())
 }
 
-fn ascii_fault(error: &std::io::Error) -> MeshError {
-    MeshFault::new(
+fn ascii_fault(error: &std::io::Error) -> Problem {
+    Fault::new(
         "file",
         Place::Whole,
         "an STL mesh, text or binary",
@@ -100,13 +95,13 @@ fn ascii_fault(error: &std::io::Error) -> MeshError {
     .into()
 }
 
-fn cut_binary(bytes: &[u8]) -> Box<MeshFault> {
+fn cut_binary(bytes: &[u8]) -> Box<Fault> {
     let count = bytes
         .get(80..84)
         .and_then(|count| count.try_into().ok())
         .map(u32::from_le_bytes);
     match count {
-        Some(count) => MeshFault::new(
+        Some(count) => Fault::new(
             "header",
             Place::Byte(80),
             format!(
@@ -116,7 +111,7 @@ fn cut_binary(bytes: &[u8]) -> Box<MeshFault> {
             format!("{} bytes", bytes.len()),
             "the file is cut short or damaged; export the mesh again",
         ),
-        None => MeshFault::new(
+        None => Fault::new(
             "header",
             Place::Byte(0),
             format!("{HEADER} bytes"),

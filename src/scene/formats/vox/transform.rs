@@ -1,5 +1,6 @@
 //! Rotations in one byte, and the index of a transformed voxel.
 
+use super::DAMAGED;
 use crate::scene::fault::Fault;
 
 /// A signed permutation of the axes and a translation, applied in this order.
@@ -93,7 +94,7 @@ pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
         offset,
         "a rotation: bits 0-1 and 2-3 two different axes of 0, 1, 2, bits 4-6 signs",
         value.to_string(),
-        "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again",
+        DAMAGED,
     )
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::error::{MeshError, MeshFault, Place};
+use crate::load::{Fault, Place, Problem};
 
 /// Extensions that a file may require and that change nothing that is read here.
 const HARMLESS: [&str; 4] = [
@@ -183,9 +183,9 @@ pub(super) struct Buffer {
 
 impl Document {
     /// Refuses versions and extensions that cannot be read.
-    pub(super) fn check(&self) -> Result<(), MeshError> {
-        let wrong = |part, expected, found, advice| -> MeshError {
-            MeshFault::new(part, Place::Whole, expected, found, advice).into()
+    pub(super) fn check(&self) -> Result<(), Problem> {
+        let wrong = |part, expected, found, advice| -> Problem {
+            Fault::new(part, Place::Whole, expected, found, advice).into()
         };
         if !self.asset.version.starts_with("2.") {
             let found = self.asset.version.clone();
