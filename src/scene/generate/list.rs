@@ -1,7 +1,7 @@
 //! The table of generators and their keys.
 
 use super::settings::{Key, Settings};
-use super::{checker, maze, menger, random, shell, sierpinski, sphere, terrain, truss, wires};
+use super::{maze, shapes, sierpinski, terrain};
 use crate::graph::{Graph, Progress, Voxel};
 
 /// The range and default of a generator's key.
@@ -67,56 +67,29 @@ const DENSITY: KeyRange = KeyRange {
     most: 100,
 };
 
+const fn voxels(
+    name: &'static str,
+    keys: &'static [KeyRange],
+    make: fn(&Settings, &mut dyn FnMut(Voxel), &dyn Progress),
+) -> Generator {
+    let shape = Shape::Voxels(make);
+    Generator { name, keys, shape }
+}
+
 /// All generators, by name; `spec/generators.md` describes them.
 pub const GENERATORS: &[Generator] = &[
-    Generator {
-        name: "checker",
-        keys: &[depth(6, 1, 10)],
-        shape: Shape::Voxels(checker::voxels),
-    },
-    Generator {
-        name: "maze",
-        keys: &[depth(7, 2, 12), SEED],
-        shape: Shape::Voxels(maze::voxels),
-    },
-    Generator {
-        name: "menger",
-        keys: &[depth(5, 1, 8)],
-        shape: Shape::Voxels(menger::voxels),
-    },
-    Generator {
-        name: "random",
-        keys: &[depth(6, 1, 10), DENSITY, SEED],
-        shape: Shape::Voxels(random::voxels),
-    },
-    Generator {
-        name: "shell",
-        keys: &[depth(8, 1, 12)],
-        shape: Shape::Voxels(shell::voxels),
-    },
+    voxels("checker", &[depth(6, 1, 10)], shapes::checker),
+    voxels("maze", &[depth(7, 2, 12), SEED], maze::voxels),
+    voxels("menger", &[depth(5, 1, 8)], shapes::menger),
+    voxels("random", &[depth(6, 1, 10), DENSITY, SEED], shapes::random),
+    voxels("shell", &[depth(8, 1, 12)], shapes::shell),
     Generator {
         name: "sierpinski",
         keys: &[depth(30, 1, 30)],
         shape: Shape::Linked(sierpinski::graph),
     },
-    Generator {
-        name: "sphere",
-        keys: &[depth(7, 1, 10)],
-        shape: Shape::Voxels(sphere::voxels),
-    },
-    Generator {
-        name: "terrain",
-        keys: &[depth(10, 5, 16), SEED],
-        shape: Shape::Voxels(terrain::voxels),
-    },
-    Generator {
-        name: "truss",
-        keys: &[depth(8, 4, 12)],
-        shape: Shape::Voxels(truss::voxels),
-    },
-    Generator {
-        name: "wires",
-        keys: &[depth(8, 4, 12)],
-        shape: Shape::Voxels(wires::voxels),
-    },
+    voxels("sphere", &[depth(7, 1, 10)], shapes::sphere),
+    voxels("terrain", &[depth(10, 5, 16), SEED], terrain::voxels),
+    voxels("truss", &[depth(8, 4, 12)], shapes::truss),
+    voxels("wires", &[depth(8, 4, 12)], shapes::wires),
 ];
