@@ -86,7 +86,7 @@ pub(super) fn convert(
             None => error,
         }
     })?;
-    built.data.y_up = up == Up::Y;
+    built.data.settings.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
     whole::write_with(of.output, of.force, |file| built.write_to(file))?;
     if let Some(part) = &part {
@@ -326,9 +326,9 @@ impl Facts {
             "triangles": file.nodes()[0].triangles,
             "nodes": file.nodes().len(),
             "levels": levels,
-            "leaf_triangles": file.leaf_triangles(),
-            "grid": file.grid(),
-            "distance_voxels": file.distance_voxels(),
+            "leaf_triangles": file.settings.leaf_triangles,
+            "grid": file.settings.grid,
+            "distance_voxels": file.settings.distance_voxels,
             "voxels_touched": self.touched,
             "voxels_seen": self.kept - self.untested,
             "voxels_untested": self.untested,

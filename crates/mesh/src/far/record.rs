@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::blend::{Blend, DIRECTIONS};
+use super::blend::{DIRECTIONS, by_cosines, by_squares};
 use crate::{linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -103,16 +103,16 @@ impl Shader {
     /// How steeply one looks upon it from a direction: the cosine to its normal, negative from
     /// behind a flat one.
     #[must_use]
-    pub fn cosine(&self, towards_eye: DVec3, blend: Blend) -> f64 {
+    pub fn cosine(&self, towards_eye: DVec3) -> f64 {
         match self {
             Self::Flat { normal, .. } => normal.dot(towards_eye),
-            Self::Complex { .. } => self.seen_from(towards_eye, blend).0.dot(towards_eye),
+            Self::Complex { .. } => self.seen_from(towards_eye).0.dot(towards_eye),
         }
     }
 
     /// Unit normal on the eye's side, and colour in linear light, as seen from a direction.
     #[must_use]
-    pub fn seen_from(&self, towards_eye: DVec3, blend: Blend) -> (DVec3, DVec3) {
+    pub fn seen_from(&self, towards_eye: DVec3) -> (DVec3, DVec3) {
         match self {
             Self::Flat { normal, colors } => {
                 if normal.dot(towards_eye) >= 0.0 {
@@ -123,7 +123,7 @@ impl Shader {
             }
             Self::Complex { normals, colors } => {
                 let (mut normal, mut color) = (DVec3::ZERO, DVec3::ZERO);
-                for (k, share) in blend.shares(towards_eye) {
+                for (k, share) in by_squares(towards_eye) {
                     normal += normals[k] * share;
                     color += colors[k] * share;
                 }
@@ -299,11 +299,11 @@ impl Voxel {
 
     /// Its opacity as seen from a direction, as it is stored or as one number.
     #[must_use]
-    pub fn opacity_from(&self, towards_eye: DVec3, blends: [Blend; 2], mode: Opacity) -> f64 {
+    pub fn opacity_from(&self, towards_eye: DVec3, mode: Opacity) -> f64 {
         if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
             return 1.0;
         }
-        let cosine = self.shader.cosine(towards_eye, blends[1]);
+        let cosine = self.shader.cosine(towards_eye);
         let side = self.sides[usize::from(cosine < 0.0)];
         if steepness(cosine.abs()) >= usize::from(side.solid_from) {
             return 1.0;
@@ -313,7 +313,7 @@ impl Voxel {
             let outline = towards_eye.abs().element_sum();
             return 1.0 - libm::pow(1.0 - side.scalar, MEAN_OUTLINE / outline);
         }
-        let shares = blends[0].shares(towards_eye).into_iter();
+        let shares = by_cosines(towards_eye).into_iter();
         shares.map(|(k, share)| self.opacity[k] * share).sum()
     }
 

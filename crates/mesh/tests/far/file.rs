@@ -76,7 +76,7 @@ fn leaves_have_all_triangles() {
     let mut expected: Vec<_> = (0..Surface::len(&mesh))
         .map(|number| {
             let corners = Surface::corners(&mesh, number);
-            bits(corners.map(|p| (p - file.centre()).as_vec3().to_array()))
+            bits(corners.map(|p| (p - file.settings.centre).as_vec3().to_array()))
         })
         .collect();
     stored.sort_unstable();

@@ -157,14 +157,7 @@ impl<'o> Comparison<'o> {
         packed.extend(of_leaf);
         let drawn = root.drawn_bytes();
         let data = FarData {
-            centre: [0.0; 3],
-            distance_voxels: self.options.distance_voxels,
-            opacity_blend: self.options.opacity_blend,
-            shader_blend: self.options.shader_blend,
-            leaf_triangles: self.options.leaf_triangles,
-            grid: self.options.grid,
-            y_up: true,
-            bevels: [0; 8],
+            settings: self.options.settings(DVec3::ZERO),
             nodes: vec![root, leaf],
             packed,
         };

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use super::grid::Grid;
 use super::shot::Shot;
-use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use crate::far::blend::{DIRECTIONS, Fit, Shares, by_cosines};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
 /// A probe is stopped right behind a voxel if what stops it is so near that the surface may be the
@@ -100,7 +100,7 @@ impl Default for Counted {
 }
 
 impl Counted {
-    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], is_hit: bool, weight: f64) {
+    pub(super) fn add(&mut self, shares: &Shares, is_hit: bool, weight: f64) {
         let value = f64::from(u8::from(is_hit));
         self.weight += weight;
         self.square_weight += weight * weight;
@@ -242,12 +242,12 @@ impl<'p> Probes<'p> {
     }
 
     /// Counts the probes that crossed a voxel of a place.
-    pub(super) fn count(&self, place: usize, shader: &Shader, blends: [Blend; 2], seen: &mut Seen) {
+    pub(super) fn count(&self, place: usize, shader: &Shader, seen: &mut Seen) {
         for crossing in self.crossings.of(place) {
             let probe = crossing.probe();
             let towards_eye = -self.shots[probe].direction.as_dvec3();
             let weight = f64::from(self.weights[probe]);
-            let cosine = shader.cosine(towards_eye, blends[1]);
+            let cosine = shader.cosine(towards_eye);
             seen.crossings += 1;
             let side = usize::from(cosine < 0.0);
             let cosine = cosine.abs();
@@ -260,7 +260,7 @@ impl<'p> Probes<'p> {
             } else {
                 found.passed += weight;
             }
-            let shares = blends[0].shares(towards_eye);
+            let shares = by_cosines(towards_eye);
             found.counted.add(&shares, past.is_none(), weight);
         }
     }

@@ -36,12 +36,11 @@ use rayon::prelude::*;
 pub use grid::Grid;
 pub use spool::part_of;
 
-use super::FarData;
-use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
+use super::{FarData, FarSettings};
 use crate::{Surface, barycentric, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
@@ -70,10 +69,6 @@ pub struct BuildOptions {
     pub distance_voxels: f64,
     /// What opacities are stored for: of `Six`, those that differ; of `None`, none.
     pub opacity: Opacity,
-    /// How opacities of main directions are blended.
-    pub opacity_blend: Blend,
-    /// How normals and materials of main directions are blended.
-    pub shader_blend: Blend,
     /// Whether what is wider than a voxel stays a surface, decimated.
     pub hybrid: bool,
 }
@@ -94,9 +89,20 @@ impl Default for BuildOptions {
             grid: 64,
             distance_voxels: 256.0,
             opacity: Opacity::Six,
-            opacity_blend: Blend::Cosines,
-            shader_blend: Blend::Squares,
             hybrid: false,
+        }
+    }
+}
+
+impl BuildOptions {
+    pub(super) fn settings(&self, centre: DVec3) -> FarSettings {
+        FarSettings {
+            centre,
+            distance_voxels: self.distance_voxels,
+            leaf_triangles: self.leaf_triangles,
+            grid: self.grid,
+            y_up: true,
+            bevels: [0; 8],
         }
     }
 }
@@ -325,8 +331,6 @@ fn fill<F: Read + Write + Seek + Send>(
         grid: grid(number, branch),
         own: Own::all(branch.triangles()),
         distance: options.distance_voxels,
-        opacity_blend: options.opacity_blend,
-        shader_blend: options.shader_blend,
     };
     progress.begin("find voxels", order.len() as u64);
     let touched: Vec<Option<u32>> = branches
@@ -417,7 +421,7 @@ fn fill<F: Read + Write + Seek + Send>(
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
-    data.bevels = mesh_box(surface, data.y_up).bevels;
+    data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
     Ok((data, spool))
 }
 
@@ -643,14 +647,7 @@ fn assemble<F: Read + Write + Seek>(
         data_at += done.bytes;
     }
     Ok(FarData {
-        centre: centre.to_array(),
-        distance_voxels: options.distance_voxels,
-        opacity_blend: options.opacity_blend,
-        shader_blend: options.shader_blend,
-        leaf_triangles: options.leaf_triangles,
-        grid: options.grid,
-        y_up: true,
-        bevels: [0; 8],
+        settings: options.settings(centre),
         nodes,
         packed: Vec::new(),
     })

@@ -181,11 +181,10 @@ impl Target<'_> {
                 let towards_eye = -shot.direction.as_dvec3();
                 triangles.sample(shot.triangle as usize, point, towards_eye)
             }));
-            let fit = fit_shader(&samples, main_normal(&samples), self.shader_blend);
+            let fit = fit_shader(&samples, main_normal(&samples));
             // As opaque as the area in it is large, in its faces.
             seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
-            let blends = [self.opacity_blend, self.shader_blend];
-            probes.count(place, &fit.shader, blends, &mut seen);
+            probes.count(place, &fit.shader, &mut seen);
             keep(&seen, &fit, samples.len());
         }
         Ok(Sampled {

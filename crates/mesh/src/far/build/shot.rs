@@ -11,7 +11,6 @@ use glam::{DVec3, Vec3, Vec3A};
 use super::clusters::Occluders;
 use super::grid::Grid;
 use super::rays::{Around, Meeting, Query};
-use crate::far::blend::Blend;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 2;
@@ -24,8 +23,6 @@ pub(super) struct Target<'t> {
     pub(super) own: Own<'t>,
     /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
-    pub(super) opacity_blend: Blend,
-    pub(super) shader_blend: Blend,
 }
 
 /// Which triangles voxels are made of.

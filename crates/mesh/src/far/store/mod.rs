@@ -13,11 +13,10 @@ mod format;
 pub(in crate::far) mod pack;
 mod read;
 pub(in crate::far) mod surface;
-mod write;
 
 pub use budget::Resident;
 pub use data::NodeData;
+pub(in crate::far) use format::write_parts;
+pub use format::{encode, write_to};
 pub use read::FarFile;
 pub use shiftvox::graph::file::FileError as FarError;
-pub(in crate::far) use write::write_parts;
-pub use write::{encode, write_to};

@@ -113,7 +113,7 @@ impl Cut<'_> {
     pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
         counts.visited += 1;
         let node = &self.file.nodes()[number];
-        let centre = self.file.centre();
+        let centre = self.file.settings.centre;
         let (low, high) = node.bounds();
         let (low, high) = (low + centre, high + centre);
         let voxel = f64::from(node.voxel);
@@ -122,14 +122,14 @@ impl Cut<'_> {
         let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
         // Nearer, things that were taken to hide it may be behind the eye; but there is nothing
         // behind an eye outside the box of everything.
-        let is_far = from >= self.file.distance_voxels() * voxel || self.is_outside_all();
+        let is_far = from >= self.file.settings.distance_voxels * voxel || self.is_outside_all();
         let is_drawn = node.is_leaf() || node.has_grid() && is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
             voxel
         } else {
             // Those of nodes without a grid as those that it would have.
-            let least = (high - low).max_element() / f64::from(self.file.grid() - 1);
+            let least = (high - low).max_element() / f64::from(self.file.settings.grid - 1);
             BRANCH_MARGIN * voxel.max(least)
         };
         let outline = Outline::of(&self.view, low, high, margin);

@@ -88,7 +88,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
-        let places = Places::of(&self.file.nodes()[number], self.file.centre());
+        let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
         let mut id = self.file.first_voxel(number);
         let mut drawn = 0;
         let width = self.view.width as usize;
@@ -262,7 +262,7 @@ impl<'f> Opaque<'f> {
             let count = records.len() / RECORD_BYTES[list];
             if rest < count {
                 let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
-                let places = Places::of(&self.file.nodes()[number], self.file.centre());
+                let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
                 let towards_eye = places.towards_eye(&self.view, &voxel.place);
                 return light_of(&voxel, towards_eye, self.file, &self.options);
             }
@@ -292,8 +292,7 @@ pub(super) fn is_opaque_from(
     options: &ViewOptions,
 ) -> bool {
     let voxel = Voxel::read(list, record);
-    let blends = [file.opacity_blend(), file.shader_blend()];
-    voxel.opacity_from(square.towards_eye, blends, options.opacity) >= 1.0
+    voxel.opacity_from(square.towards_eye, options.opacity) >= 1.0
 }
 
 /// Linear light of a voxel as seen from a direction.
@@ -303,7 +302,7 @@ pub(super) fn light_of(
     file: &FarFile,
     options: &ViewOptions,
 ) -> [f32; 3] {
-    let (normal, color) = voxel.shader.seen_from(towards_eye, file.shader_blend());
+    let (normal, color) = voxel.shader.seen_from(towards_eye);
     let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
     (color * share).as_vec3().to_array()
 }
@@ -350,7 +349,7 @@ impl Surface for Surfaces<'_> {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        let centre = self.file.centre();
+        let centre = self.file.settings.centre;
         let corners = self.triangle_at(number).corners;
         corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
     }

@@ -76,8 +76,7 @@ fn splats(
     number: usize,
 ) -> Result<Vec<Splat>, ViewError> {
     let node = &file.nodes()[number];
-    let places = Places::of(node, file.centre());
-    let blends = [file.opacity_blend(), file.shader_blend()];
+    let places = Places::of(node, file.settings.centre);
     let mut splats = Vec::new();
     let data = file.data(number)?;
     for (list, records) in data.lists().into_iter().enumerate() {
@@ -93,7 +92,7 @@ fn splats(
                 continue;
             }
             let voxel = Voxel::read(list, record);
-            let opacity = voxel.opacity_from(square.towards_eye, blends, options.opacity);
+            let opacity = voxel.opacity_from(square.towards_eye, options.opacity);
             // What is opaque as it is seen was drawn with what always is.
             if opacity < 1.0 {
                 splats.push(Splat {
