@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::SceneError;
+use super::geometry::{plane_normal, point};
 use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh};
 use shiftvox::budget::{self, Shortage};
@@ -211,8 +212,7 @@ impl MeshBuilder {
             .triangles
             .iter()
             .map(|corners| {
-                let [a, b, c] = corners.map(|i| point(positions[i as usize]));
-                let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+                let plane = plane_normal(corners.map(|i| point(positions[i as usize])));
                 [plane.as_vec3().to_array(); 3]
             })
             .collect();
@@ -318,12 +318,7 @@ impl MeshBuilder {
         if !mesh.vertex_colors.is_empty() {
             mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
         }
-        (mesh.low, mesh.high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in mesh.triangles.iter().flatten() {
-            let position = point(mesh.positions[*corner as usize]);
-            mesh.low = mesh.low.min(position);
-            mesh.high = mesh.high.max(position);
-        }
+        mesh.find_bounds();
         mesh.positions.shrink_to_fit();
         mesh.triangles.shrink_to_fit();
         mesh.material_of.shrink_to_fit();
@@ -332,12 +327,8 @@ impl MeshBuilder {
     }
 }
 
-fn point(position: [f64; 3]) -> DVec3 {
-    DVec3::from_array(position)
-}
-
 fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
-    DVec3::from_array(normal.map(f64::from))
+    point(normal)
         .try_normalize()
         .map(|unit| unit.as_vec3().to_array())
 }

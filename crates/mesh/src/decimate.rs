@@ -14,7 +14,7 @@ use meshoptimizer_rs::{
     simplify_with_attributes,
 };
 
-use super::surface::plane_normal;
+use super::geometry::{plane_normal, point};
 use super::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -229,10 +229,6 @@ impl Vertices {
     }
 }
 
-fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
-    DVec3::from_array(position.map(Into::into))
-}
-
 /// Zeros of both signs are one place.
 fn place_of(position: [f64; 3]) -> Place {
     position.map(|x| (x + 0.0).to_bits())
@@ -317,17 +313,6 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
         + used.len() as u64 * 3
         + rounded.tints.len() as u64 * 3;
     (rounded, bytes)
-}
-
-impl Mesh {
-    fn find_bounds(&mut self) {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for &corner in self.triangles.iter().flatten() {
-            let at = point(self.positions[corner as usize]);
-            (low, high) = (low.min(at), high.max(at));
-        }
-        (self.low, self.high) = (low, high);
-    }
 }
 
 #[cfg(test)]

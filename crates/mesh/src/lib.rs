@@ -11,6 +11,7 @@ pub mod decimate;
 pub mod drawing;
 pub mod far;
 pub mod generate;
+mod geometry;
 mod load;
 mod material;
 pub mod open;
@@ -21,13 +22,14 @@ pub mod textured;
 pub mod voxelize;
 
 use glam::DVec3;
-use shiftvox::scene::SceneError;
+pub use shiftvox::scene::SceneError;
 
 pub use builder::{BadIndex, MeshBuilder};
+pub use geometry::barycentric;
 pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
-pub use surface::{Instances, Surface, Triangle, barycentric, mesh_box};
+pub use surface::{Instances, Surface, Triangle, mesh_box};
 
 /// Triangles with materials, in the file's own coordinates.
 ///
@@ -97,6 +99,12 @@ impl Mesh {
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    pub(crate) fn find_bounds(&mut self) {
+        let corners = self.triangles.iter().flatten();
+        let points = corners.map(|&corner| geometry::point(self.positions[corner as usize]));
+        (self.low, self.high) = geometry::bounds(points);
     }
 
     /// Bytes that the mesh takes.

@@ -53,6 +53,37 @@ pub struct RasterCamera {
     pub near: f64,
 }
 
+impl RasterCamera {
+    /// Right, up and depth of a point.
+    pub(crate) fn seen(&self, point: DVec3) -> DVec3 {
+        let offset = point - self.eye;
+        let axes = [self.right, self.up, self.forward];
+        DVec3::from_array(axes.map(|axis| offset.dot(axis)))
+    }
+
+    /// The place in the picture of a point given by [`RasterCamera::seen`], pixels from the top left corner.
+    pub(crate) fn place(&self, seen: DVec3) -> [f64; 2] {
+        [
+            f64::from(self.width) / 2.0 + seen.x / seen.z * self.focal_px,
+            f64::from(self.height) / 2.0 - seen.y / seen.z * self.focal_px,
+        ]
+    }
+
+    /// Rejects sizes and numbers that cannot be drawn.
+    pub(crate) fn check(&self) -> Result<(), RasterError> {
+        let side = 1..=MAX_SIDE;
+        if !side.contains(&self.width) || !side.contains(&self.height) {
+            return Err(RasterError::Size(self.width, self.height));
+        }
+        let axes = [self.eye, self.right, self.up, self.forward];
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        match axes.iter().all(|v| v.is_finite()) && positive(self.near) && positive(self.focal_px) {
+            true => Ok(()),
+            false => Err(RasterError::Camera),
+        }
+    }
+}
+
 /// How a surface is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RasterOptions {
@@ -108,14 +139,7 @@ pub fn draw<S: Surface + ?Sized>(
     progress: &dyn Progress,
 ) -> Result<RasterPicture, RasterError> {
     let (width, height) = (view.width, view.height);
-    if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
-        return Err(RasterError::Size(width, height));
-    }
-    let axes = [view.eye, view.right, view.up, view.forward];
-    let positive = |x: f64| x > 0.0 && x.is_finite();
-    if !(axes.iter().all(|v| v.is_finite()) && positive(view.near) && positive(view.focal_px)) {
-        return Err(RasterError::Camera);
-    }
+    view.check()?;
     if u32::try_from(surface.len()).map_or(true, |count| count == NO_TRIANGLE) {
         return Err(RasterError::TooMany(surface.len()));
     }

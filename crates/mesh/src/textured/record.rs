@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::geometry::{plane_normal, point};
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -48,7 +49,7 @@ impl Primitive {
     /// Positions of the corners.
     #[must_use]
     pub fn positions(&self) -> [DVec3; 3] {
-        self.corners.map(|p| DVec3::from_array(p.map(f64::from)))
+        self.corners.map(point)
     }
 
     /// The triangle, ready to be drawn.
@@ -56,7 +57,7 @@ impl Primitive {
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
-        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
+        let color = |c: [u8; 3]| point(c.map(srgb_to_linear));
         Triangle {
             corners,
             normals: self
@@ -122,9 +123,4 @@ impl Texel {
             _ => false,
         }
     }
-}
-
-/// The unit normal of a triangle's plane; +Z where its corners are on a line.
-pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a).normalize_or(DVec3::Z)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{
-    self, LoadOptions, Material, Mesh, MeshBuilder, MeshError, MeshFormat, Nothing,
+    self, LoadOptions, Material, Mesh, MeshBuilder, MeshFormat, Nothing, SceneError,
 };
 
 pub(crate) use super::gltf_bytes::{data_uri, glb};
@@ -96,7 +96,7 @@ pub fn ball(steps: u32) -> Mesh {
 }
 
 /// Reads a mesh without other files.
-pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
+pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
     shiftvox_mesh::read(
         bytes,
         format,

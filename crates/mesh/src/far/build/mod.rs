@@ -41,7 +41,8 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::{Surface, barycentric, linear_to_srgb, mesh_box};
+use crate::geometry::{barycentric, blend, plane_normal};
+use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
 use rays::Around;
@@ -263,8 +264,7 @@ impl Triangles for Ordered<'_> {
     }
 
     fn plane(&self, number: usize) -> DVec3 {
-        let [a, b, c] = self.corners(number);
-        (b - a).cross(c - a).normalize_or(DVec3::Z)
+        plane_normal(self.corners(number))
     }
 
     fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
@@ -504,16 +504,14 @@ fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
 
 /// Normal and colour of a triangle at a point, seen from a side.
 fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
-    let [a, b, c] = triangle.corners;
-    let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+    let plane = plane_normal(triangle.corners);
     let shares = barycentric(&triangle.corners, point);
-    let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
     let face = if plane.dot(towards_eye) >= 0.0 {
         plane
     } else {
         -plane
     };
-    let normal = blend(&triangle.normals).normalize_or(face);
+    let normal = blend(&triangle.normals, shares).normalize_or(face);
     SurfaceSample {
         towards_eye,
         normal: if normal.dot(face) < 0.0 {
@@ -521,7 +519,7 @@ fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) 
         } else {
             normal
         },
-        color: blend(&triangle.colors),
+        color: blend(&triangle.colors, shares),
     }
 }
 

@@ -17,6 +17,7 @@ use crate::decimate::{Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
+use crate::geometry::{area, point};
 use crate::{Mesh, Surface, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -157,8 +158,7 @@ impl<'s> Surfaces<'s> {
     }
 
     fn area(&self, place: usize) -> f64 {
-        let [a, b, c] = self.surface.corners(self.order[place] as usize);
-        (b - a).cross(c - a).length() / 2.0
+        area(self.surface.corners(self.order[place] as usize))
     }
 
     /// Some of a node's triangles, decimated to within an error, world units.
@@ -197,12 +197,10 @@ fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
         material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]),
         ..Mesh::default()
     };
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (number, triangle) in (0u32..).zip(triangles) {
         mesh.triangles.push([0, 1, 2].map(|k| 3 * number + k));
         for k in 0..3 {
             let position = triangle.corners[k].map(f64::from);
-            (low, high) = (low.min(position.into()), high.max(position.into()));
             mesh.positions.push(position);
             if !is_tinted {
                 mesh.vertex_colors.push(triangle.colors[k]);
@@ -217,7 +215,7 @@ fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
             normal.as_vec3().to_array()
         }));
     }
-    (mesh.low, mesh.high) = (low, high);
+    mesh.find_bounds();
     mesh
 }
 
@@ -226,8 +224,7 @@ fn triangles_of(mesh: &Mesh) -> Vec<LeafTriangle> {
         let corners = mesh.triangles()[number].map(|vertex| vertex as usize);
         LeafTriangle {
             corners: corners.map(|vertex| mesh.positions()[vertex].map(|c| c as f32)),
-            normals: mesh.corner_normals()[number]
-                .map(|n| PackedNormal::encode(DVec3::from_array(n.map(f64::from))).0),
+            normals: mesh.corner_normals()[number].map(|n| PackedNormal::encode(point(n)).0),
             colors: corners.map(|vertex| mesh.vertex_colors()[vertex]),
         }
     };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{FarCounts, in_view, on_picture};
+use super::FarCounts;
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
 
@@ -43,11 +43,11 @@ impl Outline {
                     low[k]
                 }
             };
-            let seen = in_view(view, DVec3::new(pick(0), pick(1), pick(2)));
+            let seen = view.seen(DVec3::new(pick(0), pick(1), pick(2)));
             depth = depth.min(seen.z);
             farthest = farthest.max(seen.z);
             if seen.z >= view.near {
-                let place = on_picture(view, seen);
+                let place = view.place(seen);
                 for k in 0..2 {
                     bounds[0][k] = bounds[0][k].min(place[k]);
                     bounds[1][k] = bounds[1][k].max(place[k]);

@@ -17,8 +17,6 @@ mod splat;
 mod transparent;
 mod visible;
 
-use glam::DVec3;
-
 use super::record::Node;
 pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
@@ -131,7 +129,7 @@ pub struct FarCounts {
 }
 
 /// Draws one file, frame after frame, and remembers what was visible.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FarViewer<'f> {
     file: &'f FarFile,
     memory: VisibilityHistory,
@@ -278,22 +276,4 @@ impl Pixel {
             }
         }
     }
-}
-
-/// Right, up and depth of a point.
-fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
-    let offset = point - view.eye;
-    DVec3::new(
-        offset.dot(view.right),
-        offset.dot(view.up),
-        offset.dot(view.forward),
-    )
-}
-
-/// Where a point of a view is in the picture, pixels from the top left corner.
-fn on_picture(view: &RasterCamera, seen: DVec3) -> [f64; 2] {
-    [
-        f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
-        f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,
-    ]
 }

@@ -42,16 +42,7 @@ impl<'f> Opaque<'f> {
         view: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<Self, ViewError> {
-        let side = 1..=raster::MAX_SIDE;
-        if !side.contains(&view.width) || !side.contains(&view.height) {
-            return Err(RasterError::Size(view.width, view.height).into());
-        }
-        let numbers = [view.eye, view.right, view.up, view.forward];
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        let is_sound = numbers.iter().all(|v| v.is_finite());
-        if !(is_sound && positive(view.near) && positive(view.focal_px)) {
-            return Err(RasterError::Camera.into());
-        }
+        view.check()?;
         let pixels = view.width as usize * view.height as usize;
         Ok(Self {
             file,
@@ -105,7 +96,7 @@ impl<'f> Opaque<'f> {
                 let Some(square) = places.square(&self.view, record) else {
                     continue;
                 };
-                if !is_opaque && !is_opaque_from(list, record, &square, self.file, &self.options) {
+                if !is_opaque && !is_opaque_from(list, record, &square, &self.options) {
                     continue;
                 }
                 drawn += 1;
@@ -264,7 +255,7 @@ impl<'f> Opaque<'f> {
                 let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
                 let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
                 let towards_eye = places.towards_eye(&self.view, &voxel.place);
-                return light_of(&voxel, towards_eye, self.file, &self.options);
+                return light_of(&voxel, towards_eye, &self.options);
             }
             rest -= count;
         }
@@ -288,7 +279,6 @@ pub(super) fn is_opaque_from(
     list: usize,
     record: &[u8],
     square: &Square,
-    file: &FarFile,
     options: &ViewOptions,
 ) -> bool {
     let voxel = Voxel::read(list, record);
@@ -296,12 +286,7 @@ pub(super) fn is_opaque_from(
 }
 
 /// Linear light of a voxel as seen from a direction.
-pub(super) fn light_of(
-    voxel: &Voxel,
-    towards_eye: DVec3,
-    file: &FarFile,
-    options: &ViewOptions,
-) -> [f32; 3] {
+pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {
     let (normal, color) = voxel.shader.seen_from(towards_eye);
     let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
     (color * share).as_vec3().to_array()

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::{in_view, on_picture};
 use crate::far::record::Node;
 use crate::raster::RasterCamera;
 
@@ -54,7 +53,7 @@ impl Places {
 
     /// The square of a voxel; `None` before the near plane.
     pub(super) fn square(&self, view: &RasterCamera, place: &[u8]) -> Option<Square> {
-        let seen = in_view(view, self.middle(place));
+        let seen = view.seen(self.middle(place));
         if seen.z < view.near {
             return None;
         }
@@ -63,7 +62,7 @@ impl Places {
         let outline = towards_eye.abs().element_sum();
         let side = self.voxel * view.focal_px / seen.z * libm::sqrt(outline);
         Some(Square {
-            middle: on_picture(view, seen),
+            middle: view.place(seen),
             half: side / 2.0,
             depth: seen.z,
             towards_eye,

@@ -97,7 +97,7 @@ fn splats(
             if opacity < 1.0 {
                 splats.push(Splat {
                     through: (1.0 - opacity) as f32,
-                    color: light_of(&voxel, square.towards_eye, file, options),
+                    color: light_of(&voxel, square.towards_eye, options),
                     rows: [y0, y1],
                     square,
                 });

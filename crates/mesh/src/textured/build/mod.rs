@@ -14,7 +14,7 @@ use super::cell_grid::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
 use super::{CellGrid, Element, GridData, TexturedData};
-use crate::{Surface, mesh_box};
+use crate::{Surface, geometry, mesh_box};
 use project::{Column, Projected, project};
 use shiftvox::graph::Progress;
 use voxels::{Filled, cell_of, depths, fill};
@@ -129,10 +129,7 @@ pub fn build<S: Surface + ?Sized>(
 
 /// The box around the corners as they are stored.
 pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
-    let points = primitives.iter().flat_map(Primitive::positions);
-    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    })
+    geometry::bounds(primitives.iter().flat_map(Primitive::positions))
 }
 
 fn build_grid<S: Surface + ?Sized>(

@@ -8,11 +8,12 @@
 
 use glam::DVec3;
 
+use crate::geometry::{barycentric, blend, plane_normal};
 use crate::raster::Edges;
 use crate::textured::CellGrid;
 use crate::textured::cell_grid::{ACROSS, is_positive_half};
-use crate::textured::record::{Texel, plane_normal};
-use crate::{Surface, Triangle, barycentric, linear_to_srgb};
+use crate::textured::record::Texel;
+use crate::{Surface, Triangle, linear_to_srgb};
 use shiftvox::graph::PackedNormal;
 
 /// A column of cells along an axis.
@@ -202,14 +203,15 @@ impl<S: Surface + ?Sized> Painter<'_, S> {
             }
         };
         let share = barycentric(&triangle.corners, self.world(texel, hit.along));
-        let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
         let sign = if is_positive { 1.0 } else { -1.0 };
         let outwards = DVec3::AXES[self.column.axis] * sign;
         let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
         let plane = facing(plane_normal(triangle.corners), outwards);
-        let normal = facing(blend(&triangle.normals).normalize_or(plane), plane);
+        let normal = facing(blend(&triangle.normals, share).normalize_or(plane), plane);
         Texel {
-            color: blend(&triangle.colors).to_array().map(linear_to_srgb),
+            color: blend(&triangle.colors, share)
+                .to_array()
+                .map(linear_to_srgb),
             opacity: 255,
             normal: PackedNormal::encode(normal).0,
         }
