@@ -7,7 +7,7 @@ use shiftvox_mesh::far::store::{FarError, encode};
 use shiftvox_mesh::far::{BuildOptions, FarFile};
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::city::{city, far, options};
+use super::city::{city, far, file_of, options};
 
 fn small() -> Vec<u8> {
     let options = BuildOptions {
@@ -63,7 +63,7 @@ fn a_file_comes_back() {
 /// A leaf has the triangles of the mesh, to the last bit of single precision.
 #[test]
 fn leaves_have_all_triangles() {
-    let file = FarFile::from_bytes(&encode(&far(&options())).unwrap()).unwrap();
+    let file = file_of(&far(&options()));
     let bits = |corners: [[f32; 3]; 3]| corners.map(|corner| corner.map(f32::to_bits));
     let mut stored: Vec<_> = (0..file.nodes().len())
         .flat_map(|number| {

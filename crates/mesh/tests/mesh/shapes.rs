@@ -1,8 +1,6 @@
 //! Meshes with known answers, and files written by hand.
 #![expect(unreachable_pub, reason = "a module of a test crate")]
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{
@@ -111,20 +109,6 @@ pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
 pub fn soup(mesh: &Mesh) -> Vec<[[f32; 3]; 3]> {
     let corner = |i: u32| mesh.positions()[i as usize].map(|c| c as f32);
     mesh.triangles().iter().map(|t| t.map(corner)).collect()
-}
-
-/// Where a model of the shared data is, or a note on stderr that the test is skipped.
-pub fn model(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data"),
-        PathBuf::from,
-    );
-    let path = folder.join("mesh").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: mesh/{name} is not among the shared data");
-    None
 }
 
 /// The seven cases are the file formats with their encodings: one square each,

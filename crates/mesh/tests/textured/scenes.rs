@@ -1,8 +1,6 @@
 //! Meshes that tests build textured voxels of.
 #![expect(unreachable_pub, reason = "a module of a test crate")]
 
-use std::path::PathBuf;
-
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::textured::store::encode;
@@ -102,17 +100,4 @@ fn ball(middle: [f32; 3], radius: f32, triangles: &mut Vec<[[f32; 3]; 3]>) {
             triangles.push([a, c, d]);
         }
     }
-}
-
-/// A model of the shared data, where it is.
-pub fn model(name: &str) -> Option<PathBuf> {
-    let beside =
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
-    let data = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
-    let path = data.join("mesh").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there", path.display());
-    None
 }
