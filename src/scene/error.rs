@@ -82,7 +82,6 @@ pub enum SceneError {
 
 impl SceneError {
     /// Whether the file is sound but exceeds a limit of this program.
-    #[must_use]
     pub fn is_limit(&self) -> bool {
         match self {
             Self::Limit(_) | Self::TooMany { .. } => true,

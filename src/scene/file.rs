@@ -23,7 +23,6 @@ pub enum Source {
 
 impl Source {
     /// Whether a name is a generator's specification.
-    #[must_use]
     pub fn is_generated(name: &str) -> bool {
         name.starts_with(generate::PREFIX)
     }
@@ -49,7 +48,6 @@ impl Source {
     }
 
     /// The file's format; `None` for a generator and for an unknown format.
-    #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         match self {
             Self::Generated(_) => None,
@@ -135,13 +133,11 @@ impl<R: Read + Seek> SceneFile<R> {
     }
 
     /// The format, unless it is unknown.
-    #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         self.kind
     }
 
     /// The file's path, or the name of a file in memory.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -66,7 +66,6 @@ pub struct MeshFailure {
 
 impl OpenError {
     /// Whether the input is sound and only too large.
-    #[must_use]
     pub fn is_limit(&self) -> bool {
         match self {
             Self::TooMany { .. } => true,

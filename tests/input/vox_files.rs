@@ -146,45 +146,6 @@ fn a_missing_file_is_no_fault_of_its_content() {
     assert!(matches!(error, SceneError::Io { .. }));
 }
 
-#[test]
-fn axes_by_hand() {
-    // From the file's nodes: group 3 at (0, 0, 131) holds model 0 at z -48, 0 and 48;
-    // group 11 at (0, 188, 20) holds model 1 at y -59, 1 and 59; group 19 at (173, 0, 20)
-    // holds model 2 at x -47, 1 and 47; model 3 stands at (0, 0, 16). Sizes 40, 40, 40
-    // and 32, so the pivots are 20 and 16.
-    let bytes = shipped("axes.vox");
-    let first_voxel_at = [56usize + 4, 3_764 + 16, 10_364 + 16, 16_324 + 16];
-    let read = read_plain(&bytes);
-    let placements: [(usize, i32, Vec<[i32; 3]>); 4] = [
-        (0, 20, vec![[0, 0, 131 - 48], [0, 0, 131], [0, 0, 131 + 48]]),
-        (
-            1,
-            20,
-            vec![[0, 188 - 59, 20], [0, 189, 20], [0, 188 + 59, 20]],
-        ),
-        (
-            2,
-            20,
-            vec![[173 - 47, 0, 20], [174, 0, 20], [173 + 47, 0, 20]],
-        ),
-        (3, 16, vec![[0, 0, 16]]),
-    ];
-    let counts = [920, 1_640, 1_480, 332];
-    let mut at = 0;
-    for (model, pivot, translations) in placements {
-        for translation in translations {
-            for i in 0..counts[model] {
-                // The offset of model 0's voxels: header 44, 12 bytes of chunk header, 4 of count.
-                let stored = &bytes[first_voxel_at[model] + 4 * i..][..3];
-                let expected = [0, 1, 2].map(|a| i32::from(stored[a]) - pivot + translation[a]);
-                assert_eq!(read[at].0, expected, "model {model}, voxel {i}");
-                at += 1;
-            }
-        }
-    }
-    assert_eq!(at, read.len());
-}
-
 /// All voxels of a file as `dot_vox` and floating point place them.
 fn by_dot_vox(data: &DotVoxData) -> Vec<Plain> {
     let mut voxels = Vec::new();

@@ -14,7 +14,7 @@ const MOST: usize = u32::MAX as usize;
 /// A triangle names a position that does not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BadIndex {
-    /// What it names.
+    /// The index that is out of range.
     pub index: u32,
     /// Positions that there are.
     pub positions: usize,
@@ -31,10 +31,9 @@ struct Corners {
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
-/// Left out, counted and reported as a warning: triangles with a coordinate that
-/// is infinite or not a number, triangles without area (two equal corners, or
-/// all three on a line), triangles whose material has opacity 0. Where that would be all that can be drawn, they are
-/// drawn opaque, with a warning: some programs write 0 for what is opaque.
+/// Left out, counted and reported as a warning: triangles with a coordinate that is infinite or not a number, triangles
+/// without area (two equal corners, or all three on a line), triangles whose material has opacity 0. If all triangles
+/// had opacity 0, they are drawn opaque, with a warning: some programs write 0 for opaque materials.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
@@ -52,7 +51,6 @@ pub struct MeshBuilder {
 
 impl MeshBuilder {
     /// A builder without anything.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
@@ -108,7 +106,6 @@ impl MeshBuilder {
     }
 
     /// Positions so far.
-    #[must_use]
     pub fn positions(&self) -> usize {
         self.mesh.positions.len()
     }

@@ -27,7 +27,6 @@ pub(crate) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 /// The shares of the corners in a point of the triangle, each 0 to 1; thirds if it has no area.
-#[must_use]
 pub fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     let normal = (*b - *a).cross(*c - *a);
     let square = normal.length_squared();

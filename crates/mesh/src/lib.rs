@@ -52,51 +52,43 @@ pub struct Mesh {
 
 impl Mesh {
     /// Vertex positions, finite.
-    #[must_use]
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 
     /// Three positions a triangle, counter-clockwise where seen from outside.
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
     /// The material of each triangle: an index of [`Mesh::materials`].
-    #[must_use]
     pub fn material_of(&self) -> &[u32] {
         &self.material_of
     }
 
     /// The materials; at least one.
-    #[must_use]
     pub fn materials(&self) -> &[Material] {
         &self.materials
     }
 
     /// Unit normals of each triangle's corners, or nothing where the file has
     /// none: then a triangle has its plane's.
-    #[must_use]
     pub fn corner_normals(&self) -> &[[[f32; 3]; 3]] {
         &self.corner_normals
     }
 
     /// sRGB colour of each position, which multiplies the material's, or
     /// nothing where the file has none.
-    #[must_use]
     pub fn vertex_colors(&self) -> &[[u8; 3]] {
         &self.vertex_colors
     }
 
     /// Lowest and highest corner of the box around all triangles.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
     }
 
     /// Warnings about a file that could be read, one sentence each.
-    #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -108,7 +100,6 @@ impl Mesh {
     }
 
     /// Bytes that the mesh takes.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let sizes = [
             size_of_val(&self.positions[..]),

@@ -1,4 +1,4 @@
-//! What is drawn and voxelised: one mesh, or one many times.
+//! Surfaces to draw and to voxelise: one mesh, or several placed copies of it.
 
 use glam::{DAffine3, DVec3};
 
@@ -58,8 +58,7 @@ pub trait Surface: Sync {
     }
 }
 
-/// What fitted cameras look at, whatever is made of a surface.
-#[must_use]
+/// The box for fitted cameras. It is the same for all files made of a surface.
 pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
     let (low, high) = surface.bounds();
     let span = (low.to_array(), high.to_array());
@@ -123,7 +122,6 @@ pub struct Instances {
 impl Instances {
     /// A mesh at places. A place must have an inverse; those that have none,
     /// or are not finite, are left out.
-    #[must_use]
     pub fn new(mesh: Mesh, places: Vec<DAffine3>) -> Self {
         let places: Vec<DAffine3> = places
             .into_iter()
@@ -150,13 +148,11 @@ impl Instances {
     }
 
     /// The mesh.
-    #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
     /// Where it stands.
-    #[must_use]
     pub fn places(&self) -> &[DAffine3] {
         &self.places
     }

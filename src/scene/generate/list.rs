@@ -38,7 +38,6 @@ pub(super) enum Shape {
 
 impl Generator {
     /// The range of `key`, if it has that key.
-    #[must_use]
     pub fn range(&self, key: Key) -> Option<&'static KeyRange> {
         self.keys.iter().find(|range| range.key == key)
     }

@@ -18,7 +18,6 @@ impl Key {
     pub const ALL: [Self; 3] = [Self::Depth, Self::Density, Self::Seed];
 
     /// The key as it is written in a spec.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "depth",

@@ -137,19 +137,16 @@ impl Spec {
     }
 
     /// The generator.
-    #[must_use]
     pub fn generator(&self) -> &'static Generator {
         self.generator
     }
 
     /// The generator's settings.
-    #[must_use]
     pub fn settings(&self) -> Settings {
         self.settings
     }
 
     /// A lower bound of the scene's voxels: 0 if a better one takes long to compute.
-    #[must_use]
     pub fn least_voxels(&self) -> u64 {
         let power = |base: u64| base.saturating_pow(self.settings.depth);
         match self.generator.name {
@@ -163,7 +160,6 @@ impl Spec {
 
     /// The graph of a scene with cycles; `None` for others, whose voxels
     /// [`Self::voxels`] passes on.
-    #[must_use]
     pub fn linked(&self) -> Option<Graph> {
         match self.generator.shape {
             Shape::Voxels(_) => None,

@@ -18,17 +18,16 @@ pub struct FarStyle {
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// What opacities are used for.
+    /// The opacities that are used.
     pub opacity: Opacity,
     /// Light.
     pub shading: Shading,
-    /// What is behind.
+    /// The background.
     pub background: Background,
 }
 
 impl FarStyle {
     /// The options of a viewer.
-    #[must_use]
     pub fn options(&self, view: &RasterCamera) -> ViewOptions {
         ViewOptions {
             voxel_px: self.voxel_px,
@@ -41,7 +40,7 @@ impl FarStyle {
     }
 }
 
-/// A file of far voxels, with what was visible in the last frame.
+/// A file of far voxels, and the nodes that were visible in the last frame.
 #[derive(Clone)]
 pub struct FarMethod<'f> {
     file: &'f FarFile,
@@ -54,7 +53,6 @@ pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
 
 impl<'f> FarDrawing<'f> {
     /// Nothing is drawn yet.
-    #[must_use]
     pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
         Self::of(FarMethod {
             file,
@@ -92,7 +90,6 @@ impl Method for FarMethod<'_> {
 }
 
 /// The use of a memory budget; `None` without one.
-#[must_use]
 pub fn resident(file: &FarFile) -> Option<Value> {
     let resident = file.resident()?;
     Some(json!({

@@ -64,7 +64,7 @@ pub struct Drawn {
 
 /// A method of drawing a mesh.
 pub trait Method: Clone + Send {
-    /// The points that a fitted camera looks at.
+    /// The bounds for a fitted camera.
     fn mesh_box(&self) -> MeshBox;
 
     /// Samples per pixel and axis, as a power of two, that take memory at the same time.
@@ -80,7 +80,7 @@ pub trait Method: Clone + Send {
     fn details(&self) -> Figures;
 }
 
-/// What a method draws, once or from many cameras.
+/// A drawing by a method, from one or several cameras.
 pub struct MethodDrawing<M> {
     method: M,
     kept: Option<(Drawn, Vec<f64>)>,

@@ -37,7 +37,7 @@ pub struct TexturedStyle {
     pub aa_log2: u32,
     /// Light.
     pub shading: Shading,
-    /// What is behind.
+    /// The background.
     pub background: Background,
 }
 
@@ -53,7 +53,6 @@ pub type TexturedDrawing<'f> = MethodDrawing<TexturedMethod<'f>>;
 
 impl<'f> TexturedDrawing<'f> {
     /// Nothing is drawn yet.
-    #[must_use]
     pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
         Self::of(TexturedMethod { file, style })
     }

@@ -18,7 +18,7 @@ pub struct TrianglesStyle {
     pub samples: Samples,
     /// Light.
     pub shading: Shading,
-    /// What is behind.
+    /// The background.
     pub background: Background,
 }
 
@@ -36,7 +36,6 @@ pub type TrianglesDrawing<'m> = MethodDrawing<TrianglesMethod<'m>>;
 
 impl<'m> TrianglesDrawing<'m> {
     /// Nothing is drawn yet.
-    #[must_use]
     pub fn new(mesh: &'m Mesh, up: Up, style: TrianglesStyle, progress: &'m dyn Progress) -> Self {
         Self::of(TrianglesMethod {
             mesh,

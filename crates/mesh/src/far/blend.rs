@@ -1,6 +1,6 @@
 //! The six main directions, and how values for them are blended.
 //!
-//! A direction always points from the surface to the eye: `+x` is what an eye far out on the x axis sees. Main directions
+//! A direction points from the surface to the eye, so `+x` is the view of an eye far out on the x axis. Main directions
 //! are numbered `+x -x +y -y +z -z`. The three nearest ones share a direction.
 
 use glam::DVec3;
@@ -47,7 +47,7 @@ pub(super) struct Fit<const N: usize> {
 
 /// Most turns of the relaxation.
 const TURNS: usize = 30;
-/// It ends when no value moves by more than this: finer than what is stored.
+/// It ends when no value changes by more than this, which is finer than the stored precision.
 const STEADY: f64 = 1e-4;
 
 impl<const N: usize> Fit<N> {

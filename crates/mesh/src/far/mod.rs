@@ -2,9 +2,8 @@
 //! are grids of voxels that look from afar like the geometry in them, and whose
 //! leaves are triangles.
 //!
-//! [`build()`] makes one of triangles by shooting rays at every node; [`store`]
-//! is the `.far` file; [`view`] draws it. Rules, and where they go beyond the
-//! paper: `spec/far.md`. Real numbers are allowed here.
+//! [`build()`] makes far voxels of triangles by shooting rays at every node. [`store`] is the `.far` file, and [`view`]
+//! draws it. Rules, and where they go beyond the paper: `spec/far.md`. Real numbers are allowed here.
 
 pub mod blend;
 pub mod build;
@@ -22,7 +21,7 @@ pub use store::{FarError, FarFile};
 /// Far voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarData {
-    /// What holds for all nodes.
+    /// The settings of all nodes.
     pub settings: FarSettings,
     /// The hierarchy, parents before children, a node's first child right after it.
     pub nodes: Vec<Node>,
@@ -30,7 +29,7 @@ pub struct FarData {
     pub packed: Vec<u8>,
 }
 
-/// What holds for all nodes of far voxels.
+/// The settings of all nodes of far voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarSettings {
     /// Single precision coordinates are relative to it, world units.
@@ -49,7 +48,6 @@ pub struct FarSettings {
 
 impl FarData {
     /// Triangles of all leaves.
-    #[must_use]
     pub fn triangles(&self) -> u64 {
         self.nodes.first().map_or(0, |root| root.triangles.into())
     }

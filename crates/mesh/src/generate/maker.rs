@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{Material, Mesh, MeshBuilder};
 use shiftvox::split_mix::SplitMix;
 
-/// What collects triangles.
+/// A collector of triangles.
 pub(super) struct Maker {
     builder: MeshBuilder,
     pub(super) lot: SplitMix,

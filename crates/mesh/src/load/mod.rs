@@ -69,7 +69,6 @@ pub struct SameFolder(PathBuf);
 
 impl SameFolder {
     /// Files in this folder.
-    #[must_use]
     pub fn new(folder: &Path) -> Self {
         Self(folder.to_owned())
     }
@@ -82,7 +81,7 @@ impl Beside for SameFolder {
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         if path.components().all(inside) {
             let found = bounded::read_whole(&self.0.join(path));
-            // What is there and cannot be read is what the mesh means.
+            // The mesh means a file that exists, even if it cannot be read.
             if !matches!(&found, Err(error) if error.kind() == io::ErrorKind::NotFound) {
                 return found;
             }

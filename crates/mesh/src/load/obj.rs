@@ -137,7 +137,7 @@ impl Libraries {
                 return Err(LoadError::OpenFileFailed);
             }
         };
-        // Pictures lie beside the library.
+        // Names of pictures are relative to the library.
         let folder = path.parent().unwrap_or(Path::new(""));
         let beside_library = |name: String| folder.join(name).to_string_lossy().into_owned();
         let textures = library.textures.into_iter();
@@ -170,7 +170,7 @@ fn refuse_cut_face(text: &str) -> Result<(), Problem> {
     if words.next() != Some("f") {
         return Ok(());
     }
-    // Which of position, texture coordinate and normal a corner has.
+    // The parts that a corner has: position, texture coordinate, normal.
     let parts = |corner: &str| corner.split('/').map(str::is_empty).collect::<Vec<bool>>();
     let corners: Vec<Vec<bool>> = words.map(parts).collect();
     let is_whole = corners.len() >= 3 && corners.iter().all(|parts| *parts == corners[0]);
@@ -202,7 +202,7 @@ fn refuse_huge_faces(text: &str) -> Result<(), Problem> {
     Ok(())
 }
 
-/// What `tobj` says, with the place and what to do.
+/// An error of `tobj`, with its place and a remedy.
 fn understand(error: LoadError, line: u64, text: &str) -> Problem {
     let (part, expected) = match error {
         LoadError::PositionParseError => (
@@ -249,7 +249,7 @@ fn bad_face(error: LoadError, line: u64, text: &str) -> Problem {
         LoadError::FaceTexCoordOutOfBounds => 1,
         _ => 0,
     };
-    // What is defined below the face does not count, as in `tobj`.
+    // Definitions below the face do not count, as in `tobj`.
     let is_bad =
         |part, index: i64, count| part == which && (index == 0 || index > count || index < -count);
     if let Some(corner) = find_corner(text, |_| true, is_bad) {
@@ -272,9 +272,8 @@ fn refuse_far_back(text: &str) -> Result<(), Problem> {
     find_corner(text, |line| line.contains('-'), is_bad).map_or(Ok(()), Err)
 }
 
-/// The first corner that `is_bad`, of faces and lines that are `of_interest`. It
-/// is told the part (0 position, 1 texture coordinate, 2 normal), the index,
-/// and how many there are up to there.
+/// The first corner that `is_bad`, of faces and lines that are `of_interest`. Its arguments are the part (0 position, 1
+/// texture coordinate, 2 normal), the index, and the number defined so far.
 fn find_corner(
     text: &str,
     of_interest: impl Fn(&str) -> bool,

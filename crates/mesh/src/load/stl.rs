@@ -74,7 +74,7 @@ fn take(
     Ok(())
 }
 
-/// The text as `stl_io` wants it: `solid ` at the beginning, one `endsolid`.
+/// The text in the form that `stl_io` requires: `solid ` at the beginning, and one `endsolid`.
 fn normalized(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start();

@@ -1,11 +1,8 @@
 //! Triangles to pixels, with a depth buffer: the reference picture of a mesh.
 //!
-//! Corners are projected in `f64` and rounded to 1/4096 pixel; from there on
-//! what a triangle covers is decided exactly, in integers, with the top-left
-//! rule: two triangles that share an edge leave no sample between them and
-//! share none. Depth is the plane's at the sample, not interpolated between
-//! rounded corners. The picture is cut into bins that threads draw on their
-//! own, each with its triangles in order, so that any number of threads gives
+//! Corners are projected in `f64` and rounded to 1/4096 pixel. From there on coverage is decided exactly, in integers,
+//! with the top-left rule. Depth is the plane's at the sample, not interpolated between rounded corners. The picture is
+//! cut into bins that threads draw on their own, each with its triangles in order, so that any number of threads gives
 //! the same picture. Rules: `spec/mesh.md`.
 
 mod bin;
@@ -87,11 +84,11 @@ impl RasterCamera {
 /// How a surface is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RasterOptions {
-    /// How many samples a pixel has, and where.
+    /// The number of samples per pixel, and their places.
     pub samples: Samples,
-    /// The light; `None`: colours as they are.
+    /// The light, or `None` for unlit colours.
     pub light: Option<Light>,
-    /// What is behind, sRGB; `None`: transparent.
+    /// The background, sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
 }
 
@@ -120,8 +117,8 @@ pub struct RasterPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of the pixel's samples that see a triangle.
     pub coverage: Vec<f32>,
-    /// View-axis depth, world units, at the sample right of and below the
-    /// pixel's middle (with one sample: at the middle); infinite where that sees nothing.
+    /// View-axis depth, world units, at the sample right of and below the pixel's middle, or at the middle with one
+    /// sample. It is infinite where that sample sees nothing.
     pub depth: Vec<f32>,
     /// The triangle that this sample sees, or [`NO_TRIANGLE`].
     pub triangle: Vec<u32>,

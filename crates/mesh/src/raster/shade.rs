@@ -19,7 +19,6 @@ pub struct Light {
 impl Light {
     /// The share of its colour that a surface shows, in steps of 1/256 as
     /// voxels are shaded too.
-    #[must_use]
     pub fn on(&self, normal: DVec3) -> f64 {
         let cosine = normal.dot(self.towards).clamp(0.0, 1.0);
         let lit = f64::from(256 - self.ambient.min(256));
@@ -42,7 +41,7 @@ impl Nearness {
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| view.seen(corner));
         let depths = [a.z, b.z, c.z];
-        // What lies nearer was cut off.
+        // Nearer parts were cut off.
         let nearest = depths
             .iter()
             .fold(f64::INFINITY, |m, &z| m.min(z))

@@ -1,4 +1,4 @@
-//! What is stored of a primitive, a voxel and a texel. Plain bytes, little-endian.
+//! Records of primitives, voxels and texels. Plain bytes, little-endian.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -25,8 +25,7 @@ pub struct Primitive {
 pub const PRIMITIVE_BYTES: usize = size_of::<Primitive>();
 
 impl Primitive {
-    /// What a triangle is stored as.
-    #[must_use]
+    /// The record of a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
         let normal = |n: DVec3| {
@@ -47,13 +46,11 @@ impl Primitive {
     }
 
     /// Positions of the corners.
-    #[must_use]
     pub fn positions(&self) -> [DVec3; 3] {
         self.corners.map(point)
     }
 
     /// The triangle, ready to be drawn.
-    #[must_use]
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
@@ -109,13 +106,11 @@ pub const TEXEL_BYTES: usize = size_of::<Texel>();
 
 impl Texel {
     /// Whether nothing projects on it.
-    #[must_use]
     pub fn is_clear(&self) -> bool {
         self.opacity == 0
     }
 
     /// Whether its fields agree with each other.
-    #[must_use]
     pub fn is_sound(&self) -> bool {
         match self.opacity {
             0 => *self == Self::default(),

@@ -1,8 +1,7 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
-//! Each triangle counts by the area of its part within the cube, in faces of
-//! the cube, times its opacity; plus 2^-20 of a face, so that what only
-//! touches the cube, or has no area, counts where nothing else does.
+//! The weight of a triangle is its opacity times the area of its part within the cube, in faces of the cube, plus 2^-20
+//! of a face. So triangles that only touch the cube count, too.
 
 use glam::DVec3;
 
@@ -25,7 +24,7 @@ pub(super) struct Painted {
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
-    /// How many triangles it stands for.
+    /// The number of equal triangles.
     pub(super) times: u32,
 }
 

@@ -1,8 +1,8 @@
-//! Which triangles are part of a large object.
+//! Triangles that belong to large objects.
 //!
-//! Triangles that share corners are one object. It is large, at a level of the tree, if it is closed and longer than
-//! two nodes, or open and longer than sixteen: such a surface goes on from node to node, while a leaf, a scrap or a
-//! small thing at a distance ends within a few. (Wagner et al. 2007, Fig. 3b: parts of large objects stay opaque.)
+//! Triangles that share corners are one object. An object is large at a level of the tree if it is closed and longer
+//! than two nodes, or open and longer than sixteen. Such a surface crosses several nodes. (Wagner et al. 2007, Fig. 3b:
+//! parts of large objects stay opaque.)
 
 use rayon::prelude::*;
 

@@ -77,7 +77,7 @@ pub(crate) fn far(options: &BuildOptions) -> FarData {
     far_of(false, false, options)
 }
 
-/// The file of what was built.
+/// The built data as a file.
 pub(crate) fn file_of(data: &FarData) -> FarFile {
     FarFile::from_bytes(&encode(data).unwrap()).unwrap()
 }

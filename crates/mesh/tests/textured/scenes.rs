@@ -59,7 +59,7 @@ pub fn built(mesh: &Mesh, cells: u32, texels: u32, element: Element) -> Textured
     build(mesh, &options, &Silent).unwrap()
 }
 
-/// The file of what was built.
+/// The built data as a file.
 pub fn file_of(data: &TexturedData) -> TexturedFile {
     TexturedFile::from_bytes(&encode(data).unwrap()).unwrap()
 }

@@ -51,7 +51,7 @@ fn unit(cells: [u8; 3]) -> Grid {
     }
 }
 
-/// What the rays of a node found.
+/// The result of a node's rays.
 struct Sampled {
     seen: Vec<(Seen, ShaderFit)>,
     touched: u32,
@@ -226,8 +226,8 @@ fn what_a_window_shows_is_found_from_what_is_beside_it() {
     ];
     // So few rays that probes, which find something too, do not find all.
     let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000);
-    // The window is a hundred and fiftieth of what is around a voxel, or less: 24 random rays
-    // would find one voxel in seven, and with probes one in five. All 144 can be seen.
+    // The window covers at most a 150th of a voxel's directions. So 24 random rays would find one voxel in seven, and
+    // with probes one in five. All 144 can be seen.
     assert_eq!(sampled.touched, 144);
     assert!(sampled.seen.len() > 72, "{}", sampled.seen.len());
 }
@@ -294,7 +294,7 @@ fn what_was_not_tested_is_kept_and_looks_like_its_triangles() {
             assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
         }
     }
-    // With enough of them all is tested, and what is between walls is hidden.
+    // With enough rays all voxels are tested, and those between the walls are hidden.
     let enough = all(&walls, unit([16, 8, 8]), 100_000);
     assert_eq!((enough.touched, enough.untested), (1024, 0));
 }

@@ -31,8 +31,8 @@ pub(super) struct PartSize {
 }
 
 impl Parts {
-    /// Triangles that share a corner's position are of one part. `leaves`: how many triangles each
-    /// leaf has, fewer than 2^32 in all; `normals_of` gives the normals of a triangle's corners.
+    /// Triangles that share a corner's position are of one part. `leaves` has the number of triangles of each leaf,
+    /// fewer than 2^32 in all. `normals_of` returns the normals of a triangle's corners.
     pub(super) fn of(
         leaves: &[usize],
         corners: impl Fn(usize) -> [[f32; 3]; 3],

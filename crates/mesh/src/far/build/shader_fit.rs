@@ -19,9 +19,8 @@ const LEAST_SAMPLES: usize = 6;
 const OPAQUE_FROM: f64 = 0.97;
 /// Six opacities are stored as one number if they are within this share of it.
 const ALIKE_WITHIN: f64 = 0.1;
-/// How much nearer six numbers come to hits and passes than one does by chance
-/// alone: this many binomial variances over the number of rays (the mean of chi
-/// square with 5 degrees of freedom).
+/// The improvement of six numbers over one that chance alone explains: this many binomial variances over the number of
+/// rays (the mean of chi square with 5 degrees of freedom).
 const NOISE: f64 = 5.0;
 /// Hits and passes that are added before the variance is taken, so that a few
 /// rays which all hit do not prove that all would.
@@ -40,7 +39,7 @@ pub(super) struct ShaderFit {
     pub(super) square_error: f64,
 }
 
-/// Fits a shader to what was seen, once or more; `normal` is the main one.
+/// Fits a shader to one or more samples. `normal` is the main one.
 pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit {
     let count = samples.len().max(1) as f64;
     let flat = flat(samples, normal);
@@ -198,7 +197,7 @@ fn main_direction(number: usize) -> DVec3 {
     }
 }
 
-/// Sum of the square errors of what a shader shows of the samples.
+/// The sum of a shader's square errors over the samples.
 fn error(shader: &Shader, samples: &[SurfaceSample]) -> f64 {
     samples
         .iter()

@@ -1,9 +1,7 @@
-//! The hybrid: what is wider than a voxel stays a surface, decimated; what is thinner becomes
-//! voxels.
+//! The hybrid: parts wider than a voxel stay a decimated surface, and thinner parts become voxels.
 //!
-//! For each inner node several candidates are made of its triangles, and compared
-//! (`compare.rs`). What nodes share stays where it is, so that any two nodes side by side join
-//! without a gap, whatever levels they are of.
+//! For each inner node several candidates are made of its triangles, and compared (`compare.rs`). Shared corners stay
+//! in place, so that any two neighbouring nodes join without a gap, whatever their levels.
 
 use std::ops::Range;
 
@@ -35,7 +33,7 @@ const MOST_BYTES: f64 = 4.0;
 /// Nodes of more triangles have voxels alone: what decimating takes of memory is kept to.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
-/// What surfaces of nodes are made of.
+/// The input of the nodes' surfaces.
 pub(super) struct Surfaces<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -132,7 +130,7 @@ impl<'s> Surfaces<'s> {
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
             let all = decimated(&|place| is_seen(place, error), error)?;
             let all = surface(all);
-            // What takes many times the bytes of voxels is not worth it, however near it is.
+            // A candidate that takes many times the bytes of voxels is not worth it, even if it is near.
             if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
                 candidates.push(all);
             }

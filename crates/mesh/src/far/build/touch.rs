@@ -1,4 +1,4 @@
-//! Which voxels triangles touch, and points of them in each voxel.
+//! The voxels that triangles touch, and sample points in each voxel.
 //!
 //! A triangle is cut to the voxel's cube. If an area is left, the voxel is
 //! touched, and the points of that area are what visibility rays are aimed at. Of all that is in a
@@ -20,10 +20,9 @@ const LEAST_AREA: f64 = 1e-9;
 pub(super) struct Touched {
     /// Its number in the grid.
     pub(super) number: u32,
-    /// Points of what is in it, in voxels from the grid's origin, and the number of the triangle
-    /// that each is on.
+    /// Points of its contents, in voxels from the grid's origin, and the number of the triangle of each.
     pub(super) points: [(DVec3, u32); POINTS],
-    /// Area of what is in it, in faces of a voxel.
+    /// Area of its contents, in faces of a voxel.
     pub(super) area: f64,
 }
 

@@ -4,7 +4,7 @@ use crate::far::record::{MOST_COLORS, Node};
 
 /// Checks all nodes against each other and against the sizes of the sections.
 ///
-/// An error is the number of a node, and what it should have.
+/// An error is the number of a node and the expected value.
 pub(super) fn check(
     nodes: &[Node],
     data_bytes: u64,

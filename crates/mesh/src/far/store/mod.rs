@@ -1,10 +1,8 @@
 //! The `.far` file: hierarchy and data apart, mapped and used in place.
 //!
-//! Opening a file reads header and hierarchy and checks every field of both.
-//! Voxels and triangles of a node are unpacked and checked, against their
-//! checksum and the node's box, when they are needed, so that only what is drawn is
-//! read. [`FarFile::verify`] reads all. [`FarFile::open_within`] keeps what is
-//! in memory of them to a budget.
+//! Opening a file reads header and hierarchy and checks every field of both. The data of a node is unpacked and checked
+//! when it is first needed, against its checksum and the node's box. So only drawn nodes are read. [`FarFile::verify`]
+//! reads all. [`FarFile::open_within`] keeps what is in memory of them to a budget.
 
 mod budget;
 mod check;

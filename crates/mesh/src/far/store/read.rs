@@ -26,7 +26,7 @@ const BROUGHT_IN: u64 = 64 << 10;
 /// An open `.far` file.
 #[derive(Debug)]
 pub struct FarFile {
-    /// What holds for all nodes.
+    /// The settings of all nodes.
     pub settings: FarSettings,
     path: PathBuf,
     bytes: Bytes,
@@ -39,7 +39,7 @@ pub struct FarFile {
     first_triangle: Vec<u32>,
     /// Each node's data, once it was needed.
     data: Vec<Slot>,
-    /// What limits how much of the data is in memory, if anything does.
+    /// The memory budget of the data, if there is one.
     budget: Option<Budget>,
 }
 
@@ -78,8 +78,7 @@ impl FarFile {
         Ok(file)
     }
 
-    /// What the budget came to; `None` without one.
-    #[must_use]
+    /// The state of the budget, or `None` without one.
     pub fn resident(&self) -> Option<Resident> {
         self.budget.as_ref().map(Budget::resident)
     }
@@ -138,39 +137,33 @@ impl FarFile {
     }
 
     /// The hierarchy, parents before children; the root comes first.
-    #[must_use]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
     /// Whether +Y is up, for fitted cameras; else +Z.
-    #[must_use]
     pub fn y_up(&self) -> bool {
         self.settings.y_up
     }
 
     /// Bytes of the file.
-    #[must_use]
     pub fn len(&self) -> u64 {
         self.section[1]
     }
 
     /// Never: a file has a header.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// Lowest and highest corner of all triangles, world units.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let root = &self.nodes[0];
         let world = |p: [f32; 3]| self.settings.centre + DVec3::from_array(p.map(f64::from));
         (world(root.low), world(root.high))
     }
 
-    /// What fitted cameras look at.
-    #[must_use]
+    /// The box for fitted cameras.
     pub fn mesh_box(&self) -> MeshBox {
         let (low, high) = self.bounds();
         let span = (low.to_array(), high.to_array());
@@ -188,7 +181,6 @@ impl FarFile {
     }
 
     /// Voxels of all nodes.
-    #[must_use]
     pub fn voxels(&self) -> u32 {
         let last = self.nodes.len() - 1;
         // Checked: fewer than 2^32 of all.

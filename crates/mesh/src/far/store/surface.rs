@@ -1,9 +1,9 @@
 //! Triangles of a node as they are stored: vertices, and three numbers of them a triangle.
 //!
-//! A vertex that no other node has lies within its node's box, in steps of 1/65,535 of the box; one
-//! that nodes share is in single precision, so that all of them have it in the same place and no
-//! background shows between them. Vertices are numbered as triangles name them first, in two lists.
-//! A triangle names a vertex by how far back in its list it is: 0 is the next one.
+//! A vertex of one node is stored in steps of 1/65,535 of the node's box. A shared vertex is stored in single
+//! precision, so that all nodes have it in the same place and no gap opens between them. Vertices are numbered as
+//! triangles name them first, in two lists. A triangle names a vertex by how far back in its list it is: 0 is the next
+//! one.
 
 use std::collections::HashMap;
 
@@ -57,7 +57,7 @@ pub(in crate::far) fn flat_normal(corners: &[[f32; 3]; 3]) -> u16 {
     PackedNormal::encode(plane_normal(corners.map(point))).0
 }
 
-/// What makes two corners one vertex: place, normal, colour.
+/// The identity of a vertex: place, normal, colour.
 type Key = ([u32; 3], u16, [u8; 3]);
 
 /// Lays out a surface, sets the node's counts, and gives its bytes. The node has its box, in which

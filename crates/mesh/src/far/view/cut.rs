@@ -1,4 +1,4 @@
-//! Which nodes are drawn: those whose voxels are small enough, else their children.
+//! The nodes to draw: those whose voxels are small enough, else their children.
 
 use glam::DVec3;
 
@@ -20,8 +20,8 @@ pub(super) struct Chosen {
 /// Where in the picture a node may show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outline {
-    /// First and last pixel, right and down, also outside the picture; `None`:
-    /// anywhere, since the box reaches behind the eye.
+    /// The first and the last pixel, right and down, also outside the picture. `None` if the box reaches behind the
+    /// eye.
     pub(super) pixels: Option<[[f64; 2]; 2]>,
     /// Depth of its nearest point.
     pub(super) depth: f64,
@@ -103,7 +103,7 @@ const BRANCH_MARGIN: f64 = 2.0;
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
     pub(super) view: RasterCamera,
-    /// Whose cut it is.
+    /// The file.
     pub(super) cut_of: RasterCamera,
     pub(super) voxel_px: f64,
 }

@@ -202,7 +202,7 @@ impl<'f> Opaque<'f> {
         low
     }
 
-    /// Colours of what is seen.
+    /// Colours of the picture.
     pub(super) fn resolve(&self) -> Vec<Pixel> {
         let mut pixels = vec![Pixel::default(); self.words.len()];
         pixels
@@ -242,7 +242,7 @@ impl<'f> Opaque<'f> {
     fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
         let number = self.node_of(id);
         if last.as_ref().is_none_or(|(node, _)| *node != number) {
-            // Was drawn, hence is sound.
+            // The node was drawn, so its data is sound.
             *last = self.file.data(number).ok().map(|data| (number, data));
         }
         let Some((_, data)) = last else {

@@ -151,8 +151,8 @@ impl Square {
         [[x0, y0], [x1, y1]]
     }
 
-    /// Which of the equal parts of a row or column of pixels have their middles in it: of pixel
-    /// `pixel` along axis `k`, a bit for each of [`PARTS`].
+    /// The parts of a row or column of pixels whose middles are in the square, a bit for each of the [`PARTS`] of pixel
+    /// `pixel` along axis `k`.
     pub(super) fn parts(&self, k: usize, pixel: usize) -> u32 {
         let at = |edge: f64| {
             let part = ((edge - pixel as f64) * PARTS as f64 - 0.5).ceil();
@@ -166,7 +166,7 @@ impl Square {
     }
 }
 
-/// Parts of a pixel along each axis, in which transparent voxels are told apart.
+/// Parts of a pixel along each axis, at which transparent voxels are resolved.
 pub(super) const PARTS: usize = 4;
 
 #[cfg(test)]

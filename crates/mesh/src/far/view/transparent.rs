@@ -27,7 +27,7 @@ struct Splat {
     rows: [usize; 2],
 }
 
-/// What transparent voxels let through and add, of a pixel.
+/// The light that transparent voxels transmit and add at a pixel.
 #[derive(Clone, Copy)]
 struct Veil {
     through: [[f32; PARTS]; PARTS],
@@ -93,7 +93,7 @@ fn splats(
             }
             let voxel = Voxel::read(list, record);
             let opacity = voxel.opacity_from(square.towards_eye, options.opacity);
-            // What is opaque as it is seen was drawn with what always is.
+            // Voxels that are opaque from here were drawn before.
             if opacity < 1.0 {
                 splats.push(Splat {
                     through: (1.0 - opacity) as f32,

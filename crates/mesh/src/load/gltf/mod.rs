@@ -1,11 +1,9 @@
 //! glTF 2.0, by a small reader of our own over `serde_json`.
 //!
-//! Read: the default scene's nodes with their transforms, triangles, strips
-//! and fans, positions, normals, the first vertex colours, indices; of
-//! materials the base colour's factor and texture, and the alpha mode. Buffers may be in
-//! the file, in a `data:` address or in a file of the same folder. Not read:
-//! other textures, skins, morph targets, animations, sparse accessors, compressed
-//! meshes; the last two are refused, the others passed over with a warning.
+//! Supported: nodes of the default scene with their transforms. Triangles, strips and fans with positions, normals,
+//! first vertex colours and indices. Base colours of materials with their textures. Buffers may be in the file, in a
+//! `data:` address or in a file of the same folder. Not supported: other textures, skins, morph targets and animations,
+//! which are skipped with a warning. Sparse accessors and compressed meshes are refused.
 
 mod accessor;
 mod document;

@@ -15,7 +15,7 @@ const FREE_TRIANGLES: u64 = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: u64 = 16;
 
-/// What a primitive has: how its corners are listed, and how many.
+/// A primitive's corners: their order and their number.
 struct Sizes<'d> {
     mode: u32,
     positions: Numbers<'d>,
@@ -152,7 +152,7 @@ impl<'d> Reader<'d> {
         let mut of_mesh = vec![None; self.document.meshes.len()];
         let (mut positions, mut triangles) = (0u64, 0u64);
         for &(mesh, _) in shown {
-            // One that does not exist is told where it is drawn.
+            // A missing mesh is reported where it is drawn.
             let Some(known) = of_mesh.get_mut(mesh) else {
                 continue;
             };
@@ -186,7 +186,7 @@ impl<'d> Reader<'d> {
         Ok((positions, triangles))
     }
 
-    /// What a primitive has; nothing where it has no triangles.
+    /// The corners of a primitive, or none if it has no triangles.
     fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, Problem> {
         let mode = primitive.mode.unwrap_or(4);
         let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {

@@ -26,7 +26,7 @@ pub struct BuildOptions {
     pub grids: Vec<u32>,
     /// Texels along the side of a voxel's face, 1 to [`MOST_TEXELS`].
     pub texels: u32,
-    /// What an erosion takes away.
+    /// The structuring element of the erosion.
     pub element: Element,
 }
 
@@ -186,7 +186,7 @@ fn build_grid<S: Surface + ?Sized>(
     Ok(grid)
 }
 
-/// The erosion depths of voxels, computed anew whatever is stored in them.
+/// The erosion depths of voxels, computed from their cells alone.
 pub(super) fn depths_of(voxels: &[VoxelRecord], cells: u32, element: Element) -> Vec<u16> {
     let number = |voxel: &VoxelRecord| {
         let [x, y, z] = voxel.cell.map(u32::from);

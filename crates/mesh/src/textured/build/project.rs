@@ -28,7 +28,7 @@ pub(super) struct Column {
     pub(super) wanted: Vec<(u32, u32)>,
 }
 
-/// What came of a column.
+/// The result of one column.
 #[derive(Debug, Default)]
 pub(super) struct Projected {
     /// Voxels and their sub-textures; `None` where nothing projects on any texel.
@@ -39,7 +39,7 @@ pub(super) struct Projected {
     pub(super) texels_afresh: u64,
 }
 
-/// What a texel of a slice sees: how far along the axis, in lattice steps, and which primitive.
+/// The sample of a texel: distance along the axis, in lattice steps, and the primitive.
 #[derive(Debug, Clone, Copy)]
 struct Hit {
     along: i64,
@@ -176,14 +176,14 @@ impl Shadow {
                 let rest =
                     self.offset - across * i128::from(middle[0]) - down * i128::from(middle[1]);
                 let texel = (y - first[1]) * texels + (x - first[0]);
-                // Within the triangle, hence within the lattice.
+                // The triangle is within the lattice.
                 call(texel as usize, rest.div_euclid(along) as i64);
             }
         }
     }
 }
 
-/// What texels look like.
+/// Colours and normals of texels.
 struct Painter<'p, S: ?Sized> {
     surface: &'p S,
     lattice: &'p CellGrid,
