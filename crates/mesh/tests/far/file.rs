@@ -110,7 +110,7 @@ fn every_flipped_bit_is_found() {
 /// Gives header and hierarchy the checksums that they should have.
 pub(crate) fn with_checksums(mut bytes: Vec<u8>) -> Vec<u8> {
     let nodes = u64::from_le_bytes(bytes[24..32].try_into().unwrap()) as usize;
-    if let Some(nodes) = bytes.get(128..128 + NODE_BYTES * nodes) {
+    if let Some(nodes) = bytes.get(128..nodes.saturating_mul(NODE_BYTES).saturating_add(128)) {
         let checksum = xxh3_64(nodes).to_le_bytes();
         bytes[96..104].copy_from_slice(&checksum);
     }
