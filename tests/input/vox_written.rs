@@ -1,4 +1,4 @@
-//! `.vox` files made for the purpose: what is written is what is read.
+//! Composed `.vox` files are read exactly as they were written.
 
 #![allow(clippy::unwrap_used, reason = "test helpers may panic")]
 

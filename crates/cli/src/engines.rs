@@ -9,7 +9,7 @@ use shiftvox::rays::Rays;
 use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
 use shiftvox_lab::float_rays::FloatRays;
 
-/// What makes the engine that the flags name, as often as one is needed.
+/// Makes the engine that the flags name, once per call.
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
 /// Makers of the engines of voxels.
@@ -100,7 +100,7 @@ fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     Box::new(Fast::new(options, Box::new(Machine::default())))
 }
 
-/// What the experiments take for the truth.
+/// The reference of the experiments.
 pub(super) const REFERENCE: Candidate = Candidate {
     name: "rays",
     about: "the exact reference, in wide integers",
@@ -124,7 +124,7 @@ pub(super) const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RA
 /// Those whose growth is measured where none is named.
 pub(super) const SCALED: &[&str] = &["fast", "machine"];
 
-/// What can be switched off, by engine.
+/// The switches of each engine.
 pub(super) const FAMILIES: &[Family] = &[
     Family {
         whole: FAST,

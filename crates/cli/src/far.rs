@@ -22,11 +22,11 @@ use shiftvox_mesh::far::build::{Outside, part_of};
 use shiftvox_mesh::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
 
-/// What a build may take, and where it keeps what is not in memory.
+/// Limits of a build, and the places of its temporary files.
 pub(super) struct Resources<'r> {
     /// Bytes of memory, of which the mesh is a part.
     pub(super) memory: Option<u64>,
-    /// Folder of temporary files; `None`: beside the output.
+    /// Folder of temporary files, or `None` for the output's folder.
     pub(super) temporary: Option<&'r Path>,
     /// Whether an unfinished file is kept, and used.
     pub(super) resume: bool,
@@ -48,7 +48,7 @@ pub(super) fn convert(
     whole::make_folder(beside)?;
     let part = resources.resume.then(|| part_of(of.output));
     let outside = Outside {
-        // What is resident are the mesh and the program itself.
+        // The mesh and the program itself are resident.
         memory: resources.memory.map(|memory| {
             let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
             (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
@@ -79,7 +79,7 @@ pub(super) fn convert(
         match resources.memory.zip(short) {
             Some((memory, short)) => {
                 let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
-                // What is loaded is not the same in every run.
+                // The resident size differs from run to run.
                 let enough = enough.div_ceil(1 << 20) + 1;
                 error.advise(format!("give it --memory {enough}M or more"))
             }
@@ -125,8 +125,7 @@ pub(super) fn convert(
     Ok(())
 }
 
-/// One part of so many of a budget is left to the allocator: what it holds beyond what it was asked
-/// for, and what was freed between things that are not.
+/// This share of a budget is left to the allocator's overhead and to fragmentation.
 const ALLOCATORS_SHARE: u64 = 8;
 
 /// Fewer rays through a voxel are warned of.
@@ -202,7 +201,7 @@ pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliEr
     Ok(None)
 }
 
-/// What is known of one level of a hierarchy.
+/// Counts of one level of a hierarchy.
 #[derive(Debug, Clone, Copy, Default)]
 struct LevelFacts {
     nodes: u64,
@@ -214,7 +213,7 @@ struct LevelFacts {
     square_error: f64,
 }
 
-/// What is said of a file, in numbers.
+/// The described numbers of a file.
 struct Facts {
     levels: Vec<LevelFacts>,
     lists: [u64; 6],
@@ -279,7 +278,7 @@ impl Facts {
         facts
     }
 
-    /// Voxels that rays were aimed at and that all these were stopped before: they are dropped.
+    /// Occluded voxels: rays were aimed at them, and all ended before. They are dropped.
     fn occluded(&self) -> u64 {
         // A file is opened only if it keeps no more than triangles touch.
         self.touched - self.kept

@@ -92,14 +92,14 @@ fn of_one(
     }
 }
 
-/// What is said of a scene, in numbers.
+/// The described numbers of a scene.
 struct Facts {
     low: [i64; 3],
     high: [i64; 3],
     levels: Vec<(u64, u128)>,
     bytes: u64,
-    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape; none
-    /// where there is too little memory to find out.
+    /// Nodes per node that is left when equal subtrees are merged, with attributes and by shape. `None` if there is too
+    /// little memory.
     gains: Option<[f64; 2]>,
     colors: usize,
     camera_line: String,

@@ -19,7 +19,7 @@ use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyl
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
 
-/// What a scene is drawn with.
+/// The flags that select and set up a drawing method.
 #[derive(Clone, Copy)]
 pub(super) struct DrawArgs<'a> {
     pub(super) engine: &'a EngineArgs,

@@ -183,7 +183,7 @@ fn render_one(
     of: usize,
     console: &Console,
 ) -> Result<(Camera, EngineName, Value), CliError> {
-    // What is recorded has its hash.
+    // Records include the hash.
     let expects = args.expect_hash.is_some() || args.out.outdir.is_some();
     let is_hashed = args.hash || expects || console.json;
     let draw_args = DrawArgs {

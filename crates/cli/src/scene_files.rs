@@ -35,14 +35,14 @@ pub(super) struct Conversion<'a> {
     pub(super) scene: &'a SceneArgs,
 }
 
-/// What a conversion wrote.
+/// The result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Written {
     /// Voxels in the scene.
     pub(super) voxels: u64,
     /// Bytes written.
     pub(super) bytes: u64,
-    /// What the user should know.
+    /// Warnings.
     pub(super) warnings: Vec<String>,
 }
 

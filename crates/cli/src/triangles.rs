@@ -55,7 +55,7 @@ pub struct TrianglesArgs {
     /// Where in a pixel they lie
     #[arg(long, value_enum, default_value_t)]
     pattern: PatternName,
-    /// What --pattern stratified depends on
+    /// Seed of --pattern stratified
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Pixels: 512 for a square, or 640x360 [default: 512]

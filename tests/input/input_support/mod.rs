@@ -1,4 +1,4 @@
-//! What the input tests share: reading into a list, finding data, and a writer of small `.vox` files.
+//! Helpers of the input tests: reading into a list, finding data, and a writer of small `.vox` files.
 
 #![allow(
     dead_code,
@@ -29,7 +29,7 @@ pub fn read_plain(bytes: &[u8]) -> Vec<Plain> {
     voxels.into_iter().map(|v| (v.index, v.color)).collect()
 }
 
-/// What an error says.
+/// The text of an error.
 pub fn message(bytes: &[u8]) -> String {
     read(bytes, &ReadOptions::default())
         .unwrap_err()

@@ -1,4 +1,4 @@
-//! The file: it comes back, and what is damaged is refused.
+//! Files of far voxels: round trips, and refused damage.
 
 use shiftvox::scene::{FileKind, detect};
 use shiftvox_mesh::Surface;

@@ -79,7 +79,7 @@ fn damaged_files_are_refused() {
         damaged[place] ^= 1 << (place % 8);
         assert!(is_refused(&damaged), "byte {place}");
     }
-    // What a node says of its surface, behind right checksums.
+    // The fields of a node's surface, behind right checksums.
     for place in 128..144 {
         for flip in [0x01, 0x40] {
             let mut damaged = bytes.clone();

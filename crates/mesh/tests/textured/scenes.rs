@@ -14,7 +14,7 @@ pub fn mesh_of(triangles: &[[[f32; 3]; 3]]) -> Option<Mesh> {
     for corners in triangles {
         let [a, b, c] = corners.map(|p| p.map(f64::from).into());
         let (a, b, c): (glam::DVec3, glam::DVec3, glam::DVec3) = (a, b, c);
-        // What the builder leaves out must not take a number.
+        // Triangles that the builder leaves out must not take a number.
         if (b - a).cross(c - a) == glam::DVec3::ZERO {
             continue;
         }
