@@ -53,7 +53,7 @@ fn each_fault_is_told_with_its_place() {
         (MeshFormat::Ply, ply("0 0 0\n1 0 0\n"), "a file: vertex 2 at byte 166: expected as many elements as the header says"),
         (MeshFormat::Ply, ply("0 0 0\n1 0 0\n1 1 0\n9 0 1 2\n"), "a file: face 0 at byte"),
         (MeshFormat::Ply, b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\nabc".to_vec(),
-            "vertex 0 at byte 183: expected as many elements as the header says"),
+            "vertex 0 at byte 178: expected as many elements as the header says"),
         (MeshFormat::Ply, b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nend_header\nabcabcabcabc".to_vec(),
             "expected at least one triangle"),
         (MeshFormat::Stl, b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n".to_vec(), "a file: triangle 1: expected \"facet normal"),
