@@ -59,7 +59,7 @@ fn each_fault_is_told_with_its_place() {
         (MeshFormat::Stl, b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n".to_vec(), "a file: triangle 1: expected \"facet normal"),
         (MeshFormat::Stl, b"solid a\nendsolid a\n".to_vec(), "expected at least one triangle"),
         (MeshFormat::Stl, vec![7; 200], "a file: header at byte 80: expected 5895053234 bytes in all for the 117901063 triangles"),
-        (MeshFormat::Stl, vec![0; 20], "a file: header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short"),
+        (MeshFormat::Stl, vec![0; 20], "a file: header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short or damaged"),
         (MeshFormat::Gltf, b"{\"asset\": ".to_vec(), "a file: JSON at line 1: expected glTF 2.0"),
         (MeshFormat::Gltf, gltf("\"2.0\"", "\"1.0\""), "a file: asset: expected version 2, found 1.0"),
         (MeshFormat::Gltf, gltf("\"count\": 4", "\"count\": 400000000000"), "a file: accessor 0: expected 400000000000 elements of 12 bytes"),

@@ -1,7 +1,7 @@
 //! Reading a `.tvx` file: mapped, or held in memory.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
@@ -31,7 +31,6 @@ pub struct TexturedFile {
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
     is_checked: Vec<AtomicBool>,
-    levels_made: AtomicU64,
 }
 
 impl TexturedFile {
@@ -77,7 +76,6 @@ impl TexturedFile {
             bevels: header.bevels,
             entries,
             levels: Vec::new(),
-            levels_made: AtomicU64::new(0),
         };
         file.check_primitives(header.primitives_checksum)?;
         for number in 0..file.entries.len() {
@@ -86,7 +84,6 @@ impl TexturedFile {
             let (voxels, lists) = (file.voxels(number), file.lists(number));
             let levels = Levels::of(voxels, lists, file.primitives().len(), grid.cells);
             file.levels.push(levels);
-            file.levels_made.fetch_add(1, Ordering::Relaxed);
         }
         Ok(file)
     }
@@ -177,11 +174,6 @@ impl TexturedFile {
     /// A grid, coarse before fine; `number` is below [`TexturedFile::grids`].
     pub fn grid(&self, number: usize) -> Grid<'_> {
         Grid { file: self, number }
-    }
-
-    /// How often tables of levels were made: once for each grid, on opening.
-    pub fn levels_made(&self) -> u64 {
-        self.levels_made.load(Ordering::Relaxed)
     }
 
     /// Checks everything, also texels and erosion depths.
