@@ -18,11 +18,7 @@ fuzz_target!(|data: (u8, &[u8])| {
     ][usize::from(choice & 3)];
     let options = ReadOptions {
         oob,
-        hidden: choice & 4 != 0,
-        frame: u32::from(choice >> 4),
-        model: (choice & 8 != 0).then_some(1),
         most_voxels: MOST,
-        ..ReadOptions::default()
     };
     // Magic and main chunk are given, so that no run has to guess them.
     let mut bytes = b"VOX \x96\0\0\0MAIN\0\0\0\0".to_vec();

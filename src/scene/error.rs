@@ -1,6 +1,6 @@
 //! Errors of reading and writing scene files.
 
-use super::fault::{Fault, Problem};
+use super::fault::Fault;
 use super::formats::{self, FileKind};
 
 /// Why a scene could not be read or written.
@@ -82,38 +82,11 @@ pub enum SceneError {
 
 impl SceneError {
     /// Whether the file is sound but exceeds a limit of this program.
-    #[must_use]
     pub fn is_limit(&self) -> bool {
         match self {
             Self::Limit(_) | Self::TooMany { .. } => true,
             Self::Io { source, .. } => source.kind() == std::io::ErrorKind::OutOfMemory,
             _ => false,
-        }
-    }
-}
-
-impl Problem {
-    /// Adds the file's name.
-    pub(super) fn in_file(self, file: &str) -> SceneError {
-        match self {
-            Self::Invalid(mut fault) => {
-                file.clone_into(&mut fault.file);
-                SceneError::Invalid(fault)
-            }
-            Self::Limit(mut fault) => {
-                file.clone_into(&mut fault.file);
-                SceneError::Limit(fault)
-            }
-            Self::TooMany { voxels, most } => SceneError::TooMany {
-                file: file.to_owned(),
-                voxels,
-                most,
-            },
-            Self::Read(source) => SceneError::Io {
-                file: file.to_owned(),
-                action: "read the file",
-                source,
-            },
         }
     }
 }

@@ -1,6 +1,25 @@
-//! A fault in a scene file, in terms that the user can act on.
+//! A fault in a file, in terms that the user can act on.
 
 use std::fmt;
+
+use super::SceneError;
+
+/// A position in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line, counted from 1.
+    Line(u64),
+    /// A byte, counted from 0.
+    Byte(u64),
+    /// The file as a whole.
+    Whole,
+}
+
+impl From<u64> for Place {
+    fn from(byte: u64) -> Self {
+        Self::Byte(byte)
+    }
+}
 
 /// A fault in a file: its place, the expected and the actual content, and a remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -9,8 +28,8 @@ pub struct Fault {
     pub file: String,
     /// The chunk, section or element: "chunk XYZI", "header", "vertex 17".
     pub part: String,
-    /// Byte offset from the beginning of the file.
-    pub offset: u64,
+    /// Where that is.
+    pub place: Place,
     /// Content that the format, or this program, expects there.
     pub expected: String,
     /// The actual content.
@@ -21,11 +40,14 @@ pub struct Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}: {} at byte {}: expected {}, found {}; {}",
-            self.file, self.part, self.offset, self.expected, self.found, self.advice
-        )
+        write!(f, "{}: {}", self.file, self.part)?;
+        match self.place {
+            Place::Line(line) => write!(f, " at line {line}")?,
+            Place::Byte(byte) => write!(f, " at byte {byte}")?,
+            Place::Whole => {}
+        }
+        let (expected, found, advice) = (&self.expected, &self.found, &self.advice);
+        write!(f, ": expected {expected}, found {found}; {advice}")
     }
 }
 
@@ -33,9 +55,9 @@ impl std::error::Error for Fault {}
 
 impl Fault {
     /// A fault in a file whose name is filled in later.
-    pub(super) fn new(
+    pub fn new(
         part: impl Into<String>,
-        offset: u64,
+        place: impl Into<Place>,
         expected: impl Into<String>,
         found: impl Into<String>,
         advice: impl Into<String>,
@@ -43,7 +65,7 @@ impl Fault {
         Box::new(Self {
             file: String::new(),
             part: part.into(),
-            offset,
+            place: place.into(),
             expected: expected.into(),
             found: found.into(),
             advice: advice.into(),
@@ -53,13 +75,18 @@ impl Fault {
 
 /// An error of a reader, which does not know the file's name.
 #[derive(Debug)]
-pub(super) enum Problem {
+pub enum Problem {
     /// See [`SceneError::Invalid`].
     Invalid(Box<Fault>),
     /// See [`SceneError::Limit`].
     Limit(Box<Fault>),
     /// See [`SceneError::TooMany`].
-    TooMany { voxels: u64, most: u64 },
+    TooMany {
+        /// Least number of voxels.
+        voxels: u64,
+        /// The limit.
+        most: u64,
+    },
     /// Reading failed.
     Read(std::io::Error),
 }
@@ -70,16 +97,29 @@ impl From<Box<Fault>> for Problem {
     }
 }
 
+impl Problem {
+    /// Adds the file's name.
+    pub fn in_file(self, name: &str) -> SceneError {
+        let file = name.to_owned();
+        match self {
+            Self::Invalid(fault) => SceneError::Invalid(Box::new(Fault { file, ..*fault })),
+            Self::Limit(fault) => SceneError::Limit(Box::new(Fault { file, ..*fault })),
+            Self::TooMany { voxels, most } => SceneError::TooMany { file, voxels, most },
+            Self::Read(source) => SceneError::Io {
+                file,
+                action: "read the file",
+                source,
+            },
+        }
+    }
+}
+
 /// At most 16 bytes as they can be shown on one line of a terminal.
 pub(super) fn printable(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "nothing (no bytes)".to_owned();
     }
-    let shown: String = bytes
-        .iter()
-        .take(16)
-        .map(|b| b.escape_ascii().to_string())
-        .collect();
+    let shown = bytes[..bytes.len().min(16)].escape_ascii();
     let rest = if bytes.len() > 16 { "..." } else { "" };
     format!("\"{shown}{rest}\"")
 }

@@ -8,7 +8,7 @@ use super::emit::Emitter;
 use super::fault::{Problem, printable};
 use super::formats::{self, Contents, DETECT_BYTES, FileKind};
 use super::input::Input;
-use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate};
+use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate, ply};
 use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
@@ -23,7 +23,6 @@ pub enum Source {
 
 impl Source {
     /// Whether a name is a generator's specification.
-    #[must_use]
     pub fn is_generated(name: &str) -> bool {
         name.starts_with(generate::PREFIX)
     }
@@ -49,7 +48,6 @@ impl Source {
     }
 
     /// The file's format; `None` for a generator and for an unknown format.
-    #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         match self {
             Self::Generated(_) => None,
@@ -116,7 +114,7 @@ impl<R: Read + Seek> SceneFile<R> {
         self.kind = formats::detect(&self.beginning, self.length);
         match self.kind {
             Some(FileKind::Ply) => {
-                if formats::has_faces(&mut BufReader::new(&mut self.stream)) {
+                if ply::has_faces(&mut BufReader::new(&mut self.stream)) {
                     self.kind = Some(FileKind::PlyMesh);
                 }
                 self.stream.seek(SeekFrom::Start(0))?;
@@ -135,13 +133,11 @@ impl<R: Read + Seek> SceneFile<R> {
     }
 
     /// The format, unless it is unknown.
-    #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         self.kind
     }
 
     /// The file's path, or the name of a file in memory.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -18,14 +18,16 @@ pub mod generate;
 mod input;
 mod memory;
 mod mesh;
+pub mod numbers;
 mod open;
 mod open_error;
 mod options;
+pub mod ply;
 
 pub use build_file::{BuiltFile, build_file};
 pub use emit::MAX_EXTENT;
 pub use error::SceneError;
-pub use fault::Fault;
+pub use fault::{Fault, Place, Problem};
 pub use file::{SceneFile, Source};
 pub use formats::{
     FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, write_ply,
@@ -37,6 +39,9 @@ pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 
 /// A tree of 30,000 voxels as a `.vox` file: the scene of the demo (`assets/ATTRIBUTION.md`).
 pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
+
+/// sRGB colour of voxels and triangles in files without colours.
+pub const DEFAULT_COLOR: [u8; 3] = [200; 3];
 
 /// Reads a voxel file and passes each voxel to `sink`.
 ///

@@ -19,7 +19,7 @@ pub enum OpenError {
     /// The file is a mesh, and the caller gave no reader of meshes.
     #[error("{0}: this is a mesh; open it with the crate shiftvox-mesh")]
     NoMeshes(String),
-    /// The file is a mesh that cannot be read or voxelised.
+    /// The file is a mesh that cannot be voxelised.
     #[error("{}", .0.error)]
     Mesh(MeshFailure),
     /// The voxels make no graph.
@@ -60,15 +60,12 @@ pub enum OpenError {
 pub struct MeshFailure {
     /// Whether the input is sound and only too large.
     pub is_limit: bool,
-    /// Whether the operating system refused to read the file.
-    pub is_io: bool,
     /// The reader's error; its message names the file.
     pub error: Box<dyn std::error::Error + Send + Sync>,
 }
 
 impl OpenError {
     /// Whether the input is sound and only too large.
-    #[must_use]
     pub fn is_limit(&self) -> bool {
         match self {
             Self::TooMany { .. } => true,

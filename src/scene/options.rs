@@ -25,15 +25,6 @@ pub enum OutOfBounds {
 pub struct ReadOptions {
     /// Voxels outside `SIZE`; only `.vox` has them.
     pub oob: OutOfBounds,
-    /// Whether nodes and layers that are hidden in the editor are read too; only `.vox` has them.
-    pub hidden: bool,
-    /// Frame of an animated `.vox` scene: the last key frame at or before this one is read.
-    pub frame: u32,
-    /// Number of the only model to read from a `.vox` that has several models but no scene graph, from 0.
-    /// `None` reads all of them, each at its own coordinates.
-    pub model: Option<u32>,
-    /// sRGB colour of voxels in files without colours.
-    pub default_color: [u8; 3],
     /// Most voxels, with those at one index counted each. More are an error, before the first voxel is passed on if
     /// the file states their number.
     pub most_voxels: u64,
@@ -43,10 +34,6 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             oob: OutOfBounds::default(),
-            hidden: false,
-            frame: 0,
-            model: None,
-            default_color: [200; 3],
             most_voxels: u64::MAX,
         }
     }

@@ -228,7 +228,7 @@ fn messages_say_where_and_what() {
         ),
         (
             cut,
-            "vertex 0 at byte 127: expected as many vertices as the header says, found the end of the file",
+            "vertex 0 at byte 127: expected as many elements as the header says, found the end of the file",
         ),
         (header(xyz), "vertex 0 at byte"),
         (

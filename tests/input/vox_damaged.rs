@@ -109,21 +109,21 @@ fn shared_nodes_are_fine_until_they_multiply() {
 
 #[test]
 fn far_scenes_are_refused_as_too_large() {
-    let far = two_places(&[("_t", "-1048576 0 0")], &[("_t", "1048576 0 0")]).bytes();
-    let error = read(&far, &ReadOptions::default()).unwrap_err();
-    assert!(error.is_limit(), "{error}");
-    assert!(
-        error.to_string().contains("at least 2097153 along x"),
-        "{error}"
-    );
-    let near = two_places(&[("_t", "-1048575 0 0")], &[("_t", "1048575 0 0")]).bytes();
-    assert_eq!(read_plain(&near).len(), 2);
-    let beyond = two_places(&[("_t", "2147483647 0 0")], &[]).bytes();
-    let error = read(&beyond, &ReadOptions::default()).unwrap_err();
-    assert!(
-        error.is_limit() && error.to_string().contains("x = 2147483648"),
-        "{error}"
-    );
+    let at = |first: &str, second: &str| {
+        let file = two_places(&[("_t", first)], &[("_t", second)]);
+        read(&file.bytes(), &ReadOptions::default()).map(|(voxels, _)| voxels.len())
+    };
+    assert_eq!(at("-1048575 0 0", "1048575 0 0").unwrap(), 2);
+    for (first, second, part) in [
+        ("-1048576 0 0", "1048576 0 0", "at least 2097153 along x"),
+        ("2147483647 0 0", "0 0 0", "x = 2147483648"),
+    ] {
+        let error = at(first, second).unwrap_err();
+        assert!(
+            error.is_limit() && error.to_string().contains(part),
+            "{error}"
+        );
+    }
 }
 
 #[test]
@@ -140,29 +140,20 @@ fn deep_scenes_do_not_exhaust_the_stack() {
 
 #[test]
 fn every_truncation_is_an_error() {
-    let small = two_places(&[("_t", "1 2 3")], &[("_r", "17")])
+    let file = two_places(&[("_t", "1 2 3")], &[("_r", "17")])
         .layer(0, &[])
         .palette(&THREE)
         .bytes();
-    assert!(read(&small, &ReadOptions::default()).is_ok());
-    for length in 0..small.len() {
-        assert!(
-            read(&small[..length], &ReadOptions::default()).is_err(),
-            "{length}"
-        );
-    }
-}
-
-#[test]
-fn every_truncation_inside_the_main_chunk_is_an_error_or_a_scene() {
-    // The main chunk is made to fit, so that what it holds is cut and not the chunk itself.
-    let small = two_places(&[("_t", "1 2 3")], &[("_r", "17")])
-        .layer(0, &[])
-        .bytes();
-    for length in 20..small.len() {
-        let mut bytes = small[..length].to_vec();
-        bytes[16..20].copy_from_slice(&(length as u32 - 20).to_le_bytes());
-        let _ = read(&bytes, &ReadOptions::default());
+    let read = |bytes: &[u8]| read(bytes, &ReadOptions::default());
+    assert!(read(&file).is_ok());
+    for length in 0..file.len() {
+        assert!(read(&file[..length]).is_err(), "{length}");
+        // The main chunk is made to fit, so that what it holds is cut and not the chunk itself.
+        if length >= 20 {
+            let mut bytes = file[..length].to_vec();
+            bytes[16..20].copy_from_slice(&(length as u32 - 20).to_le_bytes());
+            let _ = read(&bytes);
+        }
     }
 }
 

@@ -4,142 +4,123 @@
 
 use std::collections::BTreeSet;
 
-use crate::input_support::{Plain, read, read_plain, shared, shared_path, shipped};
+use crate::input_support::{Plain, VoxFile, read, read_plain, shared, shipped};
 use dot_vox::{DotVoxData, Rotation, SceneNode};
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OutOfBounds, ReadOptions, SceneError, read_voxels};
 
-const TWINS: [&str; 5] = ["black", "castle", "church", "clock", "dragon"];
+/// Files of VoxelShop and their voxels.
+const VOXELSHOP: [(&str, u64); 5] = [
+    ("black", 14_208),
+    ("castle", 2_628),
+    ("church", 10_182),
+    ("clock", 1_728),
+    ("dragon", 40_265),
+];
 
-fn distinct(voxels: &[Plain]) -> usize {
-    voxels
-        .iter()
-        .map(|(index, _)| *index)
-        .collect::<BTreeSet<_>>()
-        .len()
-}
-
-/// Stored, handed on, different indices, models, nodes.
-fn counts(bytes: &[u8]) -> (u64, u64, usize, u32, u32) {
+/// Stored voxels, voxels that are passed on, different indices, models, nodes.
+fn counts(bytes: &[u8]) -> [u64; 5] {
     let (_, info) = read(bytes, &ReadOptions::default()).unwrap();
-    let plain = read_plain(bytes);
-    (
-        info.stored_voxels,
-        info.voxels,
-        distinct(&plain),
-        info.models,
-        info.nodes,
-    )
+    let indices: BTreeSet<_> = read_plain(bytes).iter().map(|v| v.0).collect();
+    let distinct = indices.len() as u64;
+    let [models, nodes] = [info.models, info.nodes].map(u64::from);
+    [info.stored_voxels, info.voxels, distinct, models, nodes]
 }
 
 #[test]
-fn shipped_files_have_their_voxels() {
-    assert_eq!(counts(&shipped("sphere.vox")), (2_103, 2_103, 2_103, 1, 0));
-    assert_eq!(counts(&shipped("axes.vox")), (4_372, 12_452, 12_452, 4, 28));
-    assert_eq!(
-        counts(&shipped("extended.vox")),
-        (4_854, 4_854, 4_854, 6, 14)
-    );
+fn real_files_have_their_voxels_and_agree_with_dot_vox() {
+    let tree = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tree.vox");
+    for (name, bytes, expected) in [
+        ("sphere", shipped("sphere.vox"), [2_103, 2_103, 2_103, 1, 0]),
+        ("axes", shipped("axes.vox"), [4_372, 12_452, 12_452, 4, 28]),
+        (
+            "extended",
+            shipped("extended.vox"),
+            [4_854, 4_854, 4_854, 6, 14],
+        ),
+        (
+            "tree",
+            std::fs::read(tree).unwrap(),
+            [428_739, 804_872, 768_068, 2, 8],
+        ),
+    ] {
+        assert_eq!(counts(&bytes), expected, "{name}");
+        agree(name, &bytes);
+    }
 }
 
-#[test]
-fn tree_has_its_voxels() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tree.vox");
-    let bytes = std::fs::read(path).unwrap();
-    // 428,739 are stored; the larger model is placed twice, so that 804,872 are handed on, at 768,068 different indices.
-    assert_eq!(counts(&bytes), (428_739, 804_872, 768_068, 2, 8));
+/// Compares a file with what `dot_vox` reads.
+fn agree(name: &str, bytes: &[u8]) {
+    let data = dot_vox::load_bytes(bytes).unwrap();
+    assert!(read_plain(bytes) == by_dot_vox(&data), "{name}");
+    let (_, info) = read(bytes, &ReadOptions::default()).unwrap();
+    let palette = data.palette.iter().take(255);
+    let palette: Vec<[u8; 4]> = palette.map(|c| [c.r, c.g, c.b, c.a]).collect();
+    assert_eq!(info.palette, palette, "{name}");
+    assert_eq!(info.nodes as usize, data.scenes.len(), "{name}");
 }
 
+/// Voxels outside `SIZE` are where the twin, which fits its `SIZE`, has them.
 #[test]
-fn voxelshop_files_have_their_voxels() {
-    for (name, voxels) in TWINS
-        .into_iter()
-        .zip([14_208, 2_628, 10_182, 1_728, 40_265])
-    {
-        for folder in ["fit_to_bb", "fit_to_size"] {
-            let Some(bytes) = shared(&format!("vox/voxelshop/{folder}/{name}.vox")) else {
-                return;
-            };
-            assert_eq!(
-                counts(&bytes),
-                (voxels, voxels, voxels as usize, 1, 0),
-                "{folder} {name}"
-            );
+#[ignore = "needs the files of SHIFTVOX_DATA"]
+fn voxelshop_files_equal_their_twins() {
+    let at_origin = |bytes: &[u8]| {
+        let mut voxels = read_plain(bytes);
+        for axis in 0..3 {
+            let low = voxels.iter().map(|(index, _)| index[axis]).min().unwrap();
+            voxels.iter_mut().for_each(|(index, _)| index[axis] -= low);
         }
-    }
-}
-
-/// Moves voxels so that the lowest index is 0 along each axis, and sorts them.
-fn at_origin(mut voxels: Vec<Plain>) -> Vec<Plain> {
-    for axis in 0..3 {
-        let low = voxels
-            .iter()
-            .map(|(index, _)| index[axis])
-            .min()
-            .unwrap_or(0);
-        for (index, _) in &mut voxels {
-            index[axis] -= low;
-        }
-    }
-    voxels.sort_unstable();
-    voxels
-}
-
-#[test]
-fn unwrapped_files_equal_their_twins() {
-    for name in TWINS {
-        let Some(wrapped) = shared(&format!("vox/voxelshop/fit_to_bb/{name}.vox")) else {
-            return;
-        };
-        let Some(twin) = shared(&format!("vox/voxelshop/fit_to_size/{name}.vox")) else {
-            return;
-        };
-        assert_eq!(
-            at_origin(read_plain(&wrapped)),
-            at_origin(read_plain(&twin)),
-            "{name}"
-        );
-    }
-}
-
-#[test]
-fn dragon_by_every_rule() {
-    let Some(bytes) = shared("vox/voxelshop/fit_to_bb/dragon.vox") else {
-        return;
+        voxels.sort_unstable();
+        voxels
     };
+    for (name, voxels) in VOXELSHOP {
+        let [wrapped, twin] = ["bb", "size"]
+            .map(|folder| shared(&format!("vox/voxelshop/fit_to_{folder}/{name}.vox")));
+        for bytes in [&wrapped, &twin] {
+            assert_eq!(counts(bytes), [voxels, voxels, voxels, 1, 0], "{name}");
+        }
+        assert_eq!(at_origin(&wrapped), at_origin(&twin), "{name}");
+        agree(name, &twin);
+    }
+}
+
+/// A model of VoxelShop's kind: bytes outside `SIZE` mean numbers below 0.
+#[test]
+fn voxels_outside_the_size_by_every_rule() {
+    let file = VoxFile::new().model(
+        [20, 20, 90],
+        &[[0, 19, 88, 1], [203, 72, 0, 1], [238, 0, 5, 1]],
+    );
     let by = |oob| {
         let options = ReadOptions {
             oob,
             ..ReadOptions::default()
         };
-        read(&bytes, &options).map(|(_, info)| info)
+        read(&file.bytes(), &options).map(|(_, info)| (info.voxels, info.outside_size, info.bounds))
     };
-    let wrap = by(OutOfBounds::Wrap).unwrap();
-    assert_eq!(wrap.outside_size, 39_332);
-    assert_eq!(wrap.bounds, Some(([-53, -18, 0], [72, 38, 88])));
-    let keep = by(OutOfBounds::Keep).unwrap();
-    assert_eq!(
-        (keep.voxels, keep.bounds),
-        (40_265, Some(([0, 0, 0], [255, 255, 88])))
-    );
-    assert_eq!(by(OutOfBounds::Drop).unwrap().voxels, 40_265 - 39_332);
+    let bounds = |low, high| Some((low, high));
+    let expected = [
+        (OutOfBounds::Wrap, (3, 2, bounds([-53, 0, 0], [0, 72, 88]))),
+        (OutOfBounds::Keep, (3, 2, bounds([0, 0, 0], [238, 72, 88]))),
+        (OutOfBounds::Drop, (1, 2, bounds([0, 19, 88], [0, 19, 88]))),
+    ];
+    for (oob, expected) in expected {
+        assert_eq!(by(oob).unwrap(), expected, "{oob:?}");
+    }
     let refused = by(OutOfBounds::Error).unwrap_err().to_string();
     assert!(
-        refused.contains("SIZE [20, 20, 20]") && refused.contains("wrap, keep or drop"),
+        refused.contains("SIZE [20, 20, 90]") && refused.contains("wrap, keep or drop"),
         "{refused}"
     );
 }
 
 #[test]
-fn not_a_vox_is_refused_by_its_first_bytes() {
-    let Some(path) = shared_path("vox/not_a.vox") else {
-        return;
-    };
-    let error = read_voxels(&path, &ReadOptions::default(), &mut |_| (), &Silent).unwrap_err();
+fn an_unknown_file_is_refused_by_its_first_bytes() {
+    let error = read(b"DOOD is not a voxel", &ReadOptions::default()).unwrap_err();
     assert!(matches!(error, SceneError::Unknown { .. }));
     let text = error.to_string();
     assert!(
-        text.contains("not_a.vox: not a known scene file: it begins with \"DOOD"),
+        text.contains("test: not a known scene file: it begins with \"DOOD"),
         "{text}"
     );
 }
@@ -163,45 +144,6 @@ fn a_missing_file_is_no_fault_of_its_content() {
             .starts_with("/nowhere/at all.vox: cannot open the file: ")
     );
     assert!(matches!(error, SceneError::Io { .. }));
-}
-
-#[test]
-fn axes_by_hand() {
-    // From the file's nodes: group 3 at (0, 0, 131) holds model 0 at z -48, 0 and 48;
-    // group 11 at (0, 188, 20) holds model 1 at y -59, 1 and 59; group 19 at (173, 0, 20)
-    // holds model 2 at x -47, 1 and 47; model 3 stands at (0, 0, 16). Sizes 40, 40, 40
-    // and 32, so the pivots are 20 and 16.
-    let bytes = shipped("axes.vox");
-    let first_voxel_at = [56usize + 4, 3_764 + 16, 10_364 + 16, 16_324 + 16];
-    let read = read_plain(&bytes);
-    let placements: [(usize, i32, Vec<[i32; 3]>); 4] = [
-        (0, 20, vec![[0, 0, 131 - 48], [0, 0, 131], [0, 0, 131 + 48]]),
-        (
-            1,
-            20,
-            vec![[0, 188 - 59, 20], [0, 189, 20], [0, 188 + 59, 20]],
-        ),
-        (
-            2,
-            20,
-            vec![[173 - 47, 0, 20], [174, 0, 20], [173 + 47, 0, 20]],
-        ),
-        (3, 16, vec![[0, 0, 16]]),
-    ];
-    let counts = [920, 1_640, 1_480, 332];
-    let mut at = 0;
-    for (model, pivot, translations) in placements {
-        for translation in translations {
-            for i in 0..counts[model] {
-                // The offset of model 0's voxels: header 44, 12 bytes of chunk header, 4 of count.
-                let stored = &bytes[first_voxel_at[model] + 4 * i..][..3];
-                let expected = [0, 1, 2].map(|a| i32::from(stored[a]) - pivot + translation[a]);
-                assert_eq!(read[at].0, expected, "model {model}, voxel {i}");
-                at += 1;
-            }
-        }
-    }
-    assert_eq!(at, read.len());
 }
 
 /// All voxels of a file as `dot_vox` and floating point place them.
@@ -254,31 +196,5 @@ fn walk(data: &DotVoxData, node: u32, rotation: Rotation, at: [f32; 3], out: &mu
                 out.push((index, [c.r, c.g, c.b]));
             }
         }
-    }
-}
-
-#[test]
-fn real_files_agree_with_dot_vox() {
-    let mut files: Vec<(String, Vec<u8>)> = ["sphere", "axes", "extended"]
-        .map(|name| (name.to_owned(), shipped(&format!("{name}.vox"))))
-        .to_vec();
-    let mut more = vec!["vox/tree.vox".to_owned()];
-    more.extend(TWINS.map(|name| format!("vox/voxelshop/fit_to_size/{name}.vox")));
-    files.extend(
-        more.into_iter()
-            .filter_map(|name| Some((name.clone(), shared(&name)?))),
-    );
-    for (name, bytes) in files {
-        let data = dot_vox::load_bytes(&bytes).unwrap();
-        assert!(read_plain(&bytes) == by_dot_vox(&data), "{name}");
-        let (_, info) = read(&bytes, &ReadOptions::default()).unwrap();
-        let palette: Vec<[u8; 4]> = data
-            .palette
-            .iter()
-            .take(255)
-            .map(|c| [c.r, c.g, c.b, c.a])
-            .collect();
-        assert_eq!(info.palette, palette, "{name}");
-        assert_eq!(info.nodes as usize, data.scenes.len(), "{name}");
     }
 }

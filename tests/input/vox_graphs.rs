@@ -105,7 +105,7 @@ impl Graph {
         file.bytes()
     }
 
-    /// What is below a node: `to` says where a centre, in half voxels, comes to lie.
+    /// The voxels below a node. `to` maps a centre, in half voxels, to its place.
     fn place(
         &self,
         number: u32,

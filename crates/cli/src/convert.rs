@@ -55,21 +55,19 @@ pub struct ConvertArgs {
     /// Of .tvx: texels along the side of a voxel's face [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     texels: Option<u32>,
-    /// Of .tvx: which voxels an erosion takes away [default: sides]
+    /// Of .tvx: structuring element of the erosion [default: sides]
     #[arg(long, value_enum, value_name = "ELEMENT")]
     element: Option<Element>,
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     instances: Option<u32>,
-    /// Of .far: keep what is finished in OUT.part until all is, and go on from there if an earlier
-    /// build with the same mesh and options was stopped
+    /// Of .far: keep finished nodes in OUT.part, and resume an earlier build with the same mesh and options
     #[arg(long)]
     resume: bool,
-    /// Of .far: keep what is wider than a voxel as a decimated surface, beside voxels of what is
-    /// thinner
+    /// Of .far: keep parts wider than a voxel as a decimated surface, and thinner parts as voxels
     #[arg(long)]
     hybrid: bool,
-    /// Of .far: what opacities are stored for [default: six]
+    /// Of .far: stored opacities [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
     #[command(flatten)]

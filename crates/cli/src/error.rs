@@ -11,7 +11,7 @@ use shiftvox::graph::file::FileError;
 use shiftvox::graph::vxg::VxgError;
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{EngineError, SetupError};
-use shiftvox::scene::{MeshFailure, OpenError, SceneError};
+use shiftvox::scene::{OpenError, SceneError};
 use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
 use shiftvox_mesh::drawing::MethodError;

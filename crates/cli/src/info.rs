@@ -1,4 +1,4 @@
-//! `info`: describes a scene.
+//! `info`: what is in a scene.
 
 use std::time::Instant;
 
@@ -71,51 +71,52 @@ fn of_one(
 ) -> Result<Option<Value>, CliError> {
     let started = Instant::now();
     let source = Source::find(names::path(name))?;
-    match source.kind() {
-        Some(FileKind::Far) => far::info(name, console),
-        Some(FileKind::Tvx) => textured::info(name, args.levels, console),
+    let (described, text) = match source.kind() {
+        Some(FileKind::Far) => far::info(name)?,
+        Some(FileKind::Tvx) => textured::info(name, args.levels)?,
         _ => {
-            let scene = scenes::open_source(
-                source,
-                name,
-                &args.scene,
-                scenes::Verify::All,
-                started,
-                console,
-            )?;
-            if console.json {
-                return Ok(Some(describe(&scene)));
-            }
-            console.data(description(&scene, several))?;
-            Ok(None)
+            let verify = scenes::Verify::All;
+            let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
+            let described = describe(&scene);
+            let gap = if several { "\n" } else { "" };
+            let text = text(&described, &scene) + gap;
+            (described, text)
         }
+    };
+    if console.json {
+        return Ok(Some(described));
     }
+    console.data(text)?;
+    Ok(None)
 }
 
 fn describe(scene: &Scene) -> Value {
     let graph = &scene.graph;
-    let (low, high) = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
+    let bounds = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
     let origin = graph.placement.origin_index;
-    let file = |corner: [i64; 3]| [0, 1, 2].map(|k| corner[k] + origin[k]);
+    let [low, high] = [bounds.0, bounds.1].map(|corner| [0, 1, 2].map(|k| corner[k] + origin[k]));
+    let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-    let level = |(level, (nodes, in_tree)): (usize, (u64, u128))| {
-        let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
-        json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
-    };
-    let levels: Vec<Value> = levels(graph).into_iter().enumerate().map(level).collect();
     let gains = merge_gains(graph);
+    let levels = levels(graph)
+        .into_iter()
+        .enumerate()
+        .map(|(level, (nodes, in_tree))| {
+            let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
+            json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
+        });
     json!({
         "scene": scene.source,
         "format": scene.format,
-        "index_low": file(low),
-        "index_high": file(high),
+        "index_low": low,
+        "index_high": high,
         "opacities": opacities(graph),
-        "size": [0, 1, 2].map(|k| high[k] - low[k]),
+        "size": size,
         "voxel_size_world": graph.placement.voxel_size,
         "depth": graph.depth,
         "voxels": graph.voxels,
         "nodes": graph.len(),
-        "levels": levels,
+        "levels": levels.collect::<Vec<Value>>(),
         "bytes": graph.bytes(),
         "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
         "dag_gain": gains.map(|gains| gains[0]),
@@ -139,85 +140,80 @@ fn describe(scene: &Scene) -> Value {
     })
 }
 
-/// The description in text.
-fn description(scene: &Scene, several: bool) -> String {
-    let facts = describe(scene);
-    let count = |key: &str| grouped(facts[key].as_u64().unwrap_or(0));
-    let words = |key: &str| facts[key].as_str().unwrap_or_default().to_owned();
-    let gain = |key: &str| facts[key].as_f64();
-    let lines = [
-        ("scene", words("scene")),
-        ("format", words("format")),
-        (
-            "size",
-            format!(
-                "{} x {} x {} voxels",
-                facts["size"][0], facts["size"][1], facts["size"][2]
-            ),
-        ),
+fn text(described: &Value, scene: &Scene) -> String {
+    let n = |key: &str| report::figure(&described[key]);
+    let real = |key: &str| described[key].as_f64();
+    let text = |key: &str| described[key].as_str().unwrap_or_default().to_owned();
+    let size = [0, 1, 2].map(|k| described["size"][k].to_string());
+    let index = |key: &str| described[key].to_string().replace(',', ", ");
+    let gain = match (real("dag_gain"), real("dag_gain_by_shape")) {
+        (Some(all), Some(shape)) => {
+            format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
+        }
+        _ => "not found out: merging takes more memory than is free".to_owned(),
+    };
+    let palette = scene
+        .palette
+        .map_or_else(|| "none".to_owned(), |n| format!("{n} entries"));
+    let mut lines = vec![
+        ("scene", text("scene")),
+        ("format", text("format")),
+        ("size", format!("{} voxels", size.join(" x "))),
         (
             "indices",
             format!(
                 "{} up to, not including, {}",
-                facts["index_low"], facts["index_high"]
+                index("index_low"),
+                index("index_high")
             ),
         ),
-        ("depth", format!("{} levels below the root", facts["depth"])),
-        ("voxels", count("voxels")),
-        ("nodes", count("nodes")),
+        (
+            "depth",
+            format!("{} levels below the root", described["depth"]),
+        ),
+        ("voxels", n("voxels")),
+        ("nodes", n("nodes")),
         (
             "memory",
             format!(
-                "{} bytes, {:.2} per voxel",
-                count("bytes"),
-                facts["bytes_per_voxel"].as_f64().unwrap_or(0.0)
+                "{} bytes, {:.2} a voxel",
+                n("bytes"),
+                real("bytes_per_voxel").unwrap_or_default()
             ),
         ),
-        (
-            "DAG gain",
-            match (gain("dag_gain"), gain("dag_gain_by_shape")) {
-                (Some(all), Some(shape)) => {
-                    format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
-                }
-                _ => "unknown: merging takes more memory than is free".to_owned(),
-            },
-        ),
-        (
-            "palette",
-            scene
-                .palette
-                .map_or_else(|| "none".to_owned(), |n| format!("{n} entries")),
-        ),
-        ("opacities", words("opacities")),
-        ("colours", format!("{} different", count("colors"))),
-        ("camera", words("camera")),
+        ("DAG gain", gain),
+        ("palette", palette),
+        ("opacities", text("opacities")),
+        ("colours", format!("{} different", n("colors"))),
+        ("camera", text("camera")),
     ];
-    let mesh = scene.mesh.as_ref().map(|mesh| {
+    if let Some(mesh) = &scene.mesh {
         let (low, high) = mesh.bounds;
-        format!(
-            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, voxelised in {:.1} ms",
-            grouped(mesh.triangles),
-            grouped(mesh.positions),
-            grouped(mesh.materials),
-            "",
-            mesh.load_ms,
-            mesh.voxelize_ms
-        )
-    });
-    let lines = lines.into_iter().chain(mesh.map(|mesh| ("mesh", mesh)));
-    let rows = levels(&scene.graph).into_iter().enumerate();
-    let rows =
-        rows.map(|(level, (nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)]);
-    let head = ["level", "nodes", "in a tree"].map(String::from).into();
-    let levels = report::table(head, rows.collect());
-    let text: Vec<String> = lines
-        .map(|(name, value)| format!("{name:<9} {value}"))
-        .collect();
-    let gap = if several { "\n" } else { "" };
-    format!("{}\n\n{levels}{gap}", text.join("\n"))
+        lines.push((
+            "mesh",
+            format!(
+                "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
+                 voxelised in {:.1} ms",
+                grouped(mesh.triangles),
+                grouped(mesh.positions),
+                grouped(mesh.materials),
+                "",
+                mesh.load_ms,
+                mesh.voxelize_ms
+            ),
+        ));
+    }
+    let columns = [
+        ("level", "level"),
+        ("nodes", "nodes"),
+        ("in a tree", "nodes_in_tree"),
+    ];
+    let levels = report::table_of(&described["levels"], &columns);
+    format!("{}\n\n{levels}", report::lines(&lines))
 }
 
-/// The share of leaves that let light through, and their mean coverage of faces.
+/// How many of the nodes without children let light through, and how much
+/// they cover of their faces on the average.
 fn opacities(graph: &Graph) -> String {
     if graph.opacity.is_empty() {
         return "none: all voxels are opaque".to_owned();
@@ -233,7 +229,7 @@ fn opacities(graph: &Graph) -> String {
         }
     }
     format!(
-        "six per voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
+        "six a voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
         100.0 * airy as f64 / all.max(1) as f64,
         100.0 * covered as f64 / (96 * all.max(1)) as f64
     )
@@ -285,7 +281,8 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
 /// Bytes a node that merging takes at the least.
 const MERGE_BYTES: u64 = 16;
 
-/// Nodes over those left after merging of equal subtrees: with attributes, and by shape. `None` if memory is too small.
+/// How much smaller the graph gets when equal subtrees are merged: all nodes
+/// over those left, with attributes and by shape alone.
 fn merge_gains(graph: &Graph) -> Option<[f64; 2]> {
     budget::check("merging", graph.len() as u64 * MERGE_BYTES).ok()?;
     Some([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::args::SceneArgs;
 use super::console::Console;
@@ -35,14 +35,32 @@ pub(super) struct Conversion<'a> {
     pub(super) scene: &'a SceneArgs,
 }
 
-/// What a conversion wrote.
+impl Conversion<'_> {
+    /// Reports a built file with `--json`, given its description.
+    pub(super) fn report(
+        &self,
+        mut described: Value,
+        build_ms: f64,
+        console: &Console,
+    ) -> Result<(), CliError> {
+        if console.json {
+            described["input"] = json!(self.input);
+            described["output"] = json!(names::of_path(self.output));
+            described["build_ms"] = json!(build_ms);
+            console.document(&report::document("convert", described))?;
+        }
+        Ok(())
+    }
+}
+
+/// The result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Written {
     /// Voxels in the scene.
     pub(super) voxels: u64,
     /// Bytes written.
     pub(super) bytes: u64,
-    /// What the user should know.
+    /// Warnings.
     pub(super) warnings: Vec<String>,
 }
 

@@ -22,19 +22,19 @@ const DEMO: &[u8] = scene::BUNDLED_TREE;
 /// A scene that is ready to be drawn.
 #[derive(Debug)]
 pub(super) struct Scene {
-    /// What to draw.
+    /// The voxels.
     pub(super) graph: Graph,
-    /// What the user called it.
+    /// The name that the user gave.
     pub(super) source: String,
     /// The format, in words.
     pub(super) format: String,
-    /// Which axis is up.
+    /// The axis that points up.
     pub(super) up: Up,
-    /// What the mesh was, where it was one.
+    /// A summary of the mesh, if it was one.
     pub(super) mesh: Option<MeshSummary>,
     /// Entries of the file's palette, if it has one.
     pub(super) palette: Option<usize>,
-    /// What the user should know although the scene could be read.
+    /// Warnings of the reader.
     pub(super) warnings: Vec<String>,
     /// Whether all of the file was checked.
     pub(super) is_verified: bool,
@@ -81,8 +81,7 @@ pub(super) enum Verify {
     All,
 }
 
-/// [`open`], of what was found already, at `started`. Commands that read all of a scene verify all
-/// of it.
+/// As [`open`], for a source that was found at `started`. Commands that read all of a scene verify all of it.
 ///
 /// # Errors
 /// As [`open`].
@@ -212,15 +211,13 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
 }
 
 fn load_options(args: &SceneArgs) -> LoadOptions {
-    LoadOptions {
-        mtl_colors: args.mesh_colors,
-        ..LoadOptions::default()
-    }
+    let mtl_colors = args.mesh_colors;
+    LoadOptions { mtl_colors }
 }
 
 fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
     let info = opened.info.as_ref();
-    // What was said of a file that keeps it is kept in what is written of it.
+    // The axis given for a file is kept in the written file.
     if let (Some(up), Some(mesh)) = (mesh_up, &mut opened.graph.placement.mesh) {
         mesh.y_up = up == Up::Y;
     }

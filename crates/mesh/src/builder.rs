@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::error::{MeshError, MeshFault, Place};
+use super::SceneError;
+use super::geometry::{plane_normal, point};
+use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh};
 use shiftvox::budget::{self, Shortage};
 
@@ -12,7 +14,7 @@ const MOST: usize = u32::MAX as usize;
 /// A triangle names a position that does not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BadIndex {
-    /// What it names.
+    /// The index that is out of range.
     pub index: u32,
     /// Positions that there are.
     pub positions: usize,
@@ -29,10 +31,9 @@ struct Corners {
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
-/// Left out, counted and reported as a warning: triangles with a coordinate that
-/// is infinite or not a number, triangles without area (two equal corners, or
-/// all three on a line), triangles whose material has opacity 0. Where that would be all that can be drawn, they are
-/// drawn opaque, with a warning: some programs write 0 for what is opaque.
+/// Left out, counted and reported as a warning: triangles with a coordinate that is infinite or not a number, triangles
+/// without area (two equal corners, or all three on a line), triangles whose material has opacity 0. If all triangles
+/// had opacity 0, they are drawn opaque, with a warning: some programs write 0 for opaque materials.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
@@ -50,7 +51,6 @@ pub struct MeshBuilder {
 
 impl MeshBuilder {
     /// A builder without anything.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
@@ -106,7 +106,6 @@ impl MeshBuilder {
     }
 
     /// Positions so far.
-    #[must_use]
     pub fn positions(&self) -> usize {
         self.mesh.positions.len()
     }
@@ -210,8 +209,7 @@ impl MeshBuilder {
             .triangles
             .iter()
             .map(|corners| {
-                let [a, b, c] = corners.map(|i| point(positions[i as usize]));
-                let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+                let plane = plane_normal(corners.map(|i| point(positions[i as usize])));
                 [plane.as_vec3().to_array(); 3]
             })
             .collect();
@@ -251,18 +249,18 @@ impl MeshBuilder {
     ///
     /// # Errors
     /// When no triangle is left, or when there are more than 2^32 of anything.
-    pub fn finish(mut self, file: &str) -> Result<Mesh, MeshError> {
+    pub fn finish(mut self, file: &str) -> Result<Mesh, SceneError> {
         self.show_hidden();
-        let in_file = |error: MeshError| error.in_file(file);
+        let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
-            let fault = MeshFault::new(
+            let fault = Fault::new(
                 "mesh",
                 Place::Whole,
                 "fewer than 2^32 positions and triangles",
                 "more",
                 "split the mesh",
             );
-            return Err(in_file(MeshError::Limit(fault)));
+            return Err(in_file(Problem::Limit(fault)));
         }
         let complaints = [
             (
@@ -289,7 +287,7 @@ impl MeshBuilder {
             } else {
                 format!("none that can be drawn: {}", told.join(", "))
             };
-            let fault = MeshFault::new(
+            let fault = Fault::new(
                 "mesh",
                 Place::Whole,
                 "at least one triangle",
@@ -304,7 +302,7 @@ impl MeshBuilder {
         let mut mesh = self.mesh;
         mesh.warnings.append(&mut told);
         if mesh.materials.is_empty() {
-            mesh.materials.push(Material::of_srgb("default", [200; 3]));
+            mesh.materials.push(Material::default_color());
         }
         for material in &mut mesh.material_of {
             if *material as usize >= mesh.materials.len() {
@@ -317,12 +315,7 @@ impl MeshBuilder {
         if !mesh.vertex_colors.is_empty() {
             mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
         }
-        (mesh.low, mesh.high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in mesh.triangles.iter().flatten() {
-            let position = point(mesh.positions[*corner as usize]);
-            mesh.low = mesh.low.min(position);
-            mesh.high = mesh.high.max(position);
-        }
+        mesh.find_bounds();
         mesh.positions.shrink_to_fit();
         mesh.triangles.shrink_to_fit();
         mesh.material_of.shrink_to_fit();
@@ -331,12 +324,8 @@ impl MeshBuilder {
     }
 }
 
-fn point(position: [f64; 3]) -> DVec3 {
-    DVec3::from_array(position)
-}
-
 fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
-    DVec3::from_array(normal.map(f64::from))
+    point(normal)
         .try_normalize()
         .map(|unit| unit.as_vec3().to_array())
 }

@@ -1,10 +1,8 @@
-//! Fewer triangles that look alike: edges are collapsed, those of the least quadric error first.
+//! Decimation: collapses the edges with the least quadric error first.
 //!
-//! The work is that of `meshoptimizer-rs`, whose results are those of meshoptimizer, bit by bit.
-//! Here is what it is given and what becomes of materials and normals: a corner of a triangle is a
-//! vertex of its position, material and colour, so that no collapse mixes materials; a corner's
-//! normal is the mean of those that the mesh has at its position and that face as the triangle does.
-//! Colours of textures, which triangles have, become those of vertices.
+//! The work is that of `meshoptimizer-rs`, whose results are those of meshoptimizer, bit by bit. A vertex is a
+//! position, a material and a colour, so the borders between materials keep their place. Colours of textures, which
+//! triangles have, become those of vertices.
 
 use std::collections::HashMap;
 
@@ -14,7 +12,7 @@ use meshoptimizer_rs::{
     simplify_with_attributes,
 };
 
-use super::surface::plane_normal;
+use super::geometry::{plane_normal, point};
 use super::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -23,7 +21,7 @@ use shiftvox::graph::PackedNormal;
 pub struct Decimation {
     /// Triangles that are enough; more stay where nothing more can be collapsed.
     pub triangles: usize,
-    /// Greatest distance from the mesh, in its units; `None`: any.
+    /// The greatest distance from the mesh, in its units. `None` means no limit.
     pub error: Option<f64>,
     /// Whether parts that are smaller than the error vanish.
     pub prunes: bool,
@@ -34,17 +32,17 @@ pub struct Decimation {
 #[error("the mesh cannot be decimated: {0}")]
 pub struct DecimateError(String);
 
-/// What a change of a normal by its length weighs, in extents of the mesh, where triangles are
-/// counted: as much as moving the surface by a hundredth of it.
+/// The weight of a normal's change by its own length, in extents of the mesh, where triangles are counted. It equals
+/// moving the surface by a hundredth of its extent.
 const NORMAL_WEIGHT: f32 = 0.01;
-/// What the greatest change of a colour channel weighs.
+/// The weight of the greatest change of a colour channel.
 const COLOR_WEIGHT: f32 = 0.1;
 /// Least cosine between a normal and the plane of a triangle that takes it.
 const FACES_ALIKE: f64 = 0.5;
 /// Numbers of a vertex beside its position: a normal, a colour.
 const ATTRIBUTES: usize = 6;
 
-/// What makes two corners one vertex: position, material, colour.
+/// The identity of a vertex: position, material, colour.
 type Key = (Place, u32, [u8; 3]);
 
 /// The bits of a position.
@@ -84,7 +82,7 @@ pub fn decimate_between<'n>(
         }
     }
     let (low, high) = mesh.bounds();
-    // About the box, of which single precision tells the parts wherever it lies.
+    // The middle of the box, so that single precision suffices wherever the mesh lies.
     let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
     let near: Vec<[f32; 3]> = vertices.positions.iter().map(near).collect();
     let mut options = SimplifyOptions::ERROR_ABSOLUTE;
@@ -229,10 +227,6 @@ impl Vertices {
     }
 }
 
-fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
-    DVec3::from_array(position.map(Into::into))
-}
-
 /// Zeros of both signs are one place.
 fn place_of(position: [f64; 3]) -> Place {
     position.map(|x| (x + 0.0).to_bits())
@@ -263,14 +257,10 @@ const STEPS: f64 = 65535.0;
 /// Bytes of a compact mesh beside its lists: the box and three counts.
 const HEADER: u64 = 6 * 4 + 3 * 4;
 
-/// A mesh as it would be stored for drawing, indexed: vertices of a position in 16 bits an axis of
-/// the box, a normal in 16 bits and, where the mesh has colours of vertices, 24 bits of colour;
-/// triangles of three numbers of vertices, each of 16 or 32 bits, and one of 8 or 16 bits of a
-/// material, if there are several, and 24 of its texture's colour, if there are textures; materials
-/// of 24 bits.
+/// A mesh as an indexed buffer for drawing. Each vertex has a position in 16 bits per axis of the box, a normal in 16
+/// bits and, where the mesh has colours, a colour.
 ///
-/// Gives the mesh with what was rounded, and its bytes.
-#[must_use]
+/// Returns the rounded mesh and its size in bytes.
 pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
     let mut rounded = mesh.clone();
     let (low, high) = mesh.bounds();
@@ -317,17 +307,6 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
         + used.len() as u64 * 3
         + rounded.tints.len() as u64 * 3;
     (rounded, bytes)
-}
-
-impl Mesh {
-    fn find_bounds(&mut self) {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for &corner in self.triangles.iter().flatten() {
-            let at = point(self.positions[corner as usize]);
-            (low, high) = (low.min(at), high.max(at));
-        }
-        (self.low, self.high) = (low, high);
-    }
 }
 
 #[cfg(test)]

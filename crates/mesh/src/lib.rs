@@ -9,9 +9,9 @@
 mod builder;
 pub mod decimate;
 pub mod drawing;
-mod error;
 pub mod far;
 pub mod generate;
+mod geometry;
 mod load;
 mod material;
 pub mod open;
@@ -22,13 +22,14 @@ pub mod textured;
 pub mod voxelize;
 
 use glam::DVec3;
+pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 
 pub use builder::{BadIndex, MeshBuilder};
-pub use error::{MeshError, MeshFault, Place};
-pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, read};
+pub use geometry::barycentric;
+pub use load::{Beside, LoadOptions, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
-pub use surface::{Instances, Surface, Triangle, barycentric, mesh_box};
+pub use surface::{Instances, Surface, Triangle, mesh_box};
 
 /// Triangles with materials, in the file's own coordinates.
 ///
@@ -51,57 +52,54 @@ pub struct Mesh {
 
 impl Mesh {
     /// Vertex positions, finite.
-    #[must_use]
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 
     /// Three positions a triangle, counter-clockwise where seen from outside.
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
     /// The material of each triangle: an index of [`Mesh::materials`].
-    #[must_use]
     pub fn material_of(&self) -> &[u32] {
         &self.material_of
     }
 
     /// The materials; at least one.
-    #[must_use]
     pub fn materials(&self) -> &[Material] {
         &self.materials
     }
 
     /// Unit normals of each triangle's corners, or nothing where the file has
     /// none: then a triangle has its plane's.
-    #[must_use]
     pub fn corner_normals(&self) -> &[[[f32; 3]; 3]] {
         &self.corner_normals
     }
 
     /// sRGB colour of each position, which multiplies the material's, or
     /// nothing where the file has none.
-    #[must_use]
     pub fn vertex_colors(&self) -> &[[u8; 3]] {
         &self.vertex_colors
     }
 
     /// Lowest and highest corner of the box around all triangles.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
     }
 
     /// Warnings about a file that could be read, one sentence each.
-    #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
+    pub(crate) fn find_bounds(&mut self) {
+        let corners = self.triangles.iter().flatten();
+        let points = corners.map(|&corner| geometry::point(self.positions[corner as usize]));
+        (self.low, self.high) = geometry::bounds(points);
+    }
+
     /// Bytes that the mesh takes.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         let sizes = [
             size_of_val(&self.positions[..]),

@@ -10,7 +10,7 @@ use shiftvox::scene::{
 };
 
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
-use crate::{Beside, LoadOptions, Mesh, MeshError, MeshFormat, Nothing, SameFolder, mesh_box};
+use crate::{Beside, LoadOptions, Mesh, Nothing, SameFolder, mesh_box};
 
 /// Levels at which the voxels of many more levels are estimated.
 const COUNTED_DEPTH: u32 = 8;
@@ -84,23 +84,6 @@ pub fn open_bytes(
     scene::open_bytes(bytes, name, &options.voxels, &options.mesh, progress)
 }
 
-fn failure(
-    is_limit: bool,
-    is_io: bool,
-    error: impl std::error::Error + Send + Sync + 'static,
-) -> OpenError {
-    OpenError::Mesh(MeshFailure {
-        is_limit,
-        is_io,
-        error: Box::new(error),
-    })
-}
-
-fn unreadable(error: MeshError) -> OpenError {
-    let is_io = matches!(error, MeshError::Io { .. });
-    failure(error.is_limit(), is_io, error)
-}
-
 /// Why a mesh cannot be voxelised.
 #[derive(Debug, thiserror::Error)]
 #[error("{source_name}: {error}")]
@@ -141,19 +124,20 @@ fn read(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh, OpenError> {
-    let format = match file.kind {
-        FileKind::Stl => MeshFormat::Stl,
-        FileKind::Gltf => MeshFormat::Gltf,
-        FileKind::Glb => MeshFormat::Glb,
-        FileKind::Obj => MeshFormat::Obj,
-        _ => MeshFormat::Ply,
-    };
     let folder = file.folder.as_deref().map(SameFolder::new);
     let beside: &dyn Beside = match &folder {
         Some(folder) => folder,
         None => &Nothing,
     };
-    crate::read(&file.bytes, format, &file.name, beside, options, progress).map_err(unreadable)
+    crate::read(
+        &file.bytes,
+        file.kind,
+        &file.name,
+        beside,
+        options,
+        progress,
+    )
+    .map_err(OpenError::from)
 }
 
 /// A mesh that is ready to be voxelised.
@@ -178,7 +162,10 @@ impl Ready {
         let refused = |error: GridError| {
             let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });
             let source_name = file.name.clone();
-            failure(is_limit, false, NotVoxelized { source_name, error })
+            OpenError::Mesh(MeshFailure {
+                is_limit,
+                error: Box::new(NotVoxelized { source_name, error }),
+            })
         };
         let grid = Grid::around(&mesh, options.depth).map_err(refused)?;
         let (depth, least) = (options.depth, voxelize::least_looked_at(&mesh, &grid));

@@ -31,12 +31,11 @@ pub struct SceneOptions {
 
 impl SceneOptions {
     /// The defaults, which are those of [`Scene::open`].
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Levels at which meshes are voxelised: at most `2^depth` voxels along the longest side, 1 to 20; 9 by default.
+    /// The depth of a voxelised mesh, 1 to 20, by default 9. Its longest side has at most `2^depth` voxels.
     #[must_use]
     pub fn mesh_depth(mut self, depth: u32) -> Self {
         self.options.mesh.depth = depth;
@@ -51,7 +50,7 @@ impl SceneOptions {
         self
     }
 
-    /// Which axis is up, whatever the file's format has by custom.
+    /// The axis that points up. It replaces the default of the file's format.
     #[must_use]
     pub fn up(mut self, up: Up) -> Self {
         self.up = Some(up);

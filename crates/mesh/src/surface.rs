@@ -1,7 +1,8 @@
-//! What is drawn and voxelised: one mesh, or one many times.
+//! Surfaces to draw and to voxelise: one mesh, or several placed copies of it.
 
 use glam::{DAffine3, DVec3};
 
+use super::geometry::{bounds, plane_normal, point};
 use super::material::srgb_to_linear;
 use super::{Material, Mesh};
 use shiftvox::graph::MeshBox;
@@ -57,8 +58,7 @@ pub trait Surface: Sync {
     }
 }
 
-/// What fitted cameras look at, whatever is made of a surface.
-#[must_use]
+/// The box for fitted cameras. It is the same for all files made of a surface.
 pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
     let (low, high) = surface.bounds();
     let span = (low.to_array(), high.to_array());
@@ -72,26 +72,25 @@ impl Surface for Mesh {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        self.triangles[number].map(|i| DVec3::from_array(self.positions[i as usize]))
+        self.triangles[number].map(|i| point(self.positions[i as usize]))
     }
 
     fn triangle(&self, number: usize) -> Triangle {
         let corners = Surface::corners(self, number);
         let normals = match self.corner_normals.get(number) {
-            Some(normals) => normals.map(|n| DVec3::from_array(n.map(f64::from))),
+            Some(normals) => normals.map(point),
             None => [plane_normal(corners); 3],
         };
         let material: Option<&Material> = self.materials.get(self.material_of[number] as usize);
         let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
         let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
-        let linear = |color: [f32; 3]| DVec3::from_array(color.map(f64::from));
-        let diffuse = linear(diffuse) * linear(tint);
+        let diffuse = point(diffuse) * point(tint);
         let colors = if self.vertex_colors.is_empty() {
             [diffuse; 3]
         } else {
             self.triangles[number].map(|i| {
                 let color = self.vertex_colors[i as usize];
-                diffuse * DVec3::from_array(color.map(|byte| f64::from(srgb_to_linear(byte))))
+                diffuse * point(color.map(srgb_to_linear))
             })
         };
         Triangle {
@@ -123,7 +122,6 @@ pub struct Instances {
 impl Instances {
     /// A mesh at places. A place must have an inverse; those that have none,
     /// or are not finite, are left out.
-    #[must_use]
     pub fn new(mesh: Mesh, places: Vec<DAffine3>) -> Self {
         let places: Vec<DAffine3> = places
             .into_iter()
@@ -133,23 +131,14 @@ impl Instances {
         for &corner in mesh.triangles.iter().flatten() {
             is_used[corner as usize] = true;
         }
-        let used = mesh
-            .positions
+        let used = mesh.positions.iter().zip(&is_used);
+        let used = used.filter(|(_, used)| **used).map(|(p, _)| point(*p));
+        let used: Vec<DVec3> = used.collect();
+        // Of the points and not of their box, whose corners may end up farther out.
+        let points = places
             .iter()
-            .zip(&is_used)
-            .filter(|(_, used)| **used);
-        let used: Vec<DVec3> = used
-            .map(|(position, _)| DVec3::from_array(*position))
-            .collect();
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for place in &places {
-            // Of the points and not of their box, whose corners may end up farther out.
-            for &position in &used {
-                let point = place.transform_point3(position);
-                low = low.min(point);
-                high = high.max(point);
-            }
-        }
+            .flat_map(|place| used.iter().map(|&p| place.transform_point3(p)));
+        let (low, high) = bounds(points);
         Self {
             mesh,
             places,
@@ -159,13 +148,11 @@ impl Instances {
     }
 
     /// The mesh.
-    #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
     /// Where it stands.
-    #[must_use]
     pub fn places(&self) -> &[DAffine3] {
         &self.places
     }
@@ -199,44 +186,5 @@ impl Surface for Instances {
 
     fn tinted_material(&self, number: usize) -> Option<u32> {
         Surface::tinted_material(&self.mesh, number % self.mesh.triangles.len())
-    }
-}
-
-/// The unit normal of a triangle's plane, on the side from which its corners
-/// are counter-clockwise; +Z where they are on a line.
-pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a).normalize_or(DVec3::Z)
-}
-
-/// The shares of the corners in a point of the triangle, each 0 to 1; thirds where it has no area.
-#[must_use]
-pub fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
-    let normal = (*b - *a).cross(*c - *a);
-    let square = normal.length_squared();
-    if square == 0.0 {
-        return [1.0 / 3.0; 3];
-    }
-    let of_b = (point - *a).cross(*c - *a).dot(normal) / square;
-    let of_c = (*b - *a).cross(point - *a).dot(normal) / square;
-    let (of_b, of_c) = (of_b.clamp(0.0, 1.0), of_c.clamp(0.0, 1.0));
-    let excess = (of_b + of_c).max(1.0);
-    let (of_b, of_c) = (of_b / excess, of_c / excess);
-    [1.0 - of_b - of_c, of_b, of_c]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_of_corners() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        assert_eq!(barycentric(&triangle, DVec3::X), [0.0, 1.0, 0.0]);
-        assert_eq!(
-            barycentric(&triangle, DVec3::new(0.25, 0.25, 5.0)),
-            [0.5, 0.25, 0.25]
-        );
-        assert_eq!(barycentric(&triangle, DVec3::splat(9.0))[0], 0.0);
-        assert_eq!(barycentric(&[DVec3::ZERO; 3], DVec3::X), [1.0 / 3.0; 3]);
     }
 }

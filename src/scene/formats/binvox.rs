@@ -7,7 +7,7 @@ use std::io::{BufRead, ErrorKind, Read};
 use crate::scene::emit::{Emitter, MAX_EXTENT};
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
-use crate::scene::{ReadOptions, SceneInfo};
+use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 /// Longest line of the header, bytes.
 const MAX_LINE: u64 = 256;
@@ -17,7 +17,7 @@ const AGAIN: &str = "the file is damaged or its exporter is at fault; export or 
 /// Passes on the filled cells of a grid.
 pub(super) fn read(
     input: &mut Input<'_>,
-    options: &ReadOptions,
+    _: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
     let mut offset = 0;
@@ -48,9 +48,7 @@ pub(super) fn read(
             for cell in cell..end {
                 // Below 2^21 each.
                 let index = [cell / y / z, cell % y, cell / y % z].map(|i| i as i64);
-                emitter.voxel(index, options.default_color, None, || {
-                    ("runs".to_owned(), offset)
-                })?;
+                emitter.voxel(index, DEFAULT_COLOR, None, || ("runs".to_owned(), offset))?;
             }
         }
         cell = end;

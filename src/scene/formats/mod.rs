@@ -6,6 +6,7 @@
 mod binvox;
 mod npy;
 mod ply;
+mod ply_write;
 mod vox;
 
 use std::fmt;
@@ -16,8 +17,7 @@ use super::input::Input;
 use super::{ReadOptions, SceneInfo};
 use crate::graph::vxg;
 
-pub(super) use ply::has_faces;
-pub use ply::write_ply;
+pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};
 
 /// Bytes of a file that [`detect`] examines; all of a shorter file.
@@ -116,7 +116,6 @@ pub static FORMATS: [Format; 12] = {
 
 impl Format {
     /// The beginnings of its files, if they hold voxels: for tests of all readers of voxels.
-    #[must_use]
     pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
         match self.contents {
             Contents::Voxels(_) => self.marks,
@@ -146,7 +145,6 @@ impl FileKind {
     }
 
     /// Whether files of this kind hold triangles.
-    #[must_use]
     pub fn is_mesh(self) -> bool {
         matches!(self.contents(), Contents::Mesh)
     }
@@ -185,7 +183,6 @@ pub(super) fn all_endings() -> String {
 /// Recognises a format by a file's first 4096 bytes (all of a shorter file) and its length in bytes.
 ///
 /// `None` if it is no known format.
-#[must_use]
 pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
     let begins = |mark: &&[u8]| beginning.starts_with(mark);
     let marked = FORMATS.iter().find(|f| f.marks.iter().any(begins));
@@ -205,7 +202,6 @@ fn is_stl(beginning: &[u8], length: u64) -> bool {
 
 /// Whether a file with this beginning and length, bytes, is a binary STL mesh: 84 bytes of header, of which the last
 /// four count the triangles, and 50 bytes per triangle.
-#[must_use]
 pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
     let count = beginning
         .get(80..84)

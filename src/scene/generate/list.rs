@@ -1,14 +1,13 @@
 //! The table of generators and their keys.
 
-use super::settings::{Key, Settings};
-use super::{checker, maze, menger, random, shell, sierpinski, sphere, terrain, truss, wires};
+use super::{maze, shapes, sierpinski, terrain};
 use crate::graph::{Graph, Progress, Voxel};
 
 /// The range and default of a generator's key.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyRange {
-    /// The key.
-    pub key: Key,
+    /// The key: `depth`, `density` or `seed`.
+    pub key: &'static str,
     /// Its default value.
     pub default: u32,
     /// Least value.
@@ -17,12 +16,34 @@ pub struct KeyRange {
     pub most: u32,
 }
 
+/// The numbers of a spec; a key that the generator does not take is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Settings {
+    /// Levels of the scene: it fits a cube of `2^depth` voxels per side. For `menger`, its iterations.
+    pub depth: u32,
+    /// Seed of a random scene.
+    pub seed: u32,
+    /// Filled voxels, percent.
+    pub density: u32,
+}
+
+impl Settings {
+    /// The number of a key of [`KeyRange`].
+    pub(super) fn of(&mut self, key: &str) -> &mut u32 {
+        match key {
+            "depth" => &mut self.depth,
+            "density" => &mut self.density,
+            _ => &mut self.seed,
+        }
+    }
+}
+
 /// One kind of scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Generator {
     /// Its name in a spec.
     pub name: &'static str,
-    /// The keys it takes.
+    /// The keys it takes, in the order in which a spec is written.
     pub keys: &'static [KeyRange],
     pub(super) shape: Shape,
 }
@@ -36,87 +57,45 @@ pub(super) enum Shape {
     Linked(fn(&Settings) -> Graph),
 }
 
-impl Generator {
-    /// The range of `key`, if it has that key.
-    #[must_use]
-    pub fn range(&self, key: Key) -> Option<&'static KeyRange> {
-        self.keys.iter().find(|range| range.key == key)
-    }
-}
-
-const fn depth(default: u32, least: u32, most: u32) -> KeyRange {
+const fn key(key: &'static str, default: u32, least: u32, most: u32) -> KeyRange {
     KeyRange {
-        key: Key::Depth,
+        key,
         default,
         least,
         most,
     }
 }
 
-const SEED: KeyRange = KeyRange {
-    key: Key::Seed,
-    default: 1,
-    least: 0,
-    most: u32::MAX,
-};
+const fn depth(default: u32, least: u32, most: u32) -> KeyRange {
+    key("depth", default, least, most)
+}
 
-const DENSITY: KeyRange = KeyRange {
-    key: Key::Density,
-    default: 10,
-    least: 0,
-    most: 100,
-};
+const SEED: KeyRange = key("seed", 1, 0, u32::MAX);
+const DENSITY: KeyRange = key("density", 10, 0, 100);
+
+const fn voxels(
+    name: &'static str,
+    keys: &'static [KeyRange],
+    make: fn(&Settings, &mut dyn FnMut(Voxel), &dyn Progress),
+) -> Generator {
+    let shape = Shape::Voxels(make);
+    Generator { name, keys, shape }
+}
 
 /// All generators, by name; `spec/generators.md` describes them.
 pub const GENERATORS: &[Generator] = &[
-    Generator {
-        name: "checker",
-        keys: &[depth(6, 1, 10)],
-        shape: Shape::Voxels(checker::voxels),
-    },
-    Generator {
-        name: "maze",
-        keys: &[depth(7, 2, 12), SEED],
-        shape: Shape::Voxels(maze::voxels),
-    },
-    Generator {
-        name: "menger",
-        keys: &[depth(5, 1, 8)],
-        shape: Shape::Voxels(menger::voxels),
-    },
-    Generator {
-        name: "random",
-        keys: &[depth(6, 1, 10), DENSITY, SEED],
-        shape: Shape::Voxels(random::voxels),
-    },
-    Generator {
-        name: "shell",
-        keys: &[depth(8, 1, 12)],
-        shape: Shape::Voxels(shell::voxels),
-    },
+    voxels("checker", &[depth(6, 1, 10)], shapes::checker),
+    voxels("maze", &[depth(7, 2, 12), SEED], maze::voxels),
+    voxels("menger", &[depth(5, 1, 8)], shapes::menger),
+    voxels("random", &[depth(6, 1, 10), DENSITY, SEED], shapes::random),
+    voxels("shell", &[depth(8, 1, 12)], shapes::shell),
     Generator {
         name: "sierpinski",
         keys: &[depth(30, 1, 30)],
         shape: Shape::Linked(sierpinski::graph),
     },
-    Generator {
-        name: "sphere",
-        keys: &[depth(7, 1, 10)],
-        shape: Shape::Voxels(sphere::voxels),
-    },
-    Generator {
-        name: "terrain",
-        keys: &[depth(10, 5, 16), SEED],
-        shape: Shape::Voxels(terrain::voxels),
-    },
-    Generator {
-        name: "truss",
-        keys: &[depth(8, 4, 12)],
-        shape: Shape::Voxels(truss::voxels),
-    },
-    Generator {
-        name: "wires",
-        keys: &[depth(8, 4, 12)],
-        shape: Shape::Voxels(wires::voxels),
-    },
+    voxels("sphere", &[depth(7, 1, 10)], shapes::sphere),
+    voxels("terrain", &[depth(10, 5, 16), SEED], terrain::voxels),
+    voxels("truss", &[depth(8, 4, 12)], shapes::truss),
+    voxels("wires", &[depth(8, 4, 12)], shapes::wires),
 ];

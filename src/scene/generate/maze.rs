@@ -1,8 +1,7 @@
 //! A perfect maze.
 
-use super::color::{gradient, palette};
-use super::hash::hash;
-use super::settings::Settings;
+use super::list::Settings;
+use super::{gradient, hash, palette};
 use crate::graph::{Progress, Voxel};
 
 /// A floor with walls of `max(2, side / 16)` voxels on it. The plan is a grid

@@ -6,8 +6,8 @@
 //! `row` is its z and our y, `height` its y and our z. For seed 1 all voxels
 //! and colours are the benchmark's.
 
-use super::hash::{hash, variation};
-use super::settings::Settings;
+use super::hash;
+use super::list::Settings;
 use crate::graph::{Progress, Voxel};
 
 const OCTAVES: u32 = 7;
@@ -25,7 +25,7 @@ struct Ball {
 struct Terrain {
     depth: u32,
     side: i32,
-    /// Derived from the scene's seed and combined with the seeds of the hashes.
+    /// Bits to change the seeds of the hashes with: none for seed 1, different ones for every other.
     variation: u32,
     balls: Vec<Ball>,
 }
@@ -125,7 +125,7 @@ fn outside(column: &[Span], inside: &[Span], mut each: impl FnMut(i32)) {
 impl Terrain {
     fn new(settings: &Settings) -> Self {
         let side = 1u32 << settings.depth;
-        let variation = variation(settings.seed);
+        let variation = settings.seed.wrapping_sub(1).wrapping_mul(0x9E37_79B9);
         let balls = (0..BALLS)
             .map(|i| {
                 let place = hash(i, 77, 5 ^ variation);

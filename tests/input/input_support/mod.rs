@@ -1,4 +1,4 @@
-//! What the input tests share: reading into a list, finding data, and a writer of small `.vox` files.
+//! Helpers of the input tests: reading into a list, finding data, and a writer of small `.vox` files.
 
 #![allow(
     dead_code,
@@ -29,7 +29,7 @@ pub fn read_plain(bytes: &[u8]) -> Vec<Plain> {
     voxels.into_iter().map(|v| (v.index, v.color)).collect()
 }
 
-/// What an error says.
+/// The text of an error.
 pub fn message(bytes: &[u8]) -> String {
     read(bytes, &ReadOptions::default())
         .unwrap_err()
@@ -44,23 +44,10 @@ pub fn shipped(name: &str) -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
-/// Where a file of the shared data is, or a note on stderr that the test is skipped.
-pub fn shared_path(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("SHIFTVOX_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
-    let path = folder.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {name} is not among the shared data");
-    None
-}
-
-/// A file of the shared data.
-pub fn shared(name: &str) -> Option<Vec<u8>> {
-    Some(std::fs::read(shared_path(name)?).unwrap())
+/// A file of the folder `SHIFTVOX_DATA`, for tests that are ignored without it.
+pub fn shared(name: &str) -> Vec<u8> {
+    let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder");
+    std::fs::read(PathBuf::from(folder).join(name)).unwrap()
 }
 
 /// Attributes of a node.

@@ -2,35 +2,32 @@
 
 use serde_json::{Value, json};
 
-use super::mesh_view::{light_of, picture_of_far, view_of};
-use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
+use super::mesh_view::{light_of, picture_of_far};
+use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 use crate::raster::RasterCamera;
-use shiftvox::drawing::{
-    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
-};
+use shiftvox::drawing::Figures;
+use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
-use shiftvox::project::{Bounds, Camera, Up};
 
-/// What far voxels are drawn with.
+/// Settings for drawing far voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarStyle {
     /// Largest voxel, pixels; above 0.
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// What opacities are used for.
+    /// The opacities that are used.
     pub opacity: Opacity,
     /// Light.
     pub shading: Shading,
-    /// What is behind.
+    /// The background.
     pub background: Background,
 }
 
 impl FarStyle {
-    /// As a viewer wants it.
-    #[must_use]
+    /// The options of a viewer.
     pub fn options(&self, view: &RasterCamera) -> ViewOptions {
         ViewOptions {
             voxel_px: self.voxel_px,
@@ -43,87 +40,56 @@ impl FarStyle {
     }
 }
 
-/// A file of far voxels that is drawn, once or from many cameras.
-pub struct FarDrawing<'f> {
+/// A file of far voxels, and the nodes that were visible in the last frame.
+#[derive(Clone)]
+pub struct FarMethod<'f> {
     file: &'f FarFile,
     viewer: FarViewer<'f>,
     style: FarStyle,
-    kept: Option<KeptPicture>,
 }
+
+/// A file of far voxels that is drawn, once or from many cameras.
+pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
 
 impl<'f> FarDrawing<'f> {
     /// Nothing is drawn yet.
-    #[must_use]
     pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
-        Self {
+        Self::of(FarMethod {
             file,
             viewer: FarViewer::new(file),
             style,
-            kept: None,
-        }
+        })
     }
 }
 
-impl Drawable for FarDrawing<'_> {
-    fn bounds(&self) -> Bounds {
-        Bounds::of_mesh(&self.file.mesh_box())
+impl Method for FarMethod<'_> {
+    fn mesh_box(&self) -> MeshBox {
+        self.file.mesh_box()
     }
 
-    fn up(&self) -> Up {
-        Up::y_or_z(self.file.y_up())
+    fn aa_log2(&self) -> u32 {
+        self.style.aa_log2
     }
 
-    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
-        self.kept = None;
-        check_samples(
-            camera,
-            self.style.aa_log2,
-            MESH_SAMPLE_BYTES,
-            COLOR_BYTES,
-            0,
-        )?;
-        let view = view_of(camera, self.file.bounds())?;
-        let options = self.style.options(&view);
-        let ((picture, coverage, counts), times_ms) = timed(runs, || {
-            let (mut drawn, counts) = self
-                .viewer
-                .draw(&view, &options)
-                .map_err(MethodError::from)?;
-            let coverage = std::mem::take(&mut drawn.coverage);
-            Ok((picture_of_far(drawn), coverage, counts))
-        })?;
-        self.kept = Some(KeptPicture {
-            picture,
-            coverage,
+    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
+        let options = self.style.options(view);
+        let (mut drawn, counts) = self.viewer.draw(view, &options)?;
+        Ok(Drawn {
+            coverage: std::mem::take(&mut drawn.coverage),
+            picture: picture_of_far(drawn),
             counters: counters(&counts),
-            times_ms,
-        });
-        Ok(())
+        })
     }
 
-    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
-        let details = || {
-            vec![
-                ("engine", json!("far")),
-                ("memory", json!(resident(self.file))),
-            ]
-        };
-        Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
-    }
-
-    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
-        let view = view_of(camera, self.file.bounds())?;
-        let options = self.style.options(&view);
-        let mut viewer = FarViewer::new(self.file);
-        Ok(Box::new(move || {
-            std::hint::black_box(viewer.draw(&view, &options).map_err(MethodError::from)?);
-            Ok(())
-        }))
+    fn details(&self) -> Figures {
+        vec![
+            ("engine", json!("far")),
+            ("memory", json!(resident(self.file))),
+        ]
     }
 }
 
-/// What a budget of memory came to; `None` without one.
-#[must_use]
+/// The use of a memory budget; `None` without one.
 pub fn resident(file: &FarFile) -> Option<Value> {
     let resident = file.resident()?;
     Some(json!({

@@ -11,7 +11,7 @@ use shiftvox::project::{Camera, CameraError};
 /// Share of the distance to the farthest corner below which nothing is drawn.
 const NEAR: f64 = 1e-6;
 
-/// A camera's view of what is in a box.
+/// A camera's view of the contents of a box.
 ///
 /// # Errors
 /// When the camera has no direction or a number that is not finite.
@@ -34,7 +34,6 @@ pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<RasterCam
 }
 
 /// The key light of all engines, which moves with the camera; none for flat shading.
-#[must_use]
 pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
     let key = KEY_LIGHT.normalize();
     let light = Light {
@@ -49,7 +48,6 @@ pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
 
 /// A rasterised picture as those of other engines, without normals and voxels;
 /// its node is 0 where a triangle is seen, else -1.
-#[must_use]
 pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
     let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
     picture(
@@ -61,7 +59,6 @@ pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
 }
 
 /// A picture of far voxels as those of other engines, without normals and voxels.
-#[must_use]
 pub fn picture_of_far(drawn: FarPicture) -> Picture {
     let size = (drawn.width, drawn.height);
     picture(size, drawn.rgba, drawn.depth, drawn.node)
@@ -105,7 +102,7 @@ mod tests {
         let farthest = DVec3::new(1.0, 11.0, 1.0).length();
         assert!((view.near - 1e-6 * farthest).abs() < 1e-12);
         let light = light_of(&view, Shading::Lambert).unwrap();
-        // It looks along y: right is x, up is z, and what is behind is at -y.
+        // It looks along +y, with x to the right and z up.
         let [right, up, behind] = KEY_LIGHT.normalize().to_array();
         let expected = DVec3::new(right, -behind, up);
         assert!((light.towards - expected).length() < 1e-12);

@@ -1,4 +1,4 @@
-//! Methods of meshes as [`Drawable`](shiftvox::drawing::Drawable): far voxels, textured voxels, triangles.
+//! Methods of meshes as [`Drawable`]: far voxels, textured voxels, triangles.
 
 mod far;
 pub mod mesh_view;
@@ -7,14 +7,19 @@ mod triangles;
 
 use std::borrow::Cow;
 
-use shiftvox::drawing::{Buffers, DrawError, Figures, Shown};
+use shiftvox::drawing::{
+    Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
+};
+use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Picture, Pixels};
+use shiftvox::project::{Bounds, Camera, Up};
 
-use crate::raster::{RasterError, SamplesError};
+use crate::raster::{RasterCamera, RasterError, SamplesError};
+use mesh_view::view_of;
 
-pub use far::{FarDrawing, FarStyle, resident};
-pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
-pub use triangles::{TrianglesDrawing, TrianglesStyle};
+pub use far::{FarDrawing, FarMethod, FarStyle, resident};
+pub use textured::{Erosion, TexturedDrawing, TexturedMethod, TexturedStyle};
+pub use triangles::{TrianglesDrawing, TrianglesMethod, TrianglesStyle};
 
 /// Why a method of meshes did not draw a frame: the contents of [`DrawError::Method`].
 #[derive(Debug, thiserror::Error)]
@@ -50,30 +55,89 @@ impl From<MethodError> for DrawError {
 /// Least memory of a sample, bytes: colour, depth, and the triangle or node that is seen.
 const MESH_SAMPLE_BYTES: u64 = 8;
 
-/// A picture that a method of meshes drew.
-#[derive(Debug)]
-struct KeptPicture {
+/// A picture that a method drew, with the covered share of each pixel.
+pub struct Drawn {
     picture: Picture,
     coverage: Vec<f32>,
     counters: Figures,
-    times_ms: Vec<f64>,
 }
 
-impl KeptPicture {
-    fn shown(&self, details: Figures) -> Shown<'_> {
-        let picture = &self.picture;
-        Shown {
-            pixels: Cow::Owned(Pixels::new(
-                picture.width,
-                picture.height,
-                picture.rgba.clone(),
-            )),
-            buffers: Buffers::Whole(picture),
-            pixels_drawn: picture.drawn(),
-            coverage: &self.coverage,
-            times_ms: &self.times_ms,
-            counters: self.counters.clone(),
-            details,
-        }
+/// A method of drawing a mesh.
+pub trait Method: Clone + Send {
+    /// The bounds for a fitted camera.
+    fn mesh_box(&self) -> MeshBox;
+
+    /// Samples per pixel and axis, as a power of two, that take memory at the same time.
+    fn aa_log2(&self) -> u32;
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// See [`MethodError`].
+    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError>;
+
+    /// The method's name and other figures of it.
+    fn details(&self) -> Figures;
+}
+
+/// A drawing by a method, from one or several cameras.
+pub struct MethodDrawing<M> {
+    method: M,
+    kept: Option<(Drawn, Vec<f64>)>,
+}
+
+impl<M: Method> MethodDrawing<M> {
+    fn of(method: M) -> Self {
+        Self { method, kept: None }
+    }
+
+    fn view(&self, camera: &Camera) -> Result<RasterCamera, DrawError> {
+        let MeshBox { low, high, .. } = self.method.mesh_box();
+        Ok(view_of(camera, (low.into(), high.into()))?)
+    }
+}
+
+impl<M: Method> Drawable for MethodDrawing<M> {
+    fn bounds(&self) -> Bounds {
+        Bounds::of_mesh(&self.method.mesh_box())
+    }
+
+    fn up(&self) -> Up {
+        Up::y_or_z(self.method.mesh_box().y_up)
+    }
+
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
+        self.kept = None;
+        let aa_log2 = self.method.aa_log2();
+        check_samples(camera, aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES, 0)?;
+        let view = self.view(camera)?;
+        self.kept = Some(timed(runs, || Ok(self.method.draw(&view)?))?);
+        Ok(())
+    }
+
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
+        let Some((drawn, times_ms)) = &self.kept else {
+            return Ok(None);
+        };
+        let Picture { width, height, .. } = drawn.picture;
+        let pixels = Pixels::new(width, height, drawn.picture.rgba.clone());
+        Ok(Some(Shown {
+            pixels: Cow::Owned(pixels),
+            buffers: Buffers::Whole(&drawn.picture),
+            pixels_drawn: drawn.picture.drawn(),
+            coverage: &drawn.coverage,
+            times_ms,
+            counters: drawn.counters.clone(),
+            details: self.method.details(),
+        }))
+    }
+
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
+        let view = self.view(camera)?;
+        let mut method = self.method.clone();
+        Ok(Box::new(move || {
+            std::hint::black_box(method.draw(&view)?);
+            Ok(())
+        }))
     }
 }

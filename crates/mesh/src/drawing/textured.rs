@@ -2,16 +2,14 @@
 
 use serde_json::json;
 
-use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
-use crate::raster::{Pattern, RasterCamera, RasterPicture, Samples};
+use super::mesh_view::{light_of, picture_of_triangles};
+use super::{Drawn, Method, MethodDrawing, MethodError};
+use crate::raster::{Pattern, RasterCamera, Samples};
 use crate::textured::TexturedFile;
 use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
-use shiftvox::drawing::{
-    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
-};
+use shiftvox::drawing::Figures;
+use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
-use shiftvox::project::{Bounds, Camera, Up};
 
 /// How often voxels are eroded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +28,7 @@ pub enum Erosion {
     },
 }
 
-/// What textured voxels are drawn with.
+/// Settings for drawing textured voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedStyle {
     /// Level of detail.
@@ -39,28 +37,28 @@ pub struct TexturedStyle {
     pub aa_log2: u32,
     /// Light.
     pub shading: Shading,
-    /// What is behind.
+    /// The background.
     pub background: Background,
 }
 
-/// A file of textured voxels that is drawn, once or from many cameras.
-pub struct TexturedDrawing<'f> {
+/// A file of textured voxels and how it is drawn.
+#[derive(Clone)]
+pub struct TexturedMethod<'f> {
     file: &'f TexturedFile,
     style: TexturedStyle,
-    kept: Option<KeptPicture>,
 }
+
+/// A file of textured voxels that is drawn, once or from many cameras.
+pub type TexturedDrawing<'f> = MethodDrawing<TexturedMethod<'f>>;
 
 impl<'f> TexturedDrawing<'f> {
     /// Nothing is drawn yet.
-    #[must_use]
     pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
-        Self {
-            file,
-            style,
-            kept: None,
-        }
+        Self::of(TexturedMethod { file, style })
     }
+}
 
+impl TexturedMethod<'_> {
     fn detail(&self, view: &RasterCamera) -> Result<Detail, MethodError> {
         let (level, cells) = match self.style.erosion {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
@@ -78,60 +76,35 @@ impl<'f> TexturedDrawing<'f> {
         };
         Ok(Detail::Level { grid, level })
     }
+}
 
-    /// Draws a frame. Which grid fits the view is part of the work.
-    fn drawn(&self, view: &RasterCamera) -> Result<(RasterPicture, TexturedCounts), MethodError> {
+impl Method for TexturedMethod<'_> {
+    fn mesh_box(&self) -> MeshBox {
+        self.file.mesh_box()
+    }
+
+    fn aa_log2(&self) -> u32 {
+        self.style.aa_log2
+    }
+
+    /// Choosing the grid that fits the view is part of the work.
+    fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = ViewOptions {
             detail: self.detail(view)?,
             samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
             light: light_of(view, self.style.shading),
             background: self.style.background.color(),
         };
-        Ok(draw(self.file, view, &options)?)
-    }
-}
-
-impl Drawable for TexturedDrawing<'_> {
-    fn bounds(&self) -> Bounds {
-        Bounds::of_mesh(&self.file.mesh_box())
-    }
-
-    fn up(&self) -> Up {
-        Up::y_or_z(self.file.y_up())
-    }
-
-    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
-        self.kept = None;
-        check_samples(
-            camera,
-            self.style.aa_log2,
-            MESH_SAMPLE_BYTES,
-            COLOR_BYTES,
-            0,
-        )?;
-        let view = view_of(camera, self.file.bounds())?;
-        let ((mut drawn, counts), times_ms) = timed(runs, || Ok(self.drawn(&view)?))?;
-        let coverage = std::mem::take(&mut drawn.coverage);
-        self.kept = Some(KeptPicture {
+        let (mut drawn, counts) = draw(self.file, view, &options)?;
+        Ok(Drawn {
+            coverage: std::mem::take(&mut drawn.coverage),
             picture: picture_of_triangles(drawn),
-            coverage,
             counters: counters(self.file, &counts),
-            times_ms,
-        });
-        Ok(())
+        })
     }
 
-    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
-        let details = || vec![("engine", json!("textured"))];
-        Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
-    }
-
-    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
-        let view = view_of(camera, self.file.bounds())?;
-        Ok(Box::new(move || {
-            std::hint::black_box(self.drawn(&view)?);
-            Ok(())
-        }))
+    fn details(&self) -> Figures {
+        vec![("engine", json!("textured"))]
     }
 }
 

@@ -1,49 +1,44 @@
 //! The six main directions, and how values for them are blended.
 //!
-//! A direction always points from the surface to the eye: `+x` is what an eye
-//! far out on the x axis sees. Main directions are numbered `+x -x +y -y +z -z`.
+//! A direction points from the surface to the eye, so `+x` is the view of an eye far out on the x axis. Main directions
+//! are numbered `+x -x +y -y +z -z`. The three nearest ones share a direction.
 
 use glam::DVec3;
 
 /// Number of main directions.
 pub const DIRECTIONS: usize = 6;
 
-/// How the three nearest main directions share a direction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Blend {
-    /// By squared direction cosines, which sum to 1.
-    Squares,
-    /// By direction cosines over their sum. The share of a cube's outline that
-    /// an axis-aligned box in it fills is blended exactly by these.
-    Cosines,
+/// Numbers of main directions and their shares, which sum to 1.
+pub type Shares = [(usize, f64); 3];
+
+/// The shares of a unit vector by squared direction cosines: for normals and materials.
+pub fn by_squares(towards_eye: DVec3) -> Shares {
+    shares(towards_eye, towards_eye * towards_eye)
 }
 
-impl Blend {
-    /// Numbers and shares of the main directions of a unit vector. The shares sum to 1.
-    #[must_use]
-    pub fn shares(self, towards_eye: DVec3) -> [(usize, f64); 3] {
-        let cosines = towards_eye.to_array();
-        let raw = cosines.map(|c| match self {
-            Self::Squares => c * c,
-            Self::Cosines => c.abs(),
-        });
-        let sum = raw[0] + raw[1] + raw[2];
-        [0, 1, 2].map(|axis| {
-            let number = 2 * axis + usize::from(cosines[axis] < 0.0);
-            let share = if sum > 0.0 {
-                raw[axis] / sum
-            } else {
-                1.0 / 3.0
-            };
-            (number, share)
-        })
-    }
+/// The shares of a unit vector by direction cosines over their sum: for opacities. The share of a cube's outline that an
+/// axis-aligned box in it fills is blended exactly by these.
+pub fn by_cosines(towards_eye: DVec3) -> Shares {
+    shares(towards_eye, towards_eye.abs())
+}
+
+fn shares(towards_eye: DVec3, raw: DVec3) -> Shares {
+    let sum = raw.x + raw.y + raw.z;
+    [0, 1, 2].map(|axis| {
+        let number = 2 * axis + usize::from(towards_eye[axis] < 0.0);
+        let share = if sum > 0.0 {
+            raw[axis] / sum
+        } else {
+            1.0 / 3.0
+        };
+        (number, share)
+    })
 }
 
 /// Least squares for one to several values of the main directions.
 ///
-/// Observations `v` of direction `d` are fitted by the blend of six unknowns;
-/// directions without rays take the value that they are drawn to.
+/// Observations `v` of direction `d` are fitted by the blend of six unknowns. Directions without rays take the value that
+/// they are drawn to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit<const N: usize> {
     matrix: [[f32; DIRECTIONS]; DIRECTIONS],
@@ -52,7 +47,7 @@ pub(super) struct Fit<const N: usize> {
 
 /// Most turns of the relaxation.
 const TURNS: usize = 30;
-/// It ends where no value moves by more than this: finer than what is stored.
+/// It ends when no value changes by more than this, which is finer than the stored precision.
 const STEADY: f64 = 1e-4;
 
 impl<const N: usize> Fit<N> {
@@ -64,7 +59,7 @@ impl<const N: usize> Fit<N> {
     }
 
     /// Adds an observation of a weight.
-    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], value: &[f64; N], weight: f64) {
+    pub(super) fn add(&mut self, shares: &Shares, value: &[f64; N], weight: f64) {
         for &(i, share_i) in shares {
             for &(j, share_j) in shares {
                 self.matrix[i][j] += (weight * share_i * share_j) as f32;
@@ -77,18 +72,17 @@ impl<const N: usize> Fit<N> {
 
     /// Adds all observations of another.
     pub(super) fn merge(&mut self, other: &Self) {
-        let rows = self.matrix.iter_mut().zip(&other.matrix);
-        for (sum, &value) in rows.flat_map(|(row, more)| row.iter_mut().zip(more)) {
-            *sum += value;
-        }
-        let rows = self.right.iter_mut().zip(&other.right);
-        for (sum, &value) in rows.flat_map(|(row, more)| row.iter_mut().zip(more)) {
-            *sum += value;
-        }
+        let matrix = self.matrix.as_flattened_mut().iter_mut();
+        let right = self.right.as_flattened_mut().iter_mut();
+        let others = other.matrix.as_flattened().iter();
+        let others = others.chain(other.right.as_flattened());
+        matrix
+            .chain(right)
+            .zip(others)
+            .for_each(|(sum, v)| *sum += v);
     }
 
-    /// The sum over all observations of their weight times the square of a
-    /// blend of six values.
+    /// The sum over all observations of their weight times the square of a blend of six values.
     pub(super) fn square_of(&self, values: &[f64; DIRECTIONS]) -> f64 {
         let rows = self.matrix.iter().zip(values);
         let row = |(row, value): (&[f32; DIRECTIONS], &f64)| {
@@ -98,8 +92,7 @@ impl<const N: usize> Fit<N> {
         rows.map(row).sum()
     }
 
-    /// The six values, each kept in `low..=high` and drawn to `prior` with the
-    /// weight of `pull` observations.
+    /// The six values, each kept in `low..=high` and drawn to `prior` with the weight of `pull` observations.
     pub(super) fn solve(
         &self,
         prior: &[f64; N],
@@ -112,10 +105,8 @@ impl<const N: usize> Fit<N> {
                 let mut most = 0.0f64;
                 for i in 0..DIRECTIONS {
                     let mut rest = f64::from(self.right[i][k]) + pull * prior[k];
-                    for j in 0..DIRECTIONS {
-                        if j != i {
-                            rest -= f64::from(self.matrix[i][j]) * values[j][k];
-                        }
+                    for j in (0..DIRECTIONS).filter(|&j| j != i) {
+                        rest -= f64::from(self.matrix[i][j]) * values[j][k];
                     }
                     let weight = f64::from(self.matrix[i][i]) + pull;
                     let value = (rest / weight).clamp(low, high);
@@ -136,42 +127,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_sum_to_one_and_know_their_side() {
-        for blend in [Blend::Squares, Blend::Cosines] {
-            let shares = blend.shares(DVec3::new(0.6, -0.64, 0.48));
-            let sum: f64 = shares.iter().map(|s| s.1).sum();
-            assert!((sum - 1.0).abs() < 1e-12);
-            assert_eq!(shares.map(|s| s.0), [0, 3, 4]);
-            assert_eq!(blend.shares(DVec3::NEG_Z)[2], (5, 1.0));
-        }
-    }
-
-    #[test]
     fn six_values_are_found_again() {
         let truth = [0.1, 0.9, 0.3, 1.0, 0.0, 0.5];
-        for blend in [Blend::Squares, Blend::Cosines] {
-            let mut fit = Fit::<1>::new();
-            let mut square = 0.0;
+        for blend in [by_squares, by_cosines] {
+            assert_eq!(blend(DVec3::NEG_Z)[2], (5, 1.0));
+            let (mut fit, mut square) = (Fit::<1>::new(), 0.0);
             for i in 0..2000 {
                 let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 2000.0;
                 let around = f64::from(i) * 2.399_963_229_728_653;
                 let ring = libm::sqrt(1.0 - z * z);
                 let d = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
-                let shares = blend.shares(d);
+                let shares = blend(d);
+                assert!((shares.iter().map(|s| s.1).sum::<f64>() - 1.0).abs() < 1e-12);
                 let value = shares.iter().map(|&(k, share)| share * truth[k]).sum();
                 fit.add(&shares, &[value], 2.0);
                 square += 2.0 * value * value;
             }
             assert!((fit.square_of(&truth) - square).abs() < 1e-3 * square);
             let found = fit.solve(&[1.0], 1e-6, (0.0, 1.0));
-            for k in 0..DIRECTIONS {
-                assert!(
-                    (found[k][0] - truth[k]).abs() < 1e-3,
-                    "{blend:?} {k} {found:?}"
-                );
-            }
+            assert!(
+                (0..DIRECTIONS).all(|k| (found[k][0] - truth[k]).abs() < 1e-3),
+                "{found:?}"
+            );
         }
-        // Nobody looked: the value that it is drawn to.
+        // Without observations: the value that it is drawn to.
         let nothing = Fit::<1>::new().solve(&[0.75], 0.25, (0.0, 1.0));
         assert!(nothing.iter().all(|v| (v[0] - 0.75).abs() < 1e-12));
     }

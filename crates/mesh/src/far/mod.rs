@@ -2,9 +2,8 @@
 //! are grids of voxels that look from afar like the geometry in them, and whose
 //! leaves are triangles.
 //!
-//! [`build()`] makes one of triangles by shooting rays at every node; [`store`]
-//! is the `.far` file; [`view`] draws it. Rules, and where they go beyond the
-//! paper: `spec/far.md`. Real numbers are allowed here.
+//! [`build()`] makes far voxels of triangles by shooting rays at every node. [`store`] is the `.far` file, and [`view`]
+//! draws it. Rules, and where they go beyond the paper: `spec/far.md`. Real numbers are allowed here.
 
 pub mod blend;
 pub mod build;
@@ -12,7 +11,8 @@ pub mod record;
 pub mod store;
 pub mod view;
 
-use blend::Blend;
+use glam::DVec3;
+
 use record::Node;
 
 pub use build::{BuildError, BuildOptions, build, build_outside};
@@ -21,14 +21,21 @@ pub use store::{FarError, FarFile};
 /// Far voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarData {
-    /// What single precision coordinates are relative to, world units.
-    pub centre: [f64; 3],
+    /// The settings of all nodes.
+    pub settings: FarSettings,
+    /// The hierarchy, parents before children, a node's first child right after it.
+    pub nodes: Vec<Node>,
+    /// The nodes' data, node by node, as it is stored.
+    pub packed: Vec<u8>,
+}
+
+/// The settings of all nodes of far voxels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FarSettings {
+    /// Single precision coordinates are relative to it, world units.
+    pub centre: DVec3,
     /// Least distance from which a node may be used, in its voxels.
     pub distance_voxels: f64,
-    /// How opacities are blended.
-    pub opacity_blend: Blend,
-    /// How normals and materials are blended.
-    pub shader_blend: Blend,
     /// Nodes with fewer triangles are leaves.
     pub leaf_triangles: u32,
     /// Voxels along the longest side of a node.
@@ -37,15 +44,10 @@ pub struct FarData {
     pub y_up: bool,
     /// For fitted cameras too: [`MeshBox::bevels`](shiftvox::graph::MeshBox::bevels).
     pub bevels: [u8; 8],
-    /// The hierarchy, parents before children, a node's first child right after it.
-    pub nodes: Vec<Node>,
-    /// The nodes' data, node by node, as it is stored.
-    pub packed: Vec<u8>,
 }
 
 impl FarData {
     /// Triangles of all leaves.
-    #[must_use]
     pub fn triangles(&self) -> u64 {
         self.nodes.first().map_or(0, |root| root.triangles.into())
     }

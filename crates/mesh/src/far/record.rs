@@ -1,13 +1,13 @@
-//! What is stored of a voxel, a triangle and a node. Plain bytes, little-endian.
+//! Records of voxels, triangles and nodes. Plain bytes, little-endian.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::blend::{Blend, DIRECTIONS};
+use super::blend::{DIRECTIONS, by_cosines, by_squares};
 use crate::{linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
-/// Which shader a voxel has.
+/// The shader of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ShaderKind {
     /// One normal, two materials: one for each side.
@@ -27,7 +27,7 @@ pub enum OpacityKind {
     Six,
 }
 
-/// What opacities are used for: when a file is built, or when it is drawn.
+/// The opacities that a build stores or a view uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Opacity {
@@ -54,7 +54,8 @@ pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Complex, OpacityKind::Six),
 ];
 
-/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 2 or 5.
+/// Bytes of a voxel in each list. The place takes 3 bytes, a flat shader 8, a complex one 30, and opacities take 0, 2
+/// or 5.
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
 /// Bytes of the opacities in a voxel of each list: one number for each side, and six of four bits.
@@ -70,7 +71,6 @@ const SIX_STEPS: f64 = 15.0;
 pub const STEEPNESSES: usize = 4;
 
 /// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
-#[must_use]
 pub fn steepness(cosine: f64) -> usize {
     // 0 to 4.
     ((cosine * STEEPNESSES as f64) as usize).min(STEEPNESSES - 1)
@@ -102,17 +102,15 @@ pub enum Shader {
 impl Shader {
     /// How steeply one looks upon it from a direction: the cosine to its normal, negative from
     /// behind a flat one.
-    #[must_use]
-    pub fn cosine(&self, towards_eye: DVec3, blend: Blend) -> f64 {
+    pub fn cosine(&self, towards_eye: DVec3) -> f64 {
         match self {
             Self::Flat { normal, .. } => normal.dot(towards_eye),
-            Self::Complex { .. } => self.seen_from(towards_eye, blend).0.dot(towards_eye),
+            Self::Complex { .. } => self.seen_from(towards_eye).0.dot(towards_eye),
         }
     }
 
     /// Unit normal on the eye's side, and colour in linear light, as seen from a direction.
-    #[must_use]
-    pub fn seen_from(&self, towards_eye: DVec3, blend: Blend) -> (DVec3, DVec3) {
+    pub fn seen_from(&self, towards_eye: DVec3) -> (DVec3, DVec3) {
         match self {
             Self::Flat { normal, colors } => {
                 if normal.dot(towards_eye) >= 0.0 {
@@ -123,7 +121,7 @@ impl Shader {
             }
             Self::Complex { normals, colors } => {
                 let (mut normal, mut color) = (DVec3::ZERO, DVec3::ZERO);
-                for (k, share) in blend.shares(towards_eye) {
+                for (k, share) in by_squares(towards_eye) {
                     normal += normals[k] * share;
                     color += colors[k] * share;
                 }
@@ -138,8 +136,8 @@ impl Shader {
 pub struct SideOpacity {
     /// Over all directions, 0 to 1.
     pub scalar: f64,
-    /// The steepness from which on it is opaque, whatever its opacities are: it is part of a large
-    /// object. [`STEEPNESSES`]: none; 0: it is opaque from everywhere.
+    /// The steepness from which on the voxel is opaque, because it is part of a large object. [`STEEPNESSES`] means
+    /// none, and 0 means from everywhere. [`STEEPNESSES`]: none; 0: it is opaque from everywhere.
     pub solid_from: u8,
 }
 
@@ -156,7 +154,7 @@ impl SideOpacity {
             0 => return u8::MAX,
             solid => solid.min(STEEPNESSES as u8),
         };
-        // 0 to 63, and of what is solid from 1 on at most 62: that byte is another's.
+        // 0 to 63, but at most 62 if it is solid from 1 on, because 255 means opaque.
         let steps = (self.scalar.clamp(0.0, 1.0) * SCALAR_STEPS + 0.5) as u8;
         ((STEEPNESSES as u8 - solid) << 6 | steps).min(u8::MAX - 1)
     }
@@ -230,7 +228,6 @@ fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
 
 impl Voxel {
     /// The list that it belongs to.
-    #[must_use]
     pub fn list(&self) -> usize {
         let shader = match self.shader {
             Shader::Flat { .. } => 0,
@@ -268,7 +265,6 @@ impl Voxel {
     }
 
     /// Decodes a record of [`RECORD_BYTES`] of a list. Any bytes are accepted.
-    #[must_use]
     pub fn read(list: usize, bytes: &[u8]) -> Self {
         let (kind, opacity_kind) = LISTS[list];
         let (shader, end) = match kind {
@@ -298,12 +294,11 @@ impl Voxel {
     }
 
     /// Its opacity as seen from a direction, as it is stored or as one number.
-    #[must_use]
-    pub fn opacity_from(&self, towards_eye: DVec3, blends: [Blend; 2], mode: Opacity) -> f64 {
+    pub fn opacity_from(&self, towards_eye: DVec3, mode: Opacity) -> f64 {
         if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
             return 1.0;
         }
-        let cosine = self.shader.cosine(towards_eye, blends[1]);
+        let cosine = self.shader.cosine(towards_eye);
         let side = self.sides[usize::from(cosine < 0.0)];
         if steepness(cosine.abs()) >= usize::from(side.solid_from) {
             return 1.0;
@@ -313,13 +308,12 @@ impl Voxel {
             let outline = towards_eye.abs().element_sum();
             return 1.0 - libm::pow(1.0 - side.scalar, MEAN_OUTLINE / outline);
         }
-        let shares = blends[0].shares(towards_eye).into_iter();
+        let shares = by_cosines(towards_eye).into_iter();
         shares.map(|(k, share)| self.opacity[k] * share).sum()
     }
 
     /// Whether a record of a list is of a voxel that is opaque from some directions and not from
     /// all.
-    #[must_use]
     pub fn is_partly_solid(list: usize, bytes: &[u8]) -> bool {
         let end = RECORD_BYTES[list] - OPACITY_BYTES[list];
         let is_solid = |&byte: &u8| usize::from(SideOpacity::of(byte).solid_from) < STEEPNESSES;
@@ -373,8 +367,8 @@ pub struct Node {
     pub is_leaf: u8,
     /// Levels below the root.
     pub level: u32,
-    /// Numbers of the children: two, or one and zero; zeros in a leaf. [`Node::below`] has those
-    /// that there are.
+    /// Numbers of the children: two, or one and zero, or zeros in a leaf. [`Node::below`] iterates over the existing
+    /// ones. [`Node::below`] has those that there are.
     pub children: [u32; 2],
     /// The first of its triangles.
     pub first_triangle: u32,
@@ -386,7 +380,7 @@ pub struct Node {
     pub counts: [u32; 6],
     /// Voxels that triangles touch: those kept and those dropped.
     pub touched: u32,
-    /// Voxels of those kept that too few rays were aimed at to tell whether they are hidden.
+    /// Kept voxels at which too few rays were aimed to decide whether they are occluded.
     pub untested: u32,
     /// Rays that were shot for it.
     pub rays: u32,
@@ -402,7 +396,7 @@ pub struct Node {
     pub vertices: [u32; 2],
     /// Triangles of its surface: of a leaf all that it has, of an inner node decimated ones, if any.
     pub surface: u32,
-    /// Colours of its surface, of which vertices have the numbers; 0: each vertex has its own.
+    /// Colours in the table of its surface. If it is 0, each vertex has its own colour.
     pub colors: u16,
     /// Whether normals are those of the triangles' planes, 1 or 0.
     pub is_flat: u8,
@@ -417,7 +411,7 @@ pub const SHARED_BYTES: usize = 12;
 /// Most colours of which vertices have the numbers.
 pub const MOST_COLORS: usize = 256;
 
-/// Bytes of what a surface's vertices and corners have.
+/// Bytes of the columns of a surface's vertices and corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::far) struct SurfaceColumns {
     /// Of a vertex's normal.
@@ -449,13 +443,11 @@ pub const NODE_BYTES: usize = size_of::<Node>();
 
 impl Node {
     /// Whether it has triangles and no voxels.
-    #[must_use]
     pub fn is_leaf(&self) -> bool {
         self.is_leaf != 0
     }
 
-    /// Whether it has a grid. Without one it stands for its children: it is never drawn itself.
-    #[must_use]
+    /// Whether it has a grid. A node without a grid is never drawn, only its children are.
     pub fn has_grid(&self) -> bool {
         self.voxel > 0.0
     }
@@ -463,14 +455,13 @@ impl Node {
     /// Numbers of its children: two, or a coarser node's one, or a leaf's none.
     pub fn below(&self) -> impl Iterator<Item = usize> + use<> {
         let children = self.children.into_iter();
-        // The first node is nobody's child.
+        // The first node is never a child.
         children
             .filter(|&child| child > 0)
             .map(|child| child as usize)
     }
 
     /// Bytes of its surface, unpacked.
-    #[must_use]
     pub fn surface_bytes(&self) -> u64 {
         let columns = SurfaceColumns::of(self);
         let [own, shared] = self.vertices.map(u64::from);
@@ -482,20 +473,17 @@ impl Node {
             + u64::from(self.surface) * 3 * columns.index as u64
     }
 
-    /// Bytes of what is drawn of it, unpacked.
-    #[must_use]
+    /// Bytes of its voxels and its surface, unpacked.
     pub fn drawn_bytes(&self) -> u64 {
         self.voxel_bytes() + self.surface_bytes()
     }
 
     /// Voxels that it keeps.
-    #[must_use]
     pub fn voxels(&self) -> u64 {
         self.counts.iter().map(|&n| u64::from(n)).sum()
     }
 
     /// Bytes of its voxels, unpacked.
-    #[must_use]
     pub fn voxel_bytes(&self) -> u64 {
         let lists = self.counts.iter().zip(RECORD_BYTES);
         lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
@@ -503,7 +491,6 @@ impl Node {
 
     /// Lowest and highest corner of its grid, or of its triangles where it has none, relative to the
     /// file's centre.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
         if !self.has_grid() {

@@ -3,7 +3,7 @@
 //! +Y is up. The same seed gives the same mesh on every computer: sines are those of `libm`.
 
 mod kinds;
-mod maker;
+pub(crate) mod maker;
 
 use super::{Mesh, Surface, linear_to_srgb};
 use maker::Maker;
@@ -40,7 +40,7 @@ impl Kind {
     ];
 }
 
-/// What every spec of a mesh begins with.
+/// The prefix of every spec of a mesh.
 pub const PREFIX: &str = "mesh:";
 
 /// Reads `mesh:KIND` or `mesh:KIND,seed=N`.
@@ -68,7 +68,6 @@ pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
 }
 
 /// Makes a mesh.
-#[must_use]
 pub fn generate(kind: Kind, seed: u64) -> Mesh {
     let mut maker = Maker::new(seed);
     match kind {
@@ -84,7 +83,6 @@ pub fn generate(kind: Kind, seed: u64) -> Mesh {
 }
 
 /// A mesh as a PLY file: binary, little endian, three vertices a triangle with normals and colours.
-#[must_use]
 pub fn ply(mesh: &Mesh) -> Vec<u8> {
     let count = mesh.len();
     let mut bytes = format!(

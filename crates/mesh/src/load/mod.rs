@@ -8,59 +8,22 @@ mod stl;
 mod text;
 mod texture;
 
-use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use super::error::{MeshFault, Place};
-use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
+pub(super) use shiftvox::scene::{Fault, Place, Problem};
+
+use super::{ColorSpace, Mesh, MeshBuilder, SceneError};
 use shiftvox::bounded;
 use shiftvox::graph::Progress;
-
-/// The formats that meshes are read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum MeshFormat {
-    /// Wavefront, with its material library.
-    Obj,
-    /// Stanford polygons, ASCII or binary.
-    Ply,
-    /// Stereolithography, ASCII or binary.
-    Stl,
-    /// glTF 2.0, JSON.
-    Gltf,
-    /// glTF 2.0, binary.
-    Glb,
-}
-
-impl fmt::Display for MeshFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Obj => ".obj",
-            Self::Ply => ".ply",
-            Self::Stl => ".stl",
-            Self::Gltf => ".gltf",
-            Self::Glb => ".glb",
-        })
-    }
-}
+use shiftvox::scene::FileKind;
 
 /// How a mesh is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoadOptions {
-    /// sRGB colour of triangles without material.
-    pub default_color: [u8; 3],
     /// How an MTL's colours are meant; the format does not say. glTF has
     /// linear colours, vertex colours of PLY and OBJ are sRGB.
     pub mtl_colors: ColorSpace,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self {
-            default_color: [200; 3],
-            mtl_colors: ColorSpace::Srgb,
-        }
-    }
 }
 
 /// Reads the files that a mesh names: its material library, its buffers.
@@ -79,7 +42,6 @@ pub struct SameFolder(PathBuf);
 
 impl SameFolder {
     /// Files in this folder.
-    #[must_use]
     pub fn new(folder: &Path) -> Self {
         Self(folder.to_owned())
     }
@@ -92,7 +54,7 @@ impl Beside for SameFolder {
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         if path.components().all(inside) {
             let found = bounded::read_whole(&self.0.join(path));
-            // What is there and cannot be read is what the mesh means.
+            // The mesh means a file that exists, even if it cannot be read.
             if !matches!(&found, Err(error) if error.kind() == io::ErrorKind::NotFound) {
                 return found;
             }
@@ -121,11 +83,11 @@ impl Beside for Nothing {
 const MOST_CORNERS: usize = 1 << 16;
 
 /// Refuses a face of more corners than may be.
-fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
+fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {
     if corners <= MOST_CORNERS {
         return Ok(());
     }
-    Err(MeshError::Limit(MeshFault::new(
+    Err(Problem::Limit(Fault::new(
         "face",
         place,
         format!("at most {MOST_CORNERS} corners"),
@@ -137,24 +99,28 @@ fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
 /// Reads a mesh that is in memory; `name` is what errors call it.
 ///
 /// # Errors
-/// [`MeshError`] where the content breaks its format's rules, names a position
+/// [`SceneError`] where the content breaks its format's rules, names a position
 /// that does not exist, or holds no triangle that can be drawn.
 pub fn read(
     bytes: &[u8],
-    format: MeshFormat,
+    format: FileKind,
     name: &str,
     beside: &dyn Beside,
     options: &LoadOptions,
     progress: &dyn Progress,
-) -> Result<Mesh, MeshError> {
+) -> Result<Mesh, SceneError> {
     progress.begin(&format!("reading {name}"), 0);
     let mut builder = MeshBuilder::new();
     let result = match format {
-        MeshFormat::Obj => obj::read(bytes, beside, options, &mut builder),
-        MeshFormat::Ply => ply::read(bytes, options, &mut builder),
-        MeshFormat::Stl => stl::read(bytes, options, &mut builder),
-        MeshFormat::Gltf => gltf::read_json(bytes, beside, options, &mut builder),
-        MeshFormat::Glb => gltf::read_binary(bytes, beside, options, &mut builder),
+        FileKind::Obj => obj::read(bytes, beside, options, &mut builder),
+        FileKind::Ply | FileKind::PlyMesh => ply::read(bytes, &mut builder),
+        FileKind::Stl => stl::read(bytes, &mut builder),
+        FileKind::Gltf => gltf::read_json(bytes, beside, &mut builder),
+        FileKind::Glb => gltf::read_binary(bytes, beside, &mut builder),
+        kind => {
+            let file = name.to_owned();
+            return Err(SceneError::NotMesh { file, kind });
+        }
     };
     progress.end();
     result.map_err(|error| error.in_file(name))?;

@@ -3,10 +3,12 @@
 //! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `map_Kd`, `d`, `Tr`.
 //! All else is passed over.
 
+use shiftvox::scene::DEFAULT_COLOR;
+
 use super::{LoadOptions, text};
 use crate::Material;
 
-/// What a library holds.
+/// The contents of a material library.
 #[derive(Debug, Default)]
 pub(super) struct Library {
     /// Materials in the order of the file; of two of one name the last counts.
@@ -17,7 +19,7 @@ pub(super) struct Library {
     pub(super) odd_line: Option<usize>,
 }
 
-/// Reads a library. What cannot be understood is passed over.
+/// Reads a library. Unknown lines are skipped.
 pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
     let text = text::decoded(bytes);
     let mut library = Library::default();
@@ -56,7 +58,8 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
 
 impl Library {
     fn close(&mut self, open: Open, options: &LoadOptions) {
-        // Black times a picture is black: programs that write so mean the picture alone. So do those that write none.
+        // A black factor would make the picture black. Programs that write it mean the picture alone. So do those that
+        // write none.
         let color = match (&open.texture, open.color) {
             (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
             (_, color) => color,
@@ -66,7 +69,7 @@ impl Library {
             Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
             None => Material {
                 alpha: open.alpha.clamp(0.0, 1.0),
-                ..Material::of_srgb(open.name, options.default_color)
+                ..Material::of_srgb(open.name, DEFAULT_COLOR)
             },
         };
         self.materials.push(material);

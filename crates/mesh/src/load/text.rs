@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// The text of a file: without byte order mark; names in other encodings decide nothing but materials.
+/// The text of a file without byte order mark. Invalid UTF-8 is replaced, which changes only names of materials.
 pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     match String::from_utf8_lossy(text) {

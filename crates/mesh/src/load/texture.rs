@@ -67,8 +67,7 @@ impl Texture {
     }
 
     /// The mean colour, linear light, of a triangle with these corners: across from the left and down from the top, in
-    /// sizes of the picture. What is transparent counts less. Nothing where a corner is no number, or all is
-    /// transparent.
+    /// sizes of the picture. Transparent texels count less. Nothing where a corner is no number, or all is transparent.
     pub(super) fn mean(&self, corners: [[f64; 2]; 3]) -> Option<[f32; 3]> {
         if !corners.as_flattened().iter().all(|c| c.is_finite()) {
             return None;
@@ -133,7 +132,7 @@ pub(super) struct Textures {
 }
 
 impl Textures {
-    /// The texture of a name, whose file `read` reads where it was not read before. What cannot be read is noted.
+    /// The texture of a name, whose file `read` reads where it was not read before. Unreadable files are noted.
     pub(super) fn get(
         &mut self,
         name: &str,

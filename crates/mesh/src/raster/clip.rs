@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::RasterCamera;
 use super::samples::SUBPIXELS;
+use crate::geometry::Polygon;
 
 /// Pixels from the middle of the picture that coordinates may reach.
 const GUARD_PX: f64 = 65536.0;
@@ -26,10 +27,7 @@ impl Outline {
     /// The part of a triangle that lies before the eye, on the picture's plane.
     /// `None` where there is none.
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Option<Self> {
-        let seen = corners.map(|corner| in_view(view, corner));
-        let mut points = [DVec3::ZERO; MOST];
-        points[..3].copy_from_slice(&seen);
-        let mut count = 3;
+        let mut seen = Polygon::of(&corners.map(|corner| view.seen(corner)));
         let guard = GUARD_PX / view.focal_px;
         let planes = [
             (DVec3::Z, view.near),
@@ -40,25 +38,25 @@ impl Outline {
         ];
         for (normal, least) in planes {
             let inside = |p: DVec3| p.dot(normal) - least;
-            if points[..count].iter().all(|&p| inside(p) >= 0.0) {
-                continue;
-            }
-            (points, count) = cut(&points[..count], inside);
-            if count < 3 {
-                return None;
+            if seen.corners().iter().any(|&p| inside(p) < 0.0) {
+                seen = seen.cut(inside);
+                if seen.corners().len() < 3 {
+                    return None;
+                }
             }
         }
-        let middle = [view.width, view.height].map(|side| f64::from(side) / 2.0);
-        let place = |p: DVec3| {
-            let x = middle[0] + p.x / p.z * view.focal_px;
-            let y = middle[1] - p.y / p.z * view.focal_px;
-            // Within the guard's 2^17 pixels: 2^29 steps.
-            [x, y].map(|c| libm::round(c * SUBPIXELS as f64) as i64)
+        let mut outline = Self {
+            points: [[0; 2]; MOST],
+            count: seen.corners().len().min(MOST),
         };
-        Some(Self {
-            points: points.map(|p| if p.z > 0.0 { place(p) } else { [0; 2] }),
-            count,
-        })
+        for (point, &p) in outline.points.iter_mut().zip(seen.corners()) {
+            // Within the guard's 2^17 pixels: 2^29 steps.
+            let step = |c: f64| libm::round(c * SUBPIXELS as f64) as i64;
+            if p.z > 0.0 {
+                *point = view.place(p).map(step);
+            }
+        }
+        Some(outline)
     }
 
     /// The corners, in order.
@@ -78,42 +76,4 @@ impl Outline {
         }
         [low, high].map(|p| p.map(|c| c.div_euclid(SUBPIXELS)))
     }
-}
-
-/// Right, up and depth of a point.
-pub(super) fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
-    let offset = point - view.eye;
-    DVec3::new(
-        offset.dot(view.right),
-        offset.dot(view.up),
-        offset.dot(view.forward),
-    )
-}
-
-fn cut(points: &[DVec3], inside: impl Fn(DVec3) -> f64) -> ([DVec3; MOST], usize) {
-    let mut kept = [DVec3::ZERO; MOST];
-    let mut count = 0;
-    let mut keep = |point| {
-        // Rounding may make a polygon that is not quite convex; what is too many is dropped.
-        if count < MOST {
-            kept[count] = point;
-            count += 1;
-        }
-    };
-    for (i, &here) in points.iter().enumerate() {
-        let next = points[(i + 1) % points.len()];
-        let (a, b) = (inside(here), inside(next));
-        if a >= 0.0 {
-            keep(here);
-        }
-        if (a >= 0.0) != (b >= 0.0) {
-            let (from, to, a, b) = if a >= 0.0 {
-                (here, next, a, b)
-            } else {
-                (next, here, b, a)
-            };
-            keep(from + (to - from) * (a / (a - b)));
-        }
-    }
-    (kept, count)
 }

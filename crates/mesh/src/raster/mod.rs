@@ -1,11 +1,8 @@
 //! Triangles to pixels, with a depth buffer: the reference picture of a mesh.
 //!
-//! Corners are projected in `f64` and rounded to 1/4096 pixel; from there on
-//! what a triangle covers is decided exactly, in integers, with the top-left
-//! rule: two triangles that share an edge leave no sample between them and
-//! share none. Depth is the plane's at the sample, not interpolated between
-//! rounded corners. The picture is cut into bins that threads draw on their
-//! own, each with its triangles in order, so that any number of threads gives
+//! Corners are projected in `f64` and rounded to 1/4096 pixel. From there on coverage is decided exactly, in integers,
+//! with the top-left rule. Depth is the plane's at the sample, not interpolated between rounded corners. The picture is
+//! cut into bins that threads draw on their own, each with its triangles in order, so that any number of threads gives
 //! the same picture. Rules: `spec/mesh.md`.
 
 mod bin;
@@ -53,14 +50,45 @@ pub struct RasterCamera {
     pub near: f64,
 }
 
+impl RasterCamera {
+    /// Right, up and depth of a point.
+    pub(crate) fn seen(&self, point: DVec3) -> DVec3 {
+        let offset = point - self.eye;
+        let axes = [self.right, self.up, self.forward];
+        DVec3::from_array(axes.map(|axis| offset.dot(axis)))
+    }
+
+    /// The place in the picture of a point given by [`RasterCamera::seen`], pixels from the top left corner.
+    pub(crate) fn place(&self, seen: DVec3) -> [f64; 2] {
+        [
+            f64::from(self.width) / 2.0 + seen.x / seen.z * self.focal_px,
+            f64::from(self.height) / 2.0 - seen.y / seen.z * self.focal_px,
+        ]
+    }
+
+    /// Rejects sizes and numbers that cannot be drawn.
+    pub(crate) fn check(&self) -> Result<(), RasterError> {
+        let side = 1..=MAX_SIDE;
+        if !side.contains(&self.width) || !side.contains(&self.height) {
+            return Err(RasterError::Size(self.width, self.height));
+        }
+        let axes = [self.eye, self.right, self.up, self.forward];
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        match axes.iter().all(|v| v.is_finite()) && positive(self.near) && positive(self.focal_px) {
+            true => Ok(()),
+            false => Err(RasterError::Camera),
+        }
+    }
+}
+
 /// How a surface is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RasterOptions {
-    /// How many samples a pixel has, and where.
+    /// The number of samples per pixel, and their places.
     pub samples: Samples,
-    /// The light; `None`: colours as they are.
+    /// The light, or `None` for unlit colours.
     pub light: Option<Light>,
-    /// What is behind, sRGB; `None`: transparent.
+    /// The background, sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
 }
 
@@ -89,8 +117,8 @@ pub struct RasterPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of the pixel's samples that see a triangle.
     pub coverage: Vec<f32>,
-    /// View-axis depth, world units, at the sample right of and below the
-    /// pixel's middle (with one sample: at the middle); infinite where that sees nothing.
+    /// View-axis depth, world units, at the sample right of and below the pixel's middle, or at the middle with one
+    /// sample. It is infinite where that sample sees nothing.
     pub depth: Vec<f32>,
     /// The triangle that this sample sees, or [`NO_TRIANGLE`].
     pub triangle: Vec<u32>,
@@ -108,14 +136,7 @@ pub fn draw<S: Surface + ?Sized>(
     progress: &dyn Progress,
 ) -> Result<RasterPicture, RasterError> {
     let (width, height) = (view.width, view.height);
-    if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
-        return Err(RasterError::Size(width, height));
-    }
-    let axes = [view.eye, view.right, view.up, view.forward];
-    let positive = |x: f64| x > 0.0 && x.is_finite();
-    if !(axes.iter().all(|v| v.is_finite()) && positive(view.near) && positive(view.focal_px)) {
-        return Err(RasterError::Camera);
-    }
+    view.check()?;
     if u32::try_from(surface.len()).map_or(true, |count| count == NO_TRIANGLE) {
         return Err(RasterError::TooMany(surface.len()));
     }

@@ -15,14 +15,14 @@ pub enum Pattern {
     /// In the middles of equal squares.
     #[default]
     Regular,
-    /// At random within equal squares, in each pixel anew; the same seed gives the same places.
+    /// At random within equal squares, differently in each pixel. The same seed gives the same places.
     Stratified {
-        /// What chance depends on.
+        /// The seed of the random places.
         seed: u64,
     },
 }
 
-/// How many samples a pixel has, and where.
+/// The number of samples per pixel, and their places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Samples {
     side: u32,
@@ -42,7 +42,7 @@ impl fmt::Display for SamplesError {
 impl std::error::Error for SamplesError {}
 
 impl Samples {
-    /// So many samples a pixel: 1, 4, 16 or 256.
+    /// A pattern of 1, 4, 16 or 256 samples per pixel.
     ///
     /// # Errors
     /// When it is another number.
@@ -58,19 +58,16 @@ impl Samples {
     }
 
     /// Samples of a pixel.
-    #[must_use]
     pub fn per_pixel(&self) -> usize {
         (self.side * self.side) as usize
     }
 
-    /// The sample that stands for the pixel: right of and below its middle.
-    #[must_use]
+    /// The sample that gives a pixel its depth, right of and below the middle.
     pub fn middle(&self) -> usize {
         (self.side / 2 * self.side + self.side / 2) as usize
     }
 
     /// Where sample `number` of a pixel lies in it, right and down, in 1/4096 pixel.
-    #[must_use]
     pub fn place(&self, pixel: [u32; 2], number: usize) -> [i64; 2] {
         let square = SUBPIXELS / i64::from(self.side);
         let number = number as u32;

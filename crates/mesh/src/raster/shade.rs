@@ -3,10 +3,9 @@
 use glam::DVec3;
 
 use super::RasterCamera;
-use super::clip::in_view;
 use super::samples::SUBPIXELS;
 use crate::Triangle;
-use crate::surface::{barycentric, plane_normal};
+use crate::geometry::{barycentric, blend, plane_normal};
 
 /// Lambert's law under one distant light, over an ambient floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +19,6 @@ pub struct Light {
 impl Light {
     /// The share of its colour that a surface shows, in steps of 1/256 as
     /// voxels are shaded too.
-    #[must_use]
     pub fn on(&self, normal: DVec3) -> f64 {
         let cosine = normal.dot(self.towards).clamp(0.0, 1.0);
         let lit = f64::from(256 - self.ambient.min(256));
@@ -41,9 +39,9 @@ pub(super) struct Nearness {
 
 impl Nearness {
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
-        let [a, b, c] = corners.map(|corner| in_view(view, corner));
+        let [a, b, c] = corners.map(|corner| view.seen(corner));
         let depths = [a.z, b.z, c.z];
-        // What lies nearer was cut off.
+        // Nearer parts were cut off.
         let nearest = depths
             .iter()
             .fold(f64::INFINITY, |m, &z| m.min(z))
@@ -141,10 +139,9 @@ impl Paint {
     }
 
     fn mixed(&self, share: [f64; 3], light: Option<&Light>) -> DVec3 {
-        let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
-        let color = blend(&self.triangle.colors);
+        let color = blend(&self.triangle.colors, share);
         let Some(light) = light else { return color };
-        let normal = blend(&self.triangle.normals).normalize_or(self.face);
+        let normal = blend(&self.triangle.normals, share).normalize_or(self.face);
         let seen = if normal.dot(self.face) < 0.0 {
             -normal
         } else {

@@ -15,9 +15,8 @@ const BITS: u32 = 29;
 /// A grid of equal cells around a box, with a lattice of whole numbers on which
 /// cells and the middles of texels lie exactly.
 ///
-/// The box is divided into the same number of cells along each axis, as in the
-/// paper, so cells are not cubes; an axis along which the mesh is thinner than
-/// the longest side of a cell gets that much. On the lattice cells are cubes.
+/// The box has the same number of cells along each axis, as in the paper, so cells are not cubes. A mesh thinner than a
+/// cell's longest side along an axis gets that extent, with the mesh in its middle. On the lattice cells are cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellGrid {
     cells: u32,
@@ -32,7 +31,6 @@ impl CellGrid {
     /// The grid of `cells` (even, 2 to [`MOST_CELLS`]) with `texels` (1 to
     /// [`MOST_TEXELS`]) a face around a box. Other numbers give a grid that
     /// makes no sense, so callers check them with [`CellGrid::is_possible`].
-    #[must_use]
     pub fn around(low: DVec3, high: DVec3, cells: u32, texels: u32) -> Self {
         let extent = high - low;
         let least = extent.max_element() / f64::from(cells);
@@ -49,7 +47,6 @@ impl CellGrid {
     }
 
     /// Whether there is a grid of so many cells and texels.
-    #[must_use]
     pub fn is_possible(cells: u32, texels: u32) -> bool {
         (2..=MOST_CELLS).contains(&cells)
             && cells.is_multiple_of(2)
@@ -58,31 +55,26 @@ impl CellGrid {
     }
 
     /// Cells along each axis.
-    #[must_use]
     pub fn cells(&self) -> u32 {
         self.cells
     }
 
     /// Texels along the side of a face.
-    #[must_use]
     pub fn texels(&self) -> u32 {
         self.texels
     }
 
     /// Sides of a cell, world units.
-    #[must_use]
     pub fn cell_size(&self) -> DVec3 {
         self.span / f64::from(self.cells)
     }
 
     /// The longest side of a texel, world units.
-    #[must_use]
     pub fn texel_size(&self) -> f64 {
         self.cell_size().max_element() / f64::from(self.texels)
     }
 
     /// Lowest corner of a cell, world units.
-    #[must_use]
     pub fn corner(&self, cell: [u32; 3]) -> DVec3 {
         // Not from the cell's size: the last cell ends where the box ends.
         let share = DVec3::from_array(cell.map(|c| f64::from(c) / f64::from(self.cells)));
@@ -90,25 +82,21 @@ impl CellGrid {
     }
 
     /// Lattice steps along the side of a texel.
-    #[must_use]
     pub fn texel_steps(&self) -> i64 {
         self.texel
     }
 
     /// Lattice steps along the side of a cell.
-    #[must_use]
     pub fn cell_steps(&self) -> i64 {
         self.texel * i64::from(self.texels)
     }
 
     /// Lattice steps along the side of the box, at most 2^29.
-    #[must_use]
     pub fn steps(&self) -> i64 {
         self.cell_steps() * i64::from(self.cells)
     }
 
     /// The nearest point of the lattice.
-    #[must_use]
     pub fn point(&self, world: DVec3) -> [i64; 3] {
         let most = self.steps() as f64;
         let at = (world - self.origin) / self.span * most;
@@ -117,7 +105,6 @@ impl CellGrid {
     }
 
     /// Where a point of the lattice is in the world.
-    #[must_use]
     pub fn world(&self, point: [i64; 3]) -> DVec3 {
         let share = DVec3::from_array(point.map(|c| c as f64)) / self.steps() as f64;
         self.origin + self.span * share
@@ -128,7 +115,6 @@ impl CellGrid {
 pub const ACROSS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 /// Whether a cell is in the half from which an axis is seen from its positive end.
-#[must_use]
 pub fn is_positive_half(slice: u32, cells: u32) -> bool {
     slice >= cells / 2
 }

@@ -1,11 +1,9 @@
 //! Levels of detail: what each shows, by erosion depths alone.
 //!
-//! Level 0 has all voxels; each erosion takes those of the next depth away and
-//! shows their primitives instead; the last level has no voxel and all
-//! primitives. Voxels are sorted by depth, so a level's voxels are the rest of
-//! the list from somewhere on, its primitives are the first of a list sorted
-//! by when they first show, and a surfel is there from one level to another.
-//! Going from level to level, either way, is choosing another number.
+//! Level 0 has all voxels. Each erosion replaces the voxels of the next depth by their primitives. The last level has
+//! no voxels and all primitives. Voxels are sorted by depth, so a level's voxels are a tail of the list. Its primitives
+//! are a beginning of a list, sorted by the level at which they first appear. Going from level to level, either way, is
+//! choosing another number.
 
 use std::collections::HashMap;
 
@@ -29,7 +27,6 @@ pub struct Surfel {
 
 /// The faces that levels show: of each column of cells and each half of it the
 /// first voxel from outside that is left at a level.
-#[must_use]
 pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
     let mut surfels = Vec::new();
     for (axis, [across, down]) in ACROSS.into_iter().enumerate() {
@@ -79,7 +76,7 @@ pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
     surfels
 }
 
-/// What a level shows, in numbers: a row of Tellier and Baroud 2003, Fig. 12.
+/// The counts of a level: a row of Tellier and Baroud 2003, Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LevelRow {
     /// Erosions.
@@ -94,7 +91,7 @@ pub struct LevelRow {
     pub surfels: u64,
 }
 
-/// What all levels of a grid show, made once.
+/// The contents of all levels of a grid, computed once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Levels {
     /// Of each level, the number of voxels that are eroded.
@@ -114,7 +111,6 @@ pub struct Levels {
 
 impl Levels {
     /// Of voxels sorted by depth and their lists. Entries of lists must be below `primitives`.
-    #[must_use]
     pub fn of(voxels: &[VoxelRecord], lists: &[u32], primitives: usize, cells: u32) -> Self {
         let deepest = voxels.last().map_or(0, |voxel| u32::from(voxel.depth));
         let mut levels = Self {
@@ -163,7 +159,6 @@ impl Levels {
     }
 
     /// The last level, which shows primitives alone.
-    #[must_use]
     pub fn last(&self) -> u32 {
         // At most 2^16 levels.
         self.eroded.len() as u32 - 1
@@ -171,13 +166,11 @@ impl Levels {
 
     /// Number of voxels that a level has eroded: those from there on are left.
     /// A level above the last is taken for the last.
-    #[must_use]
     pub fn eroded(&self, level: u32) -> usize {
         self.eroded[level.min(self.last()) as usize] as usize
     }
 
     /// The primitives that a level shows.
-    #[must_use]
     pub fn primitives(&self, level: u32) -> &[u32] {
         &self.order[..self.shown[level.min(self.last()) as usize] as usize]
     }
@@ -189,20 +182,17 @@ impl Levels {
     }
 
     /// Along each axis, how many cells behind a face that a level shows lies what is on it, at the most.
-    #[must_use]
     pub fn reach(&self, level: u32) -> [u32; 3] {
         self.reaches[level.min(self.last()) as usize]
     }
 
     /// The table of all levels.
-    #[must_use]
     pub fn rows(&self) -> &[LevelRow] {
         &self.rows
     }
 
     /// Lowest cell of the box around the voxels that a level leaves, and the
     /// cell after its highest; `None` where it leaves none.
-    #[must_use]
     pub fn box_of(&self, level: u32) -> Option<[[u32; 3]; 2]> {
         let level = level.min(self.last());
         (level < self.last()).then(|| self.boxes[level as usize])

@@ -1,12 +1,11 @@
 //! Textured voxels: a mesh as an approximate core of textured voxels, and true
 //! geometry around it.
 //!
-//! [`build()`] makes one of triangles: voxels with the primitives inside them,
-//! their erosion depths, and the six half-scene textures, computed slice by
-//! slice from the inside out. [`store`] is the `.tvx` file; [`levels`] computes
-//! what a level of detail shows; [`view`] draws it. Rules, and where Tellier and Baroud 2003
-//! leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a
-//! texel sees is decided in integers.
+//! [`build()`] makes textured voxels of triangles: voxels with their primitives and erosion depths, and six textures of
+//! half the scene, computed slice by slice. [`store`] is the `.tvx` file, and [`view`] draws it. [`store`] is the
+//! `.tvx` file; [`levels`] computes what a level of detail shows; [`view`] draws it. Rules, and where Tellier and
+//! Baroud 2003 leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a texel sees is decided in
+//! integers.
 
 pub mod build;
 pub mod cell_grid;
@@ -23,7 +22,7 @@ use glam::DVec3;
 
 use record::{Primitive, Texel, VoxelRecord};
 
-/// Which voxels an erosion takes away.
+/// The voxels that an erosion removes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Element {
@@ -63,7 +62,7 @@ pub struct GridData {
     pub cells: u32,
     /// Texels along the side of a voxel's face.
     pub texels: u32,
-    /// What an erosion takes away.
+    /// The structuring element of the erosion.
     pub element: Element,
     /// Voxels that are not empty, by erosion depth and then by cell.
     pub voxels: Vec<VoxelRecord>,

@@ -1,8 +1,9 @@
-//! What is stored of a primitive, a voxel and a texel. Plain bytes, little-endian.
+//! Records of primitives, voxels and texels. Plain bytes, little-endian.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::geometry::{plane_normal, point};
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -24,8 +25,7 @@ pub struct Primitive {
 pub const PRIMITIVE_BYTES: usize = size_of::<Primitive>();
 
 impl Primitive {
-    /// What a triangle is stored as.
-    #[must_use]
+    /// The record of a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
         let normal = |n: DVec3| {
@@ -46,17 +46,15 @@ impl Primitive {
     }
 
     /// Positions of the corners.
-    #[must_use]
     pub fn positions(&self) -> [DVec3; 3] {
-        self.corners.map(|p| DVec3::from_array(p.map(f64::from)))
+        self.corners.map(point)
     }
 
     /// The triangle, ready to be drawn.
-    #[must_use]
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
-        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
+        let color = |c: [u8; 3]| point(c.map(srgb_to_linear));
         Triangle {
             corners,
             normals: self
@@ -108,13 +106,11 @@ pub const TEXEL_BYTES: usize = size_of::<Texel>();
 
 impl Texel {
     /// Whether nothing projects on it.
-    #[must_use]
     pub fn is_clear(&self) -> bool {
         self.opacity == 0
     }
 
     /// Whether its fields agree with each other.
-    #[must_use]
     pub fn is_sound(&self) -> bool {
         match self.opacity {
             0 => *self == Self::default(),
@@ -122,9 +118,4 @@ impl Texel {
             _ => false,
         }
     }
-}
-
-/// The unit normal of a triangle's plane; +Z where its corners are on a line.
-pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a).normalize_or(DVec3::Z)
 }

@@ -1,8 +1,8 @@
 //! From what nodes cover each for themselves to their opacities.
 //!
 //! An engine blends the voxels of a ray as if each covered its part by chance. That is right for leaves. But the parts
-//! of one surface lie beside each other in neighbouring voxels, and the front and the back of a thin tube behind each
-//! other. So the voxels of large objects are put together along their columns:
+//! of one surface fill neighbouring voxels side by side, and the back of a thin tube is behind its front. So the voxels
+//! of large objects are put together along their columns:
 //!
 //! - What the voxels of a column cover all together makes each of them opaque, but those with little of it: a wall that
 //!   is cut into two parts is whole in both.
@@ -160,8 +160,8 @@ impl Columns<'_> {
         self.found[node as usize].store(bits, Ordering::Relaxed);
     }
 
-    /// What the nodes before a place cover, seen from a side of an axis: those of large objects, up to the first
-    /// empty place.
+    /// The coverage of the nodes before a place, seen from a side of an axis. Only nodes of large objects count, up to
+    /// the first empty place.
     fn before(&self, place: [u32; 3], level: u32, axis: usize, side: u32) -> Column {
         let mut column = Column::default();
         let mut next = place;
@@ -204,7 +204,7 @@ impl Columns<'_> {
     }
 }
 
-/// What nodes of a column cover along an axis.
+/// The coverage of a column's nodes along an axis.
 #[derive(Debug, Clone, Copy, Default)]
 struct Column {
     /// Points of their faces.

@@ -1,10 +1,10 @@
 //! The points of a voxel's faces that a mesh covers, and the opacities that they come to.
 //!
 //! A voxel's face is sampled at 64 points; a point is covered where a triangle within the voxel meets the line through
-//! it. What is covered is kept, not only counted, so that what lies before and behind is put together as it lies: two
-//! halves of a slanted wall, one in the front voxel and one in the back, are a whole wall and not three quarters of
-//! one. A coarser voxel's face has the points of four columns of two voxels, of which four become one; what is lost of
-//! one is handed on to the next, so that a thin wire stays as wide as it was, at every level.
+//! it. The covered points are stored, not only their number. So coverage is combined by position: two halves of a
+//! slanted wall, one in front of the other, make a whole wall. A face of a coarser voxel has the points of four columns
+//! of two voxels, and four points become one. The remainder of each block is carried to the next one, so that a face
+//! keeps its share.
 //!
 //! Triangles have two sides, so what the mesh covers along an axis it covers from both ends of it.
 
@@ -18,7 +18,7 @@ const POINTS: usize = 8;
 /// and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
-/// What a node covers, once that is found.
+/// The coverage of a node.
 #[derive(Debug, Default)]
 pub(super) struct Covered {
     /// The points of its faces.
@@ -27,7 +27,7 @@ pub(super) struct Covered {
     pub(super) large_from: AtomicU8,
 }
 
-/// A pseudo-random number that follows from what a node covers.
+/// A pseudo-random number, computed from the coverage masks of a node.
 pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)
@@ -58,8 +58,8 @@ fn offsets(u: usize, v: usize) -> [i64; 2] {
 
 /// Adds the points that a triangle covers within a voxel.
 ///
-/// Bits: corners and points stay below 2^31, so an edge times a distance is
-/// below 2^62; the normal is below 2^61, and its products are `i128`.
+/// Sizes: corners and points stay below 2^31, so an edge times a distance is below 2^62. The normal is below 2^61, and
+/// its products are `i128`.
 pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
     let cell = side / POINTS as i64;
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -76,8 +76,8 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
             let high = flat.iter().map(|p| p[axis]).max().unwrap_or(0);
             low.max(0) / cell..=high.min(side - 1) / cell
         };
-        // By corner, the normal's other parts times the way from there, and
-        // what the voxel's two ends along the axis come to.
+        // For each corner, the normal's other components times the offset to it, and the bounds of the voxel along the
+        // axis.
         let [first, ..] = flat;
         let at = i128::from(triangle.corners[0][k] - corner[k]);
         let along = i128::from(normal[k]) * i128::from(turn);
@@ -113,11 +113,10 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
     }
 }
 
-/// What a node's eight children cover together, by octant.
+/// The coverage of a node's eight children together, by octant.
 ///
-/// Of four points one is left. What a block of four has more or less than all
-/// is handed on to the next block of which something is covered, so that a
-/// face covers as many points as it should, to one of 64.
+/// Of four points one is left. The remainder of a block of four points is carried to the next block with a covered
+/// point, so that a face covers as many points as its children do.
 pub(super) fn joined(children: &[Masks]) -> Masks {
     let mut masks = Masks::default();
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -125,7 +124,7 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
             let octant = (column & 1) << (2 - u) | (column >> 1) << (2 - v);
             children[octant][k] | children[octant | 1 << (2 - k)][k]
         });
-        // What is rounded up or down in the end: by chance, from the contents.
+        // The last remainder is rounded by a dither value from the contents.
         let mut points = dither(&[columns[0] ^ columns[3], columns[1], columns[2]]) & 3;
         for (column, covered) in columns.into_iter().enumerate() {
             let (cu, cv) = (column & 1, column >> 1);

@@ -16,7 +16,7 @@ use shiftvox::split_mix::mix;
 /// Corners on the lattice, and the bits of the normals.
 type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
 
-/// What equal triangles come to.
+/// The sum of equal triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Repeated {
     /// How many they are.
@@ -37,7 +37,7 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
-    /// Compares all triangles of a surface on a grid. Takes 8 bytes a triangle besides the numbers.
+    /// Compares all triangles of a surface on a grid. Takes 8 bytes per triangle in addition to the numbers.
     pub(super) fn of<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> Self {
         // Fewer than 2^32: the grid made sure. Half of a key is for sorting; keys are compared as a whole.
         let count = surface.len() as u32;
@@ -84,7 +84,7 @@ impl Distinct {
         }
     }
 
-    /// What the equals of a triangle come to, if there are any.
+    /// The sum of the triangles equal to this one, if there are any.
     pub(super) fn repeated(&self, number: u32) -> Option<&Repeated> {
         self.repeated.get(&number)
     }

@@ -94,31 +94,26 @@ impl Grid {
     }
 
     /// Levels below the root.
-    #[must_use]
     pub fn depth(&self) -> u32 {
         self.depth
     }
 
     /// World position of the lowest corner of voxel (0, 0, 0).
-    #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
     /// World length of a voxel's side.
-    #[must_use]
     pub fn voxel_size(&self) -> f64 {
         self.voxel_size
     }
 
     /// The world position and voxel size for [`Builder::finish`](shiftvox::graph::Builder::finish).
-    #[must_use]
     pub fn placement(&self) -> ([f64; 3], f64) {
         (self.origin.to_array(), self.voxel_size)
     }
 
     /// The triangle's corners on the lattice, 0 to `2^30 - 1`: the nearest points.
-    #[must_use]
     pub fn corners<S: Surface + ?Sized>(&self, surface: &S, number: u32) -> [[i64; 3]; 3] {
         let steps = f64::from(1u32 << (BITS - self.depth)) / self.voxel_size;
         surface.corners(number as usize).map(|corner| {

@@ -1,24 +1,21 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
-//! Each triangle counts by the area of its part within the cube, in faces of
-//! the cube, times its opacity; plus 2^-20 of a face, so that what only
-//! touches the cube, or has no area, counts where nothing else does.
+//! The weight of a triangle is its opacity times the area of its part within the cube, in faces of the cube, plus 2^-20
+//! of a face. So triangles that only touch the cube count, too.
 
 use glam::DVec3;
 
 use super::distinct::Repeated;
 use super::touch::Prepared;
 use crate::Triangle;
+use crate::geometry::{Polygon, barycentric, blend};
 use crate::material::linear_to_srgb;
-use crate::surface::barycentric;
 use shiftvox::graph::PackedNormal;
 
 /// Weight of a touch alone, in faces of the voxel.
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 /// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
-/// A triangle cut by six planes has at most nine corners.
-const MOST_CORNERS: usize = 9;
 
 /// A triangle on the lattice with its colour and normal.
 #[derive(Debug)]
@@ -27,7 +24,7 @@ pub(super) struct Painted {
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
-    /// How many triangles it stands for.
+    /// The number of equal triangles.
     pub(super) times: u32,
 }
 
@@ -75,9 +72,8 @@ impl Mix {
         };
         let weight = (area + TOUCH) * painted.alpha;
         let share = barycentric(&points, centre);
-        let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
-        let light = blend(&painted.colors) * weight;
-        let normal = blend(&painted.normals).normalize_or(painted.normals[0]) * weight;
+        let light = blend(&painted.colors, share) * weight;
+        let normal = blend(&painted.normals, share).normalize_or(painted.normals[0]) * weight;
         self.weight += weight;
         self.light += light;
         let is_turned = self.turned.dot(normal) < 0.0;
@@ -117,39 +113,18 @@ fn area_vector(corners: &[DVec3]) -> DVec3 {
 /// Area of the part of a triangle in the unit cube, and the mean of its
 /// corners; where they only touch, 0 and a point of the cube nearby.
 fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
-    let mut corners = [DVec3::ZERO; MOST_CORNERS + 1];
-    corners[..3].copy_from_slice(triangle);
-    let mut count = 3;
+    let mut part = Polygon::of(triangle);
     for plane in 0..6 {
         let (axis, far) = (plane / 2, plane % 2 == 1);
-        // Not negative on the inner side.
-        let inside = |p: DVec3| if far { 1.0 - p[axis] } else { p[axis] };
-        let mut cut = [DVec3::ZERO; MOST_CORNERS + 1];
-        let mut kept = 0;
-        for i in 0..count {
-            let (here, next) = (corners[i], corners[(i + 1) % count]);
-            let (a, b) = (inside(here), inside(next));
-            if a >= 0.0 && kept < cut.len() {
-                cut[kept] = here;
-                kept += 1;
-            }
-            if (a >= 0.0) != (b >= 0.0) && kept < cut.len() {
-                cut[kept] = here + (next - here) * (a / (a - b));
-                kept += 1;
-            }
-        }
-        (corners, count) = (cut, kept);
-        if count == 0 {
-            break;
+        part = part.cut_in_order(|p| if far { 1.0 - p[axis] } else { p[axis] });
+        if part.corners().is_empty() {
+            let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+            return (0.0, middle.clamp(DVec3::ZERO, DVec3::ONE));
         }
     }
-    if count == 0 {
-        let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-        return (0.0, middle.clamp(DVec3::ZERO, DVec3::ONE));
-    }
-    let polygon = &corners[..count];
-    let mean = polygon.iter().copied().sum::<DVec3>() / count as f64;
-    (area_of(polygon), mean)
+    let corners = part.corners();
+    let mean = corners.iter().copied().sum::<DVec3>() / corners.len() as f64;
+    (area_of(corners), mean)
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ const BATCH_TRIANGLES: usize = 1 << 18;
 /// Level whose nodes the progress counts.
 const PROGRESS_LEVEL: u32 = 4;
 
-/// What voxelising took.
+/// Counts of one voxelisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct VoxelizeReport {
     /// Voxels handed on, each once.

@@ -1,5 +1,5 @@
-//! How opaque the voxels of a mesh are, from six sides (`spec/mesh.md`, "Opacities"): what each covers is found from
-//! the triangles at the finest level and put together at those above, then along the columns of large objects.
+//! Opacities of a mesh's voxels from six sides (`spec/mesh.md`, "Opacities"). The coverage of the finest level comes
+//! from the triangles. Coarser levels combine it.
 
 use std::sync::atomic::Ordering;
 
@@ -164,7 +164,7 @@ type Inside = (Masks, u8);
 
 const NOTHING: Inside = ([0; 3], u8::MAX);
 
-/// What eight children come to, by octant.
+/// The combination of eight children, by octant.
 fn together(children: &[Inside]) -> Inside {
     let masks: Vec<Masks> = children.iter().map(|child| child.0).collect();
     let large_from = children.iter().map(|child| child.1).min();

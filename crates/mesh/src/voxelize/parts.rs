@@ -1,13 +1,14 @@
-//! Which triangles are part of a large object.
+//! Triangles that belong to large objects.
 //!
-//! Triangles that share corners are one object. It is large, at a level of the tree, if it is closed and longer than
-//! two nodes, or open and longer than sixteen: such a surface goes on from node to node, while a leaf, a scrap or a
-//! small thing at a distance ends within a few. (Wagner et al. 2007, Fig. 3b: parts of large objects stay opaque.)
+//! Triangles that share corners are one object. An object is large at a level of the tree if it is closed and longer
+//! than two nodes, or open and longer than sixteen. Such a surface crosses several nodes. (Wagner et al. 2007, Fig. 3b:
+//! parts of large objects stay opaque.)
 
 use rayon::prelude::*;
 
 use super::Grid;
 use crate::Surface;
+use crate::geometry::Sets;
 use shiftvox::split_mix::mix;
 
 /// Least length of a large object, sides of nodes: of a closed one, and of one with an edge where it ends.
@@ -23,12 +24,13 @@ pub(super) fn coarsest_levels<S: Surface + ?Sized>(
     sides: &[i64],
 ) -> Vec<u8> {
     let triangles = joined_corners(surface, grid, numbers);
-    let mut objects = Objects::new(triangles.iter().flatten().max().map_or(0, |&most| most + 1));
+    let count = triangles.iter().flatten().max().map_or(0, |&most| most + 1);
+    let mut objects = Sets::new(count);
     for &[a, b, c] in &triangles {
         objects.join(a, b);
         objects.join(b, c);
     }
-    let mut spans = vec![Span::default(); objects.parents.len()];
+    let mut spans = vec![Span::default(); count as usize];
     for (&number, &[corner, ..]) in numbers.iter().zip(&triangles) {
         let root = objects.root(corner);
         for point in grid.corners(surface, number) {
@@ -90,34 +92,6 @@ fn open_edges(triangles: &[[u32; 3]]) -> Vec<u32> {
         .chunk_by(|a, b| a == b)
         .filter(|alike| alike.len() % 2 == 1);
     of_one_side.map(|alike| alike[0][0]).collect()
-}
-
-/// Corners in sets that triangles join.
-struct Objects {
-    parents: Vec<u32>,
-}
-
-impl Objects {
-    fn new(corners: u32) -> Self {
-        Self {
-            parents: (0..corners).collect(),
-        }
-    }
-
-    fn root(&mut self, mut corner: u32) -> u32 {
-        while self.parents[corner as usize] != corner {
-            let above = self.parents[self.parents[corner as usize] as usize];
-            self.parents[corner as usize] = above;
-            corner = above;
-        }
-        corner
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        // The lower number is the root, whatever the order.
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
 }
 
 /// How far an object reaches on the lattice, and whether it ends anywhere.

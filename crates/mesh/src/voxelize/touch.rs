@@ -1,11 +1,9 @@
 //! Does a triangle touch a cube? Exactly, in integers.
 //!
-//! Two convex bodies are apart if and only if one of finitely many directions
-//! separates them: for a triangle and a cube the cube's three axes, the
-//! triangle's normal, and the nine products of an edge and an axis. Bodies
-//! that meet in a point touch. Where all corners lie on a line or in a point
-//! the normal is zero and separates nothing; the other directions are then
-//! those of a segment, or of a point, and still decide exactly.
+//! Two convex bodies are apart if and only if one of finitely many directions separates them. For a triangle and a cube
+//! these are the cube's three axes, the triangle's normal and the nine products of an edge and an axis. Bodies that
+//! meet in a point touch. Where all corners lie on a line or in a point, the normal is zero and separates nothing. The
+//! other directions are then those of a segment or a point.
 //!
 //! Bits: coordinates of triangles and corners of cubes are below 2^30, edges below 2^30 in size, so a product of
 //! an edge and an axis dotted with a corner stays below 2^61. The normal is
@@ -108,7 +106,7 @@ impl Prepared {
         low <= self.offset && self.offset <= high
     }
 
-    /// Which of a cube's eight children the triangle touches, bit `x << 2 | y << 1 | z`.
+    /// The children of a cube that the triangle touches, as bits `x << 2 | y << 1 | z`.
     pub(super) fn children(&self, corner: [i64; 3], half: i64) -> u8 {
         (0..8u8)
             .filter(|&octant| self.touches(child(corner, half, octant), half))
@@ -168,8 +166,8 @@ mod tests {
         let most = (1i64 << 30) - 1;
         let triangle = Prepared::new([[0, most, 0], [most, 0, most], [most, most, 0]]);
         assert!(triangle.touches([0, most - 1, 0], 1));
-        // Points (x, most - z, z) with x from z to most: y and z are not both in
-        // the upper half, and at z = 2^29 the lower half of x is met in a point.
+        // The triangle has the points (x, most - z, z) with x from z to most. y and z are not both in the upper half.
+        // At z = 2^29 it meets the lower half of x in a point.
         assert_eq!(triangle.children([0; 3], 1 << 29), 0b0111_0111);
     }
 }

@@ -1,4 +1,4 @@
-//! What is built: the same on any threads, better with more rays, level by level.
+//! Building: the same bytes on any number of threads, better pictures with more rays, smaller voxels at each level.
 
 use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
@@ -6,69 +6,58 @@ use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
-use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, FarFile, build};
-use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
+use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, build};
+use shiftvox_mesh::raster::RasterCamera;
 
-use super::city::{city, far, light, on_threads, options, view};
+use super::city::{city, far, file_of, light, options, view};
+use super::shared::{difference, on_threads, triangles};
+
+fn with_rays(rays: u64) -> FarData {
+    let rays = Some(rays);
+    far(&BuildOptions { rays, ..options() })
+}
+
+fn sum(data: &FarData, of: fn(&Node) -> u64) -> u64 {
+    data.nodes.iter().map(of).sum()
+}
 
 #[test]
 fn the_same_bytes_on_one_and_two_threads() {
-    let one = on_threads(1, || encode(&far(&options())).unwrap());
-    let two = on_threads(2, || encode(&far(&options())).unwrap());
+    let [one, two] = [1, 2].map(|n| on_threads(n, || encode(&far(&options())).unwrap()));
     assert!(one == two, "{} and {} bytes", one.len(), two.len());
 }
 
 #[test]
-fn a_ray_budget_is_kept_and_other_rays_are_other_bytes() {
-    let budget = |rays| {
-        far(&BuildOptions {
-            rays: Some(rays),
-            ..options()
-        })
-    };
-    let shot = |data: &FarData| data.nodes.iter().map(|n| u64::from(n.rays)).sum();
-    let (few, more) = (budget(20_000), budget(40_000));
-    let (shot_few, shot_more): (u64, u64) = (shot(&few), shot(&more));
-    assert!(shot_few <= 20_000 && shot_few > 19_000, "{shot_few}");
-    assert!(shot_more <= 40_000 && shot_more > 39_000, "{shot_more}");
-    let sum = |data: &FarData, of: fn(&Node) -> u64| data.nodes.iter().map(of).sum::<u64>();
-    let untested = |data: &FarData| sum(data, |n| u64::from(n.untested));
-    let touched = |data: &FarData| sum(data, |n| u64::from(n.touched));
-    // What too few rays cannot tell is kept, not taken for hidden.
-    assert!(untested(&few) > untested(&more) && untested(&more) > 0);
-    let enough = budget(4_000_000);
-    assert_eq!((untested(&enough), touched(&enough)), (0, touched(&few)));
-    let kept = |data: &FarData| sum(data, Node::voxels);
-    assert!(
-        kept(&few) > kept(&enough),
-        "{} {}",
-        kept(&few),
-        kept(&enough)
-    );
+fn a_ray_budget_is_kept() {
+    let [few, more, enough] = [20_000, 40_000, 4_000_000].map(with_rays);
+    for (data, budget) in [(&few, 20_000), (&more, 40_000)] {
+        let shot = sum(data, |n| u64::from(n.rays));
+        assert!(shot <= budget && shot > budget - 1000, "{shot}");
+    }
+    // A voxel that no ray reached is kept, not taken as hidden.
+    let untested = [&few, &more, &enough].map(|data| sum(data, |n| u64::from(n.untested)));
+    assert!(untested[0] > untested[1] && untested[1] > 0 && untested[2] == 0);
+    let touched = [&few, &enough].map(|data| sum(data, |n| u64::from(n.touched)));
+    assert_eq!(touched[0], touched[1]);
+    let kept = [&few, &enough].map(|data| sum(data, Node::voxels));
+    assert!(kept[0] > kept[1], "{kept:?}");
     assert!(few.nodes.iter().all(|n| n.voxels() <= u64::from(n.touched)));
 }
 
 #[test]
 fn bad_options_are_refused() {
-    let tries = [
-        BuildOptions {
-            grid: 1,
+    for (grid, leaf_triangles, distance_voxels) in [
+        (1, 60, 40.0),
+        (256, 60, 40.0),
+        (24, 1, 40.0),
+        (24, 60, f64::NAN),
+    ] {
+        let options = BuildOptions {
+            grid,
+            leaf_triangles,
+            distance_voxels,
             ..options()
-        },
-        BuildOptions {
-            grid: 256,
-            ..options()
-        },
-        BuildOptions {
-            leaf_triangles: 1,
-            ..options()
-        },
-        BuildOptions {
-            distance_voxels: f64::NAN,
-            ..options()
-        },
-    ];
-    for options in tries {
+        };
         let refused = build(&city(), &options, &Silent);
         assert!(matches!(refused, Err(BuildError::Option(_))), "{options:?}");
     }
@@ -81,10 +70,9 @@ fn voxels_shrink_from_level_to_level() {
     let mut above = vec![f32::INFINITY; data.nodes.len()];
     let (mut sizes, mut without) = (Vec::new(), 0);
     for (number, node) in data.nodes.iter().enumerate() {
-        let is_inner = !node.is_leaf();
-        without += usize::from(is_inner && !node.has_grid());
+        without += usize::from(!node.is_leaf() && !node.has_grid());
         if node.has_grid() {
-            // The root of the hierarchy and what is above it have halves; rounded layers add a little.
+            // The root of the hierarchy and the nodes above it have halves; rounded layers add a little.
             assert!(node.voxel <= 0.75 * above[number], "{number}");
             sizes.push(node.voxel);
         }
@@ -101,66 +89,6 @@ fn voxels_shrink_from_level_to_level() {
     assert!(without > 3, "boxes halved across another axis: {without}");
 }
 
-/// However large or small the numbers of a mesh are, it has the same voxels and looks the same.
-#[test]
-fn size_does_not_matter() {
-    let options = options();
-    let mesh = city();
-    let usual = far(&options);
-    let picture = |data: &FarData, scale: f64| {
-        let file = FarFile::from_bytes(&encode(data).unwrap()).unwrap();
-        let mut view = view(30.0, 0.6, 150.0, 192);
-        view.eye *= scale;
-        view.near *= scale;
-        let shown = shown(&view, 2.0);
-        FarViewer::new(&file).draw(&view, &shown).unwrap().0.rgba
-    };
-    let expected = picture(&usual, 1.0);
-    let voxels = |data: &FarData| data.nodes.iter().map(Node::voxels).sum::<u64>();
-    // Powers of two, 10^-12 to 10^12 about: nothing is rounded, and triangles are split alike.
-    for scale in [-40, -17, 40].map(|power| 2f64.powi(power)) {
-        let place = DAffine3::from_scale(DVec3::splat(scale));
-        let data = build(
-            &Instances::new(mesh.clone(), vec![place]),
-            &options,
-            &Silent,
-        )
-        .unwrap();
-        let (found, all) = (voxels(&data), voxels(&usual));
-        assert_eq!(found, all, "{scale}");
-        let pairs = picture(&data, scale).into_iter().zip(&expected);
-        let square = |(a, b): ([u8; 4], &[u8; 4])| {
-            let channels = (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2));
-            channels.sum::<f64>() / 3.0
-        };
-        let mean = pairs.map(square).sum::<f64>() / expected.len() as f64;
-        // Other numbers round otherwise, and so some rays end elsewhere.
-        assert!(mean.sqrt() < 2.0, "{scale}: {}", mean.sqrt());
-    }
-}
-
-/// Root mean square difference of the channels to 256 samples a pixel.
-fn error(file: &FarFile, view: &RasterCamera, options: &ViewOptions) -> f64 {
-    let reference = raster::draw(
-        &city(),
-        view,
-        &RasterOptions {
-            samples: Samples::new(256, Pattern::Regular).unwrap(),
-            light: options.light,
-            background: options.background,
-        },
-        &Silent,
-    )
-    .unwrap();
-    let (picture, _) = FarViewer::new(file).draw(view, options).unwrap();
-    let pairs = picture.rgba.iter().zip(&reference.rgba);
-    let square = |(a, b): (&[u8; 4], &[u8; 4])| {
-        let channels = (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2));
-        channels.sum::<f64>() / 3.0
-    };
-    (pairs.map(square).sum::<f64>() / picture.rgba.len() as f64).sqrt()
-}
-
 fn shown(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
     ViewOptions {
         voxel_px,
@@ -170,42 +98,48 @@ fn shown(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
     }
 }
 
+/// A mesh scaled by a power of two, from 10^-12 to 10^12, has the same voxels and the same picture.
 #[test]
-fn finer_levels_have_less_error() {
-    let data = far(&BuildOptions {
-        rays: Some(800_000),
-        ..options()
-    });
-    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
-    let view = view(30.0, 0.6, 150.0, 256);
-    let errors: Vec<f64> = [1.0, 2.0, 4.0]
-        .into_iter()
-        .map(|px| error(&file, &view, &shown(&view, px)))
-        .collect();
-    assert!(
-        errors.windows(2).all(|pair| pair[0] < pair[1]),
-        "{errors:?}"
-    );
+fn size_does_not_matter() {
+    let usual = far(&options());
+    let picture = |data: &FarData, scale: f64| {
+        let mut view = view(30.0, 0.6, 150.0, 192);
+        view.eye *= scale;
+        view.near *= scale;
+        let shown = shown(&view, 2.0);
+        let file = file_of(data);
+        FarViewer::new(&file).draw(&view, &shown).unwrap().0.rgba
+    };
+    let expected = picture(&usual, 1.0);
+    for scale in [-40, -17, 40].map(|power| 2f64.powi(power)) {
+        let place = DAffine3::from_scale(DVec3::splat(scale));
+        let scaled = Instances::new(city(), vec![place]);
+        let data = build(&scaled, &options(), &Silent).unwrap();
+        let voxels = [&data, &usual].map(|data| sum(data, Node::voxels));
+        assert_eq!(voxels[0], voxels[1], "{scale}");
+        // Other numbers round otherwise, and so some rays end elsewhere.
+        let error = difference(&picture(&data, scale), &expected, f64::from);
+        assert!(error < 2.0, "{scale}: {error}");
+    }
+}
+
+/// Root mean square difference of the channels from 256 samples per pixel.
+fn error(data: &FarData, size: u32, voxel_px: f64) -> f64 {
+    let view = view(30.0, 0.6, 150.0, size);
+    let options = shown(&view, voxel_px);
+    let reference = triangles(&city(), &view, 256, options.light, options.background);
+    let file = file_of(data);
+    let (picture, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
+    difference(&picture.rgba, &reference.rgba, f64::from)
 }
 
 #[test]
-fn more_rays_never_raise_the_error_beyond_noise() {
-    let view = view(30.0, 0.6, 150.0, 192);
-    let errors: Vec<f64> = [15_000, 60_000, 240_000, 960_000]
-        .into_iter()
-        .map(|rays| {
-            let data = far(&BuildOptions {
-                rays: Some(rays),
-                ..options()
-            });
-            let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
-            error(&file, &view, &shown(&view, 2.0))
-        })
-        .collect();
-    assert!(
-        errors.windows(2).all(|pair| pair[1] < pair[0] * 1.03),
-        "{errors:?}"
-    );
+fn finer_levels_and_more_rays_have_less_error() {
+    let data = with_rays(800_000);
+    let errors = [1.0, 2.0, 4.0].map(|px| error(&data, 256, px));
+    assert!(errors.is_sorted_by(|a, b| a < b), "{errors:?}");
+    let errors = [15_000, 60_000, 240_000, 960_000].map(|rays| error(&with_rays(rays), 192, 2.0));
+    assert!(errors.is_sorted_by(|a, b| *b < a * 1.03), "{errors:?}");
     assert!(errors[3] < errors[0], "{errors:?}");
 }
 
@@ -214,14 +148,13 @@ fn more_rays_never_raise_the_error_beyond_noise() {
 fn a_mesh_of_several_clusters_is_built() {
     let mesh = city();
     let copies = 140_000usize.div_ceil(mesh.triangles().len());
-    let places =
-        (0..copies).map(|number| DAffine3::from_translation(DVec3::X * 50.0 * number as f64));
-    let many = Instances::new(mesh, places.collect());
+    let places = (0..copies).map(|n| DAffine3::from_translation(DVec3::X * 50.0 * n as f64));
     let options = BuildOptions {
         rays: Some(20_000),
         leaf_triangles: 50_000,
         ..options()
     };
+    let many = Instances::new(mesh, places.collect());
     let data = build(&many, &options, &Silent).unwrap();
     assert!(data.triangles() > 1 << 17, "{}", data.triangles());
     assert!(data.nodes[0].voxels() > 0);

@@ -2,32 +2,12 @@
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::far::{BuildOptions, FarData, build};
+use shiftvox_mesh::far::store::encode;
+use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
 use shiftvox_mesh::raster::{Light, RasterCamera};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
-fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
-    let corners: Vec<u32> = (0..8)
-        .map(|i| {
-            let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
-            builder.position([pick(0), pick(1), pick(2)])
-        })
-        .collect();
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    for [a, b, c, d] in faces {
-        for triangle in [[a, b, c], [a, c, d]] {
-            let triangle = triangle.map(|i: usize| corners[i]);
-            builder.triangle(triangle, None, material).unwrap();
-        }
-    }
-}
+use super::shared::{cuboid, looking, quad};
 
 /// About 4000 triangles, 40 units wide.
 pub(crate) fn city() -> Mesh {
@@ -67,10 +47,7 @@ fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
         let (x, z) = ((i % 14) as f32 * 3.0, (i / 14) as f32 * 3.0);
         let corners = [[x, z], [x, z + 3.0], [x + 3.0, z + 3.0], [x + 3.0, z]];
         let corners = corners.map(|[x, z]| builder.position([x, -0.2, z]));
-        for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = [corners[a], corners[b], corners[c]];
-            builder.triangle(triangle, None, 1).unwrap();
-        }
+        quad(&mut builder, corners, 1);
     }
     for i in 0..if has_wall { 400 } else { 0 } {
         let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
@@ -90,19 +67,19 @@ pub(crate) fn options() -> BuildOptions {
     }
 }
 
+/// The city as far voxels, on a ground or not, behind a high wall or not.
+pub(crate) fn far_of(has_ground: bool, has_wall: bool, options: &BuildOptions) -> FarData {
+    build(&blocks(has_ground, has_wall), options, &Silent).unwrap()
+}
+
 /// The city as far voxels.
 pub(crate) fn far(options: &BuildOptions) -> FarData {
-    build(&city(), options, &Silent).unwrap()
+    far_of(false, false, options)
 }
 
-/// The city on its ground as far voxels.
-pub(crate) fn far_on_ground(options: &BuildOptions) -> FarData {
-    build(&blocks(true, false), options, &Silent).unwrap()
-}
-
-/// The city behind a high wall as far voxels.
-pub(crate) fn far_behind_wall(options: &BuildOptions) -> FarData {
-    build(&blocks(true, true), options, &Silent).unwrap()
+/// The built data as a file.
+pub(crate) fn file_of(data: &FarData) -> FarFile {
+    FarFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
 
 /// A view of the city from an angle around it and a distance.
@@ -110,18 +87,7 @@ pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> Raste
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let target = DVec3::new(20.0, 2.0, 21.0);
     let eye = target + DVec3::new(sin, height, cos).normalize() * distance;
-    let forward = (target - eye).normalize();
-    let right = forward.cross(DVec3::Y).normalize();
-    RasterCamera {
-        eye,
-        right,
-        up: right.cross(forward),
-        forward,
-        focal_px: f64::from(size),
-        width: size,
-        height: size,
-        near: 1e-3,
-    }
+    looking(eye, target, [size; 2], f64::from(size))
 }
 
 /// From above, behind the eye.
@@ -129,10 +95,4 @@ pub(crate) fn light(view: &RasterCamera) -> Option<Light> {
     let towards = (view.up + view.right * 0.5 - view.forward).normalize();
     let ambient = 90;
     Some(Light { towards, ambient })
-}
-
-/// Work on so many threads.
-pub(crate) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().unwrap().install(work)
 }

@@ -1,20 +1,18 @@
 //! The hybrid: decimated surfaces beside voxels in the hierarchy.
 
-use std::path::Path;
-
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewOptions};
+use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
 use shiftvox_mesh::generate::{Kind, generate};
-use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
-use shiftvox_mesh::{Material, Mesh, MeshBuilder, srgb_to_linear};
+use shiftvox_mesh::{Mesh, srgb_to_linear};
 
-use super::city::on_threads;
+use super::city::file_of;
 use super::file::{is_refused, with_checksums};
-use super::solid::{directions, draw, sphere, view};
+use super::shared::{around, difference, directions, on_threads, triangles};
+use super::solid::{draw, nested_spheres};
 
 fn hybrid(mesh: &Mesh, leaf_triangles: u32) -> FarData {
     let options = BuildOptions {
@@ -23,10 +21,6 @@ fn hybrid(mesh: &Mesh, leaf_triangles: u32) -> FarData {
         ..BuildOptions::default()
     };
     build(mesh, &options, &Silent).unwrap()
-}
-
-fn file_of(data: &FarData) -> FarFile {
-    FarFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
 
 fn inner(data: &FarData) -> impl Iterator<Item = &Node> {
@@ -85,7 +79,7 @@ fn damaged_files_are_refused() {
         damaged[place] ^= 1 << (place % 8);
         assert!(is_refused(&damaged), "byte {place}");
     }
-    // What a node says of its surface, behind right checksums.
+    // The fields of a node's surface, behind right checksums.
     for place in 128..144 {
         for flip in [0x01, 0x40] {
             let mut damaged = bytes.clone();
@@ -110,19 +104,14 @@ fn no_background_shows_between_nodes() {
 
 /// Of a red ball of a radius in a white one of 10.
 fn nothing_shows_through(inner: f64) {
-    let mut builder = MeshBuilder::new();
-    let white = builder.material(Material::of_srgb("white".to_owned(), [255; 3]));
-    let red = builder.material(Material::of_srgb("red".to_owned(), [255, 0, 0]));
-    sphere(&mut builder, 10.0, 96, white);
-    sphere(&mut builder, inner, 40, red);
-    let mesh = builder.finish("balls").unwrap();
+    let mesh = nested_spheres(96, inner);
     let data = hybrid(&mesh, 300);
     let file = file_of(&data);
     let mut mixed = 0;
     let mut told = String::new();
     for size in [12, 40, 120, 400] {
         for (number, towards) in directions(12).enumerate() {
-            let view = view(&mesh, towards, 0.6 + 0.3 * number as f64, size);
+            let view = around(&mesh, towards, 0.6 + 0.3 * number as f64, size);
             let picture = draw(&file, &view, Opacity::Six);
             let is_red = |p: &&[u8; 4]| p[0].abs_diff(p[1]) > 2;
             let reds = picture.rgba.iter().filter(is_red).count();
@@ -157,27 +146,9 @@ fn nothing_shows_through(inner: f64) {
     assert!(data.nodes.iter().all(|node| node.voxels() == 0));
 }
 
-fn drawn(
-    viewer: &mut FarViewer<'_>,
-    view: &RasterCamera,
-    samples_across: u32,
-) -> (FarPicture, u64) {
-    let options = ViewOptions {
-        samples_across,
-        background: Some([90, 120, 200]),
-        ..ViewOptions::default()
-    };
-    let (picture, counts) = viewer.draw(view, &options).unwrap();
-    (picture, counts.bytes)
-}
-
 /// Decibel of a picture in linear light.
 fn psnr(rgba: &[[u8; 4]], truth: &[[u8; 4]]) -> f64 {
-    let light = |byte| f64::from(srgb_to_linear(byte));
-    let channels = rgba.iter().flatten().zip(truth.iter().flatten());
-    let squares = channels.map(|(&a, &b)| (light(a) - light(b)).powi(2));
-    // Three channels; the fourth is the same.
-    -10.0 * (squares.sum::<f64>() / (3 * rgba.len()) as f64).log10()
+    -20.0 * difference(rgba, truth, |byte| f64::from(srgb_to_linear(byte))).log10()
 }
 
 /// With 16 samples a picture is near the triangles', in a share of their bytes; far voxels are not nearer
@@ -203,60 +174,22 @@ fn pictures_are_near_in_few_bytes() {
             .sum();
         let files = files.map(|data| file_of(&data));
         for (size, least, share) in sizes {
-            let view = view(&mesh, DVec3::new(1.0, 0.6, 0.8), 2.0, size);
-            let options = RasterOptions {
-                samples: Samples::new(256, Pattern::Regular).unwrap(),
-                light: None,
-                background: Some([90, 120, 200]),
-            };
-            let truth = raster::draw(&mesh, &view, &options, &Silent).unwrap();
+            let view = around(&mesh, DVec3::new(1.0, 0.6, 0.8), 2.0, size);
+            let background = Some([90, 120, 200]);
+            let truth = triangles(&mesh, &view, 256, None, background);
             let [near, far] = files.each_ref().map(|file| {
-                let (picture, bytes) = drawn(&mut FarViewer::new(file), &view, 4);
-                (psnr(&picture.rgba, &truth.rgba), bytes)
+                let options = ViewOptions {
+                    samples_across: 4,
+                    background,
+                    ..ViewOptions::default()
+                };
+                let (picture, counts) = FarViewer::new(file).draw(&view, &options).unwrap();
+                (psnr(&picture.rgba, &truth.rgba), counts.bytes)
             });
             let told = format!("{kind:?}, {size} pixels: {near:.1?}, far {far:.1?}, whole {whole}");
-            eprintln!("{told}");
             assert!(near.0 > least, "{told}");
             assert!((near.1 as f64) < share * whole as f64, "{told}");
             assert!(near.0 > far.0 || near.1 < far.1, "{told}");
         }
     }
-}
-
-/// What is hidden, answers that come late, and a budget of a quarter of the data change no pixel.
-#[test]
-#[ignore = "takes long"]
-fn budgets_and_culling_change_no_picture() {
-    let mesh = generate(Kind::Garden, 3);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("garden.far");
-    std::fs::write(&path, encode(&hybrid(&mesh, 300)).unwrap()).unwrap();
-    let file = FarFile::open(&path).unwrap();
-    let most = 1 << 20;
-    let within = within(&path, most);
-    let mut viewers: Vec<FarViewer<'_>> = std::iter::once(&file)
-        .chain(&within)
-        .map(FarViewer::new)
-        .collect();
-    for (number, towards) in directions(3).enumerate() {
-        let view = view(&mesh, towards, 0.7 + 0.5 * number as f64, 150);
-        let everything = ViewOptions {
-            culling: false,
-            background: Some([90, 120, 200]),
-            ..ViewOptions::default()
-        };
-        let (truth, _) = FarViewer::new(&file).draw(&view, &everything).unwrap();
-        for viewer in &mut viewers {
-            assert!(drawn(viewer, &view, 1).0 == truth, "{towards}");
-        }
-    }
-    if let Some(file) = &within {
-        let resident = file.resident().unwrap();
-        assert!(resident.released > 0, "{resident:?}");
-    }
-}
-
-/// With a budget, where the system can keep to one.
-fn within(path: &Path, most: u64) -> Option<FarFile> {
-    FarFile::open_within(path, most).ok()
 }

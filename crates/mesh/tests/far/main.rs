@@ -6,5 +6,7 @@ mod city;
 mod file;
 mod hybrid;
 mod samples;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod solid;
 mod view;

@@ -1,16 +1,14 @@
-//! More than one sample a pixel.
+//! Several samples per pixel, and options that a view refuses.
 
-use shiftvox::graph::Silent;
 use shiftvox_mesh::far::FarFile;
-use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewError, ViewOptions};
-use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
+use shiftvox_mesh::raster::RasterCamera;
+use shiftvox_mesh::srgb_to_linear;
 
-use super::city::{city, far, light, options, view};
+use super::city::{city, far, file_of, light, options, view};
+use super::shared::{difference, triangles};
 
-fn file() -> FarFile {
-    FarFile::from_bytes(&encode(&far(&options())).unwrap()).unwrap()
-}
+const BACKGROUND: Option<[u8; 3]> = Some([240, 240, 245]);
 
 fn draw(
     file: &FarFile,
@@ -24,30 +22,24 @@ fn draw(
         samples_across,
         opacity,
         light: light(view),
-        background: Some([240, 240, 245]),
+        background: BACKGROUND,
         ..ViewOptions::default()
     };
     FarViewer::new(file).draw(view, &options).unwrap().0
 }
 
-/// sRGB to linear light, by its definition.
 fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        ((value + 0.055) / 1.055).powf(2.4)
-    }
+    f64::from(srgb_to_linear(byte))
 }
 
 #[test]
 fn a_pixel_is_the_mean_of_its_samples() {
-    let file = file();
+    let file = file_of(&far(&options()));
     for opacity in [Opacity::None, Opacity::Six] {
         for (distance, across) in [(60.0, 2u32), (300.0, 4)] {
             let view = view(30.0, 0.5, distance, 48);
             let picture = draw(&file, &view, across, 1.0, opacity);
-            // The same, drawn larger: what is a pixel there is a sample here.
+            // Each pixel of the larger picture is a sample of the smaller one.
             let larger = RasterCamera {
                 focal_px: view.focal_px * f64::from(across),
                 width: view.width * across,
@@ -86,48 +78,42 @@ fn a_pixel_is_the_mean_of_its_samples() {
     }
 }
 
-/// Root mean square distance of linear light from 256 samples a pixel.
-fn error(picture: &FarPicture, view: &RasterCamera) -> f64 {
-    let options = RasterOptions {
-        samples: Samples::new(256, Pattern::Stratified { seed: 3 }).unwrap(),
-        light: light(view),
-        background: Some([240, 240, 245]),
-    };
-    let reference = raster::draw(&city(), view, &options, &Silent).unwrap();
-    let square = |(a, b): (&[u8; 4], &[u8; 4])| {
-        (0..3)
-            .map(|k| (linear(a[k]) - linear(b[k])).powi(2))
-            .sum::<f64>()
-    };
-    let sum: f64 = picture.rgba.iter().zip(&reference.rgba).map(square).sum();
-    (sum / (3 * picture.rgba.len()) as f64).sqrt()
-}
-
 #[test]
-fn more_samples_are_nearer_to_the_truth() {
-    let file = file();
-    // Near: leaves. From there on: voxels too, then alone.
+fn more_samples_are_nearer_to_the_triangles() {
+    let file = file_of(&far(&options()));
+    // Near: leaves. Farther away: leaves and voxels, then voxels alone.
     for (distance, ratio) in [(40.0, 0.7), (110.0, 0.8), (300.0, 0.9)] {
         let view = view(30.0, 0.6, distance, 160);
-        let errors =
-            [1, 2, 4].map(|across| error(&draw(&file, &view, across, 1.0, Opacity::Six), &view));
+        let reference = triangles(&city(), &view, 256, light(&view), BACKGROUND);
+        let errors = [1, 2, 4].map(|across| {
+            let picture = draw(&file, &view, across, 1.0, Opacity::Six);
+            difference(&picture.rgba, &reference.rgba, linear)
+        });
         assert!(
-            errors[0] > errors[1] && errors[1] > errors[2],
+            errors.is_sorted_by(|a, b| a > b) && errors[2] < ratio * errors[0],
             "{distance}: {errors:?}"
         );
-        assert!(errors[2] < ratio * errors[0], "{distance}: {errors:?}");
     }
 }
 
 #[test]
-fn pictures_of_no_or_too_many_samples_are_refused() {
-    let file = file();
-    for samples_across in [0, 17] {
+fn options_that_cannot_be_drawn_are_refused() {
+    let file = file_of(&far(&options()));
+    let refused = |voxel_px: f64, samples_across: u32, width: u32| {
         let options = ViewOptions {
+            voxel_px,
             samples_across,
             ..ViewOptions::default()
         };
-        let drawn = FarViewer::new(&file).draw(&view(0.0, 0.5, 60.0, 8), &options);
-        assert!(matches!(drawn, Err(ViewError::Samples(_))));
+        let mut view = view(0.0, 0.5, 60.0, 8);
+        view.width = width;
+        FarViewer::new(&file).draw(&view, &options).unwrap_err()
+    };
+    for samples in [0, 17] {
+        assert!(matches!(refused(1.0, samples, 8), ViewError::Samples(_)));
     }
+    for voxel_px in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(refused(voxel_px, 1, 8), ViewError::VoxelSize(_)));
+    }
+    assert!(matches!(refused(1.0, 1, 0), ViewError::Raster(_)));
 }

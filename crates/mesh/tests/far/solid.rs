@@ -2,14 +2,16 @@
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
-use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
-use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
+use shiftvox_mesh::raster::RasterCamera;
+use shiftvox_mesh::{Material, Mesh, MeshBuilder};
+
+use super::city::file_of;
+use super::shared::{area, around, directions, quad, triangles};
 
 /// A sphere of 2 * n * n triangles about the origin.
-pub(crate) fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u32) {
+fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u32) {
     let at = |i: u32, j: u32| {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(n));
         // One pole, one first column: the sphere is closed to the last bit.
@@ -22,9 +24,7 @@ pub(crate) fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u
         for j in 0..n {
             let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]
                 .map(|(i, j)| builder.position(at(i, j)));
-            for triangle in [[a, b, c], [a, c, d]] {
-                builder.triangle(triangle, None, material).unwrap();
-            }
+            quad(builder, [a, b, c, d], material);
         }
     }
 }
@@ -49,44 +49,23 @@ fn tube(builder: &mut MeshBuilder, from: DVec3, to: DVec3, radius: f64, [sides, 
                 (part + 1, side),
             ]
             .map(|(part, side)| builder.position(at(part, side)));
-            for triangle in [[a, b, c], [a, c, d]] {
-                builder.triangle(triangle, None, 0).unwrap();
-            }
+            quad(builder, [a, b, c, d], 0);
         }
     }
 }
 
 fn far(mesh: &Mesh) -> FarFile {
-    let data = build(mesh, &BuildOptions::default(), &Silent).unwrap();
-    FarFile::from_bytes(&encode(&data).unwrap()).unwrap()
+    file_of(&build(mesh, &BuildOptions::default(), &Silent).unwrap())
 }
 
-/// A view in which what is in a box fills about `size` pixels, from `distance` of its sizes away.
-pub(crate) fn view(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
-    let (low, high) = Surface::bounds(mesh);
-    let (middle, side) = ((low + high) / 2.0, (high - low).length());
-    let forward = -towards.normalize();
-    let (right, up) = forward.any_orthonormal_pair();
-    RasterCamera {
-        eye: middle - forward * side * distance,
-        right,
-        up,
-        forward,
-        focal_px: f64::from(size) * distance,
-        width: size,
-        height: size,
-        near: 1e-3,
-    }
-}
-
-/// Directions spread over the sphere.
-pub(crate) fn directions(count: u32) -> impl Iterator<Item = DVec3> {
-    (0..count).map(move |i| {
-        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
-        let ring = libm::sqrt(1.0 - z * z);
-        let (sin, cos) = libm::sincos(f64::from(i) * 2.399_963_229_728_653);
-        DVec3::new(ring * cos, ring * sin, z)
-    })
+/// A white sphere of radius 10 round a red one.
+pub(crate) fn nested_spheres(n: u32, inner: f64) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let white = builder.material(Material::of_srgb("white", [255; 3]));
+    let red = builder.material(Material::of_srgb("red", [255, 0, 0]));
+    sphere(&mut builder, 10.0, n, white);
+    sphere(&mut builder, inner, 40, red);
+    builder.finish("spheres").unwrap()
 }
 
 pub(crate) fn draw(file: &FarFile, view: &RasterCamera, opacity: Opacity) -> FarPicture {
@@ -101,18 +80,13 @@ pub(crate) fn draw(file: &FarFile, view: &RasterCamera, opacity: Opacity) -> Far
 /// A closed white sphere round a red one shows no red, from any side, at any distance.
 #[test]
 fn a_closed_sphere_hides_what_is_in_it() {
-    let mut builder = MeshBuilder::new();
-    let white = builder.material(Material::of_srgb("white".to_owned(), [255; 3]));
-    let red = builder.material(Material::of_srgb("red".to_owned(), [255, 0, 0]));
-    sphere(&mut builder, 10.0, 64, white);
-    sphere(&mut builder, 9.0, 40, red);
-    let mesh = builder.finish("spheres").unwrap();
+    let mesh = nested_spheres(64, 9.0);
     let file = far(&mesh);
     let mut voxels = 0;
     let mut told = String::new();
     for size in [12, 40, 120, 400] {
         for (number, towards) in directions(12).enumerate() {
-            let view = view(&mesh, towards, 1.5 + number as f64, size);
+            let view = around(&mesh, towards, 1.5 + number as f64, size);
             for opacity in [Opacity::Scalar, Opacity::Six] {
                 let picture = draw(&file, &view, opacity);
                 // All else is white.
@@ -137,17 +111,10 @@ fn a_closed_sphere_hides_what_is_in_it() {
 fn bias(mesh: &Mesh, file: &FarFile, size: u32, opacity: Opacity) -> f64 {
     let mut areas = [0.0f64; 2];
     for towards in directions(16) {
-        let view = view(mesh, towards, 2.0, size);
+        let view = around(mesh, towards, 2.0, size);
         let picture = draw(file, &view, opacity);
-        let options = RasterOptions {
-            samples: Samples::new(256, Pattern::Regular).unwrap(),
-            light: None,
-            background: None,
-        };
-        let reference = raster::draw(mesh, &view, &options, &Silent).unwrap();
-        let area = |coverage: &[f32]| coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
         areas[0] += area(&picture.coverage);
-        areas[1] += area(&reference.coverage);
+        areas[1] += area(&triangles(mesh, &view, 256, None, None).coverage);
     }
     areas[0] / areas[1] - 1.0
 }
@@ -190,7 +157,7 @@ fn small_fitted_pictures_are_drawn_as_voxels() {
     let mesh = builder.finish("sphere").unwrap();
     let file = far(&mesh);
     let counts = |size| {
-        let view = view(&mesh, DVec3::new(0.3, 0.4, 1.0), 1.0, size);
+        let view = around(&mesh, DVec3::new(0.3, 0.4, 1.0), 1.0, size);
         let mut viewer = FarViewer::new(&file);
         viewer.draw(&view, &ViewOptions::default()).unwrap().1
     };

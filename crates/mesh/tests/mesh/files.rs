@@ -1,4 +1,4 @@
-//! Files written by hand, and what they hold.
+//! Files written by hand, and their contents.
 
 use std::collections::HashMap;
 use std::io;

@@ -18,7 +18,7 @@ use super::gltf_bytes::{Choose, damage, data_uri, glb};
 /// A document and what belongs to it.
 pub struct Document {
     pub json: Value,
-    /// What a `.glb` holds beside the JSON.
+    /// The binary chunk of a `.glb`.
     pub binary: Option<Vec<u8>>,
     /// Files of the same folder.
     pub beside: Vec<(String, Vec<u8>)>,
@@ -90,7 +90,7 @@ const TURNS: [([f64; 4], [[f64; 3]; 3]); 4] = [
     ),
 ];
 
-/// What is being composed.
+/// A document in the making.
 #[derive(Default)]
 struct Composer {
     buffers: Vec<Vec<u8>>,
@@ -198,7 +198,7 @@ impl Composer {
     fn view(&mut self, elements: &[Vec<u8>], stride: usize, choose: &mut Choose<'_>) -> usize {
         let number = choose(self.buffers.len() as u32) as usize;
         let buffer = &mut self.buffers[number];
-        // What lies between is not looked at.
+        // The padding is not read.
         buffer.resize(
             buffer.len().next_multiple_of(4) + 4 * choose(2) as usize,
             0xee,

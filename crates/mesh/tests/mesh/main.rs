@@ -11,6 +11,8 @@ mod opacities;
 mod raster;
 mod scale;
 mod shapes;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod solids;
 mod textures;
 mod voxels;

@@ -1,12 +1,19 @@
-//! The models of the shared data: counts, times and memory.
+//! The models of the shared data: triangles, voxels, and pictures against ray casting.
 
-use std::time::Instant;
-
+use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::LoadOptions;
+use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::voxelize::{Grid, voxelize};
+use shiftvox_mesh::{LoadOptions, Mesh};
 
-use super::shapes::model;
+use super::raster::{NEAR_PX, against_rays};
+use super::shared::{looking, model};
+
+fn read(name: &str) -> Mesh {
+    let (mesh, y_up) = read_mesh(&model(name), &LoadOptions::default(), &Silent).unwrap();
+    assert!(y_up);
+    mesh
+}
 
 /// File, triangles in it, triangles that can be drawn, voxels at depth 8.
 const MODELS: [(&str, u64, usize, u64); 6] = [
@@ -19,49 +26,44 @@ const MODELS: [(&str, u64, usize, u64); 6] = [
 ];
 
 #[test]
-#[ignore = "needs the folder SHIFTVOX_DATA"]
+#[ignore = "needs the shared data"]
 fn models_have_their_triangles_and_voxels() {
-    eprintln!("model                  triangles  load ms  mesh MB   depth 8 voxels  touches    ms");
     for (name, in_file, drawn, voxels) in MODELS {
-        let path = model(name);
-        let started = Instant::now();
-        let (mesh, y_up) =
-            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
-        let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        assert!(y_up);
+        let mesh = read(name);
         assert_eq!(mesh.triangles().len(), drawn, "{name}");
-        let left_out = in_file - drawn as u64;
-        let is_reported = mesh
-            .warnings()
-            .iter()
-            .any(|w| w.starts_with(&format!("{left_out} of {in_file} ")));
-        assert_eq!(is_reported, left_out > 0, "{name}: {:?}", mesh.warnings());
+        let left_out = format!("{} of {in_file} ", in_file - drawn as u64);
+        let is_reported = mesh.warnings().iter().any(|w| w.starts_with(&left_out));
+        assert_eq!(is_reported, in_file > drawn as u64, "{name}");
         // All of them have materials that were found.
         assert!(mesh.material_of().iter().all(|&m| m > 0), "{name}");
         let grid = Grid::around(&mesh, 8).unwrap();
-        let started = Instant::now();
-        let mut low = [i32::MAX; 3];
-        let mut high = [i32::MIN; 3];
-        let report = voxelize(
-            &mesh,
-            &grid,
-            &mut |voxel| {
-                for k in 0..3 {
-                    low[k] = low[k].min(voxel.index[k]);
-                    high[k] = high[k].max(voxel.index[k]);
-                }
-            },
-            &Silent,
-        );
-        eprintln!(
-            "{name:<22} {drawn:>9} {load_ms:>8.1} {:>8.1} {:>16} {:>9} {:>6.0}",
-            mesh.bytes() as f64 / 1e6,
-            report.voxels,
-            report.touches,
-            started.elapsed().as_secs_f64() * 1e3
-        );
+        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+        let mut extend = |voxel: shiftvox::graph::Voxel| {
+            for k in 0..3 {
+                low[k] = low[k].min(voxel.index[k]);
+                high[k] = high[k].max(voxel.index[k]);
+            }
+        };
+        let report = voxelize(&mesh, &grid, &mut extend, &Silent);
         assert_eq!(report.voxels, voxels, "{name}");
-        assert_eq!(low, [0; 3], "{name}");
-        assert_eq!(high.iter().max(), Some(&255), "{name}");
+        assert_eq!((low, high.iter().max()), ([0; 3], Some(&255)), "{name}");
+    }
+}
+
+#[test]
+#[ignore = "needs the shared data"]
+fn pictures_of_models_are_those_of_ray_casting() {
+    for name in [
+        "platform.obj",
+        "tree_Oak_Large.obj",
+        "kitchen.obj",
+        "CG-57.obj",
+    ] {
+        let mesh = read(name);
+        let (low, high) = mesh.bounds();
+        let centre = (low + high) / 2.0;
+        let eye = centre + DVec3::new(0.5, 0.4, 0.8) * (high - low).length();
+        let view = looking(eye, centre, [240, 240], 240.0);
+        assert_eq!(against_rays(&mesh, &view, NEAR_PX), 0, "{name}");
     }
 }

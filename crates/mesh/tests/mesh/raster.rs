@@ -3,26 +3,23 @@
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
+use shiftvox::split_mix::SplitMix;
 use shiftvox_mesh::raster::{
     self, Light, NO_TRIANGLE, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
 };
-use shiftvox_mesh::{LoadOptions, Mesh, MeshBuilder, Surface};
+use shiftvox_mesh::{Mesh, MeshBuilder, Surface};
 
-use super::shapes::{ball, cuboid, mesh_of, model, point, soup};
+use super::shapes::{ball, cuboid, mesh_of, point, soup};
+use super::shared::{area, looking, on_threads};
 
 fn view(eye: DVec3, target: DVec3, size: [u32; 2]) -> RasterCamera {
-    let forward = (target - eye).normalize();
-    let right = forward.cross(DVec3::Y).normalize();
-    RasterCamera {
-        eye,
-        right,
-        up: right.cross(forward),
-        forward,
-        focal_px: f64::from(size[1]),
-        width: size[0],
-        height: size[1],
-        near: 1e-3,
-    }
+    looking(eye, target, size, f64::from(size[1]))
+}
+
+/// A square of side 2 in the plane z = 0.
+fn square(right: f32) -> Mesh {
+    let corners = [[-1.0, -1.0], [right, -1.0], [right, 1.0], [-1.0, 1.0]];
+    mesh_of(&corners.map(|[x, y]| [x, y, 0.0]), &[[0, 1, 2], [0, 2, 3]])
 }
 
 fn plain(per_pixel: u32) -> RasterOptions {
@@ -46,15 +43,7 @@ fn facing() -> RasterCamera {
 fn coverage_of_halves_and_quarters() {
     // The left half of pixel (32, 31), and its lower half beyond that.
     let px = 1.0 / 64.0;
-    let half = mesh_of(
-        &[
-            [-1.0, -1.0, 0.0],
-            [0.5 * px, -1.0, 0.0],
-            [0.5 * px, 1.0, 0.0],
-            [-1.0, 1.0, 0.0],
-        ],
-        &[[0, 1, 2], [0, 2, 3]],
-    );
+    let half = square(0.5 * px);
     for (per_pixel, expected) in [(1, 0.0), (4, 0.5), (16, 0.5), (256, 0.5)] {
         let picture = draw(&half, &facing(), &plain(per_pixel));
         let at = |x: usize, y: usize| picture.coverage[y * 64 + x];
@@ -70,15 +59,7 @@ fn coverage_of_halves_and_quarters() {
 
 #[test]
 fn light_is_that_of_voxels() {
-    let square = mesh_of(
-        &[
-            [-1.0, -1.0, 0.0],
-            [1.0, -1.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [-1.0, 1.0, 0.0],
-        ],
-        &[[0, 1, 2], [0, 2, 3]],
-    );
+    let square = square(1.0);
     let mut options = plain(1);
     // From the front in full; from behind, the other side is seen: full too.
     for eye in [DVec3::Z, DVec3::NEG_Z] {
@@ -188,56 +169,30 @@ proptest! {
                 prop_assert_eq!(whole, sum, "pixel {}", i);
             }
         }
-        // Rays through the middle of the net meet it: no hole there.
-        if !folds {
-            let outline = [[-2.5, -2.5], [2.5, -2.5], [2.5, 2.5], [-2.5, 2.5]];
-            let flat = mesh_of(&outline.map(|[x, y]| [x, y, 0.0]), &[[0, 1, 2], [0, 2, 3]]);
-            let inner = draw(&flat, &view, &options);
-            // A sample well within the outline: all of the neighbouring pixels' are too.
-            for y in 12..28usize {
-                for x in 12..28usize {
-                    let around = (y - 12..=y + 12).flat_map(|y| (x - 12..=x + 12).map(move |x| (x, y)));
-                    let deep = around.clone().all(|(x, y)| x < 40 && y < 40 && inner.coverage[y * 40 + x] == 1.0);
-                    if deep {
-                        prop_assert_eq!(whole.coverage[y * 40 + x], 1.0);
-                    }
-                }
-            }
-        }
     }
 }
 
-/// Pixels that rasteriser and ray caster see differently although no edge of
-/// what either sees is within `near_px` of the sample, and of these those
-/// whose depths differ too; and all that differ.
-fn against_rays(mesh: &Mesh, view: &RasterCamera, near_px: f64) -> (usize, usize) {
+/// How many pixels the rasteriser and the ray caster see differently, without an edge of either triangle within
+/// `near_px` of the sample, and with different depths.
+pub(super) fn against_rays(mesh: &Mesh, view: &RasterCamera, near_px: f64) -> usize {
     let picture = draw(mesh, view, &plain(1));
     let soup = soup(mesh);
     let cast = cast(&soup, view);
-    let (mut unexplained, mut differing) = (0, 0);
-    for y in 0..view.height {
-        for x in 0..view.width {
-            let sample = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let at = (y * view.width + x) as usize;
-            let drawn = picture.triangle[at];
-            let (depth, cast) = cast[at];
-            if cast == drawn {
-                continue;
-            }
-            differing += 1;
-            let near_edge = [cast, drawn]
-                .iter()
-                .filter(|&&t| t != NO_TRIANGLE)
-                .any(|&t| distance_to_edges(view, soup[t as usize].map(point), sample) < near_px);
-            // The ray's direction is one unit deep: its length is the depth.
-            let depths = (depth, f64::from(picture.depth[at]));
-            let same_depth = (depths.0 - depths.1).abs() < 2e-5 * depths.1;
-            if !near_edge && !same_depth {
-                unexplained += 1;
-            }
-        }
-    }
-    (unexplained, differing)
+    let is_unexplained = |at: &usize| {
+        let (x, y) = (*at as u32 % view.width, *at as u32 / view.width);
+        let sample = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let (depth, cast) = cast[*at];
+        let drawn = picture.triangle[*at];
+        let is_near = |t: u32| {
+            t != NO_TRIANGLE
+                && distance_to_edges(view, soup[t as usize].map(point), sample) < near_px
+        };
+        // The ray's direction is one unit deep: its length is the depth.
+        let other = f64::from(picture.depth[*at]);
+        let same_depth = (depth - other).abs() < 2e-5 * other;
+        cast != drawn && !is_near(cast) && !is_near(drawn) && !same_depth
+    };
+    (0..cast.len()).filter(is_unexplained).count()
 }
 
 /// By pixel, the distance along the ray through its middle, in lengths of the ray's direction, at which it meets the
@@ -303,27 +258,20 @@ fn distance_to_edges(view: &RasterCamera, corners: [DVec3; 3], sample: DVec2) ->
 
 /// Pixels from an edge within which a ray caster in 32 bits may see another
 /// triangle: the raster's lattice has 1/4096 pixel, the rest is `f32`.
-const NEAR_PX: f64 = 0.005;
+pub(super) const NEAR_PX: f64 = 0.005;
 
 #[test]
 fn the_picture_is_that_of_ray_casting() {
     let mesh = ball(20);
-    let mut differing = 0;
     for i in 0..6 {
         let angle = f64::from(i);
         let eye = DVec3::new(angle.sin(), 0.4 * (angle * 3.0).cos(), angle.cos()) * (2.0 + angle);
-        let found = against_rays(&mesh, &view(eye, DVec3::ZERO, [160, 120]), NEAR_PX);
-        assert_eq!(found.0, 0, "{eye}");
-        differing += found.1;
+        let view = view(eye, DVec3::ZERO, [160, 120]);
+        assert_eq!(against_rays(&mesh, &view, NEAR_PX), 0, "{eye}");
     }
     // Random triangles through each other.
-    let mut state = 3u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
-    };
+    let mut dice = SplitMix::new(3);
+    let mut random = || dice.unit() as f32 * 2.0 - 1.0;
     let mut builder = MeshBuilder::new();
     for _ in 0..400 {
         let at = [random(), random(), random()];
@@ -332,44 +280,8 @@ fn the_picture_is_that_of_ray_casting() {
         builder.triangle(corners, None, 0).unwrap();
     }
     let mesh = builder.finish("random").unwrap();
-    let found = against_rays(
-        &mesh,
-        &view(DVec3::new(0.5, 1.0, 4.0), DVec3::ZERO, [200, 200]),
-        NEAR_PX,
-    );
-    assert_eq!(found.0, 0);
-    eprintln!(
-        "{} samples on edges or at equal depth differ, none elsewhere",
-        differing + found.1
-    );
-}
-
-#[test]
-#[ignore = "needs the folder SHIFTVOX_DATA"]
-fn pictures_of_models_are_those_of_ray_casting() {
-    for name in [
-        "platform.obj",
-        "tree_Oak_Large.obj",
-        "kitchen.obj",
-        "CG-57.obj",
-    ] {
-        let path = model(name);
-        let (mesh, _) =
-            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
-        let (low, high) = mesh.bounds();
-        let centre = (low + high) / 2.0;
-        let away = (high - low).length();
-        let view = view(
-            centre + DVec3::new(0.5, 0.4, 0.8) * away,
-            centre,
-            [240, 240],
-        );
-        let (unexplained, differing) = against_rays(&mesh, &view, NEAR_PX);
-        eprintln!(
-            "{name}: {differing} of 57600 samples differ, {unexplained} of them away from edges"
-        );
-        assert_eq!(unexplained, 0, "{name}");
-    }
+    let view = view(DVec3::new(0.5, 1.0, 4.0), DVec3::ZERO, [200, 200]);
+    assert_eq!(against_rays(&mesh, &view, NEAR_PX), 0);
 }
 
 #[test]
@@ -377,8 +289,7 @@ fn more_samples_agree_with_each_other() {
     let mesh = ball(20);
     let view = view(DVec3::new(1.0, 0.7, 3.0), DVec3::ZERO, [120, 120]);
     let finest = draw(&mesh, &view, &plain(256));
-    let area =
-        |picture: &RasterPicture| picture.coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
+    let area = |picture: &RasterPicture| area(&picture.coverage);
     let mut last = f64::INFINITY;
     for per_pixel in [1, 4, 16] {
         let picture = draw(&mesh, &view, &plain(per_pixel));
@@ -412,14 +323,8 @@ fn more_samples_agree_with_each_other() {
 fn threads_change_nothing_and_wrong_views_are_refused() {
     let mesh = ball(16);
     let view = view(DVec3::new(1.0, 0.7, 2.0), DVec3::ZERO, [100, 75]);
-    let pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
-    };
-    let one = pool(1).install(|| draw(&mesh, &view, &plain(4)));
-    assert_eq!(one, pool(3).install(|| draw(&mesh, &view, &plain(4))));
+    let [one, three] = [1, 3].map(|n| on_threads(n, || draw(&mesh, &view, &plain(4))));
+    assert_eq!(one, three);
     for wrong in [
         RasterCamera { width: 0, ..view },
         RasterCamera {

@@ -1,12 +1,10 @@
 //! Meshes with known answers, and files written by hand.
 #![expect(unreachable_pub, reason = "a module of a test crate")]
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{
-    self, LoadOptions, Material, Mesh, MeshBuilder, MeshError, MeshFormat, Nothing,
+    self, LoadOptions, Material, Mesh, MeshBuilder, MeshFormat, Nothing, SceneError,
 };
 
 pub(crate) use super::gltf_bytes::{data_uri, glb};
@@ -96,7 +94,7 @@ pub fn ball(steps: u32) -> Mesh {
 }
 
 /// Reads a mesh without other files.
-pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
+pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
     shiftvox_mesh::read(
         bytes,
         format,
@@ -111,13 +109,6 @@ pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
 pub fn soup(mesh: &Mesh) -> Vec<[[f32; 3]; 3]> {
     let corner = |i: u32| mesh.positions()[i as usize].map(|c| c as f32);
     mesh.triangles().iter().map(|t| t.map(corner)).collect()
-}
-
-/// A model in the folder `SHIFTVOX_DATA`.
-pub fn model(name: &str) -> PathBuf {
-    let folder =
-        std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with mesh/");
-    PathBuf::from(folder).join("mesh").join(name)
 }
 
 /// The seven cases are the file formats with their encodings: one square each,

@@ -61,7 +61,7 @@ fn wavefront_textures_are_averaged_over_triangles() {
         let mean = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
         assert!(near(mean, [0.5, 0.107, 0.5], 0.02), "{mean:?}");
     }
-    // What cannot be read is told by name, and the plain colour is kept.
+    // A warning names an unreadable texture, and the plain colour is kept.
     for broken in [None, Some(&b"no picture"[..])] {
         let _ = fs::remove_file(&picture);
         if let Some(bytes) = broken {

@@ -7,10 +7,12 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
+use shiftvox::split_mix::SplitMix;
 use shiftvox_mesh::voxelize::{Grid, GridError, voxelize};
 use shiftvox_mesh::{Instances, Material, Mesh, MeshBuilder, Surface};
 
 use super::shapes::{ball, cuboid, mesh_of, point, soup, turned};
+use super::shared::on_threads;
 
 fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
@@ -166,13 +168,8 @@ fn closed_meshes_are_closed_shells() {
 #[test]
 fn slivers_and_needles_never_vanish() {
     // Two far corners hold the box; needles of no width to speak of are within.
-    let mut state = 7u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f32 / (1u64 << 24) as f32
-    };
+    let mut dice = SplitMix::new(7);
+    let mut random = || dice.unit() as f32;
     for _ in 0..40 {
         let (a, b) = (
             [random(), random(), random()],
@@ -259,15 +256,8 @@ fn a_wall_with_two_sides_keeps_one_normal() {
 #[test]
 fn threads_and_instances_change_nothing() {
     let mesh = ball(12);
-    let pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
-    };
-    let one = pool(1).install(|| voxels(&mesh, 7));
-    assert_eq!(one, pool(2).install(|| voxels(&mesh, 7)));
-    assert_eq!(one, pool(3).install(|| voxels(&mesh, 7)));
+    let [one, two, three] = [1, 2, 3].map(|n| on_threads(n, || voxels(&mesh, 7)));
+    assert!(one == two && two == three);
     // The same places as one mesh.
     let places: Vec<DAffine3> = (0..5)
         .map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i)))

@@ -151,7 +151,7 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
     match format {
         Format::Vxg => {
             let read = vxg::from_bytes(bytes);
-            // What is not verified is drawn, mapped, where it is large.
+            // Large files are mapped and drawn without verification.
             std::fs::write(path, bytes).unwrap();
             let opened = vxg::open(path);
             assert_eq!(vxg::verify(path).is_ok(), read.is_ok());
@@ -225,7 +225,7 @@ fn draw_graph(graph: &Graph, shading: Shading, background: Background) {
     draw(&mut GraphDrawing::new(graph, up, style, engine));
 }
 
-/// Draws a small picture from near and far. What opens can be looked at.
+/// Draws a small picture from near and far. A file that opens can be drawn.
 fn draw(drawable: &mut dyn Drawable) {
     let (bounds, up) = (drawable.bounds(), drawable.up());
     for zoom in [0.05, 1.0, 20.0] {

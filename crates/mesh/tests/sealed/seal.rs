@@ -1,5 +1,5 @@
 //! Files of sections behind checksums, `.vxg`, `.far` and `.tvx`, put right after any damage: length, zeros between
-//! sections, checksums. What is then wrong is wrong in the fields. Follows `spec/graph.md`, `spec/far.md` and
+//! sections, checksums. Faults are then in the fields alone. Follows `spec/graph.md`, `spec/far.md` and
 //! `spec/textured.md`, and shares no code with the program. The fuzz targets have it too.
 
 use std::ops::Range;
@@ -12,7 +12,7 @@ const RECORD: usize = 128;
 const NODE: usize = 144;
 /// Bytes of the header of `.vxg`.
 const VXG_HEADER: usize = 512;
-/// Bytes of what a `.tvx` file says of a grid.
+/// Bytes of a grid's entry in a `.tvx` file.
 const GRID: usize = 80;
 /// Longer files are not made.
 const LONGEST: u64 = 1 << 16;
@@ -85,7 +85,7 @@ pub(crate) fn vxg(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     for &entry in entries {
         let [begin, length] = [8, 16].map(|at| number(&bytes, entry + at, 8));
         let own = begin as usize..begin.saturating_add(length) as usize;
-        // What is beyond the file has no checksum.
+        // Ranges beyond the file have no checksum.
         if let Some((at, sum)) = sum(&bytes, own, entry + 24) {
             put(&mut bytes, at, sum);
         }

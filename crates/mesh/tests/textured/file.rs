@@ -12,6 +12,7 @@ use shiftvox_mesh::textured::{
 use shiftvox_mesh::{Mesh, Surface, Triangle};
 
 use super::scenes::{balls, file_of, mesh_of};
+use super::shared::on_threads;
 
 fn small() -> TexturedData {
     let options = BuildOptions {
@@ -157,16 +158,12 @@ fn the_same_bytes_on_any_number_of_threads() {
         element: Element::Cube,
     };
     let bytes = [1, 2, 3].map(|threads| {
-        let pool = rayon_pool(threads);
-        let data = pool.install(|| build(&mesh, &options, &Silent)).unwrap();
-        encode(&data).unwrap()
+        on_threads(threads, || {
+            encode(&build(&mesh, &options, &Silent).unwrap())
+        })
     });
-    assert!(bytes[0] == bytes[1] && bytes[1] == bytes[2]);
-}
-
-pub(super) fn rayon_pool(threads: usize) -> rayon::ThreadPool {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().unwrap()
+    let [one, two, three] = bytes.map(Result::unwrap);
+    assert!(one == two && two == three);
 }
 
 /// A surface without triangles.

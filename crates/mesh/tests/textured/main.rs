@@ -6,5 +6,7 @@ mod file;
 mod levels;
 mod models;
 mod scenes;
+#[path = "../shared/mod.rs"]
+mod shared;
 mod textures;
 mod view;

@@ -1,8 +1,6 @@
 //! Meshes that tests build textured voxels of.
 #![expect(unreachable_pub, reason = "a module of a test crate")]
 
-use std::path::PathBuf;
-
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::textured::store::encode;
@@ -16,7 +14,7 @@ pub fn mesh_of(triangles: &[[[f32; 3]; 3]]) -> Option<Mesh> {
     for corners in triangles {
         let [a, b, c] = corners.map(|p| p.map(f64::from).into());
         let (a, b, c): (glam::DVec3, glam::DVec3, glam::DVec3) = (a, b, c);
-        // What the builder leaves out must not take a number.
+        // Triangles that the builder leaves out must not take a number.
         if (b - a).cross(c - a) == glam::DVec3::ZERO {
             continue;
         }
@@ -61,7 +59,7 @@ pub fn built(mesh: &Mesh, cells: u32, texels: u32, element: Element) -> Textured
     build(mesh, &options, &Silent).unwrap()
 }
 
-/// The file of what was built.
+/// The built data as a file.
 pub fn file_of(data: &TexturedData) -> TexturedFile {
     TexturedFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
@@ -102,11 +100,4 @@ fn ball(middle: [f32; 3], radius: f32, triangles: &mut Vec<[[f32; 3]; 3]>) {
             triangles.push([a, c, d]);
         }
     }
-}
-
-/// A model in the folder `SHIFTVOX_DATA`.
-pub fn model(name: &str) -> PathBuf {
-    let folder =
-        std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder with mesh/");
-    PathBuf::from(folder).join("mesh").join(name)
 }

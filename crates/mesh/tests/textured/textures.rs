@@ -39,7 +39,7 @@ fn along(points: [[i128; 2]; 3], depths: [i128; 3], p: [i128; 2]) -> i128 {
     sum.div_euclid(area(a, b, c))
 }
 
-/// What a texel sees of the slices from the middle of the grid to `slice`.
+/// The primitive that a texel sees in the slices from the middle of the grid to `slice`.
 fn seen(
     corners: &[[[i64; 3]; 3]],
     lattice: &CellGrid,

@@ -5,14 +5,13 @@
 //! compared with the bytes left before it is used. So reads stay within bounds, and no allocation depends on a number
 //! alone.
 
+use super::DAMAGED;
 use crate::scene::fault::{Fault, printable};
 
 /// Bytes of a chunk's header.
 const HEADER: usize = 12;
 
 const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
-const DAMAGED: &str =
-    "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
 
 /// One child of `MAIN`.
 #[derive(Debug, Clone, Copy)]

@@ -1,26 +1,13 @@
 //! MagicaVoxel's and VoxelShop's `.vox`.
 //!
-//! The files, in import order:
-//!
-//! | file | contents |
-//! |---|---|
-//! | `chunk` | chunks and their fields, with every size checked before it is used |
-//! | `model` | voxels, and the rule for those outside `SIZE` |
-//! | `palette` | the colours of colour indices |
-//! | `transform` | rotations in a byte, and the index of a transformed voxel |
-//! | `nodes` | the scene graph as the file stores it |
-//! | `walk` | all placements of models, from the root down |
-//! | `placements` | the different ones of these |
-//! | `quantize`, `write` | the palette of a file to write, and its chunks |
+//! `chunk` reads chunks with every size checked, `palette` colours, `transform` rotations, and `graph` the scene graph
+//! with the placements of models. `quantize` and `write` make a file.
 
 mod chunk;
-mod model;
-mod nodes;
+mod graph;
 mod palette;
-mod placements;
 mod quantize;
 mod transform;
-mod walk;
 mod write;
 
 pub use write::{VoxWriter, VoxWritten};
@@ -29,12 +16,24 @@ use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
 use crate::scene::{OutOfBounds, ReadOptions, SceneInfo};
-use chunk::Chunk;
-use model::Model;
-use nodes::SceneGraph;
+use chunk::{Chunk, Fields};
+use graph::SceneGraph;
 use palette::Palette;
-use placements::Placement;
 use transform::Transform;
+
+const AGAIN: &str = "open the file in MagicaVoxel and save it again";
+const DAMAGED: &str =
+    "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
+
+/// A model as the file stores it.
+struct Model<'a> {
+    /// `SIZE`, voxels.
+    size: [u32; 3],
+    /// x, y, z, colour index of each voxel.
+    voxels: &'a [[u8; 4]],
+    /// Where the first voxel lies in the file.
+    offset: u64,
+}
 
 /// The contents of the file's chunks.
 struct Contents<'a> {
@@ -51,36 +50,42 @@ pub(super) fn read(
 ) -> Result<SceneInfo, Problem> {
     let mut info = SceneInfo::default();
     let bytes = input.bytes().map_err(Problem::Read)?;
-    let contents = read_contents(&bytes, options, &mut info)?;
+    let contents = read_contents(&bytes, &mut info)?;
     survey(&contents, options, &mut info)?;
-    if contents.graph.is_empty() {
-        place_bare_models(&contents, options, emitter, &mut info)?;
-    } else {
-        let placements = placements::find(&contents, options, &mut info)?;
-        let voxels = placements
-            .iter()
-            .map(|placed| placed.model.voxels.len() as u64);
-        // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
-        emitter.expect(voxels.sum())?;
-        for Placement { model, transform } in placements {
-            place(model, Some(&transform), &contents.palette, options, emitter)?;
+    let models = contents.models.iter();
+    let placed: Vec<(&Model<'_>, Option<Transform>)> = if contents.graph.is_empty() {
+        info.instances = info.models;
+        if info.models > 1 {
+            info.warnings.push(format!(
+                "the file has {} models and no scene graph; all were read into the same space, as nothing says where they go",
+                info.models
+            ));
         }
+        models.map(|model| (model, None)).collect()
+    } else {
+        let placements = contents
+            .graph
+            .placements(contents.models.len(), &mut info)?;
+        let of = |(number, transform): (u32, Transform)| {
+            (&contents.models[number as usize], Some(transform))
+        };
+        placements.into_iter().map(of).collect()
+    };
+    // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
+    emitter.expect(placed.iter().map(|(model, _)| model.visible()).sum())?;
+    for (model, transform) in placed {
+        place(model, transform, &contents.palette, options, emitter)?;
     }
     if info.hidden_instances > 0 {
-        info.warnings.push(format!(
-            "{} hidden models were left out",
-            info.hidden_instances
-        ));
+        let hidden = info.hidden_instances;
+        info.warnings
+            .push(format!("{hidden} hidden models were left out"));
     }
     Ok(info)
 }
 
 /// Reads all chunks of voxels, placements and colours.
-fn read_contents<'a>(
-    bytes: &'a [u8],
-    options: &ReadOptions,
-    info: &mut SceneInfo,
-) -> Result<Contents<'a>, Problem> {
+fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'a>, Problem> {
     let mut contents = Contents {
         models: Vec::new(),
         graph: SceneGraph::default(),
@@ -101,27 +106,31 @@ fn read_contents<'a>(
                 if let Some((first, _)) = size {
                     return Err(lonely_size(&first).into());
                 }
-                size = Some((chunk, model::read_size(&chunk)?));
+                let mut fields = Fields::new(&chunk);
+                let mut side = |axis| fields.u32(&format!("the size along {axis}"));
+                size = Some((chunk, [side("x")?, side("y")?, side("z")?]));
             }
             b"XYZI" => {
                 let Some((_, size)) = size.take() else {
-                    return Err(Fault::new(
-                        "chunk XYZI",
-                        chunk.offset as u64,
-                        "a chunk SIZE before each XYZI",
-                        "an XYZI without one",
-                        "the file's exporter is at fault; open it in MagicaVoxel and save it again",
-                    )
-                    .into());
+                    let (expected, found) =
+                        ("a chunk SIZE before each XYZI", "an XYZI without one");
+                    let at = chunk.offset as u64;
+                    return Err(Fault::new("chunk XYZI", at, expected, found, DAMAGED).into());
                 };
-                contents.models.push(model::read_voxels(&chunk, size)?);
+                let mut fields = Fields::new(&chunk);
+                let count = fields.count("voxels", 4)? as usize;
+                contents.models.push(Model {
+                    size,
+                    voxels: &fields.rest().as_chunks::<4>().0[..count],
+                    offset: fields.offset(),
+                });
             }
             b"RGBA" => {
                 contents.palette = Palette::read(&chunk)?;
                 contents.palette.entries().clone_into(&mut info.palette);
             }
             b"IMAP" => palette::check_index_map(&chunk)?,
-            b"nTRN" | b"nGRP" | b"nSHP" => contents.graph.add_node(&chunk, options.frame)?,
+            b"nTRN" | b"nGRP" | b"nSHP" => contents.graph.add_node(&chunk)?,
             b"LAYR" => contents.graph.add_layer(&chunk)?,
             // Materials, cameras, notes, render settings, and chunks of later versions.
             _ => {}
@@ -131,26 +140,16 @@ fn read_contents<'a>(
         return Err(lonely_size(&chunk).into());
     }
     if contents.models.is_empty() {
-        return Err(Fault::new(
-            "chunk MAIN",
-            8,
-            "at least one model (chunks SIZE and XYZI)",
-            "none",
-            "save the scene again with something in it",
-        )
-        .into());
+        let expected = "at least one model (chunks SIZE and XYZI)";
+        let advice = "save the scene again with something in it";
+        return Err(Fault::new("chunk MAIN", 8, expected, "none", advice).into());
     }
     Ok(contents)
 }
 
 fn lonely_size(chunk: &Chunk<'_>) -> Box<Fault> {
-    Fault::new(
-        "chunk SIZE",
-        chunk.offset as u64,
-        "a chunk XYZI after each SIZE",
-        "a SIZE without one",
-        "the file is cut short or its exporter is at fault; export it again",
-    )
+    let (expected, found) = ("a chunk XYZI after each SIZE", "a SIZE without one");
+    Fault::new("chunk SIZE", chunk.offset as u64, expected, found, DAMAGED)
 }
 
 /// Counts the voxels of all models, each model once, and rejects those that the options reject.
@@ -167,10 +166,10 @@ fn survey(
     let given = contents.palette.given;
     for (number, model) in contents.models.iter().enumerate() {
         info.stored_voxels += model.voxels.len() as u64;
+        empty += model.voxels.len() as u64 - model.visible();
         for (i, [x, y, z, color]) in model.voxels.iter().enumerate() {
-            empty += u64::from(*color == 0);
             without_color |= given > 0 && usize::from(*color) > given;
-            if model::is_inside([*x, *y, *z], model.size) {
+            if is_inside([*x, *y, *z], model.size) {
                 continue;
             }
             info.outside_size += 1;
@@ -201,46 +200,10 @@ fn survey(
             OutOfBounds::Keep => "were kept as they stand",
             OutOfBounds::Drop | OutOfBounds::Error => "were left out",
         };
+        let outside = info.outside_size;
         info.warnings.push(format!(
-            "{} voxels lie outside their model's SIZE and {what}",
-            info.outside_size
+            "{outside} voxels lie outside their model's SIZE and {what}"
         ));
-    }
-    Ok(())
-}
-
-/// Places the models of a file without scene graph: each at its own coordinates.
-fn place_bare_models(
-    contents: &Contents<'_>,
-    options: &ReadOptions,
-    emitter: &mut Emitter<'_>,
-    info: &mut SceneInfo,
-) -> Result<(), Problem> {
-    let models = &contents.models;
-    if models.len() > 1 && options.model.is_none() {
-        info.warnings.push(format!(
-            "the file has {} models and no scene graph; all were read into the same space, as nothing says where they go",
-            models.len()
-        ));
-    }
-    let chosen = match options.model {
-        None => &models[..],
-        Some(number) => {
-            let number = number as usize;
-            models.get(number..=number).ok_or_else(|| {
-                Fault::new(
-                    "chunk MAIN",
-                    8,
-                    format!("model {number}, which was asked for"),
-                    format!("{} models, numbered from 0", models.len()),
-                    "choose another model",
-                )
-            })?
-        }
-    };
-    for model in chosen {
-        info.instances += 1;
-        place(model, None, &contents.palette, options, emitter)?;
     }
     Ok(())
 }
@@ -248,25 +211,75 @@ fn place_bare_models(
 /// Passes on the voxels of one placement of a model, at their own coordinates without a transform.
 fn place(
     model: &Model<'_>,
-    transform: Option<&Transform>,
+    transform: Option<Transform>,
     palette: &Palette,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<(), Problem> {
     for (i, [x, y, z, color]) in model.voxels.iter().enumerate() {
-        if *color == 0 {
-            continue;
-        }
-        let Some(position) = model::position([*x, *y, *z], model.size, options.oob) else {
+        let position = position([*x, *y, *z], model.size, options.oob);
+        let Some(position) = position.filter(|_| *color != 0) else {
             continue;
         };
-        let index = match transform {
-            Some(transform) => transform.place(position, model.size),
-            None => position,
-        };
+        let index = transform.map_or(position, |t| t.place(position, model.size));
         emitter.voxel(index, palette.color(*color), None, || {
             (format!("voxel {i} of a model"), model.offset + 4 * i as u64)
         })?;
     }
     Ok(())
+}
+
+impl Model<'_> {
+    /// Voxels that are not empty.
+    fn visible(&self) -> u64 {
+        self.voxels.iter().filter(|voxel| voxel[3] != 0).count() as u64
+    }
+}
+
+fn is_inside(position: [u8; 3], size: [u32; 3]) -> bool {
+    (0..3).all(|axis| u32::from(position[axis]) < size[axis])
+}
+
+/// The coordinates of a voxel; `None` if it is left out.
+fn position(stored: [u8; 3], size: [u32; 3], rule: OutOfBounds) -> Option<[i64; 3]> {
+    match rule {
+        _ if is_inside(stored, size) => Some(stored.map(i64::from)),
+        OutOfBounds::Wrap => Some([0, 1, 2].map(|axis| unwrap(stored[axis], size[axis]))),
+        OutOfBounds::Keep => Some(stored.map(i64::from)),
+        OutOfBounds::Drop | OutOfBounds::Error => None,
+    }
+}
+
+/// The coordinate of a stored byte.
+///
+/// Inside `SIZE` it is the byte. Outside, it is the number congruent to it modulo 256 that is nearest to the middle of
+/// `SIZE`: one of the 256 numbers from `floor(SIZE / 2) - 128` on. Numbers inside `SIZE` are all among these (`SIZE` is
+/// below 256 where a byte can be outside it), so the rule has no seam.
+fn unwrap(byte: u8, size: u32) -> i64 {
+    let byte = u32::from(byte);
+    let is_wrapped = byte >= size && byte >= size / 2 + 128;
+    i64::from(byte) - if is_wrapped { 256 } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unwrap;
+
+    #[test]
+    fn unwrapping_takes_the_nearest_number_to_the_middle() {
+        for size in 0..=300u32 {
+            for byte in 0..=255u8 {
+                let unwrapped = unwrap(byte, size);
+                assert_eq!(unwrapped.rem_euclid(256), i64::from(byte));
+                if u32::from(byte) < size {
+                    assert_eq!(unwrapped, i64::from(byte), "inside stays");
+                } else {
+                    let middle = i64::from(size / 2);
+                    assert!((middle - 128..middle + 128).contains(&unwrapped));
+                }
+            }
+        }
+        // VoxelShop's dragon in a box of 20: 203 means -53, and 72 means 72.
+        assert_eq!([unwrap(203, 20), unwrap(72, 20)], [-53, 72]);
+    }
 }

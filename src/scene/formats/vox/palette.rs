@@ -4,6 +4,7 @@
 //! exporters omit it. Alpha is ignored, because MagicaVoxel keeps transparency in its materials and exporters write
 //! 255 or 0 arbitrarily. `IMAP` is the order in which the editor shows the palette and changes no colour.
 
+use super::AGAIN;
 use super::chunk::Chunk;
 use crate::scene::fault::Fault;
 
@@ -43,7 +44,7 @@ impl Palette {
                 chunk.offset as u64,
                 "a palette of at most 256 entries of 4 bytes",
                 format!("{} bytes", chunk.content.len()),
-                "open the file in MagicaVoxel and save it again",
+                AGAIN,
             ));
         }
         let mut palette = Self::default_colors();
@@ -77,7 +78,7 @@ pub(super) fn check_index_map(chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
         chunk.offset as u64,
         "256 bytes",
         format!("{} bytes", chunk.content.len()),
-        "open the file in MagicaVoxel and save it again",
+        AGAIN,
     ))
 }
 

@@ -108,27 +108,4 @@ mod tests {
             assert_eq!(palette[usize::from(index_of[color]) - 1], *color);
         }
     }
-
-    #[test]
-    fn many_colors_come_close() {
-        let mut histogram = BTreeMap::new();
-        for r in 0..16u8 {
-            for g in 0..16u8 {
-                for b in 0..16u8 {
-                    histogram.insert([17 * r, 17 * g, 17 * b], 1);
-                }
-            }
-        }
-        let (palette, index_of) = palette(&histogram);
-        assert_eq!(palette.len(), 255);
-        for color in histogram.keys() {
-            let near = palette[usize::from(index_of[color]) - 1];
-            for channel in 0..3 {
-                assert!(
-                    near[channel].abs_diff(color[channel]) <= 34,
-                    "{color:?} {near:?}"
-                );
-            }
-        }
-    }
 }

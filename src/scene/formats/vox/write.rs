@@ -40,7 +40,6 @@ pub struct VoxWritten {
 
 impl VoxWriter {
     /// A writer without voxels.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }

@@ -1,8 +1,8 @@
 //! A bounding volume hierarchy of triangles with four children per node, for rays.
 //!
-//! It is built from the top by the surface area heuristic: a node's triangles are sorted into 16 bins along each axis,
-//! and cut where the areas of the two boxes, times their numbers of triangles, sum to the least. Two such cuts make
-//! four children, whose boxes are tested together.
+//! It is built from the top by the surface area heuristic. The triangles of a node are sorted into 16 bins along each
+//! axis, and cut where the cost of the two sides is least. Two such cuts make four children, whose boxes are tested
+//! together.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3A;
@@ -11,8 +11,8 @@ use glam::Vec3A;
 const LEAF: usize = 4;
 /// Bins along an axis.
 const BINS: usize = 16;
-/// Share of its extent, and of its distance from the origin, by which a triangle's box is wider than the triangle:
-/// more than rounding, and than the test of a triangle reaches beyond the edges.
+/// The margin of a triangle's box, as a share of its extent and of its distance from the origin. It exceeds the
+/// rounding of the boxes and of the triangle test.
 const WIDER: [f32; 2] = [4e-5, 1e-6];
 /// Levels below which triangles are cut in equal halves, so that hierarchies are not deep: 2^32 triangles in equal
 /// quarters have 16 more.
@@ -20,7 +20,7 @@ const UNEQUAL_LEVELS: u32 = 32;
 /// Most nodes that wait on the way down: three on each level.
 const STACK: usize = 3 * (UNEQUAL_LEVELS as usize + 16) + 1;
 
-/// Four children: their boxes by axis, and what they are.
+/// Four children: their boxes by axis, and their kinds.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Node {
@@ -28,7 +28,7 @@ pub(super) struct Node {
     high: [[f32; 4]; 3],
     /// A node's number, or the place of a leaf's first triangle.
     first: [u32; 4],
-    /// A leaf's triangles; 0: a node; [`NONE`]: there is no such child.
+    /// The number of a leaf's triangles, 0 for a node, or [`NONE`] for no child.
     count: [u32; 4],
 }
 
@@ -168,7 +168,7 @@ impl Build {
                 let bin = &mut bins[bin_of(extent, axis, low, scale)];
                 *bin = (bin.0.with(extent), bin.1 + 1);
             }
-            // What lies behind each cut, from the last one on.
+            // The bounds and counts behind each cut, from the last one on.
             let mut behind = [0.0; BINS];
             let mut all = (Extent::EMPTY, 0);
             for cut in (1..BINS).rev() {

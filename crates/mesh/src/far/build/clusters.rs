@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::rays::{Around, Cluster, Meeting, Query, is_any_entered};
 
-/// Most triangles of a cluster. More: rays test fewer clusters; fewer: less memory.
+/// Most triangles of a cluster. With more triangles rays test fewer clusters, and with fewer triangles a cluster takes
+/// less memory.
 pub(super) const CLUSTER: usize = 1 << 17;
 /// Bytes a triangle that a cluster takes while it is made, or less.
 pub(super) const MAKING: u64 = 320;
@@ -23,7 +24,7 @@ pub(super) struct Occluders {
     held: Held,
 }
 
-/// What is known of a cluster without its triangles.
+/// The place of a cluster whose triangles may be in the file.
 struct Place {
     around: Around,
     /// The first of its triangles.
@@ -57,7 +58,7 @@ impl Occluders {
     /// in memory, and one for each thread that uses it.
     ///
     /// # Errors
-    /// What the system says of the file.
+    /// Errors of reading the file.
     pub(super) fn new<C, I>(
         parts: &[Part],
         corners: C,
@@ -96,10 +97,10 @@ impl Occluders {
         })
     }
 
-    /// What rays meet. They begin within a box, and those of a batch are near to each other.
+    /// The triangles that stop rays. They begin within a box, and those of a batch are near to each other.
     ///
     /// # Errors
-    /// What the system says of the file.
+    /// Errors of reading the file.
     pub(super) fn nearest(
         &self,
         within: &Around,

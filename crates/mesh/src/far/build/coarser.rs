@@ -3,8 +3,7 @@
 
 use super::split::Branch;
 
-/// Fewest voxels along a node that is above another: of voxels alone, since thin tubes lose area in
-/// larger ones; and where what a node holds is measured.
+/// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
 const LEAST: [u32; 2] = [32, 16];
 
 /// Puts nodes of half the voxels along a side, and so on, above the root, unless that is a leaf.

@@ -1,4 +1,4 @@
-//! Which of several ways to hold a node's triangles is the best for its bytes.
+//! The choice among several representations of a node's triangles by error and bytes.
 //!
 //! Each is drawn alone, from four sides, with the largest pixels for which it is used, and compared
 //! with the triangles: light, and how much of each pixel is covered.
@@ -15,7 +15,7 @@ use crate::far::{FarData, FarFile};
 use crate::raster::{Light, RasterCamera};
 use crate::srgb_to_linear;
 
-/// What bytes weigh beside the error: what takes 32 times the bytes has to have half of it.
+/// The exponent of the bytes: a candidate with 32 times the bytes must have half of the error.
 const BYTES_WEIGH: f64 = 0.2;
 /// Light that comes from everywhere, as the engines have it: 0 to 256.
 const AMBIENT: u32 = 64;
@@ -43,10 +43,10 @@ pub(super) struct Candidate {
     pub(super) triangles: Vec<LeafTriangle>,
 }
 
-/// Cameras, and what they see of a node's triangles.
+/// Cameras and their reference pictures of a node's triangles.
 pub(super) struct Comparison<'o> {
     options: &'o BuildOptions,
-    /// Coordinates are relative to it, so that single precision tells the node's parts.
+    /// Coordinates are relative to it, so that single precision resolves the node's parts.
     middle: DVec3,
     leaf: (Node, Vec<u8>),
     views: Vec<(RasterCamera, Light, Vec<DVec4>)>,
@@ -138,7 +138,7 @@ impl<'o> Comparison<'o> {
         Ok(sum / self.views.len() as f64)
     }
 
-    /// A file of the candidate above all the triangles; and what the candidate takes of it.
+    /// A file whose root is the candidate and whose leaf has all triangles, and the bytes of the candidate.
     fn file(&self, candidate: &Candidate) -> Result<(FarFile, u64), BuildError> {
         let (mut leaf, of_leaf) = (self.leaf.0, &self.leaf.1);
         let mut root = Node {
@@ -157,14 +157,7 @@ impl<'o> Comparison<'o> {
         packed.extend(of_leaf);
         let drawn = root.drawn_bytes();
         let data = FarData {
-            centre: [0.0; 3],
-            distance_voxels: self.options.distance_voxels,
-            opacity_blend: self.options.opacity_blend,
-            shader_blend: self.options.shader_blend,
-            leaf_triangles: self.options.leaf_triangles,
-            grid: self.options.grid,
-            y_up: true,
-            bevels: [0; 8],
+            settings: self.options.settings(DVec3::ZERO),
             nodes: vec![root, leaf],
             packed,
         };
@@ -207,7 +200,7 @@ fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
     triangles.iter().map(triangle).collect()
 }
 
-/// Most pixels of a voxel that is drawn: none are, but the leaf is; any are, the candidate's.
+/// The largest drawn voxel in pixels. One value selects only the leaf, the other only the candidate.
 const NO_VOXEL: f64 = f64::MIN_POSITIVE;
 const ANY_VOXEL: f64 = 1e150;
 

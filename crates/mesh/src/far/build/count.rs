@@ -1,14 +1,11 @@
 //! Hits and passes: how much of a voxel is there, seen from which direction.
 //!
-//! A probe *hits* the voxel where it ends at one of the node's own triangles,
-//! and *passes* every kept voxel that it leaves before. A line through many
-//! voxels that are aimed at is chosen more often than one through few; its
-//! weight, one over the number of probes that are aimed at them, makes up for that, so that the
-//! lines through a voxel are spread evenly, whatever is around it.
+//! A probe *hits* the voxel where it ends at one of the node's own triangles, and *passes* every kept voxel that it
+//! leaves before. A line through many voxels that are aimed at is chosen more often than one through few. Its weight is
+//! one over the number of probes aimed at the voxels on it, so that lines through a voxel are spread evenly.
 //!
-//! A large object of which a voxel has but a corner goes on behind it: where everything that looks
-//! upon a voxel's surface is stopped in it or right behind it, the voxel is opaque from there,
-//! whatever passed it (Wagner et al. 2007, Fig. 3b). So probes are counted by how steeply they
+//! A voxel may hold only a corner of a large object that continues behind it. If all probes onto its surface are
+//! stopped in the voxel or right behind it, the voxel is opaque from there. So probes are counted by how steeply they
 //! look upon the surface.
 
 use std::ops::ControlFlow;
@@ -17,11 +14,11 @@ use glam::DVec3;
 
 use super::grid::Grid;
 use super::shot::Shot;
-use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use crate::far::blend::{DIRECTIONS, Fit, Shares, by_cosines};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
-/// A probe is stopped right behind a voxel if what stops it is so near that the surface may be the
-/// voxel's own: two voxels higher over the cosine, which a flat one is, and one for its curvature.
+/// A probe is stopped right behind a voxel if the hit may be on the same surface. That is within two voxels over the
+/// cosine, plus one.
 const RIGHT_BEHIND: [f64; 2] = [2.0, 1.0];
 /// Cosines below this count as this: a grazing probe is followed no farther.
 const LEAST_COSINE: f64 = 0.25;
@@ -47,7 +44,7 @@ pub(super) struct Seen {
     pub(super) unseen_opacity: f64,
     /// Probes that crossed it, whatever they met.
     pub(super) crossings: u32,
-    /// What they found, from before its surface and from behind, by how steeply they looked upon it.
+    /// The counts of the probes, by side of the surface and by steepness.
     pub(super) found: [[Found; STEEPNESSES]; 2],
 }
 
@@ -60,14 +57,14 @@ impl Seen {
         self.found = Default::default();
     }
 
-    /// What all probes of less than a steepness found, from one side.
+    /// The sum of all probes below a steepness, from one side.
     pub(super) fn counted_below(&self, side: usize, steepness: usize) -> Counted {
         let found = self.found[side][..steepness].iter();
         found.fold(Counted::default(), |all, found| all.with(&found.counted))
     }
 }
 
-/// What probes of one steepness found of a voxel.
+/// The counts of a voxel's probes of one steepness.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) counted: Counted,
@@ -100,7 +97,7 @@ impl Default for Counted {
 }
 
 impl Counted {
-    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], is_hit: bool, weight: f64) {
+    pub(super) fn add(&mut self, shares: &Shares, is_hit: bool, weight: f64) {
         let value = f64::from(u8::from(is_hit));
         self.weight += weight;
         self.square_weight += weight * weight;
@@ -167,7 +164,8 @@ const PROBE_BITS: u32 = 22;
 const PARTS: f64 = 64.0;
 
 impl Crossing {
-    /// `past`: how far behind the voxel the probe is stopped; `None`: in it.
+    /// `past` is the distance behind the voxel at which the probe is stopped. `None` means that it is stopped in the
+    /// voxel.
     fn new(probe: usize, past: Option<f64>) -> Self {
         let most = (1u32 << (32 - PROBE_BITS)) - 1;
         // Farther than it matters is as far as can be counted.
@@ -187,7 +185,7 @@ impl Crossing {
     }
 }
 
-/// What is known of the voxels of a grid.
+/// The state of the voxels of a grid.
 pub(super) struct Marks<'m> {
     /// Of all voxels: numbers of those that are touched.
     pub(super) slot: &'m [u32],
@@ -242,12 +240,12 @@ impl<'p> Probes<'p> {
     }
 
     /// Counts the probes that crossed a voxel of a place.
-    pub(super) fn count(&self, place: usize, shader: &Shader, blends: [Blend; 2], seen: &mut Seen) {
+    pub(super) fn count(&self, place: usize, shader: &Shader, seen: &mut Seen) {
         for crossing in self.crossings.of(place) {
             let probe = crossing.probe();
             let towards_eye = -self.shots[probe].direction.as_dvec3();
             let weight = f64::from(self.weights[probe]);
-            let cosine = shader.cosine(towards_eye, blends[1]);
+            let cosine = shader.cosine(towards_eye);
             seen.crossings += 1;
             let side = usize::from(cosine < 0.0);
             let cosine = cosine.abs();
@@ -260,7 +258,7 @@ impl<'p> Probes<'p> {
             } else {
                 found.passed += weight;
             }
-            let shares = blends[0].shares(towards_eye);
+            let shares = by_cosines(towards_eye);
             found.counted.add(&shares, past.is_none(), weight);
         }
     }

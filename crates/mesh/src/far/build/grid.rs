@@ -16,10 +16,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The grid of a box: its longest side spans `side` voxels, from the middle
-    /// of the first to the middle of the last, so that the outermost planes lie
-    /// within a layer and not between two. `side` is 2 to 255.
-    #[must_use]
+    /// The grid of a box. Its longest side spans `side` voxels, from the middle of the first to the middle of the last,
+    /// so that the outermost planes lie within a layer. `side` is 2 to 255.
     pub fn around(low: DVec3, high: DVec3, side: u32) -> Self {
         let extent = high - low;
         let steps = f64::from(side.clamp(2, 255) - 1);
@@ -90,8 +88,8 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Calls back with the number of each voxel along a line, in order, and the distance (in
-    /// voxels, from `from`) at which the line leaves it, until it is told to stop.
+    /// Calls back with each voxel along a line, in order, and the distance (in voxels, from `from`) at which the line
+    /// leaves it. The callback can stop.
     ///
     /// Distances are whole numbers of 2^-32 voxels here, so that steps are exact and a step needs
     /// no branch: this loop is a quarter of a build.

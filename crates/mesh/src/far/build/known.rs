@@ -10,36 +10,18 @@ use super::sample::{MOST_VISIBILITY_RAYS, Rays, Triangles};
 use super::shader_fit::ShaderFit;
 use super::shot::{Own, Target};
 use super::{MOST_RAYS, Ordered, shader_fit};
-use crate::far::blend::Blend;
+use crate::far::blend::by_cosines;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
+use crate::generate::maker::Maker;
 use crate::{Material, Mesh, MeshBuilder, Surface};
 
 /// A mesh of boxes.
 fn boxes(boxes: &[(DVec3, DVec3)]) -> Mesh {
-    let mut builder = MeshBuilder::new();
+    let mut maker = Maker::new(0);
     for &(low, high) in boxes {
-        let corners: Vec<u32> = (0..8)
-            .map(|i| {
-                let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
-                builder.position([pick(0) as f32, pick(1) as f32, pick(2) as f32])
-            })
-            .collect();
-        let faces = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        for [a, b, c, d] in faces {
-            for triangle in [[a, b, c], [a, c, d]] {
-                let triangle = triangle.map(|i: usize| corners[i]);
-                builder.triangle(triangle, None, 0).unwrap();
-            }
-        }
+        maker.block(low, high, 0);
     }
-    builder.finish("boxes").unwrap()
+    maker.finish()
 }
 
 /// Unit voxels from the origin.
@@ -51,7 +33,7 @@ fn unit(cells: [u8; 3]) -> Grid {
     }
 }
 
-/// What the rays of a node found.
+/// The result of a node's rays.
 struct Sampled {
     seen: Vec<(Seen, ShaderFit)>,
     touched: u32,
@@ -60,7 +42,7 @@ struct Sampled {
     hits: u32,
 }
 
-fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend) -> Sampled {
+fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32) -> Sampled {
     let order: Vec<u32> = (0..Surface::len(mesh) as u32).collect();
     let triangles = Ordered {
         surface: mesh,
@@ -80,8 +62,6 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         grid,
         own: Own::all(0..own),
         distance: 64.0,
-        opacity_blend,
-        shader_blend: Blend::Squares,
     };
     let mut seen = Vec::new();
     let keep = |voxel: &Seen, shown: &ShaderFit, _| seen.push((voxel.clone(), *shown));
@@ -98,7 +78,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
-    sampled(mesh, Surface::len(mesh), grid, rays, Blend::Cosines)
+    sampled(mesh, Surface::len(mesh), grid, rays)
 }
 
 fn at(sampled: &Sampled, place: [u8; 3]) -> &Seen {
@@ -126,8 +106,7 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
             inner += 1;
             for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
                 for eye in [axis, -axis] {
-                    let blends = [Blend::Cosines, Blend::Squares];
-                    let opacity = voxel.opacity_from(eye, blends, Opacity::Six);
+                    let opacity = voxel.opacity_from(eye, Opacity::Six);
                     let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
                     assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
                 }
@@ -148,25 +127,16 @@ fn a_voxel_whose_lower_half_is_solid() {
 }
 
 #[test]
-fn cosines_blend_a_box_exactly_and_their_squares_do_not() {
+fn cosines_blend_a_box_exactly() {
     let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
-    let error = |blend: Blend| {
-        let opacity = six(at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3]));
-        let mut worst = 0.0f64;
-        for degrees in 0..=90 {
-            let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
-            let blended: f64 = blend
-                .shares(DVec3::new(cos, sin, 0.0))
-                .iter()
-                .map(|&(k, share)| opacity[k] * share)
-                .sum();
-            worst = worst.max((blended - (0.5 * cos + sin) / (cos + sin)).abs());
-        }
-        worst
-    };
-    let (cosines, squares) = (error(Blend::Cosines), error(Blend::Squares));
-    assert!(cosines < 0.02, "{cosines}");
-    assert!(squares > 2.0 * cosines, "{squares} {cosines}");
+    let opacity = six(at(&sampled(&half, 12, unit([1; 3]), 60_000), [0; 3]));
+    for degrees in 0..=90 {
+        let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
+        let shares = by_cosines(DVec3::new(cos, sin, 0.0)).into_iter();
+        let blended: f64 = shares.map(|(k, share)| opacity[k] * share).sum();
+        let error = blended - (0.5 * cos + sin) / (cos + sin);
+        assert!(error.abs() < 0.02, "{degrees}: {error}");
+    }
 }
 
 #[test]
@@ -199,16 +169,10 @@ fn a_fan_of_wires_has_analytic_coverage() {
 fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
     let core = (DVec3::splat(3.2), DVec3::splat(4.8));
     let shell = (DVec3::splat(0.5), DVec3::splat(7.5));
-    let open = sampled(&boxes(&[core]), 12, unit([8; 3]), 4000, Blend::Cosines);
+    let open = sampled(&boxes(&[core]), 12, unit([8; 3]), 4000);
     assert_eq!(open.seen.len(), 8);
     // The shell is environment: not of the node, but around it.
-    let hidden = sampled(
-        &boxes(&[core, shell]),
-        12,
-        unit([8; 3]),
-        4000,
-        Blend::Cosines,
-    );
+    let hidden = sampled(&boxes(&[core, shell]), 12, unit([8; 3]), 4000);
     assert_eq!((hidden.seen.len(), hidden.hits), (0, 0));
     assert_eq!(
         hidden.rays,
@@ -243,9 +207,9 @@ fn what_a_window_shows_is_found_from_what_is_beside_it() {
         wall([6.0, 10.0, 14.9], [10.0, 16.0, 15.0]),
     ];
     // So few rays that probes, which find something too, do not find all.
-    let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000, Blend::Cosines);
-    // The window is a hundred and fiftieth of what is around a voxel, or less: 24 random rays
-    // would find one voxel in seven, and with probes one in five. All 144 can be seen.
+    let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000);
+    // The window covers at most a 150th of a voxel's directions. So 24 random rays would find one voxel in seven, and
+    // with probes one in five. All 144 can be seen.
     assert_eq!(sampled.touched, 144);
     assert!(sampled.seen.len() > 72, "{}", sampled.seen.len());
 }
@@ -270,14 +234,13 @@ fn a_thin_floor_has_no_holes() {
     let sampled = all(&floor, unit([8, 4, 8]), 100_000);
     // A corner of the floor in a voxel is distinguished from a thin thing: one sees through
     // no column, from above or below.
-    let blends = [Blend::Cosines, Blend::Squares];
     for mode in [Opacity::Scalar, Opacity::Six] {
         for eye in [DVec3::Y, DVec3::NEG_Y] {
             let mut through = [[1.0; 8]; 8];
             for (seen, shown) in &sampled.seen {
                 let [x, _, z] = seen.place.map(usize::from);
                 let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-                through[z][x] *= 1.0 - voxel.opacity_from(eye, blends, mode);
+                through[z][x] *= 1.0 - voxel.opacity_from(eye, mode);
             }
             let inner = through[1..7].iter().flat_map(|row| &row[1..7]);
             let most = inner.copied().fold(0.0, f64::max);
@@ -306,14 +269,14 @@ fn what_was_not_tested_is_kept_and_looks_like_its_triangles() {
     assert_eq!(few.seen.len(), 1024, "none is known to be hidden");
     assert!(few.untested > 512, "{}", few.untested);
     for (seen, shown) in &few.seen {
-        let (normal, color) = shown.shader.seen_from(DVec3::X, Blend::Squares);
+        let (normal, color) = shown.shader.seen_from(DVec3::X);
         assert!(normal.x.abs() > 0.99 && color.x > 0.9 && color.y < 0.1);
         if seen.crossings == 0 {
             let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
             assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
         }
     }
-    // With enough of them all is tested, and what is between walls is hidden.
+    // With enough rays all voxels are tested, and those between the walls are hidden.
     let enough = all(&walls, unit([16, 8, 8]), 100_000);
     assert_eq!((enough.touched, enough.untested), (1024, 0));
 }

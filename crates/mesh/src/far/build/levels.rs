@@ -1,11 +1,10 @@
-//! Which nodes have voxels.
+//! The nodes that have voxels.
 //!
-//! A box is halved across one axis, so its longest side, and with it the size of its voxels, is
-//! often that of the box above. Such a node would hold the voxels of the one above once more: it has
-//! none, and its children stand for it.
+//! A box is halved across one axis, so its longest side, and with it the size of its voxels, is often that of the box
+//! above. Such a node would repeat the voxels of the one above, so it has none and its children are drawn instead.
 //!
-//! Nor has a node whose triangles are so large that each would be many voxels: these would take more
-//! bytes than the triangles, and would be drawn only where a triangle has as many pixels.
+//! A node whose triangles each cover many voxels has none either. The voxels would take more bytes than the triangles,
+//! and would be drawn only where the triangles are large in the picture.
 
 use super::split::Branch;
 
@@ -14,13 +13,13 @@ const STEP: f64 = 0.7;
 /// Most voxels of a node for each of its triangles. So many take 180 bytes or more, a triangle 15 to 35.
 const MOST_VOXELS: usize = 16;
 
-/// Whether triangles touch too many voxels; of all the voxels of a grid: whether they could.
+/// Whether triangles touch too many voxels. Given all voxels of a grid, whether they could.
 pub(super) fn is_dense(touched: usize, triangles: usize) -> bool {
     touched / MOST_VOXELS >= triangles
 }
 
-/// Of each node whether it is a leaf or has voxels. `coarser`: how many nodes are above the root of
-/// the hierarchy; all of these have, and the root.
+/// Of each node whether it is a leaf or has voxels. `coarser` is the number of nodes above the root of the hierarchy.
+/// These and the root have voxels.
 pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     let mut has_voxels = vec![true; branches.len()];
     // The longest side of the next box above that has voxels; parents come first.

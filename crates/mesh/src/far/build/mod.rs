@@ -36,13 +36,13 @@ use rayon::prelude::*;
 pub use grid::Grid;
 pub use spool::part_of;
 
-use super::FarData;
-use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
-use crate::{Surface, barycentric, linear_to_srgb, mesh_box};
+use super::{FarData, FarSettings};
+use crate::geometry::{barycentric, blend, plane_normal};
+use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
 use rays::Around;
@@ -58,8 +58,8 @@ use surface::{MOST_TRIANGLES, Surfaces};
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// Rays of all nodes together; `None`: as many as find what is visible, and
-    /// [`RAYS_PER_VOXEL`] for each voxel that is.
+    /// The number of rays of all nodes together. With `None`, as many as find the visible voxels, and
+    /// [`RAYS_PER_VOXEL`] for each of these.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
     pub leaf_triangles: u32,
@@ -68,12 +68,8 @@ pub struct BuildOptions {
     /// Least distance from which a node is used, in its voxels: where the eye
     /// may be and what may hide the node follow from it.
     pub distance_voxels: f64,
-    /// What opacities are stored for: of `Six`, those that differ; of `None`, none.
+    /// The opacities to store. With `Six`, only those that differ.
     pub opacity: Opacity,
-    /// How opacities of main directions are blended.
-    pub opacity_blend: Blend,
-    /// How normals and materials of main directions are blended.
-    pub shader_blend: Blend,
     /// Whether what is wider than a voxel stays a surface, decimated.
     pub hybrid: bool,
 }
@@ -94,9 +90,20 @@ impl Default for BuildOptions {
             grid: 64,
             distance_voxels: 256.0,
             opacity: Opacity::Six,
-            opacity_blend: Blend::Cosines,
-            shader_blend: Blend::Squares,
             hybrid: false,
+        }
+    }
+}
+
+impl BuildOptions {
+    pub(super) fn settings(&self, centre: DVec3) -> FarSettings {
+        FarSettings {
+            centre,
+            distance_voxels: self.distance_voxels,
+            leaf_triangles: self.leaf_triangles,
+            grid: self.grid,
+            y_up: true,
+            bevels: [0; 8],
         }
     }
 }
@@ -145,7 +152,7 @@ pub enum BuildError {
     File {
         /// It, or the folder that it is in.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
 }
@@ -153,12 +160,12 @@ pub enum BuildError {
 /// Where a build keeps what is not in memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside<'o> {
-    /// Bytes that it may take beside the surface; `None`: as many as make it fast.
+    /// The memory budget in bytes, in addition to the surface. `None` means no limit.
     pub memory: Option<u64>,
     /// Folder of temporary files, which have no names where the system allows it.
     pub folder: &'o Path,
-    /// The unfinished file: what is finished is kept in it, and what was finished before is taken
-    /// from it. `None`: a temporary one.
+    /// The unfinished file, which stores finished nodes and from which a build resumes. With `None` it is temporary.
+    /// `None`: a temporary one.
     pub part: Option<&'o Path>,
 }
 
@@ -234,8 +241,8 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
     }
 }
 
-/// Triangles in the order of the hierarchy, in coordinates in which all of them together have a
-/// size of about 1: single precision holds their squares and products, however small the mesh is.
+/// Triangles in the order of the hierarchy, scaled so that all of them together have a size of about 1. So single
+/// precision holds their squares and products, however small the mesh is.
 struct Ordered<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -257,8 +264,7 @@ impl Triangles for Ordered<'_> {
     }
 
     fn plane(&self, number: usize) -> DVec3 {
-        let [a, b, c] = self.corners(number);
-        (b - a).cross(c - a).normalize_or(DVec3::Z)
+        plane_normal(self.corners(number))
     }
 
     fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
@@ -325,8 +331,6 @@ fn fill<F: Read + Write + Seek + Send>(
         grid: grid(number, branch),
         own: Own::all(branch.triangles()),
         distance: options.distance_voxels,
-        opacity_blend: options.opacity_blend,
-        shader_blend: options.shader_blend,
     };
     progress.begin("find voxels", order.len() as u64);
     let touched: Vec<Option<u32>> = branches
@@ -377,7 +381,7 @@ fn fill<F: Read + Write + Seek + Send>(
         }
         let target = target(number, branch);
         set_grid(&mut node, &target.grid, scale);
-        // Whatever is above the root.
+        // The root has seed 0, whatever its number.
         let seed = (number as u64).wrapping_sub(coarser as u64);
         let voxels = |node: &mut Node, target: &Target<'_>| {
             let fitted = fit(target, rays[number], seed, &triangles, &room, options);
@@ -405,7 +409,7 @@ fn fill<F: Read + Write + Seek + Send>(
             let is_leaf = branch.children.is_none();
             if !done[number] {
                 let (node, data) = make(number, branch)?;
-                // What was added before is sound, whoever panicked.
+                // Nodes that were added before a panic are sound.
                 let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
                 let added = spool.add(number, node, &data);
                 added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
@@ -417,7 +421,7 @@ fn fill<F: Read + Write + Seek + Send>(
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
-    data.bevels = mesh_box(surface, data.y_up).bevels;
+    data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
     Ok((data, spool))
 }
 
@@ -428,7 +432,7 @@ fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
     while let Some(number) = waiting.pop() {
         let branch: &Branch = &branches[number];
         match branch.children {
-            // What is above the root has one child; none is the first of all.
+            // Nodes above the root have one child, and their second number is 0.
             Some([near, far]) if branch.count > CLUSTER => {
                 waiting.extend([far, near].into_iter().filter(|&child| child != 0));
             }
@@ -464,7 +468,7 @@ fn check(surface: &dyn Surface, options: &BuildOptions) -> Result<(), BuildError
     centre(surface).map(drop)
 }
 
-/// What coordinates are relative to, and what makes them about 1.
+/// The origin of coordinates, and the scale that makes them about 1.
 fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
@@ -500,16 +504,14 @@ fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
 
 /// Normal and colour of a triangle at a point, seen from a side.
 fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
-    let [a, b, c] = triangle.corners;
-    let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+    let plane = plane_normal(triangle.corners);
     let shares = barycentric(&triangle.corners, point);
-    let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
     let face = if plane.dot(towards_eye) >= 0.0 {
         plane
     } else {
         -plane
     };
-    let normal = blend(&triangle.normals).normalize_or(face);
+    let normal = blend(&triangle.normals, shares).normalize_or(face);
     SurfaceSample {
         towards_eye,
         normal: if normal.dot(face) < 0.0 {
@@ -517,7 +519,7 @@ fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) 
         } else {
             normal
         },
-        color: blend(&triangle.colors),
+        color: blend(&triangle.colors, shares),
     }
 }
 
@@ -621,7 +623,7 @@ fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<Le
         .collect()
 }
 
-/// All but the data of what is finished.
+/// The result without the nodes' data.
 fn assemble<F: Read + Write + Seek>(
     spool: &Spool<F>,
     centre: DVec3,
@@ -643,14 +645,7 @@ fn assemble<F: Read + Write + Seek>(
         data_at += done.bytes;
     }
     Ok(FarData {
-        centre: centre.to_array(),
-        distance_voxels: options.distance_voxels,
-        opacity_blend: options.opacity_blend,
-        shader_blend: options.shader_blend,
-        leaf_triangles: options.leaf_triangles,
-        grid: options.grid,
-        y_up: true,
-        bevels: [0; 8],
+        settings: options.settings(centre),
         nodes,
         packed: Vec::new(),
     })

@@ -5,6 +5,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use crate::geometry::{Sets, area, bounds, point};
+
 /// Parts of all triangles, which are numbered as the hierarchy orders them.
 pub(super) struct Parts {
     /// Vertices by the bits of their positions.
@@ -29,8 +31,8 @@ pub(super) struct PartSize {
 }
 
 impl Parts {
-    /// Triangles that share a corner's position are of one part. `leaves`: how many triangles each
-    /// leaf has, fewer than 2^32 in all; `normals_of` gives the normals of a triangle's corners.
+    /// Triangles that share a corner's position are of one part. `leaves` has the number of triangles of each leaf,
+    /// fewer than 2^32 in all. `normals_of` returns the normals of a triangle's corners.
     pub(super) fn of(
         leaves: &[usize],
         corners: impl Fn(usize) -> [[f32; 3]; 3],
@@ -39,7 +41,7 @@ impl Parts {
         let count = leaves.iter().sum::<usize>();
         let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
         let mut spans: Vec<[u32; 2]> = Vec::new();
-        let mut parents: Vec<u32> = (0..count as u32).collect();
+        let mut sets = Sets::new(count as u32);
         for number in 0..count as u32 {
             for corner in corners(number as usize) {
                 let next = spans.len() as u32;
@@ -50,13 +52,10 @@ impl Parts {
                 }
                 let span = &mut spans[vertex as usize];
                 span[1] = number;
-                let (a, b) = (root(&mut parents, number), root(&mut parents, span[0]));
-                parents[a.max(b) as usize] = a.min(b);
+                sets.join(number, span[0]);
             }
         }
-        let roots: Vec<u32> = (0..count as u32)
-            .map(|number| root(&mut parents, number))
-            .collect();
+        let roots: Vec<u32> = (0..count as u32).map(|number| sets.root(number)).collect();
         let mut normals: HashMap<u32, Vec<DVec3>> = HashMap::new();
         let mut end = 0;
         for own in leaves {
@@ -68,7 +67,7 @@ impl Parts {
                     let vertex = vertices[&bits(corner)];
                     let is_within = |number: u32| leaf.contains(&(number as usize));
                     if !spans[vertex as usize].into_iter().all(is_within) {
-                        let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
+                        let [a, b, c] = corners.map(point);
                         let area = (b - a).cross(c - a).length();
                         let normal = normals_of(number)[k] * area;
                         normals.entry(vertex).or_default().push(normal);
@@ -78,15 +77,14 @@ impl Parts {
         }
         let mut parts: HashMap<u32, Part> = HashMap::new();
         for (number, root) in roots.iter().enumerate() {
-            let [a, b, c] = corners(number).map(|p| DVec3::from_array(p.map(f64::from)));
+            let corners = corners(number).map(point);
             let part = parts.entry(*root).or_insert(Part {
-                low: a,
-                high: a,
+                low: corners[0],
+                high: corners[0],
                 area: 0.0,
             });
-            part.low = part.low.min(a).min(b).min(c);
-            part.high = part.high.max(a).max(b).max(c);
-            part.area += (b - a).cross(c - a).length() / 2.0;
+            (part.low, part.high) = bounds([part.low, part.high].into_iter().chain(corners));
+            part.area += area(corners);
         }
         let size = |root| parts[root].size();
         Self {
@@ -131,14 +129,6 @@ impl Part {
             radius: (extent / 2.0) as f32,
         }
     }
-}
-
-fn root(parents: &mut [u32], mut of: u32) -> u32 {
-    while parents[of as usize] != of {
-        parents[of as usize] = parents[parents[of as usize] as usize];
-        of = parents[of as usize];
-    }
-    of
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
-//! What rays meet first.
+//! The first triangle on each ray.
 //!
-//! Triangles are held in *clusters*, subtrees of the hierarchy, each with a ray hierarchy of its
-//! own. Rays come in batches, and a batch is tested against one cluster after the other, so that
-//! only one cluster need be in memory (`clusters.rs`). What a ray meets depends neither on the
-//! order of the clusters nor on how many are in memory: it is the nearest triangle, of equally near
-//! ones that of the lowest number, and whatever may be nearer than the nearest yet is tested,
-//! with a margin for rounding.
+//! Triangles are held in *clusters*, subtrees of the hierarchy, each with a ray hierarchy of its own. Rays come in
+//! batches, and a batch is tested against one cluster after the other, so that only one cluster need be in memory
+//! (`clusters.rs`). The result is the nearest triangle, and of equally near ones the one with the lowest number. So it
+//! is independent of the order of the clusters and of how many are in memory.
 
 use std::io::{self, Read};
 
@@ -31,12 +29,12 @@ pub(super) struct Query {
     pub(super) most: f32,
 }
 
-/// What a ray meets.
+/// The nearest triangle on a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
     /// Distance along the ray; infinite where it meets nothing.
     pub(super) distance: f32,
-    /// Number of the triangle, in the order of the hierarchy; [`NOWHERE`]: none.
+    /// The number of the triangle in the order of the hierarchy, or [`NOWHERE`].
     pub(super) triangle: u32,
 }
 
@@ -136,7 +134,7 @@ impl Cluster {
     /// Reads the bytes that it gave.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of reading the file.
     pub(super) fn read(from: &mut impl Read, bytes: [usize; 3]) -> io::Result<Self> {
         let [nodes, numbers, triangles] = bytes;
         Ok(Self {
@@ -146,8 +144,7 @@ impl Cluster {
         })
     }
 
-    /// Takes what a ray meets, if it is nearer than what it met before. `first` is the number of
-    /// the first triangle here.
+    /// Replaces the nearest triangle if this one is nearer. `first` is the number of the first triangle here.
     fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
         let ray = Ray {

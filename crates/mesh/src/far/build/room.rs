@@ -5,15 +5,15 @@ use std::sync::{Condvar, Mutex, PoisonError};
 use super::BuildError;
 use super::clusters::{CLUSTER, MADE, MAKING};
 
-/// Bytes a triangle that the parts of a hybrid take while they are found, or less: three vertices
-/// in a table, and what is known of them and of the triangle.
+/// An upper bound of the bytes per triangle while the parts of a hybrid are found: three vertices in a table, and the
+/// records of vertices and triangle.
 const PARTS_BYTES: u64 = 160;
 /// Bytes that nodes may take together at the least.
 const LEAST_ROOM: u64 = 48 << 20;
 
 /// How a budget is shared out.
 pub(super) struct Shares {
-    /// Bytes of clusters in memory; `None`: all of them.
+    /// Bytes of clusters in memory, or `None` for no limit.
     pub(super) clusters: Option<u64>,
     /// Bytes of nodes that are sampled.
     pub(super) nodes: u64,
@@ -32,8 +32,7 @@ pub(super) fn shares(
         });
     };
     let triangles = triangles as u64;
-    // Their order, and of the hierarchy, at 1000 triangles a leaf, a branch and a record a node; the
-    // order twice while triangles are split.
+    // The order of the triangles, twice while they are split, and a branch and a record per node.
     let fixed = triangles * if hybrid { 10 + PARTS_BYTES } else { 10 };
     let making = MAKING * triangles.min(CLUSTER as u64);
     let threads = rayon::current_num_threads() as u64;

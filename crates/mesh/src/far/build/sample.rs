@@ -1,11 +1,8 @@
 //! Rays at a node: which of its voxels are seen, and what of them.
 //!
-//! First *visibility rays* are aimed at points of what is in each voxel, from random
-//! directions and from those from which a neighbour was seen, until one gets
-//! there: a voxel that none reaches is dropped.
-//! Then *probes* are aimed at random points of the outlines of the voxels that
-//! were seen, from random directions: what share of them ends in a voxel is
-//! its opacity (`count.rs`).
+//! First, *visibility rays* are aimed at points of each voxel's contents, from random directions and from those from
+//! which a neighbour was seen, until one ends in the voxel. Then *probes* are aimed at random points of the outlines of
+//! the voxels that were seen, from random directions: what share of them ends in a voxel is its opacity (`count.rs`).
 
 use std::io;
 use std::ops::ControlFlow;
@@ -35,7 +32,7 @@ const LEAST_PROBES: u32 = 8;
 /// How far beyond the point that it is aimed at a visibility ray is followed, voxels.
 const AIM_WITHIN: f64 = 0.5;
 
-/// What the rays of a node found, beside its voxels.
+/// Counts of a node's rays.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sampled {
     /// Voxels that triangles touch.
@@ -46,7 +43,7 @@ pub(super) struct Sampled {
     pub(super) hits: u32,
 }
 
-/// How many rays a node gets.
+/// The number of rays of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rays {
     /// So many probes across each voxel that is seen, or aimed at it where few cross it.
@@ -61,18 +58,17 @@ pub(super) trait Triangles {
     fn corners(&self, number: usize) -> [DVec3; 3];
     /// Unit normal of the plane.
     fn plane(&self, number: usize) -> DVec3;
-    /// What is seen at a point from a direction.
+    /// The appearance of a point from a direction.
     fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample;
 }
 
 impl Target<'_> {
-    /// Shoots rays, at most `most`, which is no more than 2^22. `admit` is told how many voxels are
-    /// touched, and waits until there is memory for them. Calls back with each voxel that is kept,
-    /// those that were seen and those that were not tested, in the order of the grid, what it
-    /// shows, and how many samples that is fitted to.
+    /// Shoots rays, at most `most`, which is no more than 2^22. `admit` gets the number of touched voxels, and waits
+    /// until there is memory for them. Calls back with each kept voxel, both seen and untested, in the order of the
+    /// grid, with its shader and its number of samples.
     ///
     /// # Errors
-    /// What the system says of the file of triangles.
+    /// Errors of reading the file of triangles.
     pub(super) fn sample<A>(
         &self,
         rays: Rays,
@@ -128,7 +124,7 @@ impl Target<'_> {
             tests,
             ..
         } = found;
-        // What is kept, and how many probes were aimed at it: see `Marks`.
+        // The kept voxels, and the number of probes aimed at each: see `Marks`.
         let is_untested = |number: usize| !is_seen[number] && tests[number] < LEAST_TESTS;
         let mut kept = vec![NOWHERE; touched.len()];
         let mut aimed_of_grid = vec![0u8; self.grid.len()];
@@ -137,7 +133,7 @@ impl Target<'_> {
             if is_seen[number] || is_untested(number) {
                 kept[number] = count as u32;
                 count += 1;
-                // More than a byte counts only a number of rays gives, and then to all alike.
+                // Only an explicit number of rays exceeds the range of a byte, and then for all voxels alike.
                 let probes = aimed[number].min(u32::from(u8::MAX) - 1) as u8;
                 aimed_of_grid[voxel.number as usize] = probes + 1;
             }
@@ -181,11 +177,10 @@ impl Target<'_> {
                 let towards_eye = -shot.direction.as_dvec3();
                 triangles.sample(shot.triangle as usize, point, towards_eye)
             }));
-            let fit = fit_shader(&samples, main_normal(&samples), self.shader_blend);
+            let fit = fit_shader(&samples, main_normal(&samples));
             // As opaque as the area in it is large, in its faces.
             seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
-            let blends = [self.opacity_blend, self.shader_blend];
-            probes.count(place, &fit.shader, blends, &mut seen);
+            probes.count(place, &fit.shader, &mut seen);
             keep(&seen, &fit, samples.len());
         }
         Ok(Sampled {

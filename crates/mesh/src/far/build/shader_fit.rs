@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::count::{Counted, Found, Seen, SurfaceSample};
-use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use crate::far::blend::{DIRECTIONS, Fit, by_squares};
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES, Shader, SideOpacity, Voxel};
 
 /// Weight of a normal's error beside a colour's: both are 0 to 1.
@@ -19,9 +19,8 @@ const LEAST_SAMPLES: usize = 6;
 const OPAQUE_FROM: f64 = 0.97;
 /// Six opacities are stored as one number if they are within this share of it.
 const ALIKE_WITHIN: f64 = 0.1;
-/// How much nearer six numbers come to hits and passes than one does by chance
-/// alone: this many binomial variances over the number of rays (the mean of chi
-/// square with 5 degrees of freedom).
+/// The improvement of six numbers over one that chance alone explains: this many binomial variances over the number of
+/// rays (the mean of chi square with 5 degrees of freedom).
 const NOISE: f64 = 5.0;
 /// Hits and passes that are added before the variance is taken, so that a few
 /// rays which all hit do not prove that all would.
@@ -40,14 +39,14 @@ pub(super) struct ShaderFit {
     pub(super) square_error: f64,
 }
 
-/// Fits a shader to what was seen, once or more; `normal` is the main one.
-pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3, blend: Blend) -> ShaderFit {
+/// Fits a shader to one or more samples. `normal` is the main one.
+pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit {
     let count = samples.len().max(1) as f64;
     let flat = flat(samples, normal);
-    let square_error = error(&flat, samples, blend);
+    let square_error = error(&flat, samples);
     if square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
-        let complex = complex(samples, blend);
-        let complex_error = error(&complex, samples, blend);
+        let complex = complex(samples);
+        let complex_error = error(&complex, samples);
         if complex_error < WORTH_IT * square_error {
             return ShaderFit {
                 shader: complex,
@@ -165,13 +164,13 @@ fn flat(samples: &[SurfaceSample], normal: DVec3) -> Shader {
     Shader::Flat { normal, colors }
 }
 
-fn complex(samples: &[SurfaceSample], blend: Blend) -> Shader {
+fn complex(samples: &[SurfaceSample]) -> Shader {
     let mut fit = Fit::<6>::new();
     let mut mean = [0.0; 6];
     for sample in samples {
         let (c, n) = (sample.color, sample.normal);
         let value = [c.x, c.y, c.z, n.x, n.y, n.z];
-        fit.add(&blend.shares(sample.towards_eye), &value, 1.0);
+        fit.add(&by_squares(sample.towards_eye), &value, 1.0);
         for (mean, value) in mean.iter_mut().zip(value) {
             *mean += value / samples.len() as f64;
         }
@@ -198,12 +197,12 @@ fn main_direction(number: usize) -> DVec3 {
     }
 }
 
-/// Sum of the square errors of what a shader shows of the samples.
-fn error(shader: &Shader, samples: &[SurfaceSample], blend: Blend) -> f64 {
+/// The sum of a shader's square errors over the samples.
+fn error(shader: &Shader, samples: &[SurfaceSample]) -> f64 {
     samples
         .iter()
         .map(|sample| {
-            let (normal, color) = shader.seen_from(sample.towards_eye, blend);
+            let (normal, color) = shader.seen_from(sample.towards_eye);
             let of_color = (color - sample.color).length_squared() / 3.0;
             // Rounding must not make it negative.
             let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
@@ -215,6 +214,7 @@ fn error(shader: &Shader, samples: &[SurfaceSample], blend: Blend) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::far::blend::by_cosines;
     use crate::far::build::count::main_normal;
 
     fn samples(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<SurfaceSample> {
@@ -245,7 +245,7 @@ mod tests {
             }
         });
         let shader = flat(&wall, main_normal(&wall));
-        assert!(error(&shader, &wall, Blend::Squares) < 1e-9);
+        assert!(error(&shader, &wall) < 1e-9);
         let Shader::Flat { normal, colors } = shader else {
             panic!("not flat");
         };
@@ -257,11 +257,9 @@ mod tests {
     #[test]
     fn a_ball_is_better_complex() {
         let ball = samples(|eye| (eye, DVec3::splat(0.5) + eye * 0.3));
-        let of_flat = error(&flat(&ball, main_normal(&ball)), &ball, Blend::Squares);
-        for blend in [Blend::Squares, Blend::Cosines] {
-            let of_complex = error(&complex(&ball, blend), &ball, blend);
-            assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
-        }
+        let of_flat = error(&flat(&ball, main_normal(&ball)), &ball);
+        let of_complex = error(&complex(&ball), &ball);
+        assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
     }
 
     /// Counts of evenly spread directions, of which a share of each hits.
@@ -273,7 +271,7 @@ mod tests {
             // The first few are spread, too.
             let sample = &samples[ray * 191 % samples.len()];
             let is_hit = chance.unit() < share(sample.towards_eye);
-            let shares = Blend::Cosines.shares(sample.towards_eye);
+            let shares = by_cosines(sample.towards_eye);
             counted.add(&shares, is_hit, 1.0);
         }
         counted
@@ -320,7 +318,7 @@ mod tests {
             (DVec3::X, false, 0.5),
             (DVec3::Z, false, 1.0),
         ] {
-            counted.add(&Blend::Cosines.shares(eye), is_hit, weight);
+            counted.add(&by_cosines(eye), is_hit, weight);
         }
         assert!((counted.scalar() - 0.25).abs() < 1e-12);
         assert!((counted.independent() - 16.0 / 3.5).abs() < 1e-9);

@@ -11,7 +11,6 @@ use glam::{DVec3, Vec3, Vec3A};
 use super::clusters::Occluders;
 use super::grid::Grid;
 use super::rays::{Around, Meeting, Query};
-use crate::far::blend::Blend;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 2;
@@ -24,15 +23,13 @@ pub(super) struct Target<'t> {
     pub(super) own: Own<'t>,
     /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
-    pub(super) opacity_blend: Blend,
-    pub(super) shader_blend: Blend,
 }
 
-/// Which triangles voxels are made of.
+/// The triangles that become voxels.
 #[derive(Debug, Clone)]
 pub(super) struct Own<'t> {
     range: Range<usize>,
-    /// Of each of the range whether it is one; `None`: all are.
+    /// Marks of the range's triangles that become voxels, or `None` if all do.
     is_taken: Option<&'t [bool]>,
 }
 
@@ -90,8 +87,7 @@ pub(super) struct Shot {
     pub(super) end: f32,
     /// The triangle that it meets.
     pub(super) triangle: u32,
-    /// Number of the touched voxel in which it ends at one of the node's own triangles;
-    /// [`NOWHERE`]: in none.
+    /// The number of the touched voxel in which it ends at one of the node's own triangles, or [`NOWHERE`].
     pub(super) touched: u32,
 }
 
@@ -122,7 +118,7 @@ fn cell(direction: Vec3) -> usize {
     (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
 }
 
-/// Numbers of rays such that those that are alike follow one another: they visit the same boxes.
+/// Numbers of rays, sorted so that similar rays, which visit the same boxes, follow one another.
 fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
     let mut places = [0u32; ALL_CELLS];
     for aim in aims {
@@ -173,7 +169,7 @@ impl Target<'_> {
     /// `slot` has the numbers of touched voxels. Shots are in the order of the aims.
     ///
     /// # Errors
-    /// What the system says of the file of triangles.
+    /// Errors of reading the file of triangles.
     pub(super) fn shoot(
         &self,
         aims: &[Aim],
@@ -224,7 +220,7 @@ impl Target<'_> {
 
     /// Notes where a ray ends.
     fn end(&self, shot: &mut Shot, query: &Query, meeting: &Meeting, slot: &[u32], beyond: f64) {
-        // The ray's length is that up to the point and what is beyond it.
+        // The ray extends to the point and a little beyond it.
         let length = f64::from(query.most) / self.grid.voxel;
         shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
         shot.triangle = meeting.triangle;

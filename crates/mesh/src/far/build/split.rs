@@ -1,9 +1,7 @@
 //! The hierarchy: triangles split in two by the surface area heuristic, again and again.
 //!
-//! A plane across one axis sends each triangle to the side where the middle of
-//! its box lies: every triangle is in one leaf, and the triangles of a node
-//! are a range of their new order. The plane is the best of those between 32
-//! slices along each axis.
+//! A plane across one axis assigns each triangle to the side of the middle of its box. So every triangle is in one
+//! leaf, and the triangles of a node are a range. The plane is the best of those between 32 slices along each axis.
 
 use std::ops::Range;
 
@@ -30,7 +28,7 @@ pub(super) struct Branch {
     pub(super) first: usize,
     /// How many.
     pub(super) count: usize,
-    /// Their places in the list; `None`: a leaf.
+    /// The places of the children in the list, or `None` for a leaf.
     pub(super) children: Option<[usize; 2]>,
 }
 

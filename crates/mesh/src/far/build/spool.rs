@@ -1,8 +1,7 @@
-//! Nodes as they are finished: in a file, in any order, so that they need no memory and a build that
-//! was stopped can go on.
+//! Finished nodes in a file, in any order. They need no memory there, and an interrupted build can resume.
 //!
-//! The file begins with what the nodes are made of, as hashes. Then follow the nodes, each with its
-//! number, its record and its data. One that was not written whole is known by its checksums.
+//! The file begins with hashes of the mesh and the options. Then follow the nodes, each with its number, its record and
+//! its data. One that was not written whole is known by its checksums.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -18,7 +17,7 @@ use crate::far::record::Node;
 /// How an unfinished file begins; the last byte is the version of the layout and of the build.
 const MAGIC: [u8; 8] = *b"\x89FARPRT\x01";
 
-/// What nodes are made of.
+/// The input of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Origin {
@@ -46,7 +45,7 @@ impl Origin {
     }
 }
 
-/// What precedes the data of a node.
+/// The header of a node's data.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Head {
@@ -223,7 +222,6 @@ impl Spool<File> {
 }
 
 /// The name of the unfinished file of a build.
-#[must_use]
 pub fn part_of(output: &Path) -> PathBuf {
     let mut name = output.as_os_str().to_owned();
     name.push(".part");

@@ -1,9 +1,7 @@
-//! The hybrid: what is wider than a voxel stays a surface, decimated; what is thinner becomes
-//! voxels.
+//! The hybrid: parts wider than a voxel stay a decimated surface, and thinner parts become voxels.
 //!
-//! For each inner node several candidates are made of its triangles, and compared
-//! (`compare.rs`). What nodes share stays where it is, so that any two nodes side by side join
-//! without a gap, whatever levels they are of.
+//! For each inner node several candidates are made of its triangles, and compared (`compare.rs`). Shared corners stay
+//! in place, so that any two neighbouring nodes join without a gap, whatever their levels.
 
 use std::ops::Range;
 
@@ -17,6 +15,7 @@ use crate::decimate::{Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
+use crate::geometry::{area, point};
 use crate::{Mesh, Surface, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -34,7 +33,7 @@ const MOST_BYTES: f64 = 4.0;
 /// Nodes of more triangles have voxels alone: what decimating takes of memory is kept to.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
-/// What surfaces of nodes are made of.
+/// The input of the nodes' surfaces.
 pub(super) struct Surfaces<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -131,7 +130,7 @@ impl<'s> Surfaces<'s> {
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
             let all = decimated(&|place| is_seen(place, error), error)?;
             let all = surface(all);
-            // What takes many times the bytes of voxels is not worth it, however near it is.
+            // A candidate that takes many times the bytes of voxels is not worth it, even if it is near.
             if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
                 candidates.push(all);
             }
@@ -157,8 +156,7 @@ impl<'s> Surfaces<'s> {
     }
 
     fn area(&self, place: usize) -> f64 {
-        let [a, b, c] = self.surface.corners(self.order[place] as usize);
-        (b - a).cross(c - a).length() / 2.0
+        area(self.surface.corners(self.order[place] as usize))
     }
 
     /// Some of a node's triangles, decimated to within an error, world units.
@@ -197,12 +195,10 @@ fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
         material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]),
         ..Mesh::default()
     };
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (number, triangle) in (0u32..).zip(triangles) {
         mesh.triangles.push([0, 1, 2].map(|k| 3 * number + k));
         for k in 0..3 {
             let position = triangle.corners[k].map(f64::from);
-            (low, high) = (low.min(position.into()), high.max(position.into()));
             mesh.positions.push(position);
             if !is_tinted {
                 mesh.vertex_colors.push(triangle.colors[k]);
@@ -217,7 +213,7 @@ fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
             normal.as_vec3().to_array()
         }));
     }
-    (mesh.low, mesh.high) = (low, high);
+    mesh.find_bounds();
     mesh
 }
 
@@ -226,8 +222,7 @@ fn triangles_of(mesh: &Mesh) -> Vec<LeafTriangle> {
         let corners = mesh.triangles()[number].map(|vertex| vertex as usize);
         LeafTriangle {
             corners: corners.map(|vertex| mesh.positions()[vertex].map(|c| c as f32)),
-            normals: mesh.corner_normals()[number]
-                .map(|n| PackedNormal::encode(DVec3::from_array(n.map(f64::from))).0),
+            normals: mesh.corner_normals()[number].map(|n| PackedNormal::encode(point(n)).0),
             colors: corners.map(|vertex| mesh.vertex_colors()[vertex]),
         }
     };

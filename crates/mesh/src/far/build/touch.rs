@@ -1,4 +1,4 @@
-//! Which voxels triangles touch, and points of them in each voxel.
+//! The voxels that triangles touch, and sample points in each voxel.
 //!
 //! A triangle is cut to the voxel's cube. If an area is left, the voxel is
 //! touched, and the points of that area are what visibility rays are aimed at. Of all that is in a
@@ -8,11 +8,10 @@ use glam::{DVec3, IVec3};
 
 use super::chance::Chance;
 use super::grid::Grid;
+use crate::geometry::{Polygon, area};
 
 /// Points that are kept of a voxel.
 pub(super) const POINTS: usize = 4;
-/// Most corners of a triangle cut by the six planes of a cube.
-const CORNERS: usize = 9;
 /// Area, of a voxel's face, below which a triangle only brushes a voxel.
 const LEAST_AREA: f64 = 1e-9;
 
@@ -21,10 +20,9 @@ const LEAST_AREA: f64 = 1e-9;
 pub(super) struct Touched {
     /// Its number in the grid.
     pub(super) number: u32,
-    /// Points of what is in it, in voxels from the grid's origin, and the number of the triangle
-    /// that each is on.
+    /// Points of its contents, in voxels from the grid's origin, and the number of the triangle of each.
     pub(super) points: [(DVec3, u32); POINTS],
-    /// Area of what is in it, in faces of a voxel.
+    /// Area of its contents, in faces of a voxel.
     pub(super) area: f64,
 }
 
@@ -87,13 +85,13 @@ pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) ->
 
 /// A triangle, and the voxel that it is to be cut to.
 struct Piece<'t> {
-    triangle: &'t Part,
+    triangle: &'t Polygon,
     /// The voxel's lowest corner; `None` where all of the triangle is in it.
     voxel: Option<DVec3>,
 }
 
 impl Piece<'_> {
-    fn cut(&self) -> Part {
+    fn cut(&self) -> Polygon {
         self.voxel
             .map_or(*self.triangle, |corner| self.triangle.within(corner))
     }
@@ -109,7 +107,7 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_
         // Within the cells, so within a byte.
         grid.number(at.to_array().map(|c| c as u8)) as u32
     };
-    let whole = Part::of(corners);
+    let whole = Polygon::of(corners);
     if low == high {
         let piece = Piece {
             triangle: &whole,
@@ -138,59 +136,20 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_
     }
 }
 
-/// A convex polygon.
-#[derive(Debug, Clone, Copy)]
-struct Part {
-    corners: [DVec3; CORNERS],
-    count: usize,
-}
-
-impl Part {
-    fn of(triangle: &[DVec3; 3]) -> Self {
-        let mut corners = [DVec3::ZERO; CORNERS];
-        corners[..3].copy_from_slice(triangle);
-        Self { corners, count: 3 }
-    }
-
-    /// What lies in the unit cube from a corner on.
+impl Polygon {
+    /// The part in the unit cube from a corner on.
     fn within(&self, corner: DVec3) -> Self {
         let mut part = *self;
         for axis in 0..3 {
-            let along = part.corners[..part.count].iter().map(|p| p[axis]);
+            let along = part.corners().iter().map(|p| p[axis]);
             let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
                 (low.min(at), high.max(at))
             });
             if low < corner[axis] {
-                part = part.cut(|p| p[axis] - corner[axis]);
+                part = part.cut_in_order(|p| p[axis] - corner[axis]);
             }
             if high > corner[axis] + 1.0 {
-                part = part.cut(|p| corner[axis] + 1.0 - p[axis]);
-            }
-        }
-        part
-    }
-
-    /// What lies where `inside` is not negative.
-    fn cut(&self, inside: impl Fn(DVec3) -> f64) -> Self {
-        let mut part = Self {
-            corners: self.corners,
-            count: 0,
-        };
-        let mut put = |point: DVec3| {
-            // A cut adds one corner at most; rounding must not run over.
-            if part.count < CORNERS {
-                part.corners[part.count] = point;
-                part.count += 1;
-            }
-        };
-        for i in 0..self.count {
-            let (p, q) = (self.corners[i], self.corners[(i + 1) % self.count]);
-            let (d, e) = (inside(p), inside(q));
-            if d >= 0.0 {
-                put(p);
-            }
-            if (d >= 0.0) != (e >= 0.0) {
-                put(p + (q - p) * (d / (d - e)));
+                part = part.cut_in_order(|p| corner[axis] + 1.0 - p[axis]);
             }
         }
         part
@@ -198,7 +157,8 @@ impl Part {
 
     /// The triangles of a fan.
     fn fan(&self) -> impl Iterator<Item = [DVec3; 3]> {
-        (1..self.count.max(1) - 1).map(|i| [0, i, i + 1].map(|corner| self.corners[corner]))
+        let corners = self.corners();
+        (1..corners.len().max(1) - 1).map(|i| [corners[0], corners[i], corners[i + 1]])
     }
 
     fn area(&self) -> f64 {
@@ -212,7 +172,7 @@ impl Part {
         if u + v > 1.0 {
             (u, v) = (1.0 - u, 1.0 - v);
         }
-        let mut found = self.corners[0];
+        let mut found = self.corners()[0];
         for triangle in self.fan() {
             let [a, b, c] = triangle;
             found = a + (b - a) * u + (c - a) * v;
@@ -223,10 +183,6 @@ impl Part {
         }
         found
     }
-}
-
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    (b - a).cross(c - a).length() / 2.0
 }
 
 #[cfg(test)]
@@ -252,7 +208,7 @@ mod tests {
                 let part = piece.cut();
                 sum += part.area();
                 let low = DVec3::from_array(unit().place(number as usize).map(f64::from));
-                for &corner in &part.corners[..part.count] {
+                for &corner in part.corners() {
                     let inside = corner - low;
                     assert!(inside.min_element() > -1e-9 && inside.max_element() < 1.0 + 1e-9);
                 }

@@ -1,9 +1,8 @@
 //! How much of a file's data is in memory, unpacked, and what goes when it is too much.
 //!
-//! Nodes are let go of in the order of a clock: round and round, one that was
-//! used since the hand last passed is spared once. What was let go of is read
-//! from the file again when it is next drawn, so a budget costs time and
-//! changes nothing else.
+//! Nodes are let go of in the order of a clock: round and round, one that was used since the hand last passed is spared
+//! once. Released nodes are read from the file again when they are next drawn, so a budget costs time and changes
+//! nothing else.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,7 +28,7 @@ struct Clock {
     released: u64,
 }
 
-/// What a budget came to.
+/// The state of a budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Resident {
     /// Bytes of nodes that are in memory.

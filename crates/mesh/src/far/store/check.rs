@@ -2,16 +2,15 @@
 
 use crate::far::record::{MOST_COLORS, Node};
 
-/// What is wrong with a node.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
-    pub(super) node: usize,
-    pub(super) expected: String,
-}
-
 /// Checks all nodes against each other and against the sizes of the sections.
-pub(super) fn check(nodes: &[Node], data_bytes: u64, triangles: u64) -> Result<(), Fault> {
-    let fault = |node: usize, expected: String| Err(Fault { node, expected });
+///
+/// An error is the number of a node and the expected value.
+pub(super) fn check(
+    nodes: &[Node],
+    data_bytes: u64,
+    triangles: u64,
+) -> Result<(), (usize, String)> {
+    let fault = |node: usize, expected: String| Err((node, expected));
     let Some(root) = nodes.first() else {
         return fault(0, "a root".to_owned());
     };

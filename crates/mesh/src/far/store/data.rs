@@ -33,7 +33,6 @@ impl NodeData {
     }
 
     /// Records of the voxels, one slice for each list; empty ones of a leaf.
-    #[must_use]
     pub fn lists(&self) -> [&[u8]; LISTS.len()] {
         let mut rest = &self.records[..];
         std::array::from_fn(|list| {
@@ -44,7 +43,6 @@ impl NodeData {
     }
 
     /// Triangles: of a leaf all that it has, of an inner node its surface.
-    #[must_use]
     pub fn triangles(&self) -> &[LeafTriangle] {
         &self.triangles
     }

@@ -1,8 +1,7 @@
 //! A node's data as it is stored: deflated.
 //!
-//! Records of voxels are laid out byte by byte first: the first bytes of all records of a list,
-//! then the second ones, and so on. Neighbours are alike in each. The surface follows
-//! (`surface.rs`).
+//! Records of voxels are laid out byte by byte first: the first bytes of all records of a list, then the second ones,
+//! and so on. Neighbouring bytes are similar in each. The surface follows (`surface.rs`).
 
 use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, compress_to_output, create_comp_flags_from_zip_params,
@@ -12,7 +11,7 @@ use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use super::surface;
 use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
-/// How hard it is tried to make data small, 0 to 10: what other programs do if not told otherwise.
+/// The compression level, 0 to 10: the usual default.
 const EFFORT: i32 = 6;
 /// Bytes after which the end of a column ends a block of the deflated data, too. Each block has codes of its own, and
 /// columns differ: places run on, normals are noise. Shorter blocks would cost more than their codes save.
@@ -69,7 +68,7 @@ pub(super) fn unpack(packed: &[u8], node: &Node) -> Option<(Vec<u8>, Vec<LeafTri
 }
 
 fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
-    // It grows with what is there: a wrong length takes no memory.
+    // It grows with the data, so a wrong length takes no memory.
     let bytes = decompress_to_vec_with_limit(packed, length).ok()?;
     (bytes.len() == length).then_some(bytes)
 }
@@ -112,8 +111,8 @@ mod tests {
         );
     }
 
-    /// What is shared comes back to the last bit, the rest within half a step of the box; of few
-    /// colours and of many, with normals and without.
+    /// Shared vertices come back exactly, others within half a step of the box, with few or many colours, and with or
+    /// without normals.
     #[test]
     fn surfaces_come_back() {
         for (count, colors, is_flat) in [(1u32, 1u32, false), (400, 7, true), (40_000, 9000, false)]

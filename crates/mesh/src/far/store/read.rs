@@ -11,10 +11,9 @@ use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
 use super::data::{NodeData, Slot};
-use super::format::{FORMAT, Layout, at, layout};
+use super::format::{BLENDS, FORMAT, at, layout};
 use super::pack::unpack;
-use super::write::blend_byte;
-use crate::far::blend::Blend;
+use crate::far::FarSettings;
 use crate::far::record::Node;
 use shiftvox::graph::MeshBox;
 use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
@@ -27,9 +26,12 @@ const BROUGHT_IN: u64 = 64 << 10;
 /// An open `.far` file.
 #[derive(Debug)]
 pub struct FarFile {
+    /// The settings of all nodes.
+    pub settings: FarSettings,
     path: PathBuf,
     bytes: Bytes,
-    places: Layout,
+    /// The section of the nodes' data.
+    section: [u64; 2],
     nodes: Vec<Node>,
     /// Number of each node's first voxel, over all nodes.
     first_voxel: Vec<u32>,
@@ -37,15 +39,8 @@ pub struct FarFile {
     first_triangle: Vec<u32>,
     /// Each node's data, once it was needed.
     data: Vec<Slot>,
-    /// What limits how much of the data is in memory, if anything does.
+    /// The memory budget of the data, if there is one.
     budget: Option<Budget>,
-    centre: DVec3,
-    distance_voxels: f64,
-    blends: [Blend; 2],
-    leaf_triangles: u32,
-    grid: u32,
-    y_up: bool,
-    bevels: [u8; 8],
 }
 
 impl FarFile {
@@ -83,8 +78,7 @@ impl FarFile {
         Ok(file)
     }
 
-    /// What the budget came to; `None` without one.
-    #[must_use]
+    /// The state of the budget, or `None` without one.
     pub fn resident(&self) -> Option<Resident> {
         self.budget.as_ref().map(Budget::resident)
     }
@@ -101,140 +95,79 @@ impl FarFile {
         FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = Header::read(all, all.len() as u64, path)?;
-        let places = header.places;
-        let sections = [places.nodes, places.data];
-        check_padding(all, sections.into_iter(), path)?;
-        let node_bytes = &all[range(places.nodes)];
+        let [place, section] = header.places;
+        check_padding(all, header.places.into_iter(), path)?;
+        let damaged =
+            |section, offset, expected| FarError::damaged(path, section, offset, expected);
+        let node_bytes = &all[range(place)];
         if xxh3_64(node_bytes) != header.nodes_checksum {
             let expected = format!("checksum {:016x} of the hierarchy", header.nodes_checksum);
-            return Err(FarError::damaged(
-                path,
-                "hierarchy",
-                places.nodes[0],
-                expected,
-            ));
+            return Err(damaged("hierarchy", place[0], expected));
         }
         let nodes: Vec<Node> = bytemuck::pod_collect_to_vec(node_bytes);
-        if let Some(root) = nodes.first() {
-            let corner =
-                |c: [f32; 3]| (header.centre + DVec3::from_array(c.map(f64::from))).to_array();
-            let extents = [0, 1, 2].map(|k| f64::from(root.high[k]) - f64::from(root.low[k]));
-            let finest = extents.into_iter().fold(0.0, f64::max) / MOST_PARTS;
-            if !can_be_seen(corner(root.low), corner(root.high), finest) {
-                let expected = "a centre from which the boxes of nodes can be told apart";
-                return Err(FarError::damaged(
-                    path,
-                    "header",
-                    at::CENTRE as u64,
-                    expected,
-                ));
-            }
-        }
-        check(&nodes, places.data[1] - places.data[0], header.triangles).map_err(|fault| {
-            let offset = places.nodes[0] + (fault.node * size_of::<Node>()) as u64;
-            let expected = format!("node {} to have {}", fault.node, fault.expected);
-            FarError::damaged(path, "hierarchy", offset, expected)
+        check(&nodes, section[1] - section[0], header.triangles).map_err(|(node, expected)| {
+            let offset = place[0] + (node * size_of::<Node>()) as u64;
+            damaged(
+                "hierarchy",
+                offset,
+                format!("node {node} to have {expected}"),
+            )
         })?;
-        // Checked: fewer than 2^32 of all.
-        let first_voxel = first_of(&nodes, |node| node.voxels() as u32);
-        let first_triangle = first_of(&nodes, |node| node.surface);
-        Ok(Self {
+        // Checked: there is a root, and fewer than 2^32 of all.
+        let file = Self {
+            settings: header.settings,
             path: path.to_owned(),
-            budget: None,
+            section,
+            first_voxel: first_of(&nodes, |node| node.voxels() as u32),
+            first_triangle: first_of(&nodes, |node| node.surface),
             data: nodes.iter().map(|_| Slot::default()).collect(),
-            places,
             nodes,
-            first_voxel,
-            first_triangle,
-            centre: header.centre,
-            distance_voxels: header.distance_voxels,
-            blends: header.blends,
-            leaf_triangles: header.leaf_triangles,
-            grid: header.grid,
-            y_up: header.y_up,
-            bevels: header.bevels,
+            budget: None,
             bytes,
-        })
+        };
+        let (low, high) = file.bounds();
+        let extents = file.nodes[0].high.iter().zip(file.nodes[0].low);
+        let extents = extents.map(|(&high, low)| f64::from(high) - f64::from(low));
+        let finest = extents.fold(0.0, f64::max) / MOST_PARTS;
+        if !can_be_seen(low.to_array(), high.to_array(), finest) {
+            let expected = "a centre from which the boxes of nodes can be told apart";
+            return Err(damaged("header", at::CENTRE as u64, expected.to_owned()));
+        }
+        Ok(file)
     }
 
     /// The hierarchy, parents before children; the root comes first.
-    #[must_use]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// What single precision coordinates are relative to, world units.
-    #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        self.centre
-    }
-
-    /// Least distance from which a node may be used, in its voxels.
-    #[must_use]
-    pub fn distance_voxels(&self) -> f64 {
-        self.distance_voxels
-    }
-
-    /// How opacities are blended.
-    #[must_use]
-    pub fn opacity_blend(&self) -> Blend {
-        self.blends[0]
-    }
-
-    /// How normals and materials are blended.
-    #[must_use]
-    pub fn shader_blend(&self) -> Blend {
-        self.blends[1]
-    }
-
-    /// Nodes with fewer triangles are leaves.
-    #[must_use]
-    pub fn leaf_triangles(&self) -> u32 {
-        self.leaf_triangles
-    }
-
-    /// Voxels along the longest side of a node.
-    #[must_use]
-    pub fn grid(&self) -> u32 {
-        self.grid
-    }
-
     /// Whether +Y is up, for fitted cameras; else +Z.
-    #[must_use]
     pub fn y_up(&self) -> bool {
-        self.y_up
+        self.settings.y_up
     }
 
     /// Bytes of the file.
-    #[must_use]
     pub fn len(&self) -> u64 {
-        self.places.data[1]
+        self.section[1]
     }
 
     /// Never: a file has a header.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// Lowest and highest corner of all triangles, world units.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let root = &self.nodes[0];
-        let world = |p: [f32; 3]| self.centre + DVec3::from_array(p.map(f64::from));
+        let world = |p: [f32; 3]| self.settings.centre + DVec3::from_array(p.map(f64::from));
         (world(root.low), world(root.high))
     }
 
-    /// What fitted cameras look at.
-    #[must_use]
+    /// The box for fitted cameras.
     pub fn mesh_box(&self) -> MeshBox {
         let (low, high) = self.bounds();
-        MeshBox {
-            low: low.to_array(),
-            high: high.to_array(),
-            bevels: self.bevels,
-            y_up: self.y_up,
-        }
+        let span = (low.to_array(), high.to_array());
+        MeshBox::new(span, self.settings.bevels, self.settings.y_up)
     }
 
     /// Number of a node's first voxel, over all nodes.
@@ -248,7 +181,6 @@ impl FarFile {
     }
 
     /// Voxels of all nodes.
-    #[must_use]
     pub fn voxels(&self) -> u32 {
         let last = self.nodes.len() - 1;
         // Checked: fewer than 2^32 of all.
@@ -285,7 +217,7 @@ impl FarFile {
 
     /// Where a node's data is in the file.
     fn place_of(&self, number: usize) -> [u64; 2] {
-        let [first, last] = self.places.data;
+        let [first, last] = self.section;
         let end = self.nodes.get(number + 1).map(|next| first + next.data_at);
         [first + self.nodes[number].data_at, end.unwrap_or(last)]
     }
@@ -326,15 +258,10 @@ fn first_of(nodes: &[Node], items: impl Fn(&Node) -> u32) -> Vec<u32> {
 
 /// The header, decoded and checked.
 struct Header {
-    places: Layout,
+    /// The sections of nodes and data.
+    places: [[u64; 2]; 2],
     triangles: u64,
-    centre: DVec3,
-    distance_voxels: f64,
-    leaf_triangles: u32,
-    grid: u32,
-    blends: [Blend; 2],
-    y_up: bool,
-    bevels: [u8; 8],
+    settings: FarSettings,
     nodes_checksum: u64,
 }
 
@@ -345,37 +272,32 @@ impl Header {
         let [nodes, data_bytes, triangles] =
             [at::NODES, at::DATA_BYTES, at::TRIANGLES].map(|at| header.u64_at(at));
         let places = layout(nodes, data_bytes);
-        header.ensure(places.data[1] == file_bytes, at::NODES, || {
+        header.ensure(places[1][1] == file_bytes, at::NODES, || {
             format!("sections that end with the file at byte {file_bytes}")
         })?;
         let is_spare = header.is_zero(at::SPARE) && header.is_zero(at::MORE_SPARE);
         header.ensure(is_spare, at::SPARE.start, || "zeros")?;
-        let centre = DVec3::from_array(header.f64s_at(at::CENTRE));
-        header.ensure(centre.is_finite(), at::CENTRE, || "finite numbers")?;
         let [distance_voxels] = header.f64s_at(at::DISTANCE);
+        let settings = FarSettings {
+            centre: DVec3::from_array(header.f64s_at(at::CENTRE)),
+            distance_voxels,
+            leaf_triangles: header.u32_at(at::LEAF),
+            grid: header.u32_at(at::GRID),
+            y_up: header.byte_at(at::Y_UP) == 1,
+            bevels: header.bytes_at(at::BEVELS),
+        };
+        header.ensure(settings.centre.is_finite(), at::CENTRE, || "finite numbers")?;
         let is_distance = (1.0..=1e6).contains(&distance_voxels);
         header.ensure(is_distance, at::DISTANCE, || "1 to 1,000,000 voxels")?;
-        let (leaf_triangles, grid) = (header.u32_at(at::LEAF), header.u32_at(at::GRID));
-        header.ensure(leaf_triangles >= 2, at::LEAF, || "2 or more")?;
-        header.ensure((2..=255).contains(&grid), at::GRID, || "2 to 255")?;
-        let blend = |offset: usize| {
-            let mut known = [Blend::Squares, Blend::Cosines].into_iter();
-            let found = known.find(|&b| blend_byte(b) == header.byte_at(offset));
-            found.ok_or_else(|| FarError::damaged(path, "header", offset as u64, "0 or 1"))
-        };
-        let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];
+        header.ensure(settings.leaf_triangles >= 2, at::LEAF, || "2 or more")?;
+        header.ensure((2..=255).contains(&settings.grid), at::GRID, || "2 to 255")?;
+        let is_known = BLENDS == [0, 1].map(|k| header.byte_at(at::BLENDS + k));
+        header.ensure(is_known, at::BLENDS, || "1 and 0")?;
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        let bevels = header.bytes_at(at::BEVELS);
         Ok(Self {
             places,
             triangles,
-            centre,
-            distance_voxels,
-            leaf_triangles,
-            grid,
-            blends,
-            y_up: header.byte_at(at::Y_UP) == 1,
-            bevels,
+            settings,
             nodes_checksum: header.u64_at(at::NODES_CHECKSUM),
         })
     }

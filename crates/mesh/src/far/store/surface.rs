@@ -1,9 +1,9 @@
 //! Triangles of a node as they are stored: vertices, and three numbers of them a triangle.
 //!
-//! A vertex that no other node has lies within its node's box, in steps of 1/65,535 of the box; one
-//! that nodes share is in single precision, so that all of them have it in the same place and no
-//! background shows between them. Vertices are numbered as triangles name them first, in two lists.
-//! A triangle names a vertex by how far back in its list it is: 0 is the next one.
+//! A vertex of one node is stored in steps of 1/65,535 of the node's box. A shared vertex is stored in single
+//! precision, so that all nodes have it in the same place and no gap opens between them. Vertices are numbered as
+//! triangles name them first, in two lists. A triangle names a vertex by how far back in its list it is: 0 is the next
+//! one.
 
 use std::collections::HashMap;
 
@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 use crate::far::record::{
     LeafTriangle, MOST_COLORS, Node, OWN_BYTES, SHARED_BYTES, SurfaceColumns,
 };
+use crate::geometry::{plane_normal, point};
 use shiftvox::graph::PackedNormal;
 
 /// Steps of a box along each axis.
@@ -26,7 +27,7 @@ struct Lattice {
 
 impl Lattice {
     fn of(node: &Node) -> Self {
-        let [low, high] = [node.low, node.high].map(|p| DVec3::from_array(p.map(f64::from)));
+        let [low, high] = [node.low, node.high].map(point);
         Self {
             low,
             high: high.as_vec3(),
@@ -35,7 +36,7 @@ impl Lattice {
     }
 
     fn nearest(&self, position: [f32; 3]) -> [u16; 3] {
-        let at = DVec3::from_array(position.map(f64::from)) - self.low;
+        let at = point(position) - self.low;
         [0, 1, 2].map(|k| match self.step[k] > 0.0 {
             // Within the box: 0 to 65,535.
             true => (at[k] / self.step[k] + 0.5) as u16,
@@ -44,7 +45,7 @@ impl Lattice {
     }
 
     fn point(&self, place: [u16; 3]) -> [f32; 3] {
-        let steps = DVec3::from_array(place.map(f64::from));
+        let steps = point(place);
         let point = (self.low + steps * self.step).as_vec3();
         // Rounding must not leave the box.
         point.max(self.low.as_vec3()).min(self.high).to_array()
@@ -53,11 +54,10 @@ impl Lattice {
 
 /// The packed normal of a triangle's plane.
 pub(in crate::far) fn flat_normal(corners: &[[f32; 3]; 3]) -> u16 {
-    let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
-    PackedNormal::encode((b - a).cross(c - a).normalize_or(DVec3::Z)).0
+    PackedNormal::encode(plane_normal(corners.map(point))).0
 }
 
-/// What makes two corners one vertex: place, normal, colour.
+/// The identity of a vertex: place, normal, colour.
 type Key = ([u32; 3], u16, [u8; 3]);
 
 /// Lays out a surface, sets the node's counts, and gives its bytes. The node has its box, in which

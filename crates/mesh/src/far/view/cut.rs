@@ -1,8 +1,8 @@
-//! Which nodes are drawn: those whose voxels are small enough, else their children.
+//! The nodes to draw: those whose voxels are small enough, else their children.
 
 use glam::DVec3;
 
-use super::{FarCounts, in_view, on_picture};
+use super::FarCounts;
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
 
@@ -20,8 +20,8 @@ pub(super) struct Chosen {
 /// Where in the picture a node may show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outline {
-    /// First and last pixel, right and down, also outside the picture; `None`:
-    /// anywhere, since the box reaches behind the eye.
+    /// The first and the last pixel, right and down, also outside the picture. `None` if the box reaches behind the
+    /// eye.
     pub(super) pixels: Option<[[f64; 2]; 2]>,
     /// Depth of its nearest point.
     pub(super) depth: f64,
@@ -43,11 +43,11 @@ impl Outline {
                     low[k]
                 }
             };
-            let seen = in_view(view, DVec3::new(pick(0), pick(1), pick(2)));
+            let seen = view.seen(DVec3::new(pick(0), pick(1), pick(2)));
             depth = depth.min(seen.z);
             farthest = farthest.max(seen.z);
             if seen.z >= view.near {
-                let place = on_picture(view, seen);
+                let place = view.place(seen);
                 for k in 0..2 {
                     bounds[0][k] = bounds[0][k].min(place[k]);
                     bounds[1][k] = bounds[1][k].max(place[k]);
@@ -103,7 +103,7 @@ const BRANCH_MARGIN: f64 = 2.0;
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
     pub(super) view: RasterCamera,
-    /// Whose cut it is.
+    /// The file.
     pub(super) cut_of: RasterCamera,
     pub(super) voxel_px: f64,
 }
@@ -113,7 +113,7 @@ impl Cut<'_> {
     pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
         counts.visited += 1;
         let node = &self.file.nodes()[number];
-        let centre = self.file.centre();
+        let centre = self.file.settings.centre;
         let (low, high) = node.bounds();
         let (low, high) = (low + centre, high + centre);
         let voxel = f64::from(node.voxel);
@@ -122,14 +122,14 @@ impl Cut<'_> {
         let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
         // Nearer, things that were taken to hide it may be behind the eye; but there is nothing
         // behind an eye outside the box of everything.
-        let is_far = from >= self.file.distance_voxels() * voxel || self.is_outside_all();
+        let is_far = from >= self.file.settings.distance_voxels * voxel || self.is_outside_all();
         let is_drawn = node.is_leaf() || node.has_grid() && is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
             voxel
         } else {
             // Those of nodes without a grid as those that it would have.
-            let least = (high - low).max_element() / f64::from(self.file.grid() - 1);
+            let least = (high - low).max_element() / f64::from(self.file.settings.grid - 1);
             BRANCH_MARGIN * voxel.max(least)
         };
         let outline = Outline::of(&self.view, low, high, margin);

@@ -1,9 +1,9 @@
-//! What is drawn so far, as a pyramid: the greatest depth of each square of pixels.
+//! A depth pyramid of the picture so far: the greatest depth of each square of pixels.
 
 use super::cut::Outline;
 use crate::raster::RasterCamera;
 
-/// Squares along a side that a query looks at, at most.
+/// The most squares along a side that a query reads.
 const SQUARES: usize = 4;
 /// Depths are rounded to single precision: what is nearer by less counts as visible.
 const MARGIN: f64 = 1e-5;

@@ -1,13 +1,13 @@
 //! Far voxels to a picture.
 //!
 //! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
-//! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
+//! 2. Opaque voxels and triangles, front to back, into one word per pixel with the depth above and the number below.
+//! The least word counts.
 //!    above, number below, the least counts. That does not depend on the order
 //!    of drawing, hence neither on threads nor on what was found hidden.
 //! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
-//!    hierarchy that are behind it are left out, with all below.
-//! 4. The winners' colours, then transparent voxels over them, back to front.
-//! 5. With more than one sample a pixel all that is done at samples; `samples` averages them.
+//! hierarchy that are behind it are left out, with all below. 4. The winners' colours, then transparent voxels over
+//! them, back to front. 5. With several samples per pixel all this happens per sample, and `samples` averages them.
 
 mod cut;
 mod fill;
@@ -16,8 +16,6 @@ mod samples;
 mod splat;
 mod transparent;
 mod visible;
-
-use glam::DVec3;
 
 use super::record::Node;
 pub use super::record::Opacity;
@@ -37,11 +35,11 @@ pub struct ViewOptions {
     /// Samples of a pixel along each axis, 1 to 16: the picture is drawn so many
     /// times as large, with the same nodes, and averaged.
     pub samples_across: u32,
-    /// What opacities are used for.
+    /// The opacities that are used.
     pub opacity: Opacity,
-    /// The light; `None`: colours as they are.
+    /// The light, or `None` for unlit colours.
     pub light: Option<Light>,
-    /// What is behind, sRGB; `None`: transparent.
+    /// The background, sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
     /// Whether hidden nodes are left out. Never changes the picture.
     pub culling: bool,
@@ -95,14 +93,14 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth of what is opaque, world units, at the sample right of and
-    /// below the pixel's middle (with one sample: at the middle); infinite where nothing is.
+    /// View-axis depth of the opaque parts, world units, at the sample right of and below the pixel's middle, or at the
+    /// middle with one sample. Infinite where nothing is opaque.
     pub depth: Vec<f32>,
-    /// Node of what is opaque at that sample; -1 where nothing is.
+    /// The node that is opaque at that sample, or -1.
     pub node: Vec<i32>,
 }
 
-/// What a frame took.
+/// Counts and work of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FarCounts {
     /// Nodes that were visited.
@@ -126,12 +124,12 @@ pub struct FarCounts {
     /// Whether two triangles of different batches were equally deep somewhere
     /// and the frame was drawn again in one.
     pub drawn_twice: u64,
-    /// Bytes of what the drawn nodes have in the file, before it is deflated.
+    /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
 }
 
 /// Draws one file, frame after frame, and remembers what was visible.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FarViewer<'f> {
     file: &'f FarFile,
     memory: VisibilityHistory,
@@ -139,7 +137,6 @@ pub struct FarViewer<'f> {
 
 impl<'f> FarViewer<'f> {
     /// Nothing was drawn yet.
-    #[must_use]
     pub fn new(file: &'f FarFile) -> Self {
         Self {
             file,
@@ -252,7 +249,7 @@ impl<'f> FarViewer<'f> {
 struct Pixel {
     light: [f32; 3],
     coverage: f32,
-    /// Depth of what is opaque; infinite where nothing is.
+    /// Depth of the opaque parts, or infinite.
     depth: f32,
 }
 
@@ -278,22 +275,4 @@ impl Pixel {
             }
         }
     }
-}
-
-/// Right, up and depth of a point.
-fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
-    let offset = point - view.eye;
-    DVec3::new(
-        offset.dot(view.right),
-        offset.dot(view.up),
-        offset.dot(view.forward),
-    )
-}
-
-/// Where a point of a view is in the picture, pixels from the top left corner.
-fn on_picture(view: &RasterCamera, seen: DVec3) -> [f64; 2] {
-    [
-        f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
-        f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,
-    ]
 }

@@ -42,16 +42,7 @@ impl<'f> Opaque<'f> {
         view: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<Self, ViewError> {
-        let side = 1..=raster::MAX_SIDE;
-        if !side.contains(&view.width) || !side.contains(&view.height) {
-            return Err(RasterError::Size(view.width, view.height).into());
-        }
-        let numbers = [view.eye, view.right, view.up, view.forward];
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        let is_sound = numbers.iter().all(|v| v.is_finite());
-        if !(is_sound && positive(view.near) && positive(view.focal_px)) {
-            return Err(RasterError::Camera.into());
-        }
+        view.check()?;
         let pixels = view.width as usize * view.height as usize;
         Ok(Self {
             file,
@@ -88,7 +79,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
-        let places = Places::of(&self.file.nodes()[number], self.file.centre());
+        let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
         let mut id = self.file.first_voxel(number);
         let mut drawn = 0;
         let width = self.view.width as usize;
@@ -105,7 +96,7 @@ impl<'f> Opaque<'f> {
                 let Some(square) = places.square(&self.view, record) else {
                     continue;
                 };
-                if !is_opaque && !is_opaque_from(list, record, &square, self.file, &self.options) {
+                if !is_opaque && !is_opaque_from(list, record, &square, &self.options) {
                     continue;
                 }
                 drawn += 1;
@@ -211,7 +202,7 @@ impl<'f> Opaque<'f> {
         low
     }
 
-    /// Colours of what is seen.
+    /// Colours of the picture.
     pub(super) fn resolve(&self) -> Vec<Pixel> {
         let mut pixels = vec![Pixel::default(); self.words.len()];
         pixels
@@ -251,7 +242,7 @@ impl<'f> Opaque<'f> {
     fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
         let number = self.node_of(id);
         if last.as_ref().is_none_or(|(node, _)| *node != number) {
-            // Was drawn, hence is sound.
+            // The node was drawn, so its data is sound.
             *last = self.file.data(number).ok().map(|data| (number, data));
         }
         let Some((_, data)) = last else {
@@ -262,9 +253,9 @@ impl<'f> Opaque<'f> {
             let count = records.len() / RECORD_BYTES[list];
             if rest < count {
                 let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
-                let places = Places::of(&self.file.nodes()[number], self.file.centre());
+                let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
                 let towards_eye = places.towards_eye(&self.view, &voxel.place);
-                return light_of(&voxel, towards_eye, self.file, &self.options);
+                return light_of(&voxel, towards_eye, &self.options);
             }
             rest -= count;
         }
@@ -288,22 +279,15 @@ pub(super) fn is_opaque_from(
     list: usize,
     record: &[u8],
     square: &Square,
-    file: &FarFile,
     options: &ViewOptions,
 ) -> bool {
     let voxel = Voxel::read(list, record);
-    let blends = [file.opacity_blend(), file.shader_blend()];
-    voxel.opacity_from(square.towards_eye, blends, options.opacity) >= 1.0
+    voxel.opacity_from(square.towards_eye, options.opacity) >= 1.0
 }
 
 /// Linear light of a voxel as seen from a direction.
-pub(super) fn light_of(
-    voxel: &Voxel,
-    towards_eye: DVec3,
-    file: &FarFile,
-    options: &ViewOptions,
-) -> [f32; 3] {
-    let (normal, color) = voxel.shader.seen_from(towards_eye, file.shader_blend());
+pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {
+    let (normal, color) = voxel.shader.seen_from(towards_eye);
     let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
     (color * share).as_vec3().to_array()
 }
@@ -350,7 +334,7 @@ impl Surface for Surfaces<'_> {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        let centre = self.file.centre();
+        let centre = self.file.settings.centre;
         let corners = self.triangle_at(number).corners;
         corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
     }

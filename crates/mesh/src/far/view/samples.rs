@@ -1,4 +1,4 @@
-//! More than one sample a pixel: the view of a picture of samples, and pixels from it.
+//! Several samples per pixel: the view of a picture of samples, and pixels from it.
 
 use super::Pixel;
 use crate::raster::RasterCamera;

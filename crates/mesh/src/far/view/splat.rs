@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::{in_view, on_picture};
 use crate::far::record::Node;
 use crate::raster::RasterCamera;
 
@@ -54,7 +53,7 @@ impl Places {
 
     /// The square of a voxel; `None` before the near plane.
     pub(super) fn square(&self, view: &RasterCamera, place: &[u8]) -> Option<Square> {
-        let seen = in_view(view, self.middle(place));
+        let seen = view.seen(self.middle(place));
         if seen.z < view.near {
             return None;
         }
@@ -63,7 +62,7 @@ impl Places {
         let outline = towards_eye.abs().element_sum();
         let side = self.voxel * view.focal_px / seen.z * libm::sqrt(outline);
         Some(Square {
-            middle: on_picture(view, seen),
+            middle: view.place(seen),
             half: side / 2.0,
             depth: seen.z,
             towards_eye,
@@ -152,8 +151,8 @@ impl Square {
         [[x0, y0], [x1, y1]]
     }
 
-    /// Which of the equal parts of a row or column of pixels have their middles in it: of pixel
-    /// `pixel` along axis `k`, a bit for each of [`PARTS`].
+    /// The parts of a row or column of pixels whose middles are in the square, a bit for each of the [`PARTS`] of pixel
+    /// `pixel` along axis `k`.
     pub(super) fn parts(&self, k: usize, pixel: usize) -> u32 {
         let at = |edge: f64| {
             let part = ((edge - pixel as f64) * PARTS as f64 - 0.5).ceil();
@@ -167,7 +166,7 @@ impl Square {
     }
 }
 
-/// Parts of a pixel along each axis, in which transparent voxels are told apart.
+/// Parts of a pixel along each axis, at which transparent voxels are resolved.
 pub(super) const PARTS: usize = 4;
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ struct Splat {
     rows: [usize; 2],
 }
 
-/// What transparent voxels let through and add, of a pixel.
+/// The light that transparent voxels transmit and add at a pixel.
 #[derive(Clone, Copy)]
 struct Veil {
     through: [[f32; PARTS]; PARTS],
@@ -76,8 +76,7 @@ fn splats(
     number: usize,
 ) -> Result<Vec<Splat>, ViewError> {
     let node = &file.nodes()[number];
-    let places = Places::of(node, file.centre());
-    let blends = [file.opacity_blend(), file.shader_blend()];
+    let places = Places::of(node, file.settings.centre);
     let mut splats = Vec::new();
     let data = file.data(number)?;
     for (list, records) in data.lists().into_iter().enumerate() {
@@ -93,12 +92,12 @@ fn splats(
                 continue;
             }
             let voxel = Voxel::read(list, record);
-            let opacity = voxel.opacity_from(square.towards_eye, blends, options.opacity);
-            // What is opaque as it is seen was drawn with what always is.
+            let opacity = voxel.opacity_from(square.towards_eye, options.opacity);
+            // Voxels that are opaque from here were drawn before.
             if opacity < 1.0 {
                 splats.push(Splat {
                     through: (1.0 - opacity) as f32,
-                    color: light_of(&voxel, square.towards_eye, file, options),
+                    color: light_of(&voxel, square.towards_eye, options),
                     rows: [y0, y1],
                     square,
                 });

@@ -1,11 +1,9 @@
-//! What is worth drawing: the hierarchy walked front to back, without what is hidden.
+//! The visible nodes: traverses the hierarchy front to back and culls hidden nodes.
 //!
-//! A branch that was visible in the last frame is walked without a test, and
-//! its nodes are drawn first. Any other branch's box is tested against what is
-//! drawn by then; if it is hidden, nothing below it is visited. Results come
-//! late, as on a GPU: a batch is tested against the picture of some batches before. What is left
-//! out is behind what is drawn, in every pixel, so neither memory nor lateness can change the
-//! picture.
+//! A branch that was visible in the last frame is walked without a test, and its nodes are drawn first. Any other
+//! branch's box is tested against what is drawn by then; if it is hidden, nothing below it is visited. Results come
+//! late, as on a GPU: a batch is tested against the picture of some batches before. Culled nodes are behind drawn ones
+//! in every pixel, so neither memory nor lateness can change the picture.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -18,10 +16,10 @@ use super::{FarCounts, ViewError};
 /// Nodes of the first batch of those that were not visible; each next has twice as many.
 const FIRST_BATCH: usize = 16;
 
-/// Which nodes were visible, frame by frame.
+/// The visible nodes, frame by frame.
 #[derive(Debug, Clone)]
 pub(super) struct VisibilityHistory {
-    /// The last frame in which each node was visible; 0: none.
+    /// The last frame in which each node was visible, or 0.
     seen_in: Vec<u32>,
     /// The last frame that was drawn.
     frame: u32,
@@ -66,7 +64,7 @@ impl VisibilityHistory {
     }
 }
 
-/// What was found worth drawing.
+/// The nodes found visible.
 pub(super) struct VisibleNodes {
     /// Nodes that were drawn.
     pub(super) drawn: Vec<Chosen>,

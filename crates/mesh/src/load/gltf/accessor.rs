@@ -1,8 +1,7 @@
 //! Numbers out of a glTF document's buffers, every place checked.
 
 use super::document::Document;
-use super::{BROKEN, Buffers, fault_of};
-use crate::error::MeshError;
+use super::{BROKEN, Buffers, Problem, fault_of};
 
 /// An accessor whose numbers are known to be there.
 #[derive(Debug)]
@@ -23,8 +22,8 @@ impl<'b> Numbers<'b> {
         document: &Document,
         buffers: &'b Buffers,
         number: usize,
-    ) -> Result<Self, MeshError> {
-        let wrong = |expected: &str, found: &str| -> MeshError {
+    ) -> Result<Self, Problem> {
+        let wrong = |expected: &str, found: &str| -> Problem {
             fault_of("accessor", number, expected, found, BROKEN)
         };
         let accessor = document

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::error::{MeshError, MeshFault, Place};
+use crate::load::{Fault, Place, Problem};
 
 /// Extensions that a file may require and that change nothing that is read here.
 const HARMLESS: [&str; 4] = [
@@ -12,34 +12,24 @@ const HARMLESS: [&str; 4] = [
     "KHR_texture_basisu",
 ];
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct Document {
     asset: Asset,
     pub(super) scene: Option<usize>,
-    #[serde(default)]
     pub(super) scenes: Vec<Scene>,
-    #[serde(default)]
     pub(super) nodes: Vec<Node>,
-    #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
-    #[serde(default)]
     pub(super) materials: Vec<Material>,
-    #[serde(default)]
     pub(super) textures: Vec<Texture>,
-    #[serde(default)]
     pub(super) images: Vec<Image>,
-    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
-    #[serde(default)]
     pub(super) buffer_views: Vec<BufferView>,
-    #[serde(default)]
     pub(super) buffers: Vec<Buffer>,
-    #[serde(default)]
     extensions_required: Vec<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 struct Asset {
     version: String,
 }
@@ -183,9 +173,9 @@ pub(super) struct Buffer {
 
 impl Document {
     /// Refuses versions and extensions that cannot be read.
-    pub(super) fn check(&self) -> Result<(), MeshError> {
-        let wrong = |part, expected, found, advice| -> MeshError {
-            MeshFault::new(part, Place::Whole, expected, found, advice).into()
+    pub(super) fn check(&self) -> Result<(), Problem> {
+        let wrong = |part, expected, found, advice| -> Problem {
+            Fault::new(part, Place::Whole, expected, found, advice).into()
         };
         if !self.asset.version.starts_with("2.") {
             let found = self.asset.version.clone();

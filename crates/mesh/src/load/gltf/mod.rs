@@ -1,11 +1,9 @@
 //! glTF 2.0, by a small reader of our own over `serde_json`.
 //!
-//! Read: the default scene's nodes with their transforms, triangles, strips
-//! and fans, positions, normals, the first vertex colours, indices; of
-//! materials the base colour's factor and texture, and the alpha mode. Buffers may be in
-//! the file, in a `data:` address or in a file of the same folder. Not read:
-//! other textures, skins, morph targets, animations, sparse accessors, compressed
-//! meshes; the last two are refused, the others passed over with a warning.
+//! Supported: nodes of the default scene with their transforms. Triangles, strips and fans with positions, normals,
+//! first vertex colours and indices. Base colours of materials with their textures. Buffers may be in the file, in a
+//! `data:` address or in a file of the same folder. Not supported: other textures, skins, morph targets and animations,
+//! which are skipped with a warning. Sparse accessors and compressed meshes are refused.
 
 mod accessor;
 mod document;
@@ -17,9 +15,8 @@ use std::collections::HashMap;
 use base64::Engine as _;
 use base64::engine::general_purpose::{STANDARD, STANDARD_NO_PAD};
 
-use super::{Beside, LoadOptions};
+use super::{Beside, Fault, Place, Problem};
 use crate::MeshBuilder;
-use crate::error::{MeshError, MeshFault, Place};
 use document::Document;
 
 const BROKEN: &str = "the file is damaged or cut short; export the mesh again";
@@ -33,22 +30,20 @@ const BIN: u32 = 0x004e_4942;
 pub(super) fn read_json(
     bytes: &[u8],
     beside: &dyn Beside,
-    options: &LoadOptions,
     builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
+) -> Result<(), Problem> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    read_document(bytes, 0, None, beside, options, builder)
+    read_document(bytes, 0, None, beside, builder)
 }
 
 /// Reads a `.glb` file.
 pub(super) fn read_binary(
     bytes: &[u8],
     beside: &dyn Beside,
-    options: &LoadOptions,
     builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
-    let wrong = |part: &str, offset: usize, expected: String, found: String| -> MeshError {
-        MeshFault::new(part, Place::Byte(offset as u64), expected, found, BROKEN).into()
+) -> Result<(), Problem> {
+    let wrong = |part: &str, offset: usize, expected: String, found: String| -> Problem {
+        Fault::new(part, Place::Byte(offset as u64), expected, found, BROKEN).into()
     };
     let word = |offset: usize| -> Option<u32> {
         let word = bytes.get(offset..offset.checked_add(4)?)?;
@@ -97,7 +92,7 @@ pub(super) fn read_binary(
     let Some((json, offset)) = json else {
         return Err(wrong("file", 12, "a JSON chunk".into(), "none".into()));
     };
-    read_document(json, offset as u64, binary, beside, options, builder)
+    read_document(json, offset as u64, binary, beside, builder)
 }
 
 fn read_document(
@@ -105,11 +100,10 @@ fn read_document(
     offset: u64,
     binary: Option<&[u8]>,
     beside: &dyn Beside,
-    options: &LoadOptions,
     builder: &mut MeshBuilder,
-) -> Result<(), MeshError> {
+) -> Result<(), Problem> {
     let document: Document = serde_json::from_slice(json).map_err(|error| {
-        MeshFault::new(
+        Fault::new(
             "JSON",
             if offset == 0 {
                 Place::Line(error.line() as u64)
@@ -123,7 +117,7 @@ fn read_document(
     })?;
     document.check()?;
     let buffers = Buffers::read(&document, binary, beside)?;
-    scene::Reader::new(&document, &buffers, beside, json.len()).read(options, builder)
+    scene::Reader::new(&document, &buffers, beside, json.len()).read(builder)
 }
 
 /// The bytes of all buffers. One address is read once.
@@ -138,7 +132,7 @@ impl Buffers {
         document: &Document,
         binary: Option<&[u8]>,
         beside: &dyn Beside,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self, Problem> {
         let (mut distinct, mut of) = (Vec::new(), Vec::new());
         let mut known: HashMap<Option<&str>, usize> = HashMap::new();
         for (number, buffer) in document.buffers.iter().enumerate() {
@@ -192,7 +186,7 @@ fn decoded(data: &str) -> Option<Vec<u8>> {
     decoded.or_else(|_| STANDARD.decode(text)).ok()
 }
 
-fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, MeshError> {
+fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Problem> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decoded(data)
             .ok_or_else(|| fault_of("buffer", number, "data in base64", "other data", BROKEN));
@@ -230,7 +224,7 @@ fn unescaped(uri: &str) -> String {
 }
 
 /// A finding at one of the document's numbered parts.
-fn fault_of(part: &str, number: usize, expected: &str, found: &str, advice: &str) -> MeshError {
+fn fault_of(part: &str, number: usize, expected: &str, found: &str, advice: &str) -> Problem {
     let part = format!("{part} {number}");
-    MeshFault::new(part, Place::Whole, expected, found, advice).into()
+    Fault::new(part, Place::Whole, expected, found, advice).into()
 }

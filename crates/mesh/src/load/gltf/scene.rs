@@ -5,8 +5,7 @@ use glam::{DMat4, DQuat, DVec3};
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
 use super::picture::{self, Painted};
-use super::{BROKEN, Beside, Buffers, LoadOptions, fault_of};
-use crate::error::{MeshError, MeshFault, Place};
+use super::{BROKEN, Beside, Buffers, Fault, Place, Problem, fault_of};
 use crate::load::texture::Textures;
 use crate::material::linear_to_srgb;
 use crate::{ColorSpace, Material, MeshBuilder};
@@ -16,7 +15,7 @@ const FREE_TRIANGLES: u64 = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: u64 = 16;
 
-/// What a primitive has: how its corners are listed, and how many.
+/// A primitive's corners: their order and their number.
 struct Sizes<'d> {
     mode: u32,
     positions: Numbers<'d>,
@@ -58,13 +57,9 @@ impl<'d> Reader<'d> {
     }
 
     /// Adds all triangles of the default scene, or of the first, or of all nodes.
-    pub(super) fn read(
-        mut self,
-        options: &LoadOptions,
-        builder: &mut MeshBuilder,
-    ) -> Result<(), MeshError> {
+    pub(super) fn read(mut self, builder: &mut MeshBuilder) -> Result<(), Problem> {
         let document = self.document;
-        builder.material(Material::of_srgb("no material", options.default_color));
+        builder.material(Material::default_color());
         for material in &document.materials {
             builder.material(understood(material));
         }
@@ -144,9 +139,9 @@ impl<'d> Reader<'d> {
         &self,
         shown: &[(usize, DMat4)],
         builder: &mut MeshBuilder,
-    ) -> Result<(), MeshError> {
+    ) -> Result<(), Problem> {
         let fault = |expected: String, found: String| {
-            MeshError::Limit(MeshFault::new(
+            Problem::Limit(Fault::new(
                 "nodes",
                 Place::Whole,
                 expected,
@@ -157,7 +152,7 @@ impl<'d> Reader<'d> {
         let mut of_mesh = vec![None; self.document.meshes.len()];
         let (mut positions, mut triangles) = (0u64, 0u64);
         for &(mesh, _) in shown {
-            // One that does not exist is told where it is drawn.
+            // A missing mesh is reported where it is drawn.
             let Some(known) = of_mesh.get_mut(mesh) else {
                 continue;
             };
@@ -180,7 +175,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Positions and triangles of a mesh.
-    fn size_of(&self, mesh: &FileMesh) -> Result<(u64, u64), MeshError> {
+    fn size_of(&self, mesh: &FileMesh) -> Result<(u64, u64), Problem> {
         let (mut positions, mut triangles) = (0, 0);
         for primitive in &mesh.primitives {
             if let Some(of) = self.sizes(primitive)? {
@@ -191,8 +186,8 @@ impl<'d> Reader<'d> {
         Ok((positions, triangles))
     }
 
-    /// What a primitive has; nothing where it has no triangles.
-    fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, MeshError> {
+    /// The corners of a primitive, or none if it has no triangles.
+    fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, Problem> {
         let mode = primitive.mode.unwrap_or(4);
         let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {
             return Ok(None);
@@ -219,7 +214,7 @@ impl<'d> Reader<'d> {
         number: usize,
         placed: DMat4,
         builder: &mut MeshBuilder,
-    ) -> Result<(), MeshError> {
+    ) -> Result<(), Problem> {
         let Some(mesh) = self.document.meshes.get(number) else {
             return Err(fault_of(
                 "mesh",
@@ -236,7 +231,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The texture of a primitive's base colour and where its corners are on it.
-    fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, MeshError> {
+    fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, Problem> {
         let document = self.document;
         let material = primitive.material.and_then(|m| document.materials.get(m));
         let Some(info) =
@@ -269,7 +264,7 @@ impl<'d> Reader<'d> {
         }))
     }
 
-    fn numbers(&self, accessor: usize) -> Result<Numbers<'d>, MeshError> {
+    fn numbers(&self, accessor: usize) -> Result<Numbers<'d>, Problem> {
         Numbers::find(self.document, self.buffers, accessor)
     }
 
@@ -279,7 +274,7 @@ impl<'d> Reader<'d> {
         primitive: &Primitive,
         placed: DMat4,
         builder: &mut MeshBuilder,
-    ) -> Result<(), MeshError> {
+    ) -> Result<(), Problem> {
         let Some(Sizes {
             mode,
             positions,

@@ -14,7 +14,7 @@ use super::cell_grid::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
 use super::{CellGrid, Element, GridData, TexturedData};
-use crate::{Surface, mesh_box};
+use crate::{Surface, geometry, mesh_box};
 use project::{Column, Projected, project};
 use shiftvox::graph::Progress;
 use voxels::{Filled, cell_of, depths, fill};
@@ -26,7 +26,7 @@ pub struct BuildOptions {
     pub grids: Vec<u32>,
     /// Texels along the side of a voxel's face, 1 to [`MOST_TEXELS`].
     pub texels: u32,
-    /// What an erosion takes away.
+    /// The structuring element of the erosion.
     pub element: Element,
 }
 
@@ -129,10 +129,7 @@ pub fn build<S: Surface + ?Sized>(
 
 /// The box around the corners as they are stored.
 pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
-    let points = primitives.iter().flat_map(Primitive::positions);
-    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    })
+    geometry::bounds(primitives.iter().flat_map(Primitive::positions))
 }
 
 fn build_grid<S: Surface + ?Sized>(
@@ -189,7 +186,7 @@ fn build_grid<S: Surface + ?Sized>(
     Ok(grid)
 }
 
-/// The erosion depths of voxels, computed anew whatever is stored in them.
+/// The erosion depths of voxels, computed from their cells alone.
 pub(super) fn depths_of(voxels: &[VoxelRecord], cells: u32, element: Element) -> Vec<u16> {
     let number = |voxel: &VoxelRecord| {
         let [x, y, z] = voxel.cell.map(u32::from);

@@ -8,11 +8,12 @@
 
 use glam::DVec3;
 
+use crate::geometry::{barycentric, blend, plane_normal};
 use crate::raster::Edges;
 use crate::textured::CellGrid;
 use crate::textured::cell_grid::{ACROSS, is_positive_half};
-use crate::textured::record::{Texel, plane_normal};
-use crate::{Surface, Triangle, barycentric, linear_to_srgb};
+use crate::textured::record::Texel;
+use crate::{Surface, Triangle, linear_to_srgb};
 use shiftvox::graph::PackedNormal;
 
 /// A column of cells along an axis.
@@ -27,7 +28,7 @@ pub(super) struct Column {
     pub(super) wanted: Vec<(u32, u32)>,
 }
 
-/// What came of a column.
+/// The result of one column.
 #[derive(Debug, Default)]
 pub(super) struct Projected {
     /// Voxels and their sub-textures; `None` where nothing projects on any texel.
@@ -38,7 +39,7 @@ pub(super) struct Projected {
     pub(super) texels_afresh: u64,
 }
 
-/// What a texel of a slice sees: how far along the axis, in lattice steps, and which primitive.
+/// The sample of a texel: distance along the axis, in lattice steps, and the primitive.
 #[derive(Debug, Clone, Copy)]
 struct Hit {
     along: i64,
@@ -175,14 +176,14 @@ impl Shadow {
                 let rest =
                     self.offset - across * i128::from(middle[0]) - down * i128::from(middle[1]);
                 let texel = (y - first[1]) * texels + (x - first[0]);
-                // Within the triangle, hence within the lattice.
+                // The triangle is within the lattice.
                 call(texel as usize, rest.div_euclid(along) as i64);
             }
         }
     }
 }
 
-/// What texels look like.
+/// Colours and normals of texels.
 struct Painter<'p, S: ?Sized> {
     surface: &'p S,
     lattice: &'p CellGrid,
@@ -202,14 +203,15 @@ impl<S: Surface + ?Sized> Painter<'_, S> {
             }
         };
         let share = barycentric(&triangle.corners, self.world(texel, hit.along));
-        let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
         let sign = if is_positive { 1.0 } else { -1.0 };
         let outwards = DVec3::AXES[self.column.axis] * sign;
         let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
         let plane = facing(plane_normal(triangle.corners), outwards);
-        let normal = facing(blend(&triangle.normals).normalize_or(plane), plane);
+        let normal = facing(blend(&triangle.normals, share).normalize_or(plane), plane);
         Texel {
-            color: blend(&triangle.colors).to_array().map(linear_to_srgb),
+            color: blend(&triangle.colors, share)
+                .to_array()
+                .map(linear_to_srgb),
             opacity: 255,
             normal: PackedNormal::encode(normal).0,
         }

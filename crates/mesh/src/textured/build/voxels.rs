@@ -1,4 +1,4 @@
-//! Which primitives are in which cell, and how deep a cell lies.
+//! The primitives of each cell, and the erosion depth of the cell.
 
 use rayon::prelude::*;
 
@@ -132,57 +132,4 @@ fn preceding(element: Element) -> impl Iterator<Item = [i64; 3]> {
             let axes = offset.iter().filter(|&&c| c != 0).count();
             element == Element::Cube || axes == 1
         })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn depths_are_what_erosions_leave() {
-        let cells = 8u32;
-        let mut state = 7u32;
-        for round in 0..60 {
-            let filled: Vec<u32> = (0..cells.pow(3))
-                .filter(|_| {
-                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    state >> 24 > round * 2
-                })
-                .collect();
-            for element in [Element::Cube, Element::Sides] {
-                let found = depths(&filled, cells, element);
-                let mut left: Vec<bool> = (0..cells.pow(3))
-                    .map(|n| filled.binary_search(&n).is_ok())
-                    .collect();
-                for level in 0..5u16 {
-                    for (number, is_left) in left.iter().enumerate() {
-                        let survives = filled
-                            .binary_search(&(number as u32))
-                            .is_ok_and(|place| found[place] >= level);
-                        assert_eq!(*is_left, survives, "{number} at {level}");
-                    }
-                    left = eroded(&left, cells as i64, element);
-                }
-            }
-        }
-    }
-
-    /// One erosion, by the definition.
-    fn eroded(cells: &[bool], side: i64, element: Element) -> Vec<bool> {
-        let is_full = |[x, y, z]: [i64; 3]| {
-            let inside = [x, y, z].iter().all(|c| (0..side).contains(c));
-            inside && cells[((z * side + y) * side + x) as usize]
-        };
-        (0..side * side * side)
-            .map(|n| {
-                let cell = [n % side, n / side % side, n / side / side];
-                (0..27).all(|i| {
-                    let step = [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1];
-                    let length: i64 = step.iter().map(|c: &i64| c.abs()).sum();
-                    let counts = element == Element::Cube || length <= 1;
-                    !counts || is_full([0, 1, 2].map(|k| cell[k] + step[k]))
-                })
-            })
-            .collect()
-    }
 }

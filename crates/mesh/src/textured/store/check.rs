@@ -5,7 +5,7 @@ use crate::textured::CellGrid;
 use crate::textured::levels::surfels;
 use crate::textured::record::{CLEAR, NEVER, Primitive, VoxelRecord};
 
-/// What is wrong: in which part of the grid, at which record of it, and what it should be.
+/// A fault: the part of the grid, the number of the record, and the expected value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) part: Part,

@@ -38,7 +38,7 @@ pub(super) mod at {
 pub(super) struct GridEntry {
     pub(super) cells: u32,
     pub(super) texels: u32,
-    /// 0: cube, 1: sides.
+    /// 0 is the cube, 1 the six sides.
     pub(super) element: u32,
     pub(super) spare: u32,
     pub(super) voxels: u64,

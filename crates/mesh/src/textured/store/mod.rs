@@ -1,8 +1,7 @@
 //! The `.tvx` file: primitives, voxels, lists and sub-textures, mapped and used in place.
 //!
-//! Opening a file checks everything but the texels, which are most of it: a
-//! grid's are checked against their checksum when it is first drawn.
-//! [`TexturedFile::verify`] reads all, and computes erosion depths again.
+//! Opening a file checks everything except the texels, which take most of it. The texels of a grid are checked against
+//! their checksum when it is first drawn. [`TexturedFile::verify`] reads all, and computes erosion depths again.
 
 mod check;
 mod format;

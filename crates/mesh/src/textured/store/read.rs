@@ -1,7 +1,7 @@
 //! Reading a `.tvx` file: mapped, or held in memory.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
@@ -31,7 +31,6 @@ pub struct TexturedFile {
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
     is_checked: Vec<AtomicBool>,
-    levels_made: AtomicU64,
 }
 
 impl TexturedFile {
@@ -77,7 +76,6 @@ impl TexturedFile {
             bevels: header.bevels,
             entries,
             levels: Vec::new(),
-            levels_made: AtomicU64::new(0),
         };
         file.check_primitives(header.primitives_checksum)?;
         for number in 0..file.entries.len() {
@@ -86,7 +84,6 @@ impl TexturedFile {
             let (voxels, lists) = (file.voxels(number), file.lists(number));
             let levels = Levels::of(voxels, lists, file.primitives().len(), grid.cells);
             file.levels.push(levels);
-            file.levels_made.fetch_add(1, Ordering::Relaxed);
         }
         Ok(file)
     }
@@ -139,58 +136,44 @@ impl TexturedFile {
     }
 
     /// Lowest and highest corner of the box around all primitives, world units.
-    #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
     }
 
     /// Whether +Y is up, for fitted cameras; else +Z.
-    #[must_use]
     pub fn y_up(&self) -> bool {
         self.y_up
     }
 
-    /// The box that fitted cameras look at.
-    #[must_use]
+    /// The box for fitted cameras.
     pub fn mesh_box(&self) -> MeshBox {
         let span = (self.low.to_array(), self.high.to_array());
         MeshBox::new(span, self.bevels, self.y_up)
     }
 
     /// The primitives, in the mesh's order.
-    #[must_use]
     pub fn primitives(&self) -> &[Primitive] {
         bytemuck::cast_slice(&self.bytes.get()[range(self.layout.primitives)])
     }
 
     /// Bytes of the file.
-    #[must_use]
     pub fn len(&self) -> u64 {
         self.layout.end()
     }
 
     /// Never: a file has a header.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// Number of grids, at least one.
-    #[must_use]
     pub fn grids(&self) -> usize {
         self.entries.len()
     }
 
     /// A grid, coarse before fine; `number` is below [`TexturedFile::grids`].
-    #[must_use]
     pub fn grid(&self, number: usize) -> Grid<'_> {
         Grid { file: self, number }
-    }
-
-    /// How often tables of levels were made: once for each grid, on opening.
-    #[must_use]
-    pub fn levels_made(&self) -> u64 {
-        self.levels_made.load(Ordering::Relaxed)
     }
 
     /// Checks everything, also texels and erosion depths.
@@ -238,14 +221,12 @@ pub struct Grid<'f> {
 
 impl<'f> Grid<'f> {
     /// Where its cells and texels lie.
-    #[must_use]
     pub fn cell_grid(&self) -> CellGrid {
         let entry = &self.file.entries[self.number];
         CellGrid::around(self.file.low, self.file.high, entry.cells, entry.texels)
     }
 
-    /// What an erosion takes away.
-    #[must_use]
+    /// The structuring element of the erosion.
     pub fn element(&self) -> Element {
         match self.file.entries[self.number].element {
             0 => Element::Cube,
@@ -254,13 +235,11 @@ impl<'f> Grid<'f> {
     }
 
     /// The voxels, by erosion depth and then by cell.
-    #[must_use]
     pub fn voxels(&self) -> &'f [VoxelRecord] {
         self.file.voxels(self.number)
     }
 
     /// The primitives of a voxel, rising.
-    #[must_use]
     pub fn list(&self, voxel: usize) -> &'f [u32] {
         let (voxels, lists) = (self.voxels(), self.file.lists(self.number));
         let end = voxels
@@ -270,33 +249,28 @@ impl<'f> Grid<'f> {
     }
 
     /// Entries of all lists.
-    #[must_use]
     pub fn listed(&self) -> u64 {
         self.file.entries[self.number].listed
     }
 
-    /// What its levels show.
-    #[must_use]
+    /// The contents of its levels.
     pub fn levels(&self) -> &'f Levels {
         &self.file.levels[self.number]
     }
 
     /// Number of sub-textures.
-    #[must_use]
     pub fn textures(&self) -> u64 {
         self.file.entries[self.number].textures
     }
 
     /// Texels that primitives were projected on; and how many it would have
     /// been, had each volume been projected afresh.
-    #[must_use]
     pub fn projected(&self) -> [u64; 2] {
         let entry = &self.file.entries[self.number];
         [entry.projected, entry.projected_afresh]
     }
 
     /// Bytes of its voxels, lists and texels.
-    #[must_use]
     pub fn bytes(&self) -> [u64; 3] {
         let places = self.file.places(self.number);
         [places.voxels, places.lists, places.textures].map(|[begin, end]| end - begin)
@@ -304,7 +278,6 @@ impl<'f> Grid<'f> {
 
     /// A sub-texture, row after row; `number` is below [`Grid::textures`].
     /// Texels are as they are in the file: [`Grid::ensure`] checks them.
-    #[must_use]
     pub fn texture(&self, number: u32) -> &'f [Texel] {
         let side = self.file.entries[self.number].texels as usize;
         let texels = self.texels();

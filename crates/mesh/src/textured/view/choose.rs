@@ -1,4 +1,4 @@
-//! Which grid and level a camera gets: the future work of Tellier and Baroud 2003.
+//! The choice of grid and level for a camera, which is future work in Tellier and Baroud 2003.
 
 use glam::DVec3;
 
@@ -12,8 +12,8 @@ pub struct Choice {
     pub grid: usize,
     /// Erosions.
     pub level: u32,
-    /// The largest texel, pixels: of a texel as near as the box around the
-    /// voxels that are left; 0 where none is, infinite from within the box.
+    /// The size of the largest texel, pixels, at the nearest point of the box around the remaining voxels. 0 without
+    /// voxels, infinite from within the box.
     pub texel_px: f64,
     /// How far behind a face lies what it shows, pixels, at the most, seen so.
     pub behind_px: f64,
@@ -36,7 +36,6 @@ impl Choice {
 /// The level of fewest faces, a surfel counting as two, of all grids, whose
 /// texels are at most so many pixels, and which shows nothing farther behind a
 /// face than that. Primitives alone always are.
-#[must_use]
 pub fn choose(file: &TexturedFile, view: &RasterCamera, most_px: f64) -> Choice {
     let mut best: Option<(u64, Choice)> = None;
     for grid in 0..file.grids() {
@@ -55,7 +54,6 @@ pub fn choose(file: &TexturedFile, view: &RasterCamera, most_px: f64) -> Choice 
 
 /// The grid for a level that is given: the coarsest whose texels are at most a
 /// pixel, or else the finest.
-#[must_use]
 pub fn choose_grid(file: &TexturedFile, view: &RasterCamera, level: u32) -> usize {
     let is_fine = |&grid: &usize| texel_px(&file.grid(grid), level, view) <= 1.0;
     let last = file.grids() - 1;

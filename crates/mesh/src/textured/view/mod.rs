@@ -17,7 +17,7 @@ pub use choose::{Choice, choose, choose_grid};
 use super::store::{TexturedError, TexturedFile};
 use scene::Shown;
 
-/// Which grid and level are drawn.
+/// The grid and the level to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Detail {
     /// The level of fewest faces, of all grids, whose texels are at most so many pixels.
@@ -37,13 +37,13 @@ pub enum Detail {
 /// How textured voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewOptions {
-    /// Which grid and level.
+    /// The grid and the level.
     pub detail: Detail,
-    /// How many samples a pixel has, and where.
+    /// The number of samples per pixel, and their places.
     pub samples: Samples,
-    /// The light; `None`: colours as they are.
+    /// The light, or `None` for unlit colours.
     pub light: Option<Light>,
-    /// What is behind, sRGB; `None`: transparent.
+    /// The background, sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
 }
 
@@ -64,7 +64,7 @@ pub enum ViewError {
     TexelSize(f64),
 }
 
-/// What a frame took.
+/// Counts and work of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedCounts {
     /// The grid and level that are drawn, and the size of its texels.

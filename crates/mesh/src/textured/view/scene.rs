@@ -9,7 +9,7 @@ use crate::textured::store::{Grid, TexturedFile};
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
-/// A surfel with what is needed to draw it.
+/// A surfel and its geometry.
 struct Face<'f> {
     axis: usize,
     /// Unit vector to the outer side.
@@ -21,7 +21,7 @@ struct Face<'f> {
     texels: &'f [Texel],
 }
 
-/// What a level shows.
+/// The contents of a level.
 pub(super) struct Shown<'f> {
     file: &'f TexturedFile,
     stored: &'f [Primitive],

@@ -1,29 +1,30 @@
 //! The header of a PLY file: its format, elements and properties.
 
-use super::numbers::{Encoding, Scalar};
-use super::source::Source;
-use crate::scene::fault::{Fault, Problem, printable};
 use std::io::BufRead;
+
+use super::source::Source;
+use super::{Encoding, Scalar};
+use crate::scene::fault::{Fault, Problem, printable};
 
 /// Longest line of a header, bytes.
 const MAX_LINE: usize = 1 << 12;
 
-const BROKEN: &str = "the header is damaged or not PLY 1.0; export the cloud again";
+const BROKEN: &str = "the header is damaged or not PLY 1.0; export the file again";
 
 /// One property of an element.
 #[derive(Debug, Clone)]
-pub(super) struct Property {
+pub struct Property {
     /// Its name.
     pub name: Vec<u8>,
     /// Type of its numbers.
     pub scalar: Scalar,
     /// Type of the number of numbers, where it is a list.
-    pub list: Option<Scalar>,
+    pub(super) list: Option<Scalar>,
 }
 
 /// One kind of element.
 #[derive(Debug, Clone)]
-pub(super) struct Element {
+pub struct Element {
     /// Its name.
     pub name: Vec<u8>,
     /// The stated number of them.
@@ -34,18 +35,69 @@ pub(super) struct Element {
 
 /// A whole header.
 #[derive(Debug)]
-pub(super) struct Header {
+pub struct Header {
     /// Encoding of the body.
-    pub encoding: Encoding,
+    pub(super) encoding: Encoding,
     /// The elements in the order of the body.
     pub elements: Vec<Element>,
 }
 
 impl Header {
-    /// Whether there are faces.
-    pub(super) fn has_faces(&self) -> bool {
-        let faces = |element: &Element| element.name == b"face" && element.count > 0;
-        self.elements.iter().any(faces)
+    /// The elements of a name.
+    pub fn element(&self, name: &str) -> Option<&Element> {
+        let mut elements = self.elements.iter();
+        elements.find(|element| element.name == name.as_bytes())
+    }
+}
+
+impl Element {
+    /// The number of the first property of one of these names that is not a list.
+    pub fn scalar(&self, names: &[&str]) -> Option<usize> {
+        self.position(|p| p.list.is_none() && names.iter().any(|n| p.name == n.as_bytes()))
+    }
+
+    /// The number of the first list of one of these names.
+    pub fn list(&self, names: &[&str]) -> Option<usize> {
+        self.position(|p| p.list.is_some() && names.iter().any(|n| p.name == n.as_bytes()))
+    }
+
+    fn position(&self, is_meant: impl Fn(&Property) -> bool) -> Option<usize> {
+        self.properties.iter().position(is_meant)
+    }
+
+    /// The numbers of x, y and z.
+    ///
+    /// # Errors
+    /// If one is missing.
+    pub fn positions(&self, offset: u64) -> Result<[usize; 3], Box<Fault>> {
+        self.triple([&["x"], &["y"], &["z"]]).ok_or_else(|| {
+            Fault::new(
+                "header, element vertex",
+                offset,
+                "the properties x, y and z",
+                "not all of them",
+                "export the file with the positions of its vertices",
+            )
+        })
+    }
+
+    /// The numbers of the normal's parts.
+    pub fn normals(&self) -> Option<[usize; 3]> {
+        self.triple([&["nx"], &["ny"], &["nz"]])
+    }
+
+    /// The numbers of red, green and blue.
+    pub fn colors(&self) -> Option<[usize; 3]> {
+        self.triple([
+            &["red", "r", "diffuse_red"],
+            &["green", "g", "diffuse_green"],
+            &["blue", "b", "diffuse_blue"],
+        ])
+    }
+
+    fn triple(&self, names: [&[&str]; 3]) -> Option<[usize; 3]> {
+        let [a, b, c] = names.map(|names| self.scalar(names));
+        Some([a?, b?, c?])
     }
 }
 
@@ -56,7 +108,7 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
     let mut elements: Vec<Element> = Vec::new();
     let mut first = true;
     loop {
-        let offset = source.offset();
+        let offset = source.offset;
         if !source.line(&mut line, MAX_LINE, "header")? {
             return Err(fault(offset, "the line \"end_header\"", "the end of the file").into());
         }
@@ -78,8 +130,8 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
             [b"format", format, b"1.0"] => {
                 encoding = Some(match format {
                     b"ascii" => Encoding::Ascii,
-                    b"binary_little_endian" => Encoding::Little,
-                    b"binary_big_endian" => Encoding::Big,
+                    b"binary_little_endian" => Encoding::Binary { big_endian: false },
+                    b"binary_big_endian" => Encoding::Binary { big_endian: true },
                     _ => {
                         return Err(wrong(
                             "format ascii, binary_little_endian or binary_big_endian",
@@ -112,7 +164,7 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
     }
     let encoding = encoding.ok_or_else(|| {
         fault(
-            source.offset(),
+            source.offset,
             "a line \"format ... 1.0\" in the header",
             "none",
         )
@@ -123,7 +175,7 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
 fn property(words: &[&[u8]]) -> Option<Property> {
     let (scalar, list, name) = match words {
         [_, b"list", count, scalar, name] => {
-            let count = Scalar::from_name(count).filter(|count| count.is_integer())?;
+            let count = Scalar::from_ply(count).filter(|count| count.is_integer())?;
             (scalar, Some(count), name)
         }
         [_, scalar, name] => (scalar, None, name),
@@ -131,7 +183,7 @@ fn property(words: &[&[u8]]) -> Option<Property> {
     };
     Some(Property {
         name: name.to_vec(),
-        scalar: Scalar::from_name(scalar)?,
+        scalar: Scalar::from_ply(scalar)?,
         list,
     })
 }

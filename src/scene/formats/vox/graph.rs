@@ -1,0 +1,320 @@
+//! The scene graph: transform, group and shape nodes, layers, and the placements of models that they make.
+//!
+//! A file of some kilobytes can place a model a million times, by nodes with many parents. So placements are found
+//! before any voxel is passed on: their number is known, and a repeated placement costs nothing. Of an animation the
+//! first key frame is read.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::chunk::{Chunk, Dict, Fields};
+use super::transform::{Transform, bad_rotation};
+use super::{AGAIN, DAMAGED};
+use crate::scene::SceneInfo;
+use crate::scene::fault::{Fault, Problem};
+
+/// Most visits of nodes and models. A scene graph is meant to be a tree. But a file can name one node as the child of
+/// many, and then the number of visits is not bounded by the file's length.
+const MAX_VISITS: u64 = 1 << 20;
+
+struct Node {
+    /// Its name in error messages.
+    part: String,
+    /// Offset of its chunk.
+    offset: u64,
+    /// Whether the editor hides it.
+    hidden: bool,
+    kind: NodeKind,
+}
+
+enum NodeKind {
+    /// Moves its child.
+    Transform {
+        child: u32,
+        layer: Option<u32>,
+        transform: Transform,
+    },
+    /// Holds other nodes, by id.
+    Group(Vec<u32>),
+    /// Shows models, by number.
+    Shape(Vec<u32>),
+}
+
+/// All nodes of a file by their ids, and the hidden layers.
+#[derive(Default)]
+pub(super) struct SceneGraph {
+    nodes: BTreeMap<u32, Node>,
+    hidden_layers: BTreeSet<u32>,
+}
+
+/// A step of the way through the graph.
+enum Step<'g> {
+    Enter {
+        id: u32,
+        parent: Option<&'g Node>,
+        transform: Transform,
+        hidden: bool,
+    },
+    Leave(u32),
+}
+
+impl SceneGraph {
+    /// Whether the file has no scene graph.
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Reads a chunk `LAYR`.
+    pub(super) fn add_layer(&mut self, chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
+        let mut fields = Fields::new(chunk);
+        let id = fields.u32("layer id")?;
+        if fields.dict()?.is_set("_hidden") {
+            self.hidden_layers.insert(id);
+        }
+        Ok(())
+    }
+
+    /// Reads a chunk `nTRN`, `nGRP` or `nSHP`.
+    pub(super) fn add_node(&mut self, chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
+        let mut fields = Fields::new(chunk);
+        let id = fields.u32("node id")?;
+        let hidden = fields.dict()?.is_set("_hidden");
+        let part = format!("{} (node {id})", fields.part());
+        let kind = match &chunk.id {
+            b"nTRN" => transform_node(&mut fields, &part)?,
+            b"nGRP" => {
+                let count = fields.count("children", 4)?;
+                let children = (0..count).map(|_| fields.u32("child id"));
+                NodeKind::Group(children.collect::<Result<_, _>>()?)
+            }
+            _ => {
+                let mut keys = FirstKeyFrame::default();
+                for _ in 0..fields.count("models", 8)? {
+                    let model = fields.u32("model number")?;
+                    let attributes = fields.dict()?;
+                    // Models without a key frame of their own are all shown together.
+                    keys.offer(frame_of(&attributes, &part)?.unwrap_or(0), model);
+                }
+                NodeKind::Shape(keys.items)
+            }
+        };
+        let offset = chunk.offset as u64;
+        let node = Node {
+            part,
+            offset,
+            hidden,
+            kind,
+        };
+        if let Some(first) = self.nodes.insert(id, node) {
+            let part = format!("chunk {} (node {id})", chunk.id.escape_ascii());
+            let found = format!("the id of the {} at byte {}", first.part, first.offset);
+            return Err(Fault::new(
+                part,
+                offset,
+                "a node id of its own",
+                found,
+                AGAIN,
+            ));
+        }
+        Ok(())
+    }
+
+    /// All different placements of models that are not hidden. Of equal ones the last is kept, because of voxels at one
+    /// index the last one counts.
+    pub(super) fn placements(
+        &self,
+        models: usize,
+        info: &mut SceneInfo,
+    ) -> Result<Vec<(u32, Transform)>, Problem> {
+        let mut is_placed = vec![false; models];
+        let mut last: HashMap<(u32, Transform), u32> = HashMap::new();
+        self.walk(|node, model, transform, hidden| {
+            let Some(is_placed) = is_placed.get_mut(model as usize) else {
+                let expected = format!("a model from 0 to {}", models as i64 - 1);
+                let found = format!("model {model}");
+                let part = node.part.clone();
+                return Err(Fault::new(part, node.offset, expected, found, DAMAGED));
+            };
+            *is_placed = true;
+            if hidden {
+                info.hidden_instances += 1;
+            } else {
+                last.insert((model, transform), info.instances);
+                info.instances += 1;
+            }
+            Ok(())
+        })?;
+        let missing = is_placed.iter().filter(|placed| !**placed).count();
+        if missing > 0 {
+            info.warnings.push(format!(
+                "{missing} of {models} models are not placed by the scene graph and were left out"
+            ));
+        }
+        let repeated = info.instances as usize - last.len();
+        if repeated > 0 {
+            info.warnings.push(format!(
+                "{repeated} placements put a model where it is already, and were left out"
+            ));
+        }
+        let mut placed: Vec<_> = last.into_iter().collect();
+        placed.sort_unstable_by_key(|&(_, order)| order);
+        Ok(placed.into_iter().map(|(placement, _)| placement).collect())
+    }
+
+    /// Visits each placement of a model, with its shape node, its transform and whether it is hidden, in the order of
+    /// the file's lists.
+    fn walk<'g>(
+        &'g self,
+        mut visit: impl FnMut(&'g Node, u32, Transform, bool) -> Result<(), Box<Fault>>,
+    ) -> Result<(), Problem> {
+        let mut visits = 0;
+        let mut on_path = BTreeSet::new();
+        let mut steps = vec![Step::Enter {
+            id: 0,
+            parent: None,
+            transform: Transform::IDENTITY,
+            hidden: false,
+        }];
+        while let Some(step) = steps.pop() {
+            let (id, parent, mut transform, mut hidden) = match step {
+                Step::Enter {
+                    id,
+                    parent,
+                    transform,
+                    hidden,
+                } => (id, parent, transform, hidden),
+                Step::Leave(id) => {
+                    on_path.remove(&id);
+                    continue;
+                }
+            };
+            let at_parent = |expected: String, found: String| {
+                let (part, offset) = match parent {
+                    Some(parent) => (parent.part.clone(), parent.offset),
+                    None => ("scene graph".to_owned(), 0),
+                };
+                Fault::new(part, offset, expected, found, DAMAGED)
+            };
+            let Some(node) = self.nodes.get(&id) else {
+                let expected = format!("a node with id {id} (the root has id 0)");
+                return Err(at_parent(expected, "none in the file".to_owned()).into());
+            };
+            if !on_path.insert(id) {
+                let found = format!("node {id}, which contains this node, as its child");
+                return Err(at_parent("a scene graph without circles".to_owned(), found).into());
+            }
+            steps.push(Step::Leave(id));
+            hidden |= node.hidden;
+            let children = match &node.kind {
+                NodeKind::Transform {
+                    child,
+                    layer,
+                    transform: own,
+                } => {
+                    hidden |= layer.is_some_and(|layer| self.hidden_layers.contains(&layer));
+                    transform = transform.after(own).ok_or_else(|| {
+                        let expected = "translations whose sum fits 62 bits";
+                        let advice = "move the scene towards the origin";
+                        Fault::new(node.part.clone(), node.offset, expected, "more", advice)
+                    })?;
+                    std::slice::from_ref(child)
+                }
+                NodeKind::Group(children) => children,
+                NodeKind::Shape(models) => {
+                    visits += models.len() as u64;
+                    for &model in models {
+                        visit(node, model, transform, hidden)?;
+                    }
+                    &[]
+                }
+            };
+            visits += children.len() as u64;
+            if visits > MAX_VISITS {
+                return Err(Problem::Limit(Fault::new(
+                    node.part.clone(),
+                    node.offset,
+                    format!("a scene of at most {MAX_VISITS} placed nodes and models"),
+                    "more",
+                    format!("the scene graph shares nodes too often; {AGAIN}"),
+                )));
+            }
+            steps.extend(children.iter().rev().map(|&id| Step::Enter {
+                id,
+                parent: Some(node),
+                transform,
+                hidden,
+            }));
+        }
+        Ok(())
+    }
+}
+
+/// The rest of a chunk `nTRN`.
+fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<Fault>> {
+    let child = fields.u32("child id")?;
+    fields.u32("reserved field")?;
+    let layer = fields.u32("layer id")?;
+    let mut keys = FirstKeyFrame::default();
+    for i in 0..fields.count("frames", 4)? {
+        let attributes = fields.dict()?;
+        keys.offer(frame_of(&attributes, part)?.unwrap_or(i), attributes);
+    }
+    let mut transform = Transform::IDENTITY;
+    if let Some(attributes) = keys.items.first() {
+        let rotation = "a rotation: one number from 0 to 127";
+        if let Some([value]) = attributes.numbers("_r", part, rotation)? {
+            transform = u8::try_from(value)
+                .ok()
+                .and_then(Transform::from_rotation_byte)
+                .ok_or_else(|| bad_rotation(part, attributes.offset, value))?;
+        }
+        let translation = "a translation: three whole numbers of 32 bits";
+        if let Some(translation) = attributes.numbers("_t", part, translation)? {
+            transform = transform.with_translation(translation);
+        }
+    }
+    Ok(NodeKind::Transform {
+        child,
+        // -1: on no layer.
+        layer: (layer != u32::MAX).then_some(layer),
+        transform,
+    })
+}
+
+/// The key frame that attributes belong to, if they have one.
+fn frame_of(attributes: &Dict<'_>, part: &str) -> Result<Option<u32>, Box<Fault>> {
+    let frame = attributes.numbers::<1>("_f", part, "a frame number")?;
+    // Frames before the first count as the first.
+    Ok(frame.map(|[frame]| u32::try_from(frame).unwrap_or(0)))
+}
+
+/// Keeps the items of the first key frame.
+struct FirstKeyFrame<T> {
+    key: u32,
+    items: Vec<T>,
+}
+
+impl<T> Default for FirstKeyFrame<T> {
+    fn default() -> Self {
+        Self {
+            key: u32::MAX,
+            items: Vec::new(),
+        }
+    }
+}
+
+impl<T> FirstKeyFrame<T> {
+    fn offer(&mut self, key: u32, item: T) {
+        if key < self.key {
+            self.items.clear();
+            self.key = key;
+        }
+        if key == self.key {
+            self.items.push(item);
+        }
+    }
+}

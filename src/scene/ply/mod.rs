@@ -1,0 +1,305 @@
+//! PLY files of any contents, element by element. Voxel clouds are read here in the crate, meshes in `shiftvox-mesh`.
+//!
+//! A file is read as a stream. Memory depends neither on the file nor on the counts in its header.
+
+mod header;
+mod source;
+
+use std::io::BufRead;
+
+use super::fault::{Fault, Problem, printable};
+use super::numbers::{Number, Scalar};
+pub use header::{Element, Header, Property};
+use source::Source;
+
+/// Longest line of an ASCII body, bytes.
+const MAX_LINE: usize = 1 << 20;
+
+const CUT: &str = "the file is cut short; export or copy it again";
+
+/// How the body is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Encoding {
+    /// One element per line.
+    Ascii,
+    Binary {
+        big_endian: bool,
+    },
+}
+
+/// A file whose header was read.
+pub struct PlyFile<'a, R> {
+    /// The elements in the order of the body.
+    pub header: Header,
+    source: Source<'a, R>,
+    scratch: Vec<u8>,
+}
+
+/// One element of the body.
+pub struct Row<'r> {
+    /// Number among the elements of its kind.
+    pub number: u64,
+    /// Byte offset in the file.
+    pub offset: u64,
+    /// One number per property; 0 for a list.
+    pub values: &'r [Number],
+    /// Numbers of the list that was asked for.
+    pub list: &'r [Number],
+}
+
+/// Whether the header of a PLY file declares faces, so that it is a mesh. `false` for a damaged header.
+pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
+    let faces = |element: &Element| element.name == b"face" && element.count > 0;
+    PlyFile::open(reader).is_ok_and(|file| file.header.elements.iter().any(faces))
+}
+
+impl<'a, R: BufRead> PlyFile<'a, R> {
+    /// Reads the header.
+    ///
+    /// # Errors
+    /// If it breaks the format's rules.
+    pub fn open(reader: &'a mut R) -> Result<Self, Problem> {
+        let mut source = Source::new(reader);
+        let header = header::read(&mut source)?;
+        Ok(Self {
+            header,
+            source,
+            scratch: Vec::new(),
+        })
+    }
+
+    /// Bytes read so far.
+    pub fn offset(&self) -> u64 {
+        self.source.offset
+    }
+
+    /// Skips all elements of the next kind.
+    ///
+    /// # Errors
+    /// If the file ends first.
+    pub fn skip(&mut self, element: &Element) -> Result<(), Problem> {
+        let is_list = |property: &Property| property.list.is_some();
+        let is_text = self.header.encoding == Encoding::Ascii;
+        if is_text || element.properties.iter().any(is_list) {
+            return self.rows(element, None, |_| Ok(()));
+        }
+        let sizes = element.properties.iter().map(|p| p.scalar.size() as u64);
+        let bytes = element.count.saturating_mul(sizes.sum());
+        match self.source.skip(bytes)? {
+            true => Ok(()),
+            false => Err(cut(element, 0, self.offset()).into()),
+        }
+    }
+
+    /// Reads all elements of the next kind. `list` is the number of the property whose list is kept.
+    ///
+    /// # Errors
+    /// If the file ends first or an element breaks the format's rules, and errors of `visit`.
+    pub fn rows(
+        &mut self,
+        element: &Element,
+        list: Option<usize>,
+        mut visit: impl FnMut(Row<'_>) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        let (mut values, mut kept) = (Vec::new(), Vec::new());
+        let has_lists = element.properties.iter().any(|p| p.list.is_some());
+        let stride = element.properties.iter().map(|p| p.scalar.size()).sum();
+        for number in 0..element.count {
+            let mut offset = self.source.offset;
+            values.clear();
+            kept.clear();
+            let is_whole = match self.header.encoding {
+                Encoding::Ascii => match self.text_line()? {
+                    None => false,
+                    Some(begin) => {
+                        offset = begin;
+                        let fault = |expected: String, found: String, advice: &str| {
+                            Fault::new(part(element, number), begin, expected, found, advice)
+                        };
+                        parse_row(&self.scratch, element, list, &mut values, &mut kept, fault)?;
+                        true
+                    }
+                },
+                Encoding::Binary { big_endian } if !has_lists => {
+                    let decode = |mut bytes: &[u8]| {
+                        for property in &element.properties {
+                            values.push(property.scalar.decode(big_endian, bytes));
+                            bytes = bytes.get(property.scalar.size()..).unwrap_or(&[]);
+                        }
+                    };
+                    let read = self.source.bytes(stride, &mut self.scratch, decode)?;
+                    read.is_some()
+                }
+                Encoding::Binary { big_endian } => {
+                    let mut is_whole = true;
+                    for (at, property) in element.properties.iter().enumerate() {
+                        let kept = (list == Some(at)).then_some(&mut kept);
+                        let value = self.binary(property, big_endian, kept);
+                        let value =
+                            value.map_err(|error| error.at_part(|| part(element, number)))?;
+                        is_whole &= value.is_some();
+                        values.extend(value);
+                        if !is_whole {
+                            break;
+                        }
+                    }
+                    is_whole
+                }
+            };
+            if !is_whole {
+                return Err(cut(element, number, self.source.offset).into());
+            }
+            visit(Row {
+                number,
+                offset,
+                values: &values,
+                list: &kept,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Reads the next line that is not blank into `scratch`; returns its offset.
+    fn text_line(&mut self) -> Result<Option<u64>, Problem> {
+        loop {
+            let begin = self.source.offset;
+            if !self.source.line(&mut self.scratch, MAX_LINE, "body")? {
+                return Ok(None);
+            }
+            if !self.scratch.trim_ascii().is_empty() {
+                return Ok(Some(begin));
+            }
+        }
+    }
+
+    /// Reads a binary number, or a list and returns 0; `None` if the file ends first.
+    fn binary(
+        &mut self,
+        property: &Property,
+        big_endian: bool,
+        kept: Option<&mut Vec<Number>>,
+    ) -> Result<Option<Number>, Problem> {
+        let Some(length) = property.list else {
+            return self.source.number(property.scalar, big_endian);
+        };
+        let offset = self.source.offset;
+        let Some(length) = self.source.number(length, big_endian)? else {
+            return Ok(None);
+        };
+        let Some(length) = length.whole().and_then(|length| u64::try_from(length).ok()) else {
+            return Err(Fault::new(
+                "",
+                offset,
+                "a list's length that is not negative",
+                length.to_string(),
+                "the file is damaged; export it again",
+            )
+            .into());
+        };
+        let Some(kept) = kept else {
+            let bytes = length.saturating_mul(property.scalar.size() as u64);
+            return Ok(self.source.skip(bytes)?.then_some(Number::Whole(0)));
+        };
+        for _ in 0..length {
+            match self.source.number(property.scalar, big_endian)? {
+                Some(number) => kept.push(number),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(Number::Whole(0)))
+    }
+}
+
+impl Problem {
+    /// Names the part of a fault that has no name yet.
+    fn at_part(mut self, part: impl FnOnce() -> String) -> Self {
+        if let Self::Invalid(fault) = &mut self
+            && fault.part.is_empty()
+        {
+            fault.part = part();
+        }
+        self
+    }
+}
+
+fn part(element: &Element, number: u64) -> String {
+    format!("{} {number}", element.name.escape_ascii())
+}
+
+fn cut(element: &Element, number: u64, offset: u64) -> Box<Fault> {
+    let expected = "as many elements as the header says";
+    Fault::new(
+        part(element, number),
+        offset,
+        expected,
+        "the end of the file",
+        CUT,
+    )
+}
+
+/// Reads the numbers of a line.
+fn parse_row(
+    line: &[u8],
+    element: &Element,
+    list: Option<usize>,
+    values: &mut Vec<Number>,
+    kept: &mut Vec<Number>,
+    fault: impl Fn(String, String, &str) -> Box<Fault>,
+) -> Result<(), Box<Fault>> {
+    let mut words = line
+        .split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty());
+    let mut next = |property: &Property| {
+        let word = words.next();
+        word.and_then(Number::parse).ok_or_else(|| {
+            fault(
+                format!("a number for property {}", property.name.escape_ascii()),
+                word.map_or("the end of the line".to_owned(), printable),
+                "every element needs a line with a number for every property of the header",
+            )
+        })
+    };
+    for (at, property) in element.properties.iter().enumerate() {
+        let value = next(property)?;
+        values.push(value);
+        if property.list.is_some() {
+            // A length that is no whole number ends the line early, and that is an error.
+            for _ in 0..value.whole().unwrap_or(i64::MAX) {
+                let number = next(property)?;
+                if list == Some(at) {
+                    kept.push(number);
+                }
+            }
+        }
+    }
+    match words.next() {
+        None => Ok(()),
+        // Lines of an element without properties are not looked at.
+        Some(_) if element.properties.is_empty() => Ok(()),
+        Some(word) => Err(fault(
+            format!(
+                "one number for each of {} properties",
+                element.properties.len()
+            ),
+            format!("{} after them", printable(word)),
+            "every element needs a line of its own",
+        )),
+    }
+}
+
+impl Scalar {
+    /// The type that a PLY header names.
+    fn from_ply(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+}

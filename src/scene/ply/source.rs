@@ -1,0 +1,98 @@
+//! Bytes, lines and numbers from a stream, and their offsets in the file.
+
+use std::io::{BufRead, ErrorKind, Read};
+
+use crate::scene::fault::{Fault, Problem};
+use crate::scene::numbers::{Number, Scalar};
+
+/// A stream that knows its position.
+pub(super) struct Source<'a, R> {
+    reader: &'a mut R,
+    /// Bytes read so far.
+    pub(super) offset: u64,
+}
+
+impl<'a, R: BufRead> Source<'a, R> {
+    pub(super) fn new(reader: &'a mut R) -> Self {
+        Self { reader, offset: 0 }
+    }
+
+    /// Reads a line without its end; `false` at the end of the file.
+    pub(super) fn line(
+        &mut self,
+        line: &mut Vec<u8>,
+        longest: usize,
+        part: &str,
+    ) -> Result<bool, Problem> {
+        line.clear();
+        let begin = self.offset;
+        let most = longest as u64 + 1;
+        let read = self.reader.by_ref().take(most).read_until(b'\n', line);
+        let read = read.map_err(Problem::Read)? as u64;
+        self.offset += read;
+        if line.last() == Some(&b'\n') {
+            line.pop();
+            if line.last() == Some(&b'\r') {
+                line.pop();
+            }
+        } else if read == most {
+            return Err(Fault::new(
+                part,
+                begin,
+                format!("lines of at most {longest} bytes, ended by a line feed"),
+                "a longer one",
+                "the file is damaged, or binary where its header says ascii; export it again",
+            )
+            .into());
+        }
+        Ok(read > 0)
+    }
+
+    /// Skips bytes; `false` if the file ends first.
+    pub(super) fn skip(&mut self, mut count: u64) -> Result<bool, Problem> {
+        while count > 0 {
+            let here = self.reader.fill_buf().map_err(Problem::Read)?.len();
+            if here == 0 {
+                return Ok(false);
+            }
+            let used = usize::try_from(count).unwrap_or(usize::MAX).min(here);
+            self.reader.consume(used);
+            self.offset += used as u64;
+            count -= used as u64;
+        }
+        Ok(true)
+    }
+
+    /// Reads so many bytes; `None` if the file ends first. `scratch` holds those that do not lie side by side in the
+    /// reader's buffer.
+    #[inline]
+    pub(super) fn bytes<T>(
+        &mut self,
+        count: usize,
+        scratch: &mut Vec<u8>,
+        decode: impl FnOnce(&[u8]) -> T,
+    ) -> Result<Option<T>, Problem> {
+        let buffered = self.reader.fill_buf().map_err(Problem::Read)?.get(..count);
+        let decoded = if let Some(bytes) = buffered {
+            let decoded = decode(bytes);
+            self.reader.consume(count);
+            decoded
+        } else {
+            scratch.resize(count, 0);
+            match self.reader.read_exact(scratch) {
+                Ok(()) => decode(scratch),
+                Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(None),
+                Err(error) => return Err(Problem::Read(error)),
+            }
+        };
+        self.offset += count as u64;
+        Ok(Some(decoded))
+    }
+
+    /// Reads a binary number; `None` if the file ends first.
+    pub(super) fn number(&mut self, scalar: Scalar, big: bool) -> Result<Option<Number>, Problem> {
+        self.bytes(scalar.size(), &mut Vec::new(), |bytes| {
+            scalar.decode(big, bytes)
+        })
+    }
+}
