@@ -229,8 +229,7 @@ impl From<OpenError> for CliError {
                 return Self::input(message)
                     .advise("for anything else take the mesh that it was made of");
             }
-            OpenError::Mesh(MeshFailure { is_io: true, .. })
-            | OpenError::Scene(SceneError::Io { .. }) => {
+            OpenError::Scene(SceneError::Io { .. }) => {
                 "scenes are files or generators such as gen:terrain,depth=10,seed=1"
             }
             OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {

@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::PointFigures;
 use super::lines::PointLine;
-use crate::report::plot::dominated;
 
 /// A measure of points; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
