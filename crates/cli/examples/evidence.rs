@@ -144,7 +144,9 @@ impl Tool {
             let rows = self.rows(table).map_err(|e| format!("{name}: {e}"))?;
             if writes {
                 let made = self.markdown(table, &rows)?;
-                let page = text.replacen(&block, &made, 1);
+                let (begin, end) = marks(name);
+                let page =
+                    text.replacen(&(begin.clone() + &block + &end), &(begin + &made + &end), 1);
                 fs::write(self.root.join(&table.page), page).map_err(|e| e.to_string())?;
             } else {
                 faults.extend(differences(name, table, &rows, &block));
@@ -172,10 +174,7 @@ impl Tool {
     /// The page, and what stands in it between the marks of a table.
     fn block(&self, name: &str, table: &Table) -> Result<(String, String), String> {
         let text = read(&self.root.join(&table.page))?;
-        let (begin, end) = (
-            format!("<!-- evidence: {name} -->\n"),
-            format!("<!-- end: {name} -->"),
-        );
+        let (begin, end) = marks(name);
         let inside = text
             .split_once(&begin)
             .and_then(|(_, rest)| rest.split_once(&end));
@@ -438,6 +437,14 @@ fn show(value: &Value, pattern: &str) -> Result<String, String> {
         grouped.push(digit);
     }
     Ok(grouped)
+}
+
+/// The lines around a table in its page.
+fn marks(name: &str) -> (String, String) {
+    (
+        format!("<!-- evidence: {name} -->\n"),
+        format!("<!-- end: {name} -->"),
+    )
 }
 
 fn read(path: &Path) -> Result<String, String> {
