@@ -300,10 +300,23 @@ impl Tool {
             Some(cpu) => format!(", {cpu}, {}", said("rustc", &["-V"])?),
             None => String::new(),
         };
-        Ok(format!(
-            "{text}\n<sub>{}; commit {commit}{computer}.</sub>\n",
+        let foot = format!(
+            "<sub>{}; commit {commit}{computer}.</sub>",
             commands.join(", ")
-        ))
+        );
+        // Markdown is wrapped at 120 columns.
+        let mut column = 0;
+        for word in foot.split(' ') {
+            let gap = match column {
+                0 => "\n",
+                at if at + 1 + word.len() > 120 => "\n",
+                _ => " ",
+            };
+            column = if gap == " " { column + 1 } else { 0 } + word.len();
+            text += gap;
+            text += word;
+        }
+        Ok(text + "\n")
     }
 }
 
