@@ -1,4 +1,4 @@
-//! On what the times were taken.
+//! The computer and command of a measurement.
 
 use serde_json::{Value, json};
 
@@ -42,11 +42,11 @@ impl Context {
         self.command.clone()
     }
 
-    /// Says so where other work is likely to show in the times.
+    /// Warns if other work is likely to disturb the times.
     pub(crate) fn warn(&self, console: &Console) {
         if let Some(load) = self.load.filter(|&load| load > BUSY) {
             console.note(format!(
-                "the machine is not idle (load {load}): trust counters, thread times and minima"
+                "this computer is busy (load {load}): trust counters, processor times and minima"
             ));
         }
     }

@@ -82,18 +82,6 @@ impl Series {
             deviations: Vec::new(),
         }
     }
-
-    /// Named points, put together by name, in the order in which names come: curves.
-    pub fn collect(points: impl IntoIterator<Item = (String, (f64, f64))>) -> Vec<Self> {
-        let mut all: Vec<Self> = Vec::new();
-        for (name, point) in points {
-            match all.iter_mut().find(|series| series.name == name) {
-                Some(series) => series.points.push(point.into()),
-                None => all.push(Self::curve(name, [point])),
-            }
-        }
-        all
-    }
 }
 
 /// A chart.

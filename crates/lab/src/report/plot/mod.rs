@@ -100,13 +100,10 @@ mod tests {
 
     #[test]
     fn a_picture_has_all_names_and_points() {
-        let named = |name: &str, point| (name.to_owned(), point);
-        let series = Series::collect([
-            named("one", (64.0, 1.5)),
-            named("two", (64.0, 0.0)),
-            named("one", (128.0, 20.0)),
-        ]);
-        assert_eq!(series.len(), 2);
+        let series = vec![
+            Series::curve("one", [(64.0, 1.5), (128.0, 20.0)]),
+            Series::curve("two", [(64.0, 0.0)]),
+        ];
         let text = svg(&[
             Panel::Chart(Chart::growth("Growth", "pixels", "ms", series)),
             Panel::Bars {
