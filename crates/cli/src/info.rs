@@ -104,13 +104,14 @@ fn describe(scene: &Scene) -> Value {
     };
     let levels: Vec<Value> = levels(graph).into_iter().enumerate().map(level).collect();
     let gains = merge_gains(graph);
+    let size = [0, 1, 2].map(|k| high[k] - low[k]);
     json!({
         "scene": scene.source,
         "format": scene.format,
         "index_low": file(low),
         "index_high": file(high),
         "opacities": opacities(graph),
-        "size": [0, 1, 2].map(|k| high[k] - low[k]),
+        "size": size,
         "voxel_size_world": graph.placement.voxel_size,
         "depth": graph.depth,
         "voxels": graph.voxels,
