@@ -69,7 +69,7 @@ enum Content {
 /// Names and values of a comparison, and the picture of differences.
 struct Comparison {
     kind: &'static str,
-    numbers: Vec<(String, f64)>,
+    numbers: Vec<(&'static str, f64)>,
     diff: Option<(u32, u32, Vec<[u8; 4]>)>,
 }
 
@@ -151,7 +151,7 @@ fn pictures(a: &Image, b: &Image) -> Result<Comparison, CliError> {
     ];
     Ok(Comparison {
         kind: "picture",
-        numbers: numbers.map(|(name, value)| (name.to_owned(), value)).into(),
+        numbers: numbers.into(),
         diff: Some((a.0, a.1, diff)),
     })
 }
@@ -180,17 +180,17 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
         _ => return Err(CliError::new(Kind::Failed, "the buffers differ in type")),
     };
     let mut numbers = vec![
-        ("pixels".to_owned(), pixels.len() as f64),
-        ("differing".to_owned(), differing as f64),
-        ("max_abs".to_owned(), max_abs),
+        ("pixels", pixels.len() as f64),
+        ("differing", differing as f64),
+        ("max_abs", max_abs),
     ];
     if let (Values::I32(a), Values::I32(b), 4) = (&a.values, &b.values, entries) {
         let error = CoverageError::between(a.as_chunks::<4>().0, b.as_chunks::<4>().0);
         numbers.extend([
-            ("covered".to_owned(), error.covered as f64),
-            ("extra".to_owned(), error.extra as f64),
-            ("missing".to_owned(), error.missing as f64),
-            ("wrong_voxel".to_owned(), error.wrong_voxel as f64),
+            ("covered", error.covered as f64),
+            ("extra", error.extra as f64),
+            ("missing", error.missing as f64),
+            ("wrong_voxel", error.wrong_voxel as f64),
         ]);
     }
     let side = |at: usize| a.shape.get(at).and_then(|&n| u32::try_from(n).ok());
@@ -233,7 +233,7 @@ fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Resu
         let mut fields = json!({ "a": names::of_path(&args.a), "b": names::of_path(&args.b), "kind": comparison.kind });
         for (name, value) in &comparison.numbers {
             // JSON has no infinity.
-            fields[name] = if value.is_finite() {
+            fields[*name] = if value.is_finite() {
                 number(*value)
             } else {
                 json!("inf")
@@ -244,7 +244,7 @@ fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Resu
     let rows = comparison
         .numbers
         .iter()
-        .map(|(name, value)| vec![name.clone(), value.to_string()])
+        .map(|(name, value)| vec![(*name).to_owned(), value.to_string()])
         .collect();
     let head = vec![comparison.kind.to_owned(), "value".to_owned()];
     console.data(report::table(head, rows))
@@ -259,10 +259,10 @@ fn number(value: f64) -> Value {
     }
 }
 
-fn judge(thresholds: &[Threshold], numbers: &[(String, f64)]) -> Result<(), CliError> {
+fn judge(thresholds: &[Threshold], numbers: &[(&str, f64)]) -> Result<(), CliError> {
     for Threshold { name, bound } in thresholds {
         let Some((_, value)) = numbers.iter().find(|(found, _)| found == name) else {
-            let names: Vec<&str> = numbers.iter().map(|(name, _)| name.as_str()).collect();
+            let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
             return Err(
                 CliError::usage(format!("--threshold: there is no `{name}` here"))
                     .advise(format!("there are: {}", names.join(", "))),
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn bounds_have_sides() {
-        let numbers = vec![("differing".to_owned(), 3.0), ("ssim".to_owned(), 0.9)];
+        let numbers = [("differing", 3.0), ("ssim", 0.9)];
         let judged = |text: &str| judge(&[text.parse().unwrap()], &numbers).map_err(|e| e.kind);
         assert_eq!(judged("3"), Ok(()));
         assert_eq!(judged("2"), Err(Kind::Failed));

@@ -147,15 +147,25 @@ mod tests {
     use super::*;
     use crate::float_rays::FloatRays;
     use crate::measure::CoverageError;
-    use shiftvox::graph::Silent;
+    use shiftvox::graph::{Graph, Silent};
     use shiftvox::project::{Camera, Engine, SetupOptions};
     use shiftvox_mesh::open::{OpenOptions, open};
 
-    fn setup(spec: &str, camera: &Camera) -> (shiftvox::graph::Graph, FrameSetup) {
+    fn setup(spec: &str, camera: &Camera) -> (Graph, FrameSetup) {
         let graph = open(spec, &OpenOptions::default(), &Silent).unwrap().graph;
         let options = SetupOptions::default();
         let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap();
         (graph, setup)
+    }
+
+    fn counts_of(
+        graph: &Graph,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        order: RayOrder,
+        layout: NodeLayout,
+    ) -> FloatRayCounts {
+        count(&graph.view(), setup, frame, order, layout, &mut |_| ())
     }
 
     fn camera(eye: [f64; 3], target: [f64; 3], side: u32) -> Camera {
@@ -175,13 +185,12 @@ mod tests {
         let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
         let (graph, setup) = setup("gen:sphere,depth=2", &camera);
         let mut frame = Frame::new(2, 2, false);
-        let counts = count(
-            &graph.view(),
+        let counts = counts_of(
+            &graph,
             &setup,
             &mut frame,
             RayOrder::Rows,
             NodeLayout::default(),
-            &mut |_| (),
         );
         assert_eq!(frame.drawn(), 0);
         assert_eq!((counts.rays, counts.cells), (4, 0));
@@ -250,14 +259,7 @@ mod tests {
         // A node that says which children are leaves saves each ray that hits the last read.
         let mut frame = plain.clone();
         let masks = NodeLayout::new(&view, true, false);
-        let with_leaf_masks = count(
-            &view,
-            &setup,
-            &mut frame,
-            RayOrder::Rows,
-            masks,
-            &mut |_| (),
-        );
+        let with_leaf_masks = counts_of(&graph, &setup, &mut frame, RayOrder::Rows, masks);
         assert_eq!(frame, counted);
         let hits = counted.drawn() as u64;
         assert_eq!(
@@ -271,14 +273,7 @@ mod tests {
         // The other orders draw the same, but for roundings.
         for order in [RayOrder::Tiles, RayOrder::Morton] {
             let mut frame = plain.clone();
-            let other = count(
-                &view,
-                &setup,
-                &mut frame,
-                order,
-                NodeLayout::default(),
-                &mut |_| (),
-            );
+            let other = counts_of(&graph, &setup, &mut frame, order, NodeLayout::default());
             assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
             assert_eq!(other.rays, counts.rays);
             assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());

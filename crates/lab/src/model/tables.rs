@@ -12,11 +12,11 @@ pub struct TableSpec {
     /// The array of its rows, as a path with dots. A `*` matches every field of an object.
     pub rows: &'static str,
     /// Columns with blanks between them: `head=path:factor:digits`. Head, factor and digits may be missing. The path `*`
-    /// is the name of the field that matched a `*` of `rows`.
+    /// is the name of the field that matched a `*` of `rows`. A `!` before a column leaves out rows in which it is zero.
     pub columns: &'static str,
 }
 
-const LINES: &str = "part=* name operation bits=width times each=each.value::4 total::1 fit=each.fit rows=each.rows \
+const LINES: &str = "part=* name operation bits=width !times each=each.value::4 total::1 fit=each.fit rows=each.rows \
                      source=each.source";
 
 /// The tables of a report for a terminal.
@@ -31,7 +31,7 @@ pub const SHORT: [TableSpec; 5] = [
     TableSpec {
         title: "Cycles by stage, and the waiting of records by cause",
         rows: "simulated.cycles.stages",
-        columns: "stage visits busy held used_percent=utilisation:100:1 block_busy=stalls.block_busy \
+        columns: "stage !visits busy held used_percent=utilisation:100:1 block_busy=stalls.block_busy \
                   cache_miss=stalls.cache_miss memory_port=stalls.memory_port bank_conflict=stalls.bank_conflict \
                   pixel_port=stalls.pixel_port stack_spill=stalls.stack_spill steal=stalls.steal",
     },
@@ -39,12 +39,12 @@ pub const SHORT: [TableSpec; 5] = [
         title: "Memories",
         rows: "memories",
         columns: "memory reads writes read_kilobytes=read_bits:1.220703125e-4:1 \
-                  written_kilobytes=written_bits:1.220703125e-4:1 distinct_addresses=distinct",
+                  written_kilobytes=written_bits:1.220703125e-4:1 !distinct_addresses=distinct",
     },
     TableSpec {
         title: "Bounds: the cycles that each resource needs at least",
         rows: "simulated.cycles.bounds",
-        columns: "resource cycles percent_of_the_frame=share:100:1",
+        columns: "resource !cycles percent_of_the_frame=share:100:1",
     },
     TableSpec {
         title: "Both designs, with low and high ends; leakage is unknown",
@@ -64,7 +64,7 @@ pub const LONG: [TableSpec; 9] = [
     TableSpec {
         title: "A record on the stack",
         rows: "record",
-        columns: "field bits held",
+        columns: "field !bits held",
     },
     TableSpec {
         title: "Numbers of a record, and the bits of each",
@@ -74,7 +74,7 @@ pub const LONG: [TableSpec; 9] = [
     TableSpec {
         title: "Records on the stack by kind",
         rows: "records_by_kind",
-        columns: "kind bits popped pushed",
+        columns: "kind bits popped !pushed",
     },
     TableSpec {
         title: "Units against the clock",
@@ -104,7 +104,7 @@ pub const LONG: [TableSpec; 9] = [
 ];
 
 impl TableSpec {
-    /// The table. Rows in which every figure is zero are left out.
+    /// The table.
     #[must_use]
     pub fn of(&self, document: &Value) -> Table {
         let columns: Vec<Column> = self.columns.split_whitespace().map(Column::new).collect();
@@ -114,10 +114,10 @@ impl TableSpec {
             let cells: Vec<Cell> = columns.iter().map(|of| of.cell(name, row)).collect();
             let is_zero = |cell: &Cell| match cell {
                 Cell::Count(count) => *count == 0,
-                Cell::Number(value, _) => *value == 0.0,
-                Cell::Text(_) | Cell::None => true,
+                other => *other == Cell::None,
             };
-            if !cells.iter().all(is_zero) {
+            let mut needed = columns.iter().zip(&cells).filter(|(of, _)| of.is_needed);
+            if !needed.any(|(_, cell)| is_zero(cell)) {
                 table.rows.push(cells);
             }
         }
@@ -131,10 +131,15 @@ struct Column {
     path: &'static str,
     factor: Option<f64>,
     digits: usize,
+    is_needed: bool,
 }
 
 impl Column {
     fn new(text: &'static str) -> Self {
+        let (is_needed, text) = match text.strip_prefix('!') {
+            Some(text) => (true, text),
+            None => (false, text),
+        };
         let (named, rest) = text.split_once(':').unwrap_or((text, ""));
         let (head, path) = named.split_once('=').unwrap_or((named, named));
         let (factor, digits) = rest.split_once(':').unwrap_or((rest, ""));
@@ -143,6 +148,7 @@ impl Column {
             path,
             factor: factor.parse().ok(),
             digits: digits.parse().unwrap_or(3),
+            is_needed,
         }
     }
 
@@ -222,12 +228,7 @@ fn add_figures(path: &str, value: &Value, table: &mut Table) {
             }
         }
         value => {
-            let column = Column {
-                head: "value",
-                path: "value",
-                factor: None,
-                digits: 6,
-            };
+            let column = Column::new("value::6");
             let row = serde_json::json!({ "value": value });
             table
                 .rows
@@ -254,7 +255,7 @@ mod tests {
         let spec = TableSpec {
             title: "T",
             rows: "parts.*.lines",
-            columns: "part=* n half=n:0.5:1 x=of.x::2 is",
+            columns: "part=* !n half=n:0.5:1 x=of.x::2 is",
         };
         let table = spec.of(&document);
         assert_eq!(table.columns, ["part", "n", "half", "x", "is"]);
