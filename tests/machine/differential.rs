@@ -120,7 +120,7 @@ fn any_hardware(dice: &mut Dice, organisation: Organisation) -> Hardware {
 }
 
 /// Settings of all kinds, many of them the default ones.
-fn any_settings(dice: &mut Dice) -> SetupOptions {
+pub(super) fn any_settings(dice: &mut Dice) -> SetupOptions {
     use Coverage::{Alpha, Any, Center, Exact};
     let coverage = dice.of(&[Exact, Exact, Exact, Exact, Alpha, Alpha, Center, Any]);
     let tolerance_px = dice.of(&[0.0, 0.0, 1.0 / 16.0, 1.0 / 8.0, 1.5, f64::INFINITY]);

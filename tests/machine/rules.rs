@@ -1,30 +1,20 @@
 //! Properties of the machine's rules: nothing has holes, every input ends, narrow words trap, a tolerance has its rules.
 
 use crate::common::*;
+use crate::differential::any_settings;
+use crate::scenes::Dice;
 use hwmodel::{Overflow, Probe};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{
-    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupError, SetupOptions,
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupError, SetupOptions, Stats,
 };
 use shiftvox::rays::Rays;
 
-fn any_coverage() -> impl Strategy<Value = Coverage> {
-    prop_oneof![
-        Just(Coverage::Any),
-        Just(Coverage::Center),
-        Just(Coverage::Exact)
-    ]
-}
-
 fn any_cage() -> impl Strategy<Value = CageKind> {
     prop_oneof![Just(CageKind::Corners), Just(CageKind::Frame)]
-}
-
-fn any_tolerance() -> impl Strategy<Value = f64> {
-    prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25), Just(f64::INFINITY)]
 }
 
 /// A probe that ends a frame that does not end by itself.
@@ -57,19 +47,16 @@ proptest! {
             let side = f64::from(1u32 << graph.depth);
             (Just(graph), any_camera(side, 1..24))
         }),
-        coverage in any_coverage(),
-        cage in any_cage(),
-        tolerance_px in any_tolerance(),
-        lod_px in prop_oneof![Just(0.0), Just(1.0)],
-        bits in 16..=64u32,
-        frac in prop_oneof![Just(None), (0..20u32).prop_map(Some)],
+        seed: u64,
         overflow in prop_oneof![
             Just(Overflow::Trap), Just(Overflow::Wrap), Just(Overflow::Saturate)
         ],
     ) {
-        let tolerance_px = tolerance_of(coverage, tolerance_px);
+        let mut dice = Dice::new(seed);
         let options = SetupOptions {
-            bits, frac, cage, tolerance_px, coverage, lod_px, aa_log2: 0,
+            bits: 16 + dice.below(49),
+            frac: dice.of(&[None, Some(dice.clone().below(20))]),
+            ..any_settings(&mut dice)
         };
         let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
             return Ok(());
@@ -190,43 +177,35 @@ fn what_is_outside_the_picture_costs_no_more_than_the_border() {
     );
 }
 
-#[test]
-fn words_too_narrow_for_a_scene_trap_with_the_place_named() {
+/// A wall in words of 16 bits, which are too narrow for it.
+fn wall_in_16_bits(overflow: Overflow) -> Result<(Frame, Stats), EngineError> {
     let graph = octree(7, &|at| at[1] == 64);
-    let camera = camera([64.0, -200.0, 64.0], [64.0, 64.0, 64.0], 256);
     let options = SetupOptions {
         bits: 16,
         frac: Some(10),
         ..SetupOptions::default()
     };
-    let setup = setup(&graph, &camera, &options);
-    let result = draw_with(MachineOptions::default(), &graph, &setup);
-    let Err(EngineError::Trap(trap)) = result else {
-        panic!("no trap: {result:?}");
+    let camera = camera([64.0, -200.0, 64.0], [64.0; 3], 256);
+    let machine = MachineOptions {
+        overflow,
+        ..MachineOptions::default()
+    };
+    draw_with(machine, &graph, &setup(&graph, &camera, &options))
+}
+
+#[test]
+fn narrow_words_trap_with_the_place_named_or_finish() {
+    let trapped = wall_in_16_bits(Overflow::Trap);
+    let Err(EngineError::Trap(trap)) = trapped else {
+        panic!("no trap: {trapped:?}");
     };
     assert_eq!(trap.bits, 16);
     let message = trap.to_string();
     for part in ["16 bits", "stage", "octree level", "record"] {
         assert!(message.contains(part), "{message}");
     }
-}
-
-#[test]
-fn wrapping_and_saturating_words_finish_where_trapping_ones_stop() {
-    let graph = octree(5, &|at| at[1] == 16);
-    let camera = camera([16.0, -60.0, 16.0], [16.0, 16.0, 16.0], 128);
-    let options = SetupOptions {
-        bits: 16,
-        frac: Some(9),
-        ..SetupOptions::default()
-    };
-    let setup = setup(&graph, &camera, &options);
     for overflow in [Overflow::Wrap, Overflow::Saturate] {
-        let machine = MachineOptions {
-            overflow,
-            ..MachineOptions::default()
-        };
-        let (_, stats) = draw_with(machine, &graph, &setup).expect("no trap");
+        let (_, stats) = wall_in_16_bits(overflow).expect("no trap");
         assert!(stat(&stats, "overflows") > 0);
     }
 }

@@ -24,93 +24,53 @@ fn takes_numbers(code: &str) -> bool {
     HOST.split(',').any(|name| padded.contains(name))
 }
 
-/// The machine's files: name and text. `instruments/` watches the machine.
-fn sources() -> Vec<(String, String)> {
+/// The machine's lines: file, code without the comment, and the reason in the comment. `instruments/` watches the machine.
+fn lines() -> Vec<(String, String, bool)> {
     let machine = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/machine");
-    let folders = [machine.join("instruments"), machine];
-    let entries = folders
-        .iter()
-        .flat_map(|folder| fs::read_dir(folder).expect("a folder"));
-    let files = entries
-        .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.is_file());
-    files
-        .map(|path| {
-            (
-                path.display().to_string(),
-                fs::read_to_string(path).expect("a source"),
-            )
-        })
-        .collect()
+    let mut lines = Vec::new();
+    for folder in [machine.join("instruments"), machine] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap_or_default();
+            lines.extend(text.lines().map(|line| {
+                let (code, comment) = line.split_once("//").unwrap_or((line, ""));
+                let has_reason = comment.len() > " host: ".len() && comment.starts_with(" host: ");
+                (path.display().to_string(), code.to_owned(), has_reason)
+            }));
+        }
+    }
+    lines
 }
 
 #[test]
 fn numbers_are_taken_from_words_only_for_a_reason() {
-    let mut marked = 0;
-    for (file, text) in sources() {
-        if MEASURES.iter().any(|name| file.ends_with(name)) {
+    let is_measure = |file: &str| MEASURES.iter().any(|name| file.ends_with(name));
+    let (mut marked, mut is_wires) = (0, false);
+    for (file, code, has_reason) in lines() {
+        if is_measure(&file) {
             continue;
         }
-        let mut is_wires = false;
-        for line in text.lines() {
-            is_wires = line.contains(" Wires for ") || is_wires && line != "}";
-            let code = line.split("//").next().unwrap_or("");
-            let has_reason = line
-                .split_once("// host: ")
-                .is_some_and(|(_, reason)| !reason.is_empty());
-            assert_eq!(takes_numbers(code), has_reason, "{file}: {line}");
-            let shows = code.contains("show(") || code.contains("Signal");
-            assert!(
-                !shows || is_wires || code.starts_with("use "),
-                "{file}: {line}"
-            );
-            marked += usize::from(has_reason);
-        }
+        is_wires = code.contains(" Wires for ") || is_wires && code != "}";
+        let shows = code.contains("show(") || code.contains("Signal");
+        let may_show = is_wires || code.starts_with("use ");
+        assert!(!shows || may_show, "{file}: {code}");
+        assert_eq!(takes_numbers(&code), has_reason, "{file}: {code}");
+        marked += usize::from(has_reason);
     }
     assert_eq!(marked, MARKED);
 }
 
-/// Only `mod.rs` names the instruments, to hand them on; the machine imports neither `mod.rs` nor an upper module.
+/// Only `mod.rs` names the instruments, to hand them on. The machine imports neither `mod.rs` nor an upper module.
 #[test]
 fn the_machine_does_not_know_its_instruments() {
     let upper = ["crate::fast", "crate::rays", "crate::picture", "crate::api"];
-    for (file, text) in sources() {
-        let is_instrument = file.contains("/instruments/");
-        for line in text
-            .lines()
-            .map(|line| line.split("//").next().unwrap_or(""))
-        {
-            assert!(
-                !line.contains("instruments") || file.ends_with("machine/mod.rs"),
-                "{file}: {line}"
-            );
-            assert!(
-                !upper.iter().any(|name| line.contains(name)),
-                "{file}: {line}"
-            );
-            // The full paths of a macro lead past it.
-            let through = line.replace("$crate::machine::cage::", "");
-            let through = through.contains("crate::machine") || through.contains("super::{");
-            assert!(!through || is_instrument, "{file}: {line}");
-        }
+    for (file, code, _) in lines() {
+        // The full paths of a macro lead past it.
+        let code = code.replace("$crate::machine::cage::", "");
+        let names = |part: &str| code.contains(part);
+        let is_sound = (!names("instruments") || file.ends_with("machine/mod.rs"))
+            && !upper.iter().any(|name| names(name))
+            && (file.contains("/instruments/") || !names("crate::machine") && !names("super::{"));
+        assert!(is_sound, "{file}: {code}");
     }
-}
-
-#[test]
-fn numbers_are_recognised() {
-    let taken = [
-        "let a = b * c;",
-        "* c",
-        "a /= 2;",
-        "a.wrapping_mul(b)",
-        "a.rem_euclid(b)",
-        "w.to_host()",
-    ];
-    let words = [
-        "*v = dp.select(right, v, w);",
-        "let (a, b) = (*x, &*y);",
-        "dp.divide_step(r, w, false);",
-    ];
-    assert!(taken.iter().all(|line| takes_numbers(line)));
-    assert!(!words.iter().any(|line| takes_numbers(line)));
 }

@@ -144,15 +144,16 @@ impl Case {
         let found = document.pointer(first).unwrap_or(&Value::Null);
         let expected = words.next().unwrap_or("");
         let number = || expected.parse::<f64>().unwrap_or(f64::NAN);
+        let found_text = found.to_string();
         let is_so = match relation {
-            "=" => found.to_string() == expected,
-            "!=" => found.to_string() != expected,
+            "=" => found_text == expected,
+            "!=" => found_text != expected,
             "<" => found.as_f64().is_some_and(|found| found < number()),
             ">" => found.as_f64().is_some_and(|found| found > number()),
             "#" => found
                 .as_array()
                 .is_some_and(|list| list.len() as f64 == number()),
-            "~" => found.to_string().contains(expected),
+            "~" => found_text.contains(expected),
             _ => !found.is_null(),
         };
         holds(is_so, || format!("{found} in {text}"))
