@@ -83,7 +83,6 @@ fn wavefront_with_materials_polygons_and_negative_indices() {
     assert!((of(0).diffuse[0] - 0.2140).abs() < 1e-4);
     let linear = LoadOptions {
         mtl_colors: ColorSpace::Linear,
-        ..LoadOptions::default()
     };
     let mesh = load_with(obj, MeshFormat::Obj, &[("some colours.mtl", mtl)], &linear);
     assert_eq!(mesh.materials()[1].diffuse, [0.5, 0.0, 0.0]);
