@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Switches;
 use super::band::{Band, BrickBlocks, Hit};
 use super::canvas::{Fill, FillPart, Pixels, TileGrid};
 use super::constants::Constants;
@@ -10,7 +11,6 @@ use super::exact::Exact;
 use super::lanes::Isa;
 use super::parts::Parts;
 use super::strips::Candidates;
-use super::switches::Switches;
 use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;

@@ -139,7 +139,6 @@ impl Exact {
         })
     }
 
-    /// Whether the ray of a sample runs downwards along an axis of the object.
     #[cold]
     pub(super) fn runs_downwards(&self, axis: usize, sample: [i32; 2]) -> bool {
         (side_of(self.axis[axis], self.sample(sample)) < 0) == self.positive
@@ -236,7 +235,6 @@ impl Plane {
 
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
-    /// Planes of the four edges, by direction.
     edges: [[Plane; 4]; 3],
     /// Of a cube beside the eye: a plane, and its side that sees the cube and not its mirror image behind the eye.
     front: Option<(Plane, i8)>,

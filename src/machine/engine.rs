@@ -5,8 +5,8 @@ use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, with_cage};
 use super::options::MachineOptions;
-use super::records_by_sample::RecordsBySample;
 use super::state::State;
+use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -100,7 +100,6 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
-    /// Clears a frame, and returns empty fill vectors of its size.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
         frame.set_blending(setup.options.coverage.blends());

@@ -1,19 +1,15 @@
-//! A picture that is kept, and drawn again only when the set-up changes.
-//!
-//! Ownership guarantees that an unchanged set-up means an unchanged picture. A [`Viewer`] owns the engine and the frame,
-//! lends the frame only for reading, and borrows the graph, so only the set-up can change.
+//! A picture that is kept, and drawn again only when the set-up changes: a [`Viewer`] owns the engine and the frame,
+//! lends the frame only for reading, and borrows the graph.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
 use crate::budget::{self, Shortage};
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
 
-/// Contents of a viewer's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Contents {
     /// The node only ([`Frame::nodes_only`]).
     Nodes,
-    /// Node and voxel.
     #[default]
     Voxels,
     /// Node, voxel, and the number of processed records.

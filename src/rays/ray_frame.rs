@@ -66,7 +66,6 @@ impl RayFrame {
         least
     }
 
-    /// Direction, in clip space, of the ray of sample `(i, j)`.
     pub(super) fn ray(&self, i: u32, j: u32) -> [i64; 3] {
         [
             2 * i64::from(i) + 1,

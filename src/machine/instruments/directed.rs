@@ -1,7 +1,5 @@
-//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. The probe sees the blocks'
-//! borders, as in a frame.
-//!
-//! No result leaves its word: where a block adds, numbers stay some bits below the ends of the format.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. No result leaves its word:
+//! where a block adds, numbers stay some bits below the ends of the format.
 
 use hwmodel::{Probe, Stage, WideWord, Word};
 
@@ -176,7 +174,6 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
     smallest_node::clip(dp, constants, fill, place, &mut clip, &mut planes);
 }
 
-/// Comparisons of depths and sizes, with ties.
 fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,

@@ -25,22 +25,18 @@ hwmodel::named! {
     pub enum RecordNumber {
         Node = "octree node",
         Level = "octree level",
-        /// A coordinate of the lowest vertex in object space.
         Lowest = "lowest vertex",
         Highest = "highest vertex",
         QuadLevel = "quadtree level",
         /// Column or row of the quadtree node.
         QuadPlace = "quadtree place",
-        /// X or Y of a vertex in clip space.
         ClipXy = "X, Y",
         ClipW = "W",
         EdgeXy = "edge's X, Y",
         EdgeW = "edge's W",
         LeastW = "least W",
-        /// Coefficient a or b of a silhouette plane.
         PlaneAb = "plane's a, b",
         PlaneC = "plane's c",
-        /// The constant of a plane across an axis.
         AxisC = "axis plane's c",
     }
 }
@@ -213,7 +209,6 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     narrow
 }
 
-/// Adds a record's numbers to spans.
 fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
     let Record { cube, place, pose } = record;
     let mut note = |number, value: i128| {
