@@ -5,8 +5,8 @@ use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, with_cage};
 use super::options::MachineOptions;
+use super::records_by_sample::RecordsBySample;
 use super::state::State;
-use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};

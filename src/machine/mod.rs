@@ -21,7 +21,7 @@
 //!   `undrawn`, `path`;
 //! - steps of the loop: `watch`, `state`, `verdict`, `decide`, `push`, `children`;
 //! - the loop: `record_loop`, and `parents`, the loop with parents on its stack, and tiles;
-//! - `engine`, the machine as an [`Engine`](crate::project::Engine);
+//! - `records_by_sample`, and `engine`, the machine as an [`Engine`](crate::project::Engine);
 //! - `instruments`, which observe the machine or drive it in another way.
 //!
 //! Every step takes the parts of the state (`state.rs`) that it works on: the datapath, the constant `Job`, the `Canvas`
@@ -46,6 +46,7 @@ mod push;
 mod quadrants;
 mod record;
 mod record_loop;
+mod records_by_sample;
 mod shifts;
 mod size;
 mod smallest_node;

@@ -18,8 +18,9 @@ use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
 use crate::machine::record_loop::check_trap;
+use crate::machine::records_by_sample::RecordsBySample;
 use crate::machine::state::State;
-use crate::machine::watch::{Event, RecordsBySample, Watch};
+use crate::machine::watch::{Event, Watch};
 use crate::project::{EngineError, FrameSetup, Stats};
 
 /// The results of a simulated frame.
