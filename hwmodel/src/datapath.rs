@@ -277,7 +277,7 @@ impl<P: Probe> Datapath<P> {
         let raw = a.raw();
         let shifted = if places < 64 { raw << places } else { 0 };
         if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {
-            // Bits are lost; `carried`: whether the sign changed.
+            // Bits are lost. `carried`: whether the sign changed.
             let spare = self.spare[usize::from(T::WIDE)];
             let carried = (shifted < 0) != (raw < 0);
             let wrapped = (shifted << spare) >> spare;

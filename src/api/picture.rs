@@ -86,7 +86,7 @@ impl Picture {
         Ok(self.floats(Buffer::Normal)?.as_chunks().0)
     }
 
-    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0: the whole object);
+    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
     /// `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors

@@ -105,7 +105,7 @@ impl Renderer {
         /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
         /// opened with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made from such meshes.
         coverage(coverage: Coverage) coverage = coverage;
-        /// The size, pixels, up to which nodes are drawn as one voxel; 0: only leaves. By default half a pixel with
+        /// The size, pixels, up to which nodes are drawn as one voxel. 0: only leaves. By default half a pixel with
         /// exact coverage, otherwise a pixel.
         level_of_detail(pixels: f64) level_of_detail = Some(pixels);
         /// Samples per pixel along each axis: 1, 2 or 4.
@@ -141,7 +141,7 @@ impl Renderer {
         shading(shading: Shading) shading = shading;
         /// The picture behind the object.
         background(background: Background) background = background;
-        /// Threads that draw, up to 1024; 0: as many as available. Does not change the picture.
+        /// Threads that draw, up to 1024. 0: as many as available. Does not change the picture.
         threads(threads: usize) threads = threads;
     }
 

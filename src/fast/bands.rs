@@ -31,7 +31,7 @@ pub(super) struct BandBuffers<'p> {
     pub(super) pixels: Pixels<'p>,
 }
 
-/// Rows of tiles of the first band, of `rows` from `top`; all of them: there is one band.
+/// Rows of tiles of the first band, of `rows` from `top`. If these are all, there is one band.
 ///
 /// A node across two bands is visited in both, so bands are few: several per thread, large ones first, so that threads
 /// end together. Only rows that the object covers count.

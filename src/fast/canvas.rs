@@ -1,7 +1,7 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
 //! A mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second level has one bit
-//! per tile, in words of 8 x 8 tiles (blocks). So a few words tell whether a window is open. Samples outside the
+//! per tile, in words of 8 x 8 tiles (blocks). So a few words show whether a window is open. Samples outside the
 //! picture count as drawn. A square (`squares.rs`) is at most a tile large and may lie anywhere.
 
 use super::lanes::{Isa, Scalar};

@@ -1,8 +1,8 @@
 //! Exact silhouettes (R8, ties R8.1, the plane of the eye R8.2): in `f64` where its error bound decides, otherwise in
 //! 128-bit integers.
 //!
-//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube: the sign
-//! of their permuted inner product tells the side on which the ray passes.
+//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube. The sign
+//! of their permuted inner product is the side on which the ray passes.
 //!
 //! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. With the
 //! sample as `q = (2x + 1, 2y + 1, 2^(R + 1))` its side is the sign of `n q`; a zero is decided by the signs of `n_X`

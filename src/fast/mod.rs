@@ -112,7 +112,7 @@ impl Fast {
         }
     }
 
-    /// Why the fallback, many times slower, drew the last frame; `None`: it did not.
+    /// Why the fallback, many times slower, drew the last frame, if it did.
     pub fn declined(&self) -> Option<Declined> {
         self.declined
     }
@@ -270,7 +270,7 @@ pub struct Switches {
     pub bricks: bool,
     /// Fill blocks and tiles inside large solids at once, and skip those beside them.
     pub whole_blocks: bool,
-    /// Skip absent children at once. Off: above bricks, all eight are tested first; a brick has a lane for each of 64
+    /// Skip absent children at once. Off: above bricks, all eight are tested first. A brick has a lane for each of 64
     /// parts in any case.
     pub absent_children: bool,
 }

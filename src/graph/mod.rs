@@ -169,7 +169,7 @@ pub struct GraphView<'g> {
     pub links: &'g [u32],
     /// Empty: all are opaque.
     pub opacity: &'g [Opacity],
-    /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11); empty: white.
+    /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11). Empty: white.
     pub light: &'g [[u16; 3]],
 }
 

@@ -1,4 +1,4 @@
-//! From samples to a picture: colour, normal, depth; files; the hash (`spec/picture.md`). An engine only determines the
+//! From samples to a picture (`spec/picture.md`): colour, normal, depth, files and the hash. An engine only determines the
 //! voxel of each sample, so engines that agree on the voxels agree on every byte.
 
 mod color;

@@ -85,7 +85,7 @@ fn target(path: &Path) -> PathBuf {
     }
 }
 
-/// Creates a folder in an existing one. Errors: [`WholeError::NoFolder`] if that does not exist; the system's errors.
+/// Creates a folder in an existing one; otherwise [`WholeError::NoFolder`].
 pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     match fs::create_dir(folder) {
         Ok(()) => Ok(()),

@@ -72,7 +72,7 @@ pub struct Hardware {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OuterMemory {
-    /// Bytes per cycle; 0: no limit.
+    /// Bytes per cycle. 0: no limit.
     pub bytes_per_cycle: u32,
 }
 

@@ -256,13 +256,13 @@ impl<W: Workload> Simulation<'_, W> {
     }
 }
 
-/// The holder of a lane, and the contexts that want it.
+/// The holder of a lane, and its requests by other contexts.
 #[derive(Debug)]
 pub(super) struct Sharing {
     holder: u32,
     /// Whether the holder waits for a cache or a tile, so that another may have the lane.
     waits: bool,
-    /// First cycle and number of contexts that want it, in order.
+    /// First cycle and context of each request, in order.
     wanted_by: Vec<(u64, u32)>,
 }
 

@@ -144,8 +144,8 @@ impl ExternalBuilder {
     }
 
     /// Builds the graph and writes it to `path`. `placement_world` is as in
-    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart; when
-    /// `path` exists and `overwrite` is false; when the system refuses. Temporary files are removed in any case.
+    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart, or when
+    /// `path` exists and `overwrite` is false. Temporary files are removed in any case.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),

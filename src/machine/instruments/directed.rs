@@ -235,7 +235,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     planes::move_to_quadrant(&mut state.dp, &state.job.constants, &mut moved, quadrant);
     let level = inputs.level(depth);
     let mut cube = inputs.cube(level);
-    // The eye lies beside the cube along the other axes, beside a face of it or anywhere along this one.
+    // The eye lies beside the cube along the other axes, beside one of its faces or anywhere along this one.
     let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);
