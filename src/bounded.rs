@@ -8,7 +8,7 @@ use std::path::Path;
 /// Most bytes of a file of settings: hardware, prices, flags.
 pub const SETTINGS: u64 = 16 << 20;
 
-/// Opens a regular file. Errors: the system's; or it is not a regular file.
+/// Opens a file. Fails also if it is not a regular file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_dir() {
@@ -20,8 +20,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The bytes of a regular file of at most `most` bytes. Errors: as [`open`]; and if the file is longer, or does not fit
-/// in memory.
+/// The bytes of a regular file of at most `most` bytes. Fails also if it is longer, or does not fit in memory.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut file = open(path)?;
     let bytes = file.metadata()?.len();
@@ -44,8 +43,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     }
 }
 
-/// The bytes of a regular file that fits in memory. Errors: as [`read`]; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if
-/// it does not fit.
+/// The bytes of a regular file; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if it does not fit in memory.
 pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = open(path)?.metadata()?.len();
     crate::budget::check("a file that is read whole", bytes)
@@ -53,7 +51,7 @@ pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     read(path, u64::MAX)
 }
 
-/// The text of a file of settings. Errors: as [`read`]; and if it is not UTF-8.
+/// The text of a file of settings, which must be UTF-8.
 pub fn read_settings(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path, SETTINGS)?);
     text.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))

@@ -1,6 +1,5 @@
 //! The sRGB transfer function and its inverse (IEC 61966-2-1), for values from 0 to 1.
 
-/// Linear light of an sRGB value.
 pub fn to_linear(value: f64) -> f64 {
     if value <= 0.040_45 {
         value / 12.92
@@ -9,7 +8,6 @@ pub fn to_linear(value: f64) -> f64 {
     }
 }
 
-/// The sRGB value of linear light.
 pub fn from_linear(light: f64) -> f64 {
     if light <= 0.003_130_8 {
         12.92 * light

@@ -1,7 +1,5 @@
-//! The datapath: every arithmetic step of the machine is one call.
-//!
-//! Each call does one operation on words, reports it to the probe, and applies the overflow policy. There is no
-//! multiplication and no division; users build a restoring divide from [`Datapath::divide_step`].
+//! The datapath: each call does one operation on words, reports it to the probe, and applies the overflow policy. There
+//! is no multiplication and no division; users build a restoring divide from [`Datapath::divide_step`].
 
 use std::panic::Location;
 
@@ -143,7 +141,6 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Width of words of type `T`, in bits.
     #[inline(always)]
     fn width<T: Number>(&self) -> u32 {
         64 - self.spare[usize::from(T::WIDE)]
@@ -280,7 +277,7 @@ impl<P: Probe> Datapath<P> {
         let raw = a.raw();
         let shifted = if places < 64 { raw << places } else { 0 };
         if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {
-            // Bits are lost; `carried`: whether the sign changed.
+            // Bits are lost. `carried`: whether the sign changed.
             let spare = self.spare[usize::from(T::WIDE)];
             let carried = (shifted < 0) != (raw < 0);
             let wrapped = (shifted << spare) >> spare;

@@ -1,7 +1,6 @@
-//! Shifts by how far their places vary: wires, or a shifter.
-//!
-//! A shift that is always by one place is wires. All others need a shifter, by a number of the frame, of the octree
-//! level, or of each operation. The kind is not declared: the probe records the places of every line that shifts.
+//! Shifts by how far their places vary. A shift that is always by one place is wires; others need a shifter, by a
+//! number of the frame, of the octree level, or of each operation. The probe finds the kind from the places of every
+//! line that shifts.
 
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};

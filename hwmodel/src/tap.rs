@@ -1,7 +1,5 @@
-//! Values on the wires of a block, for test benches.
-//!
-//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap). A [`Probe`](crate::Probe) whose
-//! `TAPS` is set receives rows of [`Signal`]s. Without such a probe the call compiles to nothing.
+//! Values on the wires of a block, for test benches: [`Datapath::tap`](crate::Datapath::tap) passes rows of [`Signal`]s
+//! to a [`Probe`](crate::Probe) whose `TAPS` is set, and compiles to nothing without one.
 
 use crate::{Format, Narrow, WideWord, Word};
 

@@ -37,7 +37,8 @@ impl Camera {
     }
 
     /// A camera that sees all of a scene at any size of picture, from the front right and above (azimuth 45, elevation
-    /// 35.264 degrees), with a vertical field of view of 40 degrees. For voxels made from a mesh it sees all of the mesh.
+    /// 35.264 degrees), with a vertical field of view of 40 degrees. For voxels made from a mesh it sees all of the
+    /// mesh.
     #[must_use]
     pub fn fit(scene: &Scene) -> FittedCamera {
         FittedCamera {
@@ -49,19 +50,12 @@ impl Camera {
         }
     }
 
-    /// The direction that points up in the picture; it must not be parallel to the view. Scenes with Y up
-    /// ([`Scene::up`]) need `.up([0.0, 1.0, 0.0])`.
-    #[must_use]
-    pub fn up(mut self, direction: [f64; 3]) -> Self {
-        self.up = direction.into();
-        self
-    }
-
-    /// Vertical field of view, degrees, above 0 and below 180.
-    #[must_use]
-    pub fn field_of_view(mut self, degrees: f64) -> Self {
-        self.fov_degrees = degrees;
-        self
+    setters! {
+        /// The direction that points up in the picture; it must not be parallel to the view. Scenes with Y up
+        /// ([`Scene::up`]) need `.up([0.0, 1.0, 0.0])`.
+        up(direction: [f64; 3]) up = direction.into();
+        /// Vertical field of view, degrees, above 0 and below 180.
+        field_of_view(degrees: f64) fov_degrees = degrees;
     }
 }
 
@@ -84,32 +78,15 @@ pub struct FittedCamera {
 }
 
 impl FittedCamera {
-    /// Degrees around the up axis: 0 from the front, 90 from the right.
-    #[must_use]
-    pub fn azimuth(mut self, degrees: f64) -> Self {
-        self.direction.azimuth = degrees;
-        self
-    }
-
-    /// Degrees above the horizon.
-    #[must_use]
-    pub fn elevation(mut self, degrees: f64) -> Self {
-        self.direction.elevation = degrees;
-        self
-    }
-
-    /// Magnification, above 0: 2 halves the eye's distance.
-    #[must_use]
-    pub fn zoom(mut self, factor: f64) -> Self {
-        self.zoom = factor;
-        self
-    }
-
-    /// Vertical field of view, degrees, above 0 and below 180.
-    #[must_use]
-    pub fn field_of_view(mut self, degrees: f64) -> Self {
-        self.fov_degrees = degrees;
-        self
+    setters! {
+        /// Degrees around the up axis: 0 from the front, 90 from the right.
+        azimuth(degrees: f64) direction.azimuth = degrees;
+        /// Degrees above the horizon.
+        elevation(degrees: f64) direction.elevation = degrees;
+        /// Magnification, above 0: 2 halves the eye's distance.
+        zoom(factor: f64) zoom = factor;
+        /// Vertical field of view, degrees, above 0 and below 180.
+        field_of_view(degrees: f64) fov_degrees = degrees;
     }
 
     /// Keeps the same distance for every azimuth, for turntables.

@@ -1,5 +1,19 @@
 //! The public API: a scene, a camera, a renderer, a picture.
 
+/// Methods of a builder that set one field each.
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident($value:ident: $type:ty) $($field:ident).+ = $to:expr;)+) => {
+        $(
+            $(#[$doc])*
+            #[must_use]
+            pub fn $name(mut self, $value: $type) -> Self {
+                self.$($field).+ = $to;
+                self
+            }
+        )+
+    };
+}
+
 mod camera;
 mod error;
 mod kept;

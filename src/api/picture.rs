@@ -11,8 +11,8 @@ use crate::project::Stats;
 use crate::whole;
 
 /// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine. All
-/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth, normal,
-/// voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
+/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
+/// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
     width: u32,
@@ -86,7 +86,7 @@ impl Picture {
         Ok(self.floats(Buffer::Normal)?.as_chunks().0)
     }
 
-    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0: the whole object);
+    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
     /// `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
@@ -103,8 +103,8 @@ impl Picture {
         self.integers(Buffer::Node)
     }
 
-    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel, and
-    /// outside the picture.
+    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel,
+    /// and outside the picture.
     ///
     /// # Errors
     /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
@@ -165,8 +165,8 @@ impl Picture {
         .map_err(|e| Error::Write(e.into()))
     }
 
-    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces an
-    /// existing file; the file appears whole or not at all.
+    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces
+    /// an existing file; the file appears whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.

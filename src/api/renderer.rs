@@ -35,8 +35,8 @@ pub enum EngineKind {
     Rays,
 }
 
-/// Draws scenes. Each setting has a default for ordinary pictures. Threads, engine and frame are kept for the next picture,
-/// until [`Renderer::forget`] or the end of the renderer.
+/// Draws scenes. Each setting has a default for ordinary pictures. Threads, engine and frame are kept for the next
+/// picture, until [`Renderer::forget`] or the end of the renderer.
 ///
 /// ```
 /// use shiftvox::{Camera, EngineKind, Renderer, Scene};
@@ -99,49 +99,22 @@ impl Renderer {
         }
     }
 
-    /// The engine that draws.
-    #[must_use]
-    pub fn engine(mut self, engine: EngineKind) -> Self {
-        self.engine = Some(engine);
-        self
-    }
-
-    /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities: those of meshes opened
-    /// with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made from such meshes.
-    #[must_use]
-    pub fn coverage(mut self, coverage: Coverage) -> Self {
-        self.coverage = coverage;
-        self
-    }
-
-    /// The size, pixels, up to which nodes are drawn as one voxel; 0: only leaves. By default half a pixel with exact
-    /// coverage, otherwise a pixel.
-    #[must_use]
-    pub fn level_of_detail(mut self, pixels: f64) -> Self {
-        self.level_of_detail = Some(pixels);
-        self
-    }
-
-    /// Samples per pixel along each axis: 1, 2 or 4.
-    #[must_use]
-    pub fn samples(mut self, along_each_axis: u32) -> Self {
-        self.samples = along_each_axis;
-        self
-    }
-
-    /// The deviation, samples, at which a record may change from clip space to screen space: 0 never, infinity always.
-    /// Rules other than [`Coverage::Any`] and [`Coverage::Center`] allow only 0.
-    #[must_use]
-    pub fn tolerance(mut self, samples: f64) -> Self {
-        self.tolerance = Some(samples);
-        self
-    }
-
-    /// Representation of a record's vertices. Changes the counters, but not the picture.
-    #[must_use]
-    pub fn cage(mut self, cage: CageKind) -> Self {
-        self.cage = Some(cage);
-        self
+    setters! {
+        /// The engine that draws.
+        engine(engine: EngineKind) engine = Some(engine);
+        /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
+        /// opened with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made from such meshes.
+        coverage(coverage: Coverage) coverage = coverage;
+        /// The size, pixels, up to which nodes are drawn as one voxel. 0: only leaves. By default half a pixel with
+        /// exact coverage, otherwise a pixel.
+        level_of_detail(pixels: f64) level_of_detail = Some(pixels);
+        /// Samples per pixel along each axis: 1, 2 or 4.
+        samples(along_each_axis: u32) samples = along_each_axis;
+        /// The deviation, samples, at which a record may change from clip space to screen space: 0 never, infinity
+        /// always. Rules other than [`Coverage::Any`] and [`Coverage::Center`] allow only 0.
+        tolerance(samples: f64) tolerance = Some(samples);
+        /// Representation of a record's vertices. Changes the counters, but not the picture.
+        cage(cage: CageKind) cage = Some(cage);
     }
 
     /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room for).
@@ -149,13 +122,6 @@ impl Renderer {
     pub fn word(mut self, bits: u32, fraction_bits: Option<u32>) -> Self {
         self.bits = bits;
         self.frac = fraction_bits;
-        self
-    }
-
-    /// Treatment of a result that does not fit its word.
-    #[must_use]
-    pub fn overflow(mut self, overflow: Overflow) -> Self {
-        self.overflow = Some(overflow);
         self
     }
 
@@ -168,29 +134,19 @@ impl Renderer {
             .tolerance(paper.tolerance_px)
     }
 
-    /// Dependence of a voxel's colour on its orientation.
-    #[must_use]
-    pub fn shading(mut self, shading: Shading) -> Self {
-        self.shading = shading;
-        self
+    setters! {
+        /// Treatment of a result that does not fit its word.
+        overflow(overflow: Overflow) overflow = Some(overflow);
+        /// Dependence of a voxel's colour on its orientation.
+        shading(shading: Shading) shading = shading;
+        /// The picture behind the object.
+        background(background: Background) background = background;
+        /// Threads that draw, up to 1024. 0: as many as available. Does not change the picture.
+        threads(threads: usize) threads = threads;
     }
 
-    /// The picture behind the object.
-    #[must_use]
-    pub fn background(mut self, background: Background) -> Self {
-        self.background = background;
-        self
-    }
-
-    /// Threads that draw, up to 1024; 0: as many as available. Does not change the picture.
-    #[must_use]
-    pub fn threads(mut self, threads: usize) -> Self {
-        self.threads = threads;
-        self
-    }
-
-    /// Counts the operations of the machine, for [`Picture::operations`]. Selects [`EngineKind::Machine`]; another engine,
-    /// selected later, is an error.
+    /// Counts the operations of the machine, for [`Picture::operations`]. Selects [`EngineKind::Machine`]; another
+    /// engine, selected later, is an error.
     #[must_use]
     pub fn count_operations(mut self) -> Self {
         self.engine = Some(EngineKind::Machine);
@@ -198,7 +154,8 @@ impl Renderer {
         self
     }
 
-    /// Buffers in addition to the colours; none by default. Bytes per pixel: 4 for [`Buffer::Depth`], [`Buffer::Node`] and
+    /// Buffers in addition to the colours; none by default. Bytes per pixel: 4 for [`Buffer::Depth`], [`Buffer::Node`]
+    /// and
     /// [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for [`Buffer::Voxel`].
     ///
     /// ```
@@ -216,11 +173,10 @@ impl Renderer {
         self
     }
 
-    /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed once.
-    #[must_use]
-    pub fn hashed(mut self, is_hashed: bool) -> Self {
-        self.is_hashed = is_hashed;
-        self
+    setters! {
+        /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed
+        /// once.
+        hashed(is_hashed: bool) is_hashed = is_hashed;
     }
 
     /// Draws a picture of `width` x `height` pixels.
@@ -278,8 +234,8 @@ impl Renderer {
     /// ```
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash or
-    /// operations were requested, which only a [`Picture`] has.
+    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash
+    /// or operations were requested, which only a [`Picture`] has.
     pub fn render_into(
         &self,
         scene: &Scene,

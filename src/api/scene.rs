@@ -12,8 +12,8 @@ use crate::scene::{
 
 /// A voxel graph in world coordinates, to be drawn.
 ///
-/// World units are those of the file; a voxel of index `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)` unless the file
-/// gives another size and place.
+/// World units are those of the file; a voxel of index `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)` unless the
+/// file gives another size and place.
 #[derive(Debug)]
 pub struct Scene {
     graph: Graph,
@@ -76,8 +76,8 @@ impl Scene {
         Ok(graph.into())
     }
 
-    /// The same scene with another axis up, for [`Camera::fit`](super::Camera::fit); stored by [`Scene::save_vxg`] if the
-    /// scene was made from a mesh.
+    /// The same scene with another axis up, for [`Camera::fit`](super::Camera::fit); stored by [`Scene::save_vxg`] if
+    /// the scene was made from a mesh.
     #[must_use]
     pub fn with_up(mut self, up: Up) -> Self {
         self.up = up;

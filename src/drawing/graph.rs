@@ -106,8 +106,7 @@ impl<'g> GraphDrawing<'g> {
         } else if style.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
             Contents::Voxels
         } else {
-            // A fifth of the memory. Colours depend on voxels only where a node has no normal, and the node's place
-            // follows from the graph.
+            // Colours depend on voxels only where a node has no normal. A fifth of the memory.
             Contents::Nodes
         };
         Self {
@@ -182,8 +181,7 @@ impl<'g> GraphDrawing<'g> {
         Ok(self.viewer.render_lit(setup, &light)?)
     }
 
-    /// Makes something from a drawn frame. If colours depend on voxels that a frame of nodes does not determine, the frame
-    /// is drawn again with voxels.
+    /// Makes something from a drawn frame. Draws the frame again with voxels if colours depend on them.
     pub fn resolve<T>(
         &mut self,
         drawn: &mut DrawnFrame,

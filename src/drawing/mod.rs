@@ -1,7 +1,5 @@
-//! One trait for everything that can be drawn: voxel graphs, far voxels, textured voxels, triangles, the hybrid.
-//!
-//! A [`Drawable`] is data, an engine and its options. The [result](Drawable::shown) has the same form for all methods:
-//! colours, buffers, times and counters.
+//! One trait for everything that can be drawn: voxel graphs, far voxels, textured voxels, triangles, the hybrid. The
+//! [result](Drawable::shown) has one form: colours, buffers, times and counters.
 
 mod graph;
 
@@ -27,15 +25,14 @@ pub trait Drawable {
     /// The vertical axis of the file.
     fn up(&self) -> Up;
 
-    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work. Errors: see
-    /// [`DrawError`]; nothing is shown then.
+    /// Draws a frame `runs` times (0 counts as 1), each time completely, and keeps the last. After an error nothing is
+    /// shown.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError>;
 
     /// The last picture. Fails when its buffers cannot be made.
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
 
-    /// A function that draws the frame of a camera again and again, on its own engine, to measure times. Fails when the
-    /// frame cannot be set up.
+    /// A function that draws the frame of a camera again and again, on its own engine, to measure times.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
 
@@ -64,7 +61,6 @@ pub struct Shown<'d> {
 
 /// The buffers of a picture in memory, or of an engine's frame.
 pub enum Buffers<'d> {
-    /// Whole.
     Whole(&'d Picture),
     /// Made row by row.
     Resolved(Box<Resolver<'d>>),

@@ -1,12 +1,12 @@
 //! The state of a band: the rows of the picture that one task draws.
 
+use super::Switches;
 use super::canvas::{Fill, Pixels};
 use super::constants::Constants;
 use super::counters::Counters;
 use super::exact::Exact;
 use super::parts::Parts;
 use super::strips::Candidates;
-use super::switches::Switches;
 use crate::graph::GraphView;
 
 #[derive(Debug)]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Switches;
 use super::band::{Band, BrickBlocks, Hit};
 use super::canvas::{Fill, FillPart, Pixels, TileGrid};
 use super::constants::Constants;
@@ -10,7 +11,6 @@ use super::exact::Exact;
 use super::lanes::Isa;
 use super::parts::Parts;
 use super::strips::Candidates;
-use super::switches::Switches;
 use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
@@ -31,7 +31,7 @@ pub(super) struct BandBuffers<'p> {
     pub(super) pixels: Pixels<'p>,
 }
 
-/// Rows of tiles of the first band, of `rows` from `top`; all of them: there is one band.
+/// Rows of tiles of the first band, of `rows` from `top`. If these are all, there is one band.
 ///
 /// A node across two bands is visited in both, so bands are few: several per thread, large ones first, so that threads
 /// end together. Only rows that the object covers count.

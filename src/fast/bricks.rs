@@ -291,10 +291,8 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octa
 /// The place of a voxel in a brick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path {
-    /// The block, where parts are blocks.
     pub(super) block: Option<u32>,
     pub(super) part: u32,
-    /// Levels from the brick or block down to the part.
     pub(super) levels: u32,
 }
 

@@ -1,14 +1,13 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
 //! A mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second level has one bit
-//! per tile, in words of 8 x 8 tiles (blocks). So a few words tell whether a window is open. Samples outside the
+//! per tile, in words of 8 x 8 tiles (blocks). So a few words show whether a window is open. Samples outside the
 //! picture count as drawn. A square (`squares.rs`) is at most a tile large and may lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
 use crate::frame::{Blend, NO_NODE, color_word};
 
-/// Tiles along a block's side.
 const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 
 #[derive(Debug)]
@@ -23,7 +22,6 @@ pub(super) struct Fill<'p> {
     pub(super) open: u64,
 }
 
-/// The memory of a fill, or a band's part of it.
 #[derive(Debug)]
 pub(super) struct FillPart<'p> {
     /// One bit per sample, set where it is open; by tile.
@@ -185,7 +183,6 @@ impl<'p> Fill<'p> {
         ((left ^ right) & own ^ right) & SQUARES[(more_y << 3 | more_x) & 63]
     }
 
-    /// Marks open samples of a tile as drawn.
     #[inline(always)]
     fn mark_at(&mut self, at: usize, x: i32, y: i32, samples: u64) {
         if let Some(tile) = self.part.tiles.get_mut(at) {
@@ -233,7 +230,6 @@ impl<'p> Fill<'p> {
         self.tile(self.tile_at(x, y)) & window.bits(x << TILE_LOG2, y << TILE_LOG2)
     }
 
-    /// Whether a tile that a window overlaps is not full.
     #[inline(always)]
     pub(super) fn has_open_tile(&self, window: &Window) -> bool {
         let tiles = window.coarser(TILE_LOG2);

@@ -5,7 +5,6 @@ use super::constants::{Constants, Level};
 use super::lanes::{F32x8, Floats, Isa, Lanes};
 use super::window::{BEYOND, WINDOW_MARGIN, Window};
 
-/// Rounding of positions and extents in `f32`, with room.
 const ROUNDING: f32 = 1.0 / (1 << 21) as f32;
 /// Factor on extents, for an inverse of 11 bits and its rounding.
 const SCALE: f32 = 1.0 + 1.0 / 256.0;

@@ -28,7 +28,6 @@ pub(super) struct Level {
     pub(super) child: [[f64; 8]; 3],
     /// Vertices relative to the centre, likewise.
     pub(super) vertices: [[f64; 8]; 3],
-    /// Half of a node's extent in depth.
     pub(super) half_depth: f64,
     /// Least W of a node with children that level of detail makes a solid; infinite where there is none.
     pub(super) lod_depth: f64,
@@ -40,9 +39,7 @@ pub(super) struct Level {
     pub(super) coarse_depth: f64,
     /// Least depth at which parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
     pub(super) fine_depth: f64,
-    /// Least depth at which a node is tiny ([`TINY_SAMPLES`]).
     pub(super) tiny_depth: f64,
-    /// Largest depth at which a node is large ([`LARGE_SAMPLES`]).
     pub(super) large_depth: f64,
 }
 
@@ -82,13 +79,11 @@ impl Declined {
 
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
-    /// By octree level.
     pub(super) levels: Vec<Level>,
     /// Octree level of the finest voxels.
     pub(super) depth: u32,
     /// Clip vector of the object's centre.
     pub(super) centre: [f64; 3],
-    /// Samples per side of the image root.
     pub(super) root_samples: f64,
     /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
     /// the quotient is 0 at the centre of the first sample.

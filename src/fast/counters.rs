@@ -29,11 +29,8 @@ counters! {
     bricks = "bricks";
     /// Squares of their windows, and of solids', in which something was open.
     squares = "squares";
-    /// Samples tested against the parts of a brick.
     samples_tested = "samples_tested";
-    /// Voxels drawn one by one.
     solids = "solids_drawn";
-    /// Samples drawn.
     samples_drawn = "samples_drawn";
     /// Voxels that samples took, under the rule that blends.
     samples_blended = "samples_blended";
@@ -41,7 +38,6 @@ counters! {
     exact_samples = "samples_decided_exactly";
     /// Children that do not exist.
     skipped_absent = "skipped_absent_children";
-    /// Nodes wholly behind the eye.
     skipped_behind = "skipped_behind_eye";
     /// Nodes beside the picture, or that hold no sample.
     skipped_off_screen = "skipped_off_screen";
@@ -51,6 +47,5 @@ counters! {
     skipped_full = "skipped_picture_full";
     /// Nodes with children that level of detail took for a solid, outside of bricks.
     skipped_detail = "skipped_below_detail";
-    /// Tiles filled whole by one solid.
     tiles_filled = "tiles_filled_whole";
 }

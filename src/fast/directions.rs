@@ -69,7 +69,6 @@ pub(super) struct Samples<'s, I: Isa> {
 }
 
 impl<I: Isa> Samples<'_, I> {
-    /// Takes the first group that is not empty.
     #[inline(always)]
     pub(super) fn take_group(&mut self, groups: &mut [u64; 8]) -> bool {
         let first = groups.iter().position(|&group| group != 0);

@@ -1,8 +1,8 @@
 //! Exact silhouettes (R8, ties R8.1, the plane of the eye R8.2): in `f64` where its error bound decides, otherwise in
 //! 128-bit integers.
 //!
-//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube: the sign
-//! of their permuted inner product tells the side on which the ray passes.
+//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube. The sign
+//! of their permuted inner product is the side on which the ray passes.
 //!
 //! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. With the
 //! sample as `q = (2x + 1, 2y + 1, 2^(R + 1))` its side is the sign of `n q`; a zero is decided by the signs of `n_X`
@@ -139,7 +139,6 @@ impl Exact {
         })
     }
 
-    /// Whether the ray of a sample runs downwards along an axis of the object.
     #[cold]
     pub(super) fn runs_downwards(&self, axis: usize, sample: [i32; 2]) -> bool {
         (side_of(self.axis[axis], self.sample(sample)) < 0) == self.positive
@@ -236,7 +235,6 @@ impl Plane {
 
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
-    /// Planes of the four edges, by direction.
     edges: [[Plane; 4]; 3],
     /// Of a cube beside the eye: a plane, and its side that sees the cube and not its mirror image behind the eye.
     front: Option<(Plane, i8)>,

@@ -47,7 +47,6 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 pub(super) struct Lines<I: Isa> {
     /// Directions: at the first sample, and their slopes by column and by row.
     direction: [I::F32x4; 3],
-    /// Moments, likewise.
     moment: [I::F32x4; 3],
     /// Tables of strips, by function.
     pub(super) tables: [usize; 3],
@@ -96,7 +95,6 @@ pub(super) struct Line<I: Isa> {
     half: I::F32x4,
 }
 
-/// Whether a line meets a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
     Misses,
@@ -263,7 +261,6 @@ impl<I: Isa> Lines<I> {
         ]
     }
 
-    /// Whether a line meets the part of side 1 at an offset.
     #[inline(always)]
     pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
         let [is_inside, may_be_inside] = self.are_inside(isa, line, offset);

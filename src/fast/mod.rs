@@ -35,7 +35,6 @@ mod planes;
 mod projection;
 mod squares;
 mod strips;
-mod switches;
 mod traversal;
 mod voxels;
 mod window;
@@ -50,7 +49,6 @@ pub use constants::Declined;
 use counters::Counters;
 use exact::Exact;
 use lanes::Scalar;
-pub use switches::Switches;
 use window::{TILE_LOG2, Window};
 
 /// The instructions used. They do not change a picture.
@@ -114,7 +112,7 @@ impl Fast {
         }
     }
 
-    /// Why the fallback, many times slower, drew the last frame; `None`: it did not.
+    /// Why the fallback, many times slower, drew the last frame, if it did.
     pub fn declined(&self) -> Option<Declined> {
         self.declined
     }
@@ -162,7 +160,6 @@ impl Fast {
         true
     }
 
-    /// [`Fast::draw_fast`] of a frame's nodes and voxels.
     fn draw_frame(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
         if frame.records.is_some() {
             self.declined = Some(Declined::Records);
@@ -257,5 +254,36 @@ impl Instructions {
     /// Whether the processor has these. If not, the next lower set is used.
     pub fn are_available(self) -> bool {
         self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
+    }
+}
+
+/// None changes a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Switches {
+    /// Skip nodes whose windows are full.
+    pub hidden: bool,
+    /// Stop when the picture is full.
+    pub full: bool,
+    /// Skip nodes beside the picture or without a sample.
+    pub off_screen: bool,
+    /// Draw two levels, or one, in one step of 64 lanes.
+    pub bricks: bool,
+    /// Fill blocks and tiles inside large solids at once, and skip those beside them.
+    pub whole_blocks: bool,
+    /// Skip absent children at once. Off: above bricks, all eight are tested first. A brick has a lane for each of 64
+    /// parts in any case.
+    pub absent_children: bool,
+}
+
+impl Default for Switches {
+    fn default() -> Self {
+        Self {
+            hidden: true,
+            full: true,
+            off_screen: true,
+            bricks: true,
+            whole_blocks: true,
+            absent_children: true,
+        }
     }
 }

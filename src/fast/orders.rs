@@ -56,7 +56,6 @@ static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
     table
 };
 
-/// Place of a part along an axis, 0 to 3.
 pub(super) const fn along(part: usize, axis: usize) -> usize {
     (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1
 }

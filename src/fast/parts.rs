@@ -7,7 +7,6 @@ use crate::graph::GraphView;
 pub(super) struct Parts {
     /// Mask of those that exist: bit `outer << 3 | inner`, octants in Morton order.
     pub(super) exist: u64,
-    /// The first child.
     first: u32,
     node: u32,
     /// Mask of the node's children.
@@ -25,7 +24,6 @@ enum Kind {
     Plain,
     /// Each part is a node, named by the graph's links; or a child is solid.
     Linked,
-    /// The node is solid: all parts are it.
     Solid,
 }
 
@@ -140,7 +138,6 @@ impl Parts {
         self.solid == 0 && self.kind != Kind::Solid
     }
 
-    /// Prefetches what [`Parts::part`] reads.
     #[inline(always)]
     pub(super) fn prefetch<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         isa.prefetch(graph.first, self.first as usize);
@@ -157,7 +154,6 @@ impl Parts {
         }
     }
 
-    /// Prefetches the masks below the parts, once [`Parts::prefetch_below`] has taken effect.
     #[inline(always)]
     pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let part = graph.first.get(self.first as usize).copied().unwrap_or(0);

@@ -24,7 +24,6 @@ use super::orders::SLABS;
 /// Shares with tables: from 0 to 1, both included.
 pub(super) const SHARES: usize = 128;
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
-/// Cells of a strip's width.
 pub(super) const CELLS_PER_WIDTH: f32 = 30.0;
 /// Cells of a table. They reach 2.13 widths to either side of the node's centre.
 pub(super) const CELLS: usize = 128;
@@ -111,7 +110,6 @@ impl Candidates {
     }
 }
 
-/// A function's values at a square's first row, and its slope by row.
 #[inline(always)]
 fn first_row<I: Isa, const FUNCTION: i32>(
     isa: I,

@@ -22,7 +22,6 @@ use super::window::Window;
 use super::{bricks, planes, voxels};
 use crate::graph::MAX_DEPTH;
 
-/// Draws what a band shows of the whole object.
 #[inline(always)]
 pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
     let root = Record {

@@ -163,7 +163,6 @@ impl<I: Isa> Distances<I> {
         }
     }
 
-    /// Samples at which distances are below a limit, eight bits per row.
     #[inline(always)]
     fn below(&self, isa: I, limit: i16) -> u64 {
         let limit = I::I16x16::splat(isa, limit);

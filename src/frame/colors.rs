@@ -40,7 +40,6 @@ impl Colors {
         }
     }
 
-    /// A frame of the same size for nodes, for [`Colors::take_nodes`].
     pub fn nodes(&mut self) -> &mut Frame {
         let (width, height) = (self.width, self.height);
         self.nodes

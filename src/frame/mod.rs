@@ -13,8 +13,7 @@ const MAX_SAMPLES: u64 = 1 << 27;
 #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
 pub struct TooManySamples(u64);
 
-/// The number of samples of a picture. `aa_log2`: logarithm of the samples per pixel and axis. Errors:
-/// [`TooManySamples`] where they are more than 2^27.
+/// The number of samples of a picture. `aa_log2`: logarithm of the samples per pixel and axis.
 pub fn count_samples(width: u32, height: u32, aa_log2: u32) -> Result<u64, TooManySamples> {
     let pixels = u64::from(width) * u64::from(height);
     match pixels.saturating_mul(1 << (2 * aa_log2)) {
@@ -28,9 +27,7 @@ pub const NO_NODE: u32 = u32::MAX;
 /// `voxel` where nothing is seen.
 pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 
-/// The samples of one frame, row by row from the top left.
-///
-/// An engine only stores the visible voxels; colour, normal and depth are derived from them once per sample.
+/// The samples of one frame, row by row from the top left. Colour, normal and depth follow from the visible voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Samples across.
@@ -67,7 +64,6 @@ impl Default for Blend {
 }
 
 impl Frame {
-    /// An empty frame; `with_records`: with the records per sample.
     pub fn new(width: u32, height: u32, with_records: bool) -> Self {
         let samples = width as usize * height as usize;
         Self {

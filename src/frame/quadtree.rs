@@ -4,7 +4,6 @@
 //! sets its bit in its parent. Quadrants outside the picture are full from the start, so clipping is the same test as
 //! occlusion.
 
-/// A node of the image quadtree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct QuadNode {
     /// Level, 0 = root; a sample is at the deepest level.
@@ -23,7 +22,6 @@ impl QuadNode {
         y: 0,
     };
 
-    /// Quadrant `y << 1 | x` of this node.
     #[inline]
     #[must_use]
     pub const fn quadrant(self, quadrant: u8) -> Self {
@@ -34,7 +32,6 @@ impl QuadNode {
         }
     }
 
-    /// The node at `level`, at or above its own, that contains this node.
     #[inline(always)]
     #[must_use]
     pub const fn ancestor(self, level: u32) -> Self {
@@ -61,7 +58,6 @@ impl QuadNode {
 /// All four quadrants.
 pub const FULL: u8 = 0b1111;
 
-/// The fill vectors of all nodes, level by level, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FillVectors {
     levels: u32,
@@ -137,7 +133,6 @@ impl FillVectors {
         self.vectors[node.address()]
     }
 
-    /// Sets bits of a node's vector and returns the vector.
     #[inline]
     pub fn set(&mut self, node: QuadNode, bits: u8) -> u8 {
         let at = node.address();
@@ -145,7 +140,6 @@ impl FillVectors {
         self.vectors[at]
     }
 
-    /// Replaces a node's vector, and returns the previous one.
     pub fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         std::mem::replace(&mut self.vectors[node.address()], vector)
     }

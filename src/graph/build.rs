@@ -6,7 +6,6 @@
 use rayon::prelude::*;
 
 use super::average::Sum;
-use super::build_error::BuildError;
 use super::normals::Estimate;
 use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
@@ -306,4 +305,30 @@ fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildEr
         return Err(BuildError::TooMany(total));
     }
     Ok(starts.into_iter().map(|start| start as u32).collect())
+}
+
+/// Longest side of the bounding box of a set of voxels.
+pub(in crate::graph) const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+
+/// Why no graph was built.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// No voxel was pushed.
+    #[error("there are no voxels, so there is nothing to build")]
+    Empty,
+    #[error(
+        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
+         are there stray voxels far from the object?"
+    )]
+    TooLarge { axis: char, extent: u64 },
+    /// More voxels or nodes than 32 bits number.
+    #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
+    TooMany(u64),
+    /// The system refuses the memory.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
+    #[error(
+        "the world origin and the voxel size must be finite, the size above 0, and voxels there far enough apart to be told apart"
+    )]
+    Placement,
 }

@@ -12,7 +12,6 @@ pub struct Cell {
     pub node: u32,
 }
 
-/// The cells of a graph in Morton order; see [`Graph::voxels`].
 #[derive(Debug)]
 pub struct Voxels<'g> {
     graph: &'g Graph,
@@ -102,7 +101,6 @@ impl Graph {
         (child == self.root).then_some([x, y, z, level as i32])
     }
 
-    /// File index of a cell's lowest corner.
     pub fn file_index(&self, cell: &Cell) -> [i64; 3] {
         let origin = self.placement.origin_index;
         [0, 1, 2].map(|k| origin[k].saturating_add(i64::from(cell.corner[k])))
@@ -131,7 +129,6 @@ impl Graph {
         counts
     }
 
-    /// Whether nodes are stored level by level.
     pub fn is_level_ordered(&self) -> bool {
         !self.level_start.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Files that are used in place, mapped or held: the parts that `.vxg`, `.far` and `.tvx` share. A header of fixed
+//! Files that are used in place, mapped or held: the common parts of `.vxg`, `.far` and `.tvx`. A header of fixed
 //! length with a checksum, then sections, each aligned to 64 bytes with zeros between.
 
 use std::fs::File;
@@ -28,7 +28,6 @@ pub enum FileError {
         doing: &'static str,
         source: io::Error,
     },
-    /// The file exists, and overwriting was not requested.
     #[error("{}: the file exists already", .0.display())]
     Exists(PathBuf),
     #[error("{}: section {section}, byte {offset}: expected {expected}; {advice}", file.display())]
@@ -54,7 +53,6 @@ const DAMAGED: &str = "the file is damaged: copy it again, or convert it again f
 const NEWER: &str = "the file is of another version: convert it again with this one";
 
 impl FileError {
-    /// A damaged file.
     pub fn damaged(
         path: &Path,
         section: &'static str,
@@ -75,7 +73,6 @@ impl FileError {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
 
-    /// The system's error for a file.
     pub fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
         Self::Io {
             file: path.to_owned(),
@@ -123,7 +120,6 @@ impl Opened {
     }
 }
 
-/// The bytes of a file, mapped or held.
 #[derive(Debug)]
 pub enum Bytes {
     Mapped(Arc<Mmap>),
@@ -161,7 +157,6 @@ pub fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
 /// A format. All have version, header length and file length at the same places, and the header's checksum in its
 /// last eight bytes.
 pub struct Format {
-    /// The ending of its files, with the dot.
     pub ending: &'static str,
     pub magic: [u8; 8],
     pub version: u32,
@@ -311,7 +306,6 @@ impl Fields<'_> {
         self.header[range].iter().all(|&byte| byte == 0)
     }
 
-    /// Reports the expected contents at an offset, unless the condition holds.
     pub fn ensure<E: Into<String>>(
         &self,
         holds: bool,
@@ -355,8 +349,8 @@ pub(super) fn padding_after(
     Ok(())
 }
 
-/// Writes header and sections, in the order of the file, with zeros between. Errors: the writer's error; a computer
-/// that stores the highest byte first.
+/// Writes header and sections, in the order of the file, with zeros between. Errors: the writer's; a computer that
+/// stores the highest byte first.
 pub fn write<'s>(
     format: &Format,
     header: &[u8],

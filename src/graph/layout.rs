@@ -14,7 +14,6 @@ pub struct NodeLayout {
     bricks: Option<Bricks>,
 }
 
-/// The level of bricks, its first node, and the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Bricks {
     level: u32,
@@ -41,7 +40,6 @@ impl NodeLayout {
         }
     }
 
-    /// The nodes that are bricks; may be empty.
     pub fn bricks(&self) -> Range<u32> {
         self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
     }
@@ -86,7 +84,6 @@ impl NodeLayout {
     }
 }
 
-/// Whether a graph is a tree stored level by level.
 fn is_by_level(graph: &GraphView<'_>) -> bool {
     let mut next = u64::from(graph.root) + 1;
     let nodes = graph.mask.iter().zip(graph.first);
@@ -98,7 +95,6 @@ fn is_by_level(graph: &GraphView<'_>) -> bool {
         })
 }
 
-/// The first node of a level, in a tree stored level by level.
 fn first_of_level(graph: &GraphView<'_>, level: u32) -> Option<u32> {
     let mut first = graph.root;
     for _ in 0..level {

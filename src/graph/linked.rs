@@ -30,7 +30,6 @@ struct LinkedNode {
     children: [Option<u32>; 8],
 }
 
-/// Why the nodes make no graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LinkedError {
     /// Deeper than coordinates reach.

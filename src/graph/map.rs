@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use memmap2::Mmap;
 
-/// Maps a whole file for reading.
 pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
     // SAFETY: a map must not change while it is borrowed. The map is private to this process and read-only, and this
     // program never changes files in place: a new file takes the name, and the map keeps the old one alive. That no

@@ -100,7 +100,6 @@ fn child_classes(graph: &Graph, node: u32, class: &[u32]) -> [u32; 8] {
         .map(|child| child.map_or(ABSENT, |child| class[child as usize]))
 }
 
-/// The number of a key: the next one, if it is new.
 fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
     // Fewer classes than nodes, which 32 bits number.
     let next = known.len() as u32;

@@ -2,7 +2,6 @@
 
 mod average;
 pub mod build;
-mod build_error;
 pub mod cells;
 pub mod external;
 pub mod file;
@@ -16,16 +15,14 @@ mod normal;
 mod normals;
 mod opacity;
 pub mod place;
-mod progress;
 mod pushed;
 mod side_by_side;
 mod store;
 pub mod validate;
-mod voxel;
 pub mod vxg;
 
-pub use build::{BuildOptions, Builder, Normals};
-pub use build_error::BuildError;
+pub use build::{BuildError, BuildOptions, Builder, Normals};
+
 pub use cells::Cell;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use layout::NodeLayout;
@@ -33,10 +30,8 @@ pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
 pub use mesh_box::MeshBox;
 pub use opacity::{MOST_OPACITY, Opacity, sixteenths};
-pub use progress::{Progress, Silent};
 pub use store::Store;
 pub use validate::Invalid;
-pub use voxel::Voxel;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
@@ -127,7 +122,6 @@ impl Graph {
         self.normal.get(node as usize).copied().unwrap_or_default()
     }
 
-    /// The children of a node by octant. Children that are not nodes are left out.
     pub fn children(&self, node: u32) -> [Option<u32>; 8] {
         let view = self.view();
         let nodes = self.len() as u64;
@@ -175,12 +169,11 @@ pub struct GraphView<'g> {
     pub links: &'g [u32],
     /// Empty: all are opaque.
     pub opacity: &'g [Opacity],
-    /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11); empty: white.
+    /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11). Empty: white.
     pub light: &'g [[u16; 3]],
 }
 
 impl GraphView<'_> {
-    /// The mask of a node's children; 0 for a leaf.
     #[inline]
     pub fn mask(&self, node: u32) -> u8 {
         self.mask.get(node as usize).copied().unwrap_or(0)
@@ -223,4 +216,33 @@ impl GraphView<'_> {
             self.links.get(slot as usize).copied()
         }
     }
+}
+
+/// A voxel at a file index: it fills `[i, i+1) x [j, j+1) x [k, k+1)`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Voxel {
+    /// File index, finest voxels; may be negative.
+    pub index: [i32; 3],
+    /// sRGB colour.
+    pub color: [u8; 3],
+    /// None: the file has none.
+    pub normal: Option<PackedNormal>,
+}
+
+/// Receives the progress of long work, from any thread.
+pub trait Progress: Sync {
+    /// A piece of work with `steps` steps begins (0: unknown).
+    fn begin(&self, what: &str, steps: u64);
+    fn advance(&self, steps: u64);
+    /// The piece of work is done.
+    fn end(&self);
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _what: &str, _steps: u64) {}
+    fn advance(&self, _steps: u64) {}
+    fn end(&self) {}
 }

@@ -11,7 +11,6 @@ pub struct Opacity(pub [u8; 3]);
 pub const MOST_OPACITY: u8 = 15;
 
 impl Opacity {
-    /// Opaque from all sides.
     pub const OPAQUE: Self = Self([0xff; 3]);
 
     /// From opacities by axis, seen from the side of low and of high coordinates; clamped to 15.

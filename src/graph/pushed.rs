@@ -1,11 +1,9 @@
-//! Pushed voxels, until they are sorted.
-//!
-//! Their number is often unknown. A growing `Vec` holds the old and the new copy while it moves, up to three times its
-//! contents. So voxels are kept in pieces, which become one array at the end, each freed after it is copied.
+//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents while it moves. So voxels
+//! are kept in pieces, which become one array at the end, each freed after it is copied.
 
 use rayon::prelude::*;
 
-use super::build_error::{BuildError, MAX_SIDE};
+use super::build::{BuildError, MAX_SIDE};
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
@@ -36,7 +34,6 @@ pub(super) struct PushedVoxel {
     /// Packed index while pushing, then the Morton key. Two halves, because eight-byte alignment would cost four bytes.
     key_high: u32,
     key_low: u32,
-    /// Number of voxels pushed before.
     sequence: u32,
     pub(super) color: [u8; 3],
     pub(super) normal: PackedNormal,

@@ -104,7 +104,6 @@ impl VisibleSides {
     }
 }
 
-/// Narrow numbers at the border of a block.
 #[inline(always)]
 fn wires<const N: usize>(numbers: [Narrow; N], bits: u32) -> [Short; N] {
     numbers.map(|number| Short::narrow(number, bits))

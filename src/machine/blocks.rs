@@ -33,7 +33,6 @@ numbered! {
     ToScreenDivide,
     /// Is a node, by its depth, within the level of detail?
     DetailDepth,
-    /// Size limit of a clip-space record.
     SizeLimit,
     /// Is a clip-space record no larger, along one axis?
     SizeClip,
@@ -45,9 +44,7 @@ numbered! {
     OctantOrder,
     /// The children's vertices, one coordinate.
     VertexPool,
-    /// A child's silhouette planes.
     ChildPlanes,
-    /// A child's corners in object space.
     ChildCorners,
     /// The least and the greatest of a child's vertices, one coordinate.
     ChildSpan,
@@ -57,17 +54,14 @@ numbered! {
     MarginGap,
     /// A clip-space box and the edges of a node, along one axis.
     BorderClip,
-    /// A clip-space box and a bisector.
     BisectorClip,
     /// Does a clip-space box leave a node by at most its width, along one axis?
     NearNode,
     /// One coordinate of a clip-space cage in the left or the right half.
     HalfClip,
-    /// A plane's constant in a quadrant.
     PlaneQuadrant,
     /// A screen-space box and the edges of a node, along one axis.
     BorderScreen,
-    /// A screen-space box and a bisector.
     BisectorScreen,
     /// Two halves along each axis to quadrants.
     Quadrants,
@@ -75,11 +69,9 @@ numbered! {
     NodeChoice,
     /// The middle of a cage, one coordinate.
     CageCentre,
-    /// The half that contains a centre, and the centre's place there.
     CentreHalf,
     /// The sample that holds a screen-space centre, along one axis.
     CentreSample,
-    /// The planes of a cube's twelve edges.
     CubePlanes,
     /// From which side rays reach a cube that is not before the eye.
     CubeFront,
@@ -118,7 +110,6 @@ numbered! {
     FillRead,
     /// A fill vector is written.
     FillWrite,
-    /// A node is read: its mask and its first child.
     NodeRead,
     /// The attributes of a node are read. The record loop does not use them.
     AttributeRead,

@@ -118,8 +118,8 @@ impl CageCoordinate for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The image-order paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the eight children, by 4 midpoints
-    /// along x, then 6 along y, then 9 along z. The order is normative, because midpoints are rounded down.
+    /// The image-order paper's 27-vertex pool (3.4): the 3 x 3 x 3 vertices of the eight children, by 4 midpoints along
+    /// x, 6 along y, 9 along z. The order is normative, because midpoints are rounded down.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.

@@ -130,7 +130,6 @@ impl Canvas<'_> {
         divided
     }
 
-    /// Draws all samples of a node that are not full.
     fn draw_all<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,

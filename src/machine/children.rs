@@ -1,5 +1,5 @@
-//! Subdivision: a record's children, in the order of R9 (`SPEC.md`), their vertices, and which of them are pushed
-//! (image-order paper, 3.2 and 3.4).
+//! Subdivision: a record's children, in the order of R9 (`SPEC.md`), and their vertices (image-order paper, 3.2 and
+//! 3.4).
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -168,7 +168,6 @@ pub(super) fn child_cube<P: Probe>(
     })
 }
 
-/// One coordinate of the vertices of a record's children.
 #[inline(always)]
 pub(super) fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate: &L) -> L::Pool {
     let pool = coordinate.pool(dp);

@@ -1,5 +1,5 @@
-//! The frame's constants as machine words, loaded before the first record. The only module of the machine that
-//! multiplies, on the host. Every load checks that the constant fits its word.
+//! The frame's constants as machine words. The only module of the machine that multiplies, on the host. Every load
+//! checks that the constant fits its word.
 
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
@@ -103,7 +103,6 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Loads a frame; probes do not see it.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         let options = &setup.options;
         let outline = options.coverage.outline_rule();
@@ -242,7 +241,6 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 
-/// Clamps to 64 bits.
 fn clamped(value: i128) -> i64 {
     let most = if value < 0 { i64::MIN } else { i64::MAX };
     i64::try_from(value).unwrap_or(most)

@@ -1,5 +1,5 @@
-//! The machine's counters: one table for the frame's statistics, their descriptions, and the fields in which the steps
-//! count. A new counter is a row here and a line where the event occurs.
+//! The machine's counters: their fields, names and descriptions. A new one is a row here and a line where the event
+//! occurs.
 
 use crate::project::Stats;
 
@@ -17,7 +17,6 @@ pub struct CounterInfo {
 
 macro_rules! counters {
     ($($name:ident: $unit:literal, [$($file:literal),*], $meaning:literal;)*) => {
-        /// Counts of a frame, one field per counter.
         #[derive(Debug, Default)]
         pub(super) struct Counts {
             $(#[doc = $meaning] pub(super) $name: u64,)*

@@ -1,5 +1,4 @@
-//! The work on one record without its children: it is changed to screen space, then drawn or dropped (`SPEC.md`, R7, and
-//! R10 for the graph's depth), or subdivided.
+//! The work on one record without its children: it is drawn, dropped (`SPEC.md`, R7, R10) or subdivided.
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -114,7 +113,6 @@ fn centre_sample<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Draws a solid by its silhouette.
 fn draw_solid<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,

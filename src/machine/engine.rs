@@ -100,7 +100,6 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
-    /// Clears a frame, and returns empty fill vectors of its size.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
         frame.set_blending(setup.options.coverage.blends());

@@ -19,7 +19,6 @@ use crate::frame::{FillVectors, QuadNode};
 const LEVELS_BELOW: u32 = 2;
 const WORD_BITS: u32 = 16;
 const ALL_DRAWN: u16 = u16::MAX;
-/// No word is in the register.
 const NO_WORD: u64 = u64::MAX;
 
 /// Fill vectors, joined or not.
@@ -30,7 +29,6 @@ pub(super) struct FillStore<'f> {
     words: Vec<u16>,
     /// The address of the word in the register.
     latched: Cell<u64>,
-    /// Whether full nodes reject records.
     pub(super) rejects_full: bool,
 }
 
@@ -100,7 +98,6 @@ impl<'f> FillStore<'f> {
         self.latched.set(NO_WORD);
     }
 
-    /// Reads a node's vector.
     #[inline(always)]
     pub(super) fn read<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
         if self.is_joined(node) {
@@ -164,7 +161,6 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Replaces the vector of a node that is not joined, and returns the previous one.
     pub(super) fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         self.vectors.replace(node, vector)
     }
@@ -227,7 +223,6 @@ impl<'f> FillStore<'f> {
         is_full.then(|| (node.ancestor(node.level - 1), 1 << node.in_parent()))
     }
 
-    /// Reads a vector that is not joined.
     #[inline(always)]
     fn read_vector<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
         let (address, vector) = (node.address() as u64, self.vectors.vector(node));
@@ -259,7 +254,6 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// A joined node's vector, from its word.
     fn in_word(&self, node: QuadNode) -> u8 {
         let (of, at) = self.word_at(node);
         let word = self.words[at];

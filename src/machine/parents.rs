@@ -133,7 +133,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         wanted.min(self.job.constants.levels)
     }
 
-    /// Draws all samples of the tile that are not full.
     fn draw_tile(&mut self, tile: QuadNode, most_records: u64) -> Result<bool, EngineError> {
         if self.job.organisation.stack == StackHolds::Children {
             return self.draw_object(tile, most_records);
@@ -181,7 +180,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.work_on_new()
     }
 
-    /// Puts a parent on the stack at `address`.
     pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
         let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
         dp.resume(parent.record.cube.level);
@@ -347,7 +345,6 @@ pub(super) struct TileView {
 }
 
 impl TileView {
-    /// The view of a tile before its first record.
     pub(super) fn new(tile: QuadNode) -> Self {
         let vector = |level: u32| {
             let child = tile.ancestor(level + 1);

@@ -14,7 +14,6 @@ use super::record::{Cube, Planes};
 /// Side of a plane on which all samples of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
-    /// On both, or unknown.
     Both,
     Positive,
     Negative,
@@ -118,9 +117,7 @@ impl Plane {
 pub(super) enum Cover {
     /// No sample is covered.
     None,
-    /// Some samples may be covered.
     Some,
-    /// All samples are covered.
     All,
 }
 
@@ -270,7 +267,6 @@ impl Silhouette {
     }
 }
 
-/// The plane through the eye that is perpendicular to an axis.
 fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord; 3] {
     let [a, b] = constants.axis_ab[axis];
     [a, b, planes.axis_c[axis]]
@@ -362,7 +358,6 @@ pub(super) fn move_out_of_quadrant<P: Probe>(
     }
 }
 
-/// Makes planes relative to a quadrant of their node.
 pub(super) fn move_to_quadrant<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -183,7 +183,6 @@ pub(super) fn margins<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, w: &L, 
     margins
 }
 
-/// The closed halves that a box, widened by `margin`, overlaps.
 fn closed<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, relative: &L, margin: &L) -> Halves {
     let lowered = relative.zip(margin, |v, m| dp.sub(v, m));
     let raised = relative.zip(margin, |v, m| dp.add(v, m));

@@ -98,7 +98,7 @@ pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L
     near
 }
 
-/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node; `None`: outside. The node's edges are
+/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node. `None`: outside. The node's edges are
 /// the picture's wherever the parent's box left the picture.
 fn is_inside<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

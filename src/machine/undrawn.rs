@@ -1,5 +1,4 @@
-//! The first undrawn sample of a box, for records across a bisector (`SPEC.md`, R6) and for `any`. This search continues
-//! where a box lies across a bisector, unlike that for the smallest node.
+//! The first undrawn sample of a box, for records across a bisector (`SPEC.md`, R6) and for `any`.
 
 use hwmodel::{Datapath, Probe, Stage};
 
@@ -39,7 +38,6 @@ trait ImageBox: Copy {
         quad: QuadNode,
     ) -> (u8, Self::Tested);
 
-    /// The box relative to a quadrant of a node.
     fn in_quadrant<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

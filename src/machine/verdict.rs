@@ -75,11 +75,9 @@ pub(super) fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn. This is tested:
-///
-/// - in the organisation that does not read occluded nodes, by the rays of undrawn samples;
-/// - otherwise for records up to the size of a sample across a bisector, where the search for the smallest node stops.
-///   Without this test all parts of a solid along a bisector would be kept until both its sides are full.
+/// Whether all samples that a record may cover are drawn. Tested where occluded nodes are not read, by the rays of
+/// undrawn samples; otherwise for records up to the size of a sample across a bisector, where the search for the
+/// smallest node stops: all parts of a solid along a bisector would be kept until both its sides are full.
 pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -167,7 +165,6 @@ pub(super) fn apply_level_of_detail<P: Probe, L: CageCoordinate>(
     };
 }
 
-/// Whether a part of a record is before the near plane.
 fn crosses_near<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,

@@ -10,7 +10,6 @@ pub(super) enum Event<'r, L> {
     Turn(QuadNode),
     /// A child was pushed; with its place in the occlusion order, 0 (nearest) to 7.
     Pushed(u8),
-    /// A record was made, and has its place in the picture.
     Made(&'r Record<L>),
 }
 

@@ -79,7 +79,7 @@ pub const AMBIENT: u32 = 64;
 /// Light by direction: a share of 256.
 #[derive(Clone, Copy)]
 pub(super) struct Light {
-    /// Direction to the key light; `None`: full light everywhere.
+    /// Direction to the key light. `None`: full light everywhere.
     key: Option<DVec3>,
 }
 

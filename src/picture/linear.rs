@@ -1,10 +1,16 @@
 //! Conversion between sRGB bytes and linear light, by tables.
 
+use super::Shading;
+use super::color::Light;
+use super::shade::towards_eye;
+use super::sight::Sight;
+use crate::graph::{Graph, PackedNormal};
+use crate::project::FrameSetup;
+use rayon::prelude::*;
 use std::sync::LazyLock;
 
 use crate::srgb::to_linear;
 
-/// Number of values of 16 bits of linear light.
 const LIGHTS: usize = 1 << 16;
 
 /// Linear light of the sRGB bytes, 16 bits per channel, and back.
@@ -56,6 +62,30 @@ impl Linear {
     pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
         light.map(|value| self.nearest[usize::from(value as u16)])
     }
+}
+
+/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend.
+///
+/// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
+/// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
+pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
+    if !setup.options.coverage.blends() {
+        return Vec::new();
+    }
+    let sight = Sight::new(setup);
+    let [_, _, back] = sight.axes();
+    let light = Light::new(shading, sight.axes());
+    let linear = Linear::tables();
+    (0..graph.len() as u32)
+        .into_par_iter()
+        .map(|node| {
+            let normal = PackedNormal::decode(graph.normal_of(node));
+            let normal = normal.map_or(back, |normal| towards_eye(normal, -back));
+            let share = light.on(normal);
+            let full = linear.decode(graph.color_of(node));
+            full.map(|channel| ((channel * share) >> 8) as u16)
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,12 +1,8 @@
-//! From samples to a picture: colour, normal, depth; files; the hash. Rules: `spec/picture.md`.
-//!
-//! An engine only determines the voxel of each sample. The rest is made here, so two engines that agree on the voxels
-//! agree on every byte of the picture.
+//! From samples to a picture (`spec/picture.md`): colour, normal, depth, files and the hash. An engine only determines the
+//! voxel of each sample, so engines that agree on the voxels agree on every byte.
 
 mod color;
-mod error;
 mod hash;
-mod lights;
 mod linear;
 pub mod npy;
 mod paint;
@@ -20,12 +16,11 @@ mod shares;
 mod sight;
 
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
-pub use error::ResolveError;
 pub use hash::{hash, hash_rows};
-pub use lights::lights;
-pub use linear::Linear;
+
+pub use linear::{Linear, lights};
 pub use pixels::Pixels;
-pub use resolve::{Resolver, resolve};
+pub use resolve::{ResolveError, Resolver, resolve};
 pub use rows::{Buffer, Rows};
 pub use shade::Shader;
 

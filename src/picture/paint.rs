@@ -1,7 +1,5 @@
-//! The colours of a frame, one row of pixels at a time.
-//!
-//! Work is shared between neighbours: samples without a voxel are found sixteen at a time, and consecutive samples of one
-//! node look it up once. With several samples per pixel their light is added, and mixed once.
+//! The colours of a frame, one row of pixels at a time. Neighbours share work: samples without a voxel are found
+//! sixteen at a time, and consecutive samples of one node look it up once.
 
 use super::ResolveError;
 use super::shade::{Shader, is_turned};
@@ -272,7 +270,6 @@ impl<'p, const N: usize> Painter<'p, N> {
     }
 }
 
-/// The share of 256 of a light.
 #[inline]
 fn lit(light: [u32; 3], share: u32) -> [u32; 3] {
     light.map(|channel| (channel * share) >> 8)

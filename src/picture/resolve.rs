@@ -1,5 +1,6 @@
 //! Samples become pixels.
 
+use crate::budget::Shortage;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -10,7 +11,7 @@ use super::paint::Painter;
 use super::rows::{Buffer, Rows};
 use super::shade::{Shader, Surface};
 use super::shares::Shares;
-use super::{Background, NO_DEPTH, Picture, ResolveError, Shading};
+use super::{Background, NO_DEPTH, Picture, Shading};
 use crate::budget;
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
@@ -153,7 +154,6 @@ impl<'f> Resolver<'f> {
         Ok(pixels)
     }
 
-    /// Calls `each` with each row of pixels, on all threads if there are enough pixels.
     fn each_row<T: Send>(
         &self,
         rows: Range<u32>,
@@ -275,4 +275,21 @@ impl Rows for Resolver<'_> {
 
 fn flat<T, const N: usize>(items: Vec<[T; N]>) -> Vec<T> {
     items.into_flattened()
+}
+
+/// Why a frame and its set-up make no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResolveError {
+    /// Frame and set-up differ in size.
+    #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
+    Size(u32, u32, u32, u32),
+    /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
+    #[error("the file index of a voxel is beyond 32 bits")]
+    Index,
+    /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
+    #[error("the frame does not tell which voxels are seen")]
+    Voxel,
+    /// The system refuses the memory of the pixels.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
 }

@@ -62,7 +62,6 @@ impl Buffer {
 /// Pixels per group.
 const SHARE: u32 = 1 << 17;
 
-/// A picture whose rows are made on demand.
 pub trait Rows {
     /// Failure of making rows.
     type Error;

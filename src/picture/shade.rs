@@ -15,7 +15,7 @@ pub struct Shader<'g> {
     pub(super) sight: Sight,
     pub(super) light: Light,
     pub(super) linear: &'static Linear,
-    /// Linear light of the background; `None`: transparent.
+    /// Linear light of the background. `None`: transparent.
     background: Option<[u32; 3]>,
 }
 
@@ -56,7 +56,7 @@ impl<'g> Shader<'g> {
         self.light_of(node, &self.surface(x, y, node, voxel))
     }
 
-    /// Linear light of a sample that shows nothing; `None`: transparent.
+    /// Linear light of a sample that shows nothing. `None`: transparent.
     pub fn background(&self) -> Option<[u32; 3]> {
         self.background
     }

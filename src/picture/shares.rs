@@ -1,9 +1,9 @@
 //! The lit share of a sample's colour, by its node's normal: for most samples a look-up, a product and two compares.
 //!
-//! There are 65536 packed normals. The shares of each normal and its opposite are cached. The sample's ray decides between
-//! them (`is_turned`): normal times direction against a quarter of the direction's length. Both are nearly linear along a
-//! row, and computed here in `f32`. Where they are too close for `f32`, the rule itself decides. So the result is always
-//! that of [`Shader::light`](super::Shader::light).
+//! The shares of each of the 65536 packed normals and of its opposite are cached. The sample's ray decides between them
+//! (`is_turned`): normal times direction against a quarter of the direction's length, both nearly linear along a row
+//! and computed in `f32`. Where they are too close, the rule itself decides. So the result is always that of
+//! [`Shader::light`](super::Shader::light).
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -1,7 +1,5 @@
-//! The point at which a sample's ray meets its voxel.
-//!
-//! Host arithmetic in f64 with only `+ - * /` and square roots, which IEEE 754 rounds correctly: the same bits on every
-//! computer.
+//! The point at which a sample's ray meets its voxel. Only `+ - * /` and square roots in f64, which IEEE 754 rounds
+//! correctly: the same bits on every computer.
 
 use glam::{DMat3, DVec3};
 

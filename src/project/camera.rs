@@ -59,7 +59,6 @@ pub struct Axes {
 }
 
 impl Camera {
-    /// The camera's axes.
     pub fn axes(&self) -> Result<Axes, CameraError> {
         if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return Err(CameraError::FieldOfView(self.fov_degrees));

@@ -10,7 +10,6 @@ use super::options::SCREEN_GUARD_SHIFT;
 pub(super) struct Edges {
     /// X and Y in units of the image root times depth, W in voxels.
     pub(super) edge: [[f64; 3]; 3],
-    /// Samples per side of the image root.
     pub(super) root_samples: f64,
 }
 

@@ -37,7 +37,7 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' unlit colours. `of_node`: colours by graph node; `colors` has the size of `setup` and is
+    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` has the size of `setup` and is
     /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,

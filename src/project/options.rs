@@ -1,4 +1,4 @@
-//! Settings of a frame: words, cage, drawing rule, level of detail, samples; and numbers that follow only from them.
+//! Settings of a frame (words, cage, drawing rule, level of detail, samples), and numbers that follow only from them.
 
 use serde::{Deserialize, Serialize};
 
@@ -142,14 +142,14 @@ impl OutlineRule {
 pub struct SetupOptions {
     /// Width of a machine word, bits (16..=64).
     pub bits: u32,
-    /// Fraction bits of clip depths (voxels) and of screen positions (pixels); `None`: as many as the frame has room for.
+    /// Fraction bits of clip depths (voxels) and of screen positions (pixels). `None`: as many as the frame has room for.
     pub frac: Option<u32>,
     pub cage: CageKind,
     /// Largest deviation, in samples, at which a record may change from clip space to screen space: 0 never, infinity
     /// always. Rules other than `any` and `center` allow only 0.
     pub tolerance_px: f64,
     pub coverage: Coverage,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves.
+    /// Nodes of at most this many pixels are drawn as one voxel. 0: only leaves.
     pub lod_px: f64,
     /// Logarithm of the samples per pixel and axis: 0, 1 or 2.
     pub aa_log2: u32,

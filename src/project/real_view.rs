@@ -150,7 +150,6 @@ impl Levels {
         (0..=self.bound).map(at).collect()
     }
 
-    /// The same depth at all levels.
     fn all(&self, depth: i64) -> Vec<i64> {
         vec![depth; self.bound as usize + 1]
     }

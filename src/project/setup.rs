@@ -104,7 +104,7 @@ pub struct FrameSetup {
     /// Least depth `W` at which `any` and `center` draw, units of `2^-clip_frac` voxels. `exact` draws everything before
     /// the eye.
     pub near: i64,
-    /// By octree level, least depth `W` of a record that may change to screen space; `i64::MAX`: none may, as under the
+    /// By octree level, least depth `W` of a record that may change to screen space. `i64::MAX`: none may, as under the
     /// rules that draw outlines.
     pub screen_depth: Vec<i64>,
     /// By octree level, least depth `W` of a clip-space node with children that level of detail makes a solid;
@@ -117,7 +117,7 @@ pub struct FrameSetup {
     pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
-    /// Size, in samples, up to which a node with children becomes a solid; `None`: only leaves are drawn.
+    /// Size, in samples, up to which a node with children becomes a solid. `None`: only leaves are drawn.
     pub lod_limit: Option<ShiftSum>,
     /// The object's place, to name voxels and depths.
     pub placement: Placement,

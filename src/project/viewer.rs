@@ -1,19 +1,15 @@
-//! A picture that is kept, and drawn again only when the set-up changes.
-//!
-//! Ownership guarantees that an unchanged set-up means an unchanged picture. A [`Viewer`] owns the engine and the frame,
-//! lends the frame only for reading, and borrows the graph, so only the set-up can change.
+//! A picture that is kept, and drawn again only when the set-up changes: a [`Viewer`] owns the engine and the frame,
+//! lends the frame only for reading, and borrows the graph.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
 use crate::budget::{self, Shortage};
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
 
-/// Contents of a viewer's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Contents {
     /// The node only ([`Frame::nodes_only`]).
     Nodes,
-    /// Node and voxel.
     #[default]
     Voxels,
     /// Node, voxel, and the number of processed records.
@@ -93,8 +89,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.forget();
     }
 
-    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. Errors: as [`Engine::draw`];
-    /// nothing is shown then.
+    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. After an error nothing is shown.
     pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
         if self.shows(setup) {
             return Ok(false);
@@ -106,13 +101,13 @@ impl<'g, E: Engine> Viewer<'g, E> {
     }
 
     /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are
-    /// 0. Errors: as [`Engine::render`]; nothing is shown then.
+    /// 0. After an error nothing is shown.
     pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
         self.render_lit(setup, &[])
     }
 
-    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. Errors: as
-    /// [`Engine::render`]; nothing is shown then.
+    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. After an
+    /// error nothing is shown.
     pub fn render_lit(
         &mut self,
         setup: &FrameSetup,

@@ -34,7 +34,6 @@ pub(super) struct Line<'v, N> {
     pub(super) direction: [i32; 3],
 }
 
-/// A cube of the octree with its line functions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cube<N> {
     /// Lowest corner, finest voxels.

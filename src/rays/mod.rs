@@ -1,9 +1,9 @@
-//! The exact oracle: for every sample, the nearest solid cell on its ray, of the graph as level of detail cuts it.
+//! The exact oracle: for every sample, the nearest solid cell on its ray, of the graph as level of detail cuts it
+//! (`spec/rays.md`).
 //!
 //! It starts from the same integers as every other engine and computes in integers that cannot overflow, so its picture
 //! is the meaning of *exact*. It is simple enough to be checked by reading, and shares no code with the other engines.
-//! Drawing rule, cage and tolerance of the set-up are ignored: a sample shows the voxel at its centre. Rules:
-//! `spec/rays.md`.
+//! Drawing rule, cage and tolerance are ignored: a sample shows the voxel at its centre.
 
 mod line;
 mod number;

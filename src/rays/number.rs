@@ -1,7 +1,5 @@
-//! The integers of line functions.
-//!
-//! A line function is a plane (three integers of at most 127 bits) times a ray direction (three integers of at most 2^18).
-//! Only the most extreme views leave `i128`; [`Wide`] holds those. [`super::ray_frame::RayFrame`] decides once per frame.
+//! The integers of line functions: a plane (three integers of at most 127 bits) times a ray direction (three of at most
+//! 2^18). Only the most extreme views leave `i128`; [`Wide`] holds those.
 
 use std::ops::{Add, Sub};
 

@@ -25,7 +25,7 @@ pub(super) struct RayFrame {
     /// The eye in units of `2^-sub_levels` voxels, rounded down and up.
     eye_floor: [i64; 3],
     eye_ceil: [i64; 3],
-    /// By octree level, least depth of a node with children that level of detail makes a solid; `None`: none.
+    /// By octree level, least depth of a node with children that level of detail makes a solid. `None`: none.
     lod_depth: Vec<Option<i128>>,
 }
 
@@ -66,7 +66,6 @@ impl RayFrame {
         least
     }
 
-    /// Direction, in clip space, of the ray of sample `(i, j)`.
     pub(super) fn ray(&self, i: u32, j: u32) -> [i64; 3] {
         [
             2 * i64::from(i) + 1,

@@ -46,7 +46,6 @@ impl<'w, N: Number> Search<'w, N> {
         }
     }
 
-    /// The nearest solid cell on the ray.
     pub(super) fn nearest(&mut self) -> Option<Seen> {
         let root = Cube {
             lo: [0; 3],
@@ -63,7 +62,6 @@ impl<'w, N: Number> Search<'w, N> {
             .flatten()
     }
 
-    /// The nearest solid cell in `node`, whose cube the ray meets.
     fn nearest_within(&mut self, node: u32, level: u32, cube: &Cube<N>) -> Option<Seen> {
         let is_leaf = level == self.view.depth || self.graph.mask(node) == 0;
         if is_leaf || self.view.is_solid_by_detail(cube.lo, level) {

@@ -6,7 +6,6 @@
 //! A signal handler must call [`remove_unfinished`] before it ends the program. The files of a killed process are removed
 //! by the next one that writes to the folder. It recognises them by name and by lock, which ends with the process.
 
-mod error;
 mod temporary;
 
 use std::fs::{self, File};
@@ -15,8 +14,6 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-pub use error::WholeError;
-use error::failed;
 pub use temporary::{FolderLock, TemporaryGuard, remove_unfinished, temporary_folder};
 use temporary::{in_progress, temporary, tidy};
 
@@ -88,7 +85,7 @@ fn target(path: &Path) -> PathBuf {
     }
 }
 
-/// Creates a folder in an existing one. Errors: [`WholeError::NoFolder`] if that does not exist; the system's errors.
+/// Creates a folder in an existing one; otherwise [`WholeError::NoFolder`].
 pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     match fs::create_dir(folder) {
         Ok(()) => Ok(()),
@@ -190,6 +187,29 @@ pub fn write_with(
 /// As [`write_with`], for existing bytes.
 pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
     write_with(path, overwrite, |file| file.write_all(bytes))
+}
+
+/// Why a file was not written. An older file is kept.
+#[derive(Debug, thiserror::Error)]
+pub enum WholeError {
+    #[error("{0} exists already")]
+    Exists(PathBuf),
+    /// Neither the folder nor the one above it exists.
+    #[error("{0}: there is no such folder")]
+    NoFolder(PathBuf),
+    #[error("{path}: {source}")]
+    Io {
+        /// The file, or its folder.
+        path: PathBuf,
+        source: io::Error,
+    },
+}
+
+pub(super) fn failed(path: &Path, source: io::Error) -> WholeError {
+    WholeError::Io {
+        path: path.to_owned(),
+        source,
+    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-use super::error::{WholeError, failed};
+use super::{WholeError, failed};
 
 /// Beginning and end of temporary names.
 const PREFIX: &str = ".shiftvox-";
@@ -109,7 +109,6 @@ pub struct FolderLock {
     _lock: Option<File>,
 }
 
-/// A temporary file for a place, locked while it is open.
 pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, TemporaryGuard)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let end = (0..=name.len().min(MOST_NAME))

@@ -175,7 +175,6 @@ enum Figure {
     Range([f64; 2]),
 }
 
-/// A row in a file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FileRow {
@@ -204,7 +203,6 @@ struct File {
     row: Vec<FileRow>,
 }
 
-/// One figure of one row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CostRow {
     pub(super) width: Option<u32>,
@@ -233,7 +231,6 @@ const MAX_WIDTH: u32 = 1 << 16;
 /// Largest memory, bytes.
 const MAX_BYTES: u64 = 1 << 50;
 
-/// Reads a file of rows.
 pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     let parsed: File = toml::from_str(text).map_err(|error| CostError::Syntax {
         file: file.to_owned(),

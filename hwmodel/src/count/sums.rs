@@ -176,7 +176,6 @@ impl Counter {
         cells.filter(|cell| cell.accesses != Accesses::default())
     }
 
-    /// One row, including fresh counts.
     fn row(&self, level: usize, row: usize) -> CountRow {
         let mut sum = self.settled[level][row];
         let set = level % SETS;

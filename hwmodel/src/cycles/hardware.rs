@@ -1,6 +1,5 @@
-//! The description of a hardware design: the width of each part.
-//!
-//! Read from TOML. `hwmodel/machines/` has four commented descriptions: `tiny`, `paper`, `light` and `wide`.
+//! The description of a hardware design, read from TOML. `hwmodel/machines/` has four: `tiny`, `paper`, `light` and
+//! `wide`.
 
 use std::collections::BTreeMap;
 
@@ -73,7 +72,7 @@ pub struct Hardware {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OuterMemory {
-    /// Bytes per cycle; 0: no limit.
+    /// Bytes per cycle. 0: no limit.
     pub bytes_per_cycle: u32,
 }
 
@@ -97,11 +96,10 @@ pub struct Organisation {
     pub leaf_masks: bool,
     /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk; 0: one walk per picture.
     pub tile_levels: u32,
-    /// Whether a node two levels above the finest voxels holds them as a mask of 64 bits, so that the nodes between are
-    /// not read. For trees stored level by level; needs `leaf_masks`.
+    /// Whether a node two levels above the finest voxels holds them as a mask of 64 bits, so that nodes between are not
+    /// read. For trees stored level by level; needs `leaf_masks`.
     pub bricks: bool,
-    /// Whether a record is compared with the drawn samples before its node is read, so that occluded nodes are not read.
-    /// Only under the rules that draw outlines.
+    /// Whether a record is tested for occlusion before its node is read. Only under the rules that draw outlines.
     pub hidden_unread: bool,
     /// Whether the lowest two levels of fill vectors are one word of 16 bits, one per sample.
     pub joined_fill: bool,
@@ -110,8 +108,7 @@ pub struct Organisation {
 }
 
 impl Organisation {
-    /// The organisation under a rule that does not draw outlines: without vertices that are recomputed, and without
-    /// occlusion tests.
+    /// The organisation under rules that do not draw outlines: without recomputed vertices and occlusion tests.
     #[must_use]
     pub fn without_outlines(self) -> Self {
         let stack = match self.stack {
@@ -133,19 +130,17 @@ pub enum StackHolds {
     /// A subdivided record pushes all visible children, each with its vertices.
     #[default]
     Children,
-    /// A subdivided record stays, with a mask of the remaining children, which are made one by one. Only subdivided
-    /// records are stored.
+    /// A subdivided record stays, with a mask of the remaining children, which are made one by one.
     Parents,
-    /// The path to a record: of each parent its node and the remaining children. Its vertices, planes and place in the
-    /// picture are computed back from those of its descendant.
+    /// The path to a record: of each parent its node and the remaining children. The rest is computed back from a
+    /// descendant.
     Path,
 }
 
 /// Most levels above the tiles of an image.
 pub const MAX_TILE_LEVELS: u32 = 8;
 
-/// Children of a record that may be in progress at the same time. A dependent one waits for the whole subtree of the
-/// earlier one.
+/// Children of a record that may be in progress at once. A dependent one waits for the subtrees of earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {

@@ -1,7 +1,5 @@
-//! Memories under contention: ports, banks, caches, the output of pixels.
-//!
-//! Accesses are booked in the order in which their visits start. An access is served after those booked before it at
-//! the same port.
+//! Memories under contention: ports, banks, caches, the output of pixels. Accesses are booked, and served at each port,
+//! in the order in which their visits start.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -14,7 +12,6 @@ use crate::memory::PIXEL_BITS;
 /// Cycles for which an access takes the port of a sequential hardware's cache: lookup, and inspection of the result.
 const LOOK_UP: u64 = 2;
 
-/// An access to a memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Access {
     pub(super) address: u64,
@@ -104,7 +101,6 @@ impl Port {
     }
 }
 
-/// The port to outer memory: one transfer after the other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OuterPort {
     of: OuterMemory,
@@ -341,14 +337,12 @@ impl BanksState {
         (all(&self.reads), all(&self.writes))
     }
 
-    /// Least cycles for the busiest bank.
     fn bound(&self) -> u64 {
         let ports = self.reads.iter().chain(&self.writes);
         ports.map(Port::bound).max().unwrap_or(0)
     }
 }
 
-/// The output of pixels.
 #[derive(Debug)]
 pub(super) struct PixelsState {
     of: Pixels,
@@ -392,13 +386,11 @@ impl PixelsState {
         self.last
     }
 
-    /// Least cycles for the pixels to leave.
     pub(super) fn drain_bound(&self) -> u64 {
         self.port.accesses * u64::from(self.of.drain_interval)
     }
 }
 
-/// All memories of a hardware.
 #[derive(Debug)]
 pub(super) struct Memories {
     /// Per lane, or per context.

@@ -85,7 +85,6 @@
 //!   a pipeline. For few contexts this is optimistic; raise latencies.
 //! - Others see a turn's effects from its first cycle (rule 2), up to one turn's length too early.
 //! - Passing results between stages and finding ready records take no time.
-mod contexts;
 mod hardware;
 mod memories;
 mod observe;

@@ -1,7 +1,5 @@
-//! The turns of a frame, recorded to be simulated again on other hardware.
-//!
-//! This is valid where the result of a turn does not depend on its time: where all records that share a part of the
-//! picture run one after the other. Otherwise [`simulate`](super::simulate) needs the workload itself.
+//! The turns of a frame, recorded to be simulated again on other hardware. Valid where the result of a turn does not
+//! depend on its time: where records that share a part of the picture run one after the other.
 
 use std::collections::HashMap;
 use std::ops::Range;

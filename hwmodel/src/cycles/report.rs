@@ -124,8 +124,8 @@ pub struct StackReport {
     pub deepest: u64,
     /// Most records on all stacks and in all contexts.
     pub most_live: u64,
-    /// Most records at once whose turn is over and some of whose descendants are not: entries of the table that keeps
-    /// the order.
+    /// Most records at once that had their turn and have unfinished descendants: entries of the table that keeps the
+    /// order.
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,

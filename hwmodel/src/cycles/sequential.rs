@@ -1,11 +1,10 @@
-//! Sequential hardware (rules 12 to 14): one access per cycle and visit, and tiles. `contexts.rs` shares lanes.
+//! Sequential hardware (rules 12 to 14): one access per cycle and visit, and tiles.
 //!
 //! Requests of a cycle are served when all its other events are over: the earliest first; of one cycle, nodes before
 //! attributes, and the lowest lane first.
 
 use std::collections::VecDeque;
 
-use super::contexts::Sharing;
 use super::hardware::Hardware;
 use super::report::Cause;
 use super::simulate::{Simulation, SimulationError};
@@ -51,7 +50,6 @@ impl Asked {
 /// Progress of a context in its visit.
 #[derive(Debug, Default)]
 pub(super) struct Step {
-    /// The tile that it begins.
     pub(super) tile: Option<u32>,
     /// Whether its event is the cycle of the answer that it waits for.
     waits: bool,
@@ -82,7 +80,6 @@ impl<W: Workload> Simulation<'_, W> {
         is_asked && self.wheel.next_at().is_none_or(|next| next > now)
     }
 
-    /// Serves the requests of the cycle `now`.
     pub(super) fn serve_asked(&mut self, now: u64) {
         let mut asked = std::mem::take(&mut self.asked.now);
         asked.sort_unstable();
@@ -118,7 +115,6 @@ impl<W: Workload> Simulation<'_, W> {
         self.waits_until(now, at, context);
     }
 
-    /// The answer for a context is ready in the cycle `at`.
     fn waits_until(&mut self, now: u64, at: u64, context: u32) {
         if at == now {
             self.waits_no_more(now, context);
@@ -257,5 +253,73 @@ impl<W: Workload> Simulation<'_, W> {
             return Ok(());
         }
         self.give(now, context)
+    }
+}
+
+/// The holder of a lane, and its requests by other contexts.
+#[derive(Debug)]
+pub(super) struct Sharing {
+    holder: u32,
+    /// Whether the holder waits for a cache or a tile, so that another may have the lane.
+    waits: bool,
+    /// First cycle and context of each request, in order.
+    wanted_by: Vec<(u64, u32)>,
+}
+
+impl Sharing {
+    /// Of a lane whose first context `first` has the lane, and waits for a tile.
+    pub(super) fn new(first: u32) -> Self {
+        Self {
+            holder: first,
+            waits: true,
+            wanted_by: Vec::new(),
+        }
+    }
+}
+
+impl<W: Workload> Simulation<'_, W> {
+    fn sharing(&mut self, context: u32) -> &mut Sharing {
+        &mut self.asked.sharing[(context / self.hardware.contexts) as usize]
+    }
+
+    pub(super) fn begins_to_wait(&mut self, context: u32) {
+        let sharing = self.sharing(context);
+        if sharing.holder == context {
+            sharing.waits = true;
+            self.asked.lanes.push(context);
+        }
+    }
+
+    /// The answer for a context is ready in the cycle `now`: a holder continues in the next one.
+    pub(super) fn waits_no_more(&mut self, now: u64, context: u32) {
+        let sharing = self.sharing(context);
+        if sharing.holder == context {
+            sharing.waits = false;
+            self.wheel.set(now + 1, context);
+            return;
+        }
+        let place = sharing.wanted_by.partition_point(|&of| of < (now, context));
+        sharing.wanted_by.insert(place, (now, context));
+        self.asked.lanes.push(context);
+    }
+
+    /// Changes holders that wait while others want the lane, at the end of the cycle `now`.
+    pub(super) fn give_lanes(&mut self, now: u64) {
+        while let Some(context) = self.asked.lanes.pop() {
+            let sharing = self.sharing(context);
+            if !sharing.waits || sharing.wanted_by.is_empty() {
+                continue;
+            }
+            let (since, next) = sharing.wanted_by.remove(0);
+            let before = std::mem::replace(&mut sharing.holder, next);
+            sharing.waits = false;
+            self.contexts[before as usize].step.away_from = now + 1;
+            let step = &mut self.contexts[next as usize].step;
+            step.away += now + 1 - step.away_from;
+            step.wanted += now + 1 - since;
+            // It inspects its result, or begins its tile.
+            let looks = u64::from(step.tile.is_none());
+            self.wheel.set(now + 1 + looks, next);
+        }
     }
 }

@@ -88,7 +88,6 @@ pub(super) struct Context {
     pub(super) from: u32,
     steal: u64,
     spill: u64,
-    /// Whether the record is in screen space.
     in_screen_space: bool,
     /// The next context in line at its block.
     behind: u32,
@@ -382,7 +381,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(ends, context);
     }
 
-    /// Ends a turn: its children go on the stack.
     fn end_turn(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         self.account(now);
         let of = &mut self.contexts[context as usize];

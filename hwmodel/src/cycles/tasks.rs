@@ -1,7 +1,7 @@
 //! Unfinished records, their dependences, and the longest chain.
 //!
-//! A record is *finished* when its turn and those of all its descendants are over. A child waits until the earlier
-//! siblings that it depends on are finished. The same times without contention give the span.
+//! A record is *finished* when its turn and those of all its descendants are over. A child waits for the earlier
+//! siblings that it depends on. The same times without contention give the span.
 
 use super::hardware::Independence;
 use super::turn::Child;
@@ -106,7 +106,6 @@ impl Tasks {
         self.tasks[task as usize].lane
     }
 
-    /// Whether `a` is an earlier sibling of `b`.
     #[inline]
     pub(super) fn is_earlier_sibling(&self, a: u32, b: u32) -> bool {
         let (a, b) = (&self.tasks[a as usize], &self.tasks[b as usize]);

@@ -41,7 +41,6 @@ impl Totals {
         }
     }
 
-    /// The report of a frame that took `cycles`.
     pub(super) fn report(
         mut self,
         hardware: &Hardware,

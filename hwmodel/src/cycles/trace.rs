@@ -142,7 +142,7 @@ impl Recorder {
     /// blocks, per context its stage, record, and whether it waits. One nanosecond is one cycle.
     ///
     /// # Errors
-    /// Those of `to`. As `to` has them.
+    /// Those of `to`.
     pub fn write_vcd(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
         let wires = Wires {
             contexts: hardware.contexts,
@@ -318,7 +318,6 @@ fn id(mut number: u32) -> String {
     }
 }
 
-/// A stage as one word.
 fn word(stage: Stage) -> String {
     let letters = stage.name().chars().filter(|&letter| letter != '?');
     letters

@@ -28,8 +28,6 @@ pub trait Workload {
     ///
     /// # Errors
     /// Those of the workload.
-    /// # Errors
-    /// As the workload has them.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
     /// Number of tiles of the picture, which replace [`Self::start`] on hardware that
@@ -233,7 +231,6 @@ impl TurnLog {
         &self.most_passes
     }
 
-    /// Moves the turn's visits and accesses to `plan`.
     #[inline]
     pub(super) fn take(&mut self, plan: &mut TurnVisits) {
         plan.visits.clear();
@@ -403,7 +400,6 @@ pub(super) struct Visit {
     pub(super) passes: u64,
 }
 
-/// A turn's visits, in order.
 #[derive(Debug, Default)]
 pub(super) struct TurnVisits {
     pub(super) visits: Vec<Visit>,
@@ -414,6 +410,5 @@ pub(super) struct TurnVisits {
     pub(super) worst: u64,
     /// Octree level of the children.
     pub(super) child_level: u32,
-    /// Whether the record changed to screen space.
     pub(super) changed_to_screen: bool,
 }

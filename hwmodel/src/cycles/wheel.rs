@@ -1,5 +1,4 @@
-//! A timing wheel: the next event of each context. Each context has at most one event, so the lists of the wheel are
-//! links between contexts and need no allocation.
+//! A timing wheel: the next event of each context. A context has at most one, so its lists are links between contexts.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -60,7 +59,6 @@ impl Wheel {
         self.last[slot] = context;
     }
 
-    /// The cycle of the next event.
     pub(super) fn next_at(&self) -> Option<u64> {
         match self.next_slot() {
             Some(slot) => {
@@ -71,7 +69,6 @@ impl Wheel {
         }
     }
 
-    /// Takes the next event: its cycle and its context.
     #[inline]
     pub(super) fn take(&mut self) -> Option<(u64, u32)> {
         let slot = match self.next_slot() {

@@ -107,7 +107,6 @@ impl MissCurve {
         self.distances[distance] += 1;
     }
 
-    /// Adds to the mark of a time.
     fn mark(&mut self, time: u32, add: u32) {
         let mut at = time as usize + 1;
         while let Some(sum) = self.tree.get_mut(at) {
@@ -116,7 +115,6 @@ impl MissCurve {
         }
     }
 
-    /// Marks of times up to this one.
     fn marks_up_to(&self, time: u32) -> u32 {
         let mut at = time as usize + 1;
         let mut sum = 0u32;

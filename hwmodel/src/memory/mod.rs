@@ -3,7 +3,6 @@
 mod cache;
 mod curve;
 mod records;
-mod touched;
 mod traffic;
 
 pub use cache::{Cache, CacheError};

@@ -156,7 +156,6 @@ impl RecordProbe {
 /// Deeper addresses are taken as this one.
 const MAX_DEPTH: usize = 1 << 20;
 
-/// Whether an operation shows that its record changes to screen space.
 fn changes_to_screen(class: OpClass, stage: Stage) -> bool {
     class == OpClass::DivideStep && stage == Stage::ToScreen
 }

@@ -1,9 +1,9 @@
 //! The probe of memory traffic.
 
+use super::NumberMap;
 use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
-use super::touched::Touched;
 use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
@@ -172,5 +172,29 @@ impl Probe for MemoryProbe {
             self.deepest = self.deepest.max(address.saturating_add(1));
         }
         self.access(memory, address);
+    }
+}
+
+/// A set of addresses, one bit each in pages of 4096.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Touched {
+    pages: NumberMap<Box<[u64; 64]>>,
+    distinct: u64,
+}
+
+impl Touched {
+    pub(super) fn touch(&mut self, address: u64) {
+        let page = self
+            .pages
+            .entry(address >> 12)
+            .or_insert_with(|| Box::new([0; 64]));
+        let word = &mut page[(address >> 6) as usize % 64];
+        let bit = 1 << (address % 64);
+        self.distinct += u64::from(*word & bit == 0);
+        *word |= bit;
+    }
+
+    pub(super) fn distinct(&self) -> u64 {
+        self.distinct
     }
 }

@@ -35,11 +35,8 @@ pub(super) trait Floats<const N: usize>: Lanes<N> {
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// `self * by + plus`.
     fn fma(self, by: Self, plus: Self) -> Self;
-    /// `self * by - less`.
     fn fms(self, by: Self, less: Self) -> Self;
-    /// `from - self * by`.
     fn fnma(self, by: Self, from: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
@@ -69,7 +66,6 @@ pub(super) trait F32x4: Floats<4, Lane = f32> {
 }
 
 pub(super) trait F32x8: Floats<8, Lane = f32> {
-    /// The lanes that are at most the other's, one bit each.
     fn at_most(self, other: Self) -> u8;
     /// The inverse, to 11 bits or more.
     fn reciprocal(self) -> Self;

@@ -37,7 +37,7 @@ macro_rules! lanes {
             type Lane = $lane;
             #[inline(always)]
             fn load(_: Avx2, values: &[$lane; $n]) -> Self {
-                // SAFETY: as above; the load is of the array's lanes.
+                // SAFETY: as above. The load is of the array's lanes.
                 unsafe { Self($load(values.as_ptr().cast())) }
             }
             #[inline(always)]
@@ -134,7 +134,7 @@ impl F32x4 for Floats4 {
     #[inline(always)]
     fn values(self) -> [f32; 4] {
         let mut values = [0.0; 4];
-        // SAFETY: as above; the store is of the array's four.
+        // SAFETY: as above. The store is of the array's four.
         unsafe { _mm_storeu_ps(values.as_mut_ptr(), self.0) };
         values
     }
@@ -170,7 +170,7 @@ impl F32x8 for Floats8 {
     #[inline(always)]
     fn whole(self) -> [i32; 8] {
         let mut whole = [0; 8];
-        // SAFETY: as above; the store is of the array's eight.
+        // SAFETY: as above. The store is of the array's eight.
         unsafe { _mm256_storeu_si256(whole.as_mut_ptr().cast(), _mm256_cvttps_epi32(self.0)) };
         whole
     }
@@ -209,7 +209,7 @@ impl U64x4 for Masks4 {
     #[inline(always)]
     fn values(self) -> [u64; 4] {
         let mut values = [0; 4];
-        // SAFETY: as above; the store is of the array's four.
+        // SAFETY: as above. The store is of the array's four.
         unsafe { _mm256_storeu_si256(values.as_mut_ptr().cast(), self.0) };
         values
     }
@@ -283,7 +283,7 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn look_up<const N: usize>(self, table: &[u64; N], at: Floats8) -> [Masks4; 2] {
         let table = table.as_ptr().cast();
-        // SAFETY: as above; entries are looked up below `N`, which is what the table has.
+        // SAFETY: as above. Entries are looked up below `N`, the table's length.
         unsafe {
             let last = _mm256_set1_epi32(N as i32 - 1);
             let at = _mm256_min_epu32(_mm256_cvttps_epi32(at.0), last);
@@ -313,7 +313,7 @@ impl Isa for Avx2 {
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
         assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
         let mut row = entries.as_mut_ptr().cast();
-        // SAFETY: as above; the eight entries of each of eight rows exist, as was checked.
+        // SAFETY: as above. The eight entries of each of eight rows exist, as was checked.
         unsafe {
             let value = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);

@@ -4,7 +4,6 @@ use super::record::MAX_RUN;
 
 /// Bytes of the program itself: code, stacks, the allocator's reserve.
 const PROGRAM: u64 = 48 << 20;
-/// Least bytes per buffered reader of a run.
 const LEAST_READER: u64 = 64 << 10;
 /// Most runs that are merged at once.
 const MAX_FAN_IN: u64 = 256;
@@ -32,7 +31,6 @@ pub(super) struct BufferSizes {
     pub(super) merge_bytes: usize,
     /// Most runs per merge.
     pub(super) fan_in: usize,
-    /// Halo records that are sorted at once.
     pub(super) halo_records: usize,
     /// Blocks are `2^block_shift` clusters a side.
     pub(super) block_shift: u32,

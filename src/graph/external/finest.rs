@@ -25,7 +25,6 @@ const STEP: u64 = 1 << 16;
 pub(super) struct Finest {
     /// Three bytes per voxel.
     pub(super) color: Spool,
-    /// Own normals, two bytes per voxel.
     own_normal: Spool,
     /// Morton key and Morton word of each cluster.
     clusters: Spool,

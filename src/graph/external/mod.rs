@@ -37,7 +37,6 @@ use tree::TreeWriter;
 
 /// Bytes per pushed voxel in a temporary file.
 const RUN_BYTES: u64 = 16;
-/// Least bytes per voxel in the graph.
 const GRAPH_BYTES: u64 = 5;
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -126,8 +125,7 @@ impl ExternalBuilder {
         self.len() == 0
     }
 
-    /// Fails where so many voxels, or the graph of them, take more disk than is free. To be called before they are
-    /// pushed. Errors: [`ExternalError::Disk`].
+    /// Fails where so many voxels, or their graph, take more disk than is free. To be called before they are pushed.
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
         let folder = path.parent().unwrap_or(path);
@@ -146,8 +144,8 @@ impl ExternalBuilder {
     }
 
     /// Builds the graph and writes it to `path`. `placement_world` is as in
-    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart; when
-    /// `path` exists and `overwrite` is false; when the system refuses. Temporary files are removed in any case.
+    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart, or when
+    /// `path` exists and `overwrite` is false. Temporary files are removed in any case.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),

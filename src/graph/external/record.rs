@@ -9,7 +9,7 @@
 //!
 //! Of equal keys, the last pushed comes first.
 
-use crate::graph::build_error::MAX_SIDE;
+use crate::graph::build::MAX_SIDE;
 use crate::graph::{PackedNormal, Voxel, morton};
 
 /// Most records per run: their numbers take 24 bits.

@@ -1,8 +1,8 @@
 //! The tree's levels, each written as its nodes are closed.
 //!
-//! Clusters come in Morton order. Of the nodes above them, one per level is open. Nodes of a level are opened, closed
-//! and written in one order, so the numbers of a node and of its first child within their levels are known when the
-//! node is opened: only the first node of the level is added at the end.
+//! Clusters come in Morton order, so one node per level above them is open. Nodes of a level are opened, closed and
+//! written in one order, so their numbers are known when they are opened: only the first node of the level is added at
+//! the end.
 
 use std::io;
 use std::sync::Arc;
@@ -38,7 +38,6 @@ pub(super) struct ClusterNodes {
     pub(super) sum: Sum,
 }
 
-/// The nodes of a level above the finest.
 #[derive(Debug)]
 pub(super) struct LevelArrays {
     pub(super) mask: Spool,

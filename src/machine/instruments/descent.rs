@@ -1,8 +1,8 @@
 //! Cages on the way down the octree, computed by the machine's own steps in the root of the quadtree.
 
+use crate::machine::cage::{CageCoordinate, with_cage};
 use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
-use crate::machine::cage::CageCoordinate;
 use crate::machine::constants::Constants;
 use crate::machine::record::{Clip, ImagePlace, Screen};
 use crate::machine::to_screen;
@@ -61,7 +61,6 @@ impl Descent {
         }
     }
 
-    /// The cages of the eight children, in Morton order.
     pub(super) fn children<L: CageCoordinate>(&mut self, held: CageWords<L>) -> [CageWords<L>; 8] {
         let dp = &mut self.dp;
         match held {
@@ -89,4 +88,26 @@ impl Descent {
             None => Ok(cage),
         }
     }
+}
+
+/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the
+/// machine does so. Fails if a word overflows. The machine has these vertices relative to a node of the quadtree, where
+/// they are never larger.
+pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+    with_cage!(setup, L => cages_as::<L>(setup, path))
+}
+
+pub(super) fn cages_as<L: CageCoordinate>(
+    setup: &FrameSetup,
+    path: &[u8],
+) -> Result<Vec<Cage>, Trap> {
+    let (mut descent, root) = Descent::new::<L>(setup);
+    let mut held = descent.arrive(0, root);
+    let mut cages = vec![descent.vertices(held)?];
+    for (level, &octant) in (1..).zip(path) {
+        let child = descent.children(held)[usize::from(octant)];
+        held = descent.arrive(level, child);
+        cages.push(descent.vertices(held)?);
+    }
+    Ok(cages)
 }

@@ -1,7 +1,5 @@
-//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. The probe sees the blocks'
-//! borders, as in a frame.
-//!
-//! No result leaves its word: where a block adds, numbers stay some bits below the ends of the format.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. No result leaves its word:
+//! where a block adds, numbers stay some bits below the ends of the format.
 
 use hwmodel::{Probe, Stage, WideWord, Word};
 
@@ -176,7 +174,6 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
     smallest_node::clip(dp, constants, fill, place, &mut clip, &mut planes);
 }
 
-/// Comparisons of depths and sizes, with ties.
 fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,
@@ -238,7 +235,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     planes::move_to_quadrant(&mut state.dp, &state.job.constants, &mut moved, quadrant);
     let level = inputs.level(depth);
     let mut cube = inputs.cube(level);
-    // The eye lies beside the cube along the other axes, beside a face of it or anywhere along this one.
+    // The eye lies beside the cube along the other axes, beside one of its faces or anywhere along this one.
     let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);

@@ -49,7 +49,6 @@ fn blend_voxel<P: Probe, L: CageCoordinate>(
     BlendColor::of_voxel(dp, &eye, &eye_floor, &cube, opacity, [0; 3]);
 }
 
-/// Moves a number towards zero by `by`, or beyond.
 fn towards_zero<P: Probe>(dp: &mut Datapath<P>, from: Word, by: Word) -> Word {
     match dp.is_negative(from) {
         true => dp.add(from, by),

@@ -1,9 +1,8 @@
-//! Machines with one error each, for tests of the checks that must find it. The record loop is generic over its cage, so
-//! the product contains no code for this.
+//! Machines with one error each, for tests of the checks that must find it.
 
 use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 
-use super::vertices::{Cage, cages_as};
+use super::descent::{Cage, cages_as};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
@@ -22,7 +21,6 @@ pub enum Mutation {
     HalvesDown,
     MidpointsUp,
     QuotientsUp,
-    /// Two neighbours of the order array swapped.
     OrderSwapped,
     /// The order array backwards: farthest first.
     OrderReversed,
@@ -160,7 +158,6 @@ macro_rules! with_cage {
     }};
 }
 
-/// A machine with a mutation.
 #[derive(Debug, Clone, Copy)]
 pub struct Mutant(pub Mutation);
 

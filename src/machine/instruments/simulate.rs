@@ -1,7 +1,6 @@
-//! The machine as a workload of the cycle model: one turn at a time, in the order of a scheduler.
-//!
-//! The children that a turn pushes go to the scheduler instead of a stack, each with its rank in the occlusion order and
-//! its quadtree node. Fill vectors are shared: a turn finds them as previous turns left them.
+//! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack, each
+//! with its rank in the occlusion order and its quadtree node. A turn finds the fill vectors as previous turns left
+//! them.
 
 use hwmodel::cycles::{
     self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
@@ -43,10 +42,13 @@ impl Machine {
     /// [`Classes`] and [`Both`] the picture is the same if no two children of one class draw the same sample, as under the
     /// exact rule.
     ///
-    /// [`Independence::None`]: hwmodel::cycles::Independence::None [`Image`]: hwmodel::cycles::Independence::Image
-    /// [`Classes`]: hwmodel::cycles::Independence::Classes [`Both`]: hwmodel::cycles::Independence::Both Fails when the
-    /// hardware's description is invalid, a word overflows under the trap policy, or a stack that does not spill is
-    /// full.
+    /// Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not
+    /// spill is full.
+    ///
+    /// [`Independence::None`]: hwmodel::cycles::Independence::None
+    /// [`Image`]: hwmodel::cycles::Independence::Image
+    /// [`Classes`]: hwmodel::cycles::Independence::Classes
+    /// [`Both`]: hwmodel::cycles::Independence::Both
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
@@ -63,10 +65,8 @@ impl Machine {
         Ok(simulated)
     }
 
-    /// Draws a frame and records its turns. With parents on the stack they are the same on every hardware of the
-    /// organisation: records that share a part of the picture come one after the other, and tiles share nothing.
-    /// `None`: the recording would take more than `most_bytes`, or children lie on the stack. Errors: as
-    /// [`Self::simulate`].
+    /// Draws a frame and records its turns, which are the same on every hardware of the organisation. `None`: the
+    /// recording would take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
     pub fn record_turns(
         &mut self,
         graph: &GraphView<'_>,
@@ -150,7 +150,6 @@ impl Watch for Ranks {
 
 #[derive(Clone, Copy)]
 enum Work<L: CageCoordinate> {
-    /// The tiles in a node of the image quadtree.
     Tiles(QuadNode),
     /// A record, where children lie on the stack.
     Record(Record<L>),
@@ -193,7 +192,6 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     waiting: Vec<(Work<L>, usize)>,
     /// Unused numbers of work.
     free: Vec<u32>,
-    /// Tiles that the hardware hands out, in order.
     handed_out: Vec<QuadNode>,
     /// Each tile's view of the fill vectors above it.
     tiles: Vec<TileView>,
@@ -301,7 +299,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// A parent's turn: its next visible child, and the rest of the parent.
     fn parent_turn(&mut self, mut parent: Parent<L>, children: &mut Vec<Child>) {
         // The scheduler has its own stacks; addresses only distinguish reads.
         let address = u64::from(parent.record.cube.level);
@@ -324,7 +321,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// The turn of a parent whose path entry is on the stack.
     fn path_turn(&mut self, entry: &PathEntry, children: &mut Vec<Child>) {
         let from = self.walks[self.shown].last.as_ref();
         let address = u64::from(entry.level);

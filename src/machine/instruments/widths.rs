@@ -25,22 +25,18 @@ hwmodel::named! {
     pub enum RecordNumber {
         Node = "octree node",
         Level = "octree level",
-        /// A coordinate of the lowest vertex in object space.
         Lowest = "lowest vertex",
         Highest = "highest vertex",
         QuadLevel = "quadtree level",
         /// Column or row of the quadtree node.
         QuadPlace = "quadtree place",
-        /// X or Y of a vertex in clip space.
         ClipXy = "X, Y",
         ClipW = "W",
         EdgeXy = "edge's X, Y",
         EdgeW = "edge's W",
         LeastW = "least W",
-        /// Coefficient a or b of a silhouette plane.
         PlaneAb = "plane's a, b",
         PlaneC = "plane's c",
-        /// The constant of a plane across an axis.
         AxisC = "axis plane's c",
     }
 }
@@ -168,37 +164,29 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
         .max()
         .unwrap_or(0);
     let position = setup.depth + setup.sub_levels;
+    let (to, around) = (NumberSpan::to, NumberSpan::around);
     let numbers = [
-        (
-            RecordNumber::Node,
-            NumberSpan::to(nodes.saturating_sub(1) as i128),
-        ),
-        (RecordNumber::Level, NumberSpan::to(i128::from(setup.depth))),
-        (RecordNumber::Lowest, NumberSpan::to((1 << position) - 1)),
-        (RecordNumber::Highest, NumberSpan::to(1 << position)),
-        (
-            RecordNumber::QuadLevel,
-            NumberSpan::to(i128::from(setup.levels)),
-        ),
-        (
-            RecordNumber::QuadPlace,
-            NumberSpan::to((1 << setup.levels) - 1),
-        ),
+        (RecordNumber::Node, to(nodes.saturating_sub(1) as i128)),
+        (RecordNumber::Level, to(i128::from(setup.depth))),
+        (RecordNumber::Lowest, to((1 << position) - 1)),
+        (RecordNumber::Highest, to(1 << position)),
+        (RecordNumber::QuadLevel, to(i128::from(setup.levels))),
+        (RecordNumber::QuadPlace, to((1 << setup.levels) - 1)),
         (RecordNumber::ClipXy, xy.with(in_node)),
         (RecordNumber::ClipW, w),
-        (RecordNumber::EdgeXy, NumberSpan::around(edge_xy)),
-        (RecordNumber::EdgeW, NumberSpan::around(along(2))),
+        (RecordNumber::EdgeXy, around(edge_xy)),
+        (RecordNumber::EdgeW, around(along(2))),
         (RecordNumber::LeastW, w),
-        (RecordNumber::PlaneAb, NumberSpan::around(plane_ab)),
-        (RecordNumber::PlaneC, NumberSpan::around(plane_c)),
-        (RecordNumber::AxisC, NumberSpan::around(2 * plane_c)),
+        (RecordNumber::PlaneAb, around(plane_ab)),
+        (RecordNumber::PlaneC, around(plane_c)),
+        (RecordNumber::AxisC, around(2 * plane_c)),
     ];
     // The largest sums: of an axis plane's constant, doubled, and its coefficients; of twice the constant of a plane
     // that crosses a node, which is at most `|a| + |b|`, and its coefficients.
     let most = (4 * plane_c + axis_ab).max(2 * plane_c + 4 * sums);
     Some(ProvenWidths {
         numbers: numbers.into_iter().collect(),
-        wide_bits: NumberSpan::around(most).bits(),
+        wide_bits: around(most).bits(),
     })
 }
 
@@ -213,14 +201,10 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     narrow
 }
 
-/// Adds a record's numbers to spans.
 fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
     let Record { cube, place, pose } = record;
     let mut note = |number, value: i128| {
-        let span = NumberSpan {
-            least: value,
-            greatest: value,
-        };
+        let span = NumberSpan::of(value);
         let seen = spans.entry(number).or_insert(span);
         *seen = seen.with(span);
     };
