@@ -214,13 +214,13 @@ pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
 
-/// The result of work that gives the same on one, two and three threads.
+/// The result of work that gives the same on one and three threads.
 pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
-    let [one, two, three] = [1, 2, 3].map(|threads| {
+    let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(&work)
     });
-    assert!(one == two && one == three, "threads change the result");
+    assert!(one == three, "threads change the result");
     one
 }
 
