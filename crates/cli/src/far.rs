@@ -19,7 +19,7 @@ use shiftvox::project::Up;
 use shiftvox::whole;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::{Outside, part_of};
-use shiftvox_mesh::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
+use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
 
 /// Limits of a build, and the places of its temporary files.
@@ -69,12 +69,9 @@ pub(super) fn convert(
             BuildError::Memory { needed, given } => Some(needed.saturating_sub(given)),
             _ => None,
         };
-        let is_of_mesh = !matches!(error, BuildError::File { .. });
-        let error = CliError::from(error);
-        let error = if is_of_mesh {
-            error.at(of.input)
-        } else {
-            error
+        let error = match error {
+            error @ BuildError::File { .. } => CliError::from(error),
+            error => CliError::from(error).at(of.input),
         };
         match resources.memory.zip(short) {
             Some((memory, short)) => {
@@ -94,35 +91,29 @@ pub(super) fn convert(
         let _ = fs::remove_file(part);
     }
     let file = FarFile::open(of.output)?;
-    let facts = Facts::of(&file);
+    let described = describe(&file, of.input);
+    let n = |key: &str| report::figure(&described[key]);
     console.note(format!(
         "{}: {} triangles, {} nodes, {} voxels, {} rays, {} bytes, built in {:.1} s",
         of.output.display(),
         grouped(triangles),
-        grouped(file.nodes().len() as u64),
-        grouped(facts.kept),
-        grouped(facts.rays),
-        grouped(file.len()),
+        n("nodes"),
+        n("voxels_kept"),
+        n("rays"),
+        n("bytes"),
         build_ms / 1e3
     ));
-    if facts.kept > 0 && facts.rays_per_voxel() < LEAST_RAYS_PER_VOXEL {
+    let per_voxel = described["rays_per_voxel"].as_f64().unwrap_or_default();
+    if described["voxels_kept"] != 0 && per_voxel < LEAST_RAYS_PER_VOXEL {
         console.note(format!(
-            "warning: {}: only {:.1} rays passed through a voxel that is kept, and {LEAST_RAYS_PER_VOXEL} \
+            "warning: {}: only {per_voxel:.1} rays passed through a voxel that is kept, and {LEAST_RAYS_PER_VOXEL} \
              are too few for opacities; {} voxels were not tested and are kept: ask for more \
              --rays, or leave it out",
             of.output.display(),
-            facts.rays_per_voxel(),
-            grouped(facts.untested)
+            n("voxels_untested")
         ));
     }
-    if console.json {
-        let mut fields = facts.describe(&file, of.input);
-        fields["input"] = json!(of.input);
-        fields["output"] = json!(names::of_path(of.output));
-        fields["build_ms"] = json!(build_ms);
-        console.document(&report::document("convert", fields))?;
-    }
-    Ok(())
+    of.report(described, build_ms, console)
 }
 
 /// This share of a budget is left to the allocator's overhead and to fragmentation.
@@ -189,262 +180,152 @@ fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
         .collect()
 }
 
-/// Checks all of a file and describes it: prints that, or with `--json` returns it.
-pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliError> {
+/// Checks all of a file and describes it, as JSON and as text.
+pub(super) fn info(name: &str) -> Result<(Value, String), CliError> {
     let file = FarFile::open(&names::path(name))?;
     file.verify()?;
-    let facts = Facts::of(&file);
-    if console.json {
-        return Ok(Some(facts.describe(&file, name)));
-    }
-    console.data(facts.description(&file, name))?;
-    Ok(None)
+    let described = describe(&file, name);
+    let text = text(&described, &file);
+    Ok((described, text))
 }
 
-/// Counts of one level of a hierarchy.
-#[derive(Debug, Clone, Copy, Default)]
-struct LevelFacts {
-    nodes: u64,
-    leaves: u64,
-    voxels: u64,
-    /// Triangles of inner nodes.
-    surface: u64,
-    greatest_voxel: f32,
-    square_error: f64,
-}
-
-/// The described numbers of a file.
-struct Facts {
-    levels: Vec<LevelFacts>,
-    lists: [u64; 6],
-    touched: u64,
-    kept: u64,
-    untested: u64,
-    rays: u64,
-    hits: u64,
-    crossings: u64,
-    voxel_bytes: u64,
-    opacity_bytes: u64,
-    /// Triangles of inner nodes.
-    surface: u64,
-    surface_bytes: u64,
-}
-
-impl Facts {
-    fn of(file: &FarFile) -> Self {
-        let mut facts = Self {
-            levels: Vec::new(),
-            lists: [0; 6],
-            touched: 0,
-            kept: 0,
-            untested: 0,
-            rays: 0,
-            hits: 0,
-            crossings: 0,
-            voxel_bytes: 0,
-            opacity_bytes: 0,
-            surface: 0,
-            surface_bytes: 0,
-        };
-        for node in file.nodes() {
-            let level = node.level as usize;
-            if facts.levels.len() <= level {
-                // Levels of nodes grow by one from a parent to its children.
-                facts.levels.resize(level + 1, LevelFacts::default());
-            }
-            let at = &mut facts.levels[level];
-            at.nodes += 1;
-            if !node.is_leaf() {
-                at.surface += u64::from(node.surface);
-                facts.surface += u64::from(node.surface);
-            }
-            facts.surface_bytes += node.surface_bytes();
-            at.leaves += u64::from(node.is_leaf());
-            at.voxels += node.voxels();
-            at.greatest_voxel = at.greatest_voxel.max(node.voxel);
-            at.square_error += f64::from(node.error).powi(2) * node.voxels() as f64;
-            for (list, &count) in node.counts.iter().enumerate() {
-                facts.lists[list] += u64::from(count);
-                facts.opacity_bytes += u64::from(count) * OPACITY_BYTES[list] as u64;
-            }
-            facts.touched += u64::from(node.touched);
-            facts.kept += node.voxels();
-            facts.untested += u64::from(node.untested);
-            facts.rays += u64::from(node.rays);
-            facts.hits += u64::from(node.hits);
-            facts.crossings += u64::from(node.crossings);
-            facts.voxel_bytes += node.voxel_bytes();
-        }
-        facts
-    }
-
-    /// Occluded voxels: rays were aimed at them, and all ended before. They are dropped.
-    fn occluded(&self) -> u64 {
-        // A file is opened only if it keeps no more than triangles touch.
-        self.touched - self.kept
-    }
-
-    fn dropped_share(&self) -> f64 {
-        self.occluded() as f64 / self.touched.max(1) as f64
-    }
-
-    fn rays_per_voxel(&self) -> f64 {
-        self.crossings as f64 / self.kept.max(1) as f64
-    }
-
-    /// Share of voxels whose list has a property.
-    fn share(&self, has: impl Fn(ShaderKind, OpacityKind) -> bool) -> f64 {
-        let lists = LISTS.iter().zip(self.lists);
-        let having = lists.filter(|((shader, opacity), _)| has(*shader, *opacity));
-        having.map(|(_, count)| count).sum::<u64>() as f64 / self.kept.max(1) as f64
-    }
-
-    fn describe(&self, file: &FarFile, name: &str) -> Value {
-        let levels: Vec<Value> = self
-            .levels
-            .iter()
-            .enumerate()
-            .map(|(number, level)| {
-                json!({
-                    "level": number,
-                    "nodes": level.nodes,
-                    "leaves": level.leaves,
-                    "voxels": level.voxels,
-                    "surface_triangles": level.surface,
-                    "greatest_voxel_world": level.greatest_voxel,
-                    "fit_error": libm::sqrt(level.square_error / level.voxels.max(1) as f64),
-                })
-            })
-            .collect();
-        let (low, high) = file.bounds();
+fn describe(file: &FarFile, name: &str) -> Value {
+    let nodes = file.nodes();
+    let sum = |of: &dyn Fn(&Node) -> u64| -> u64 { nodes.iter().map(of).sum() };
+    let (touched, kept) = (sum(&|n| n.touched.into()), sum(&Node::voxels));
+    let untested = sum(&|n| n.untested.into());
+    let per_voxel = |count: u64| count as f64 / kept.max(1) as f64;
+    let list = |number: usize| sum(&|n| n.counts[number].into());
+    // Share of voxels whose list has a property.
+    let share = |has: &dyn Fn(ShaderKind, OpacityKind) -> bool| {
+        let having = (0..LISTS.len()).filter(|&number| has(LISTS[number].0, LISTS[number].1));
+        per_voxel(having.map(list).sum())
+    };
+    let opacity = |kind| share(&|_, opacity| opacity == kind);
+    let surface = |n: &Node| if n.is_leaf() { 0 } else { u64::from(n.surface) };
+    // Rays were aimed at the occluded voxels, and all ended before. They are dropped. A file is opened only if it keeps
+    // no more voxels than triangles touch.
+    let occluded = touched - kept;
+    let last = nodes.iter().map(|n| n.level).max().unwrap_or(0);
+    let levels = (0..=last).map(|level| {
+        let own = || nodes.iter().filter(|n| n.level == level);
+        let voxels: u64 = own().map(Node::voxels).sum();
+        let squares = own().map(|n| f64::from(n.error).powi(2) * n.voxels() as f64);
         json!({
-            "scene": name,
-            "format": ".far",
-            "low": low.to_array(),
-            "high": high.to_array(),
-            "triangles": file.nodes()[0].triangles,
-            "nodes": file.nodes().len(),
-            "levels": levels,
-            "leaf_triangles": file.settings.leaf_triangles,
-            "grid": file.settings.grid,
-            "distance_voxels": file.settings.distance_voxels,
-            "voxels_touched": self.touched,
-            "voxels_seen": self.kept - self.untested,
-            "voxels_untested": self.untested,
-            "voxels_occluded": self.occluded(),
-            "voxels_kept": self.kept,
-            "voxels_dropped": self.occluded(),
-            "voxels_dropped_share": self.dropped_share(),
-            "rays": self.rays,
-            "rays_hit": self.hits,
-            "rays_per_voxel": self.rays_per_voxel(),
-            "opaque_share": self.share(|_, o| o == OpacityKind::Opaque),
-            "scalar_share": self.share(|_, o| o == OpacityKind::Scalar),
-            "six_share": self.share(|_, o| o == OpacityKind::Six),
-            "complex_share": self.share(|s, _| s == ShaderKind::Complex),
-            "bytes": file.len(),
-            "voxel_bytes": self.voxel_bytes,
-            "opacity_bytes": self.opacity_bytes,
-            "surface_triangles": self.surface,
-            "surface_bytes": self.surface_bytes,
+            "level": level,
+            "nodes": own().count(),
+            "leaves": own().filter(|n| n.is_leaf()).count(),
+            "voxels": voxels,
+            "surface_triangles": own().map(surface).sum::<u64>(),
+            "greatest_voxel_world": own().map(|n| n.voxel).fold(0.0, f32::max),
+            "fit_error": libm::sqrt(squares.sum::<f64>() / voxels.max(1) as f64),
         })
-    }
+    });
+    let (low, high) = file.bounds();
+    json!({
+        "scene": name,
+        "format": ".far",
+        "low": low.to_array(),
+        "high": high.to_array(),
+        "triangles": nodes[0].triangles,
+        "nodes": nodes.len(),
+        "levels": levels.collect::<Vec<Value>>(),
+        "leaf_triangles": file.settings.leaf_triangles,
+        "grid": file.settings.grid,
+        "distance_voxels": file.settings.distance_voxels,
+        "voxels_touched": touched,
+        "voxels_seen": kept - untested,
+        "voxels_untested": untested,
+        "voxels_occluded": occluded,
+        "voxels_kept": kept,
+        "voxels_dropped": occluded,
+        "voxels_dropped_share": occluded as f64 / touched.max(1) as f64,
+        "rays": sum(&|n| n.rays.into()),
+        "rays_hit": sum(&|n| n.hits.into()),
+        "rays_per_voxel": per_voxel(sum(&|n| n.crossings.into())),
+        "opaque_share": opacity(OpacityKind::Opaque),
+        "scalar_share": opacity(OpacityKind::Scalar),
+        "six_share": opacity(OpacityKind::Six),
+        "complex_share": share(&|shader, _| shader == ShaderKind::Complex),
+        "bytes": file.len(),
+        "voxel_bytes": sum(&Node::voxel_bytes),
+        "opacity_bytes": (0..LISTS.len()).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
+        "surface_triangles": sum(&surface),
+        "surface_bytes": sum(&Node::surface_bytes),
+    })
+}
 
-    fn description(&self, file: &FarFile, name: &str) -> String {
-        let (low, high) = file.bounds();
-        let percent = |share: f64| format!("{:.1} %", share * 100.0);
-        let lines = [
-            ("scene", name.to_owned()),
-            ("format", "far voxels (.far)".to_owned()),
-            ("box", format!("{low} to {high}")),
-            ("triangles", grouped(file.nodes()[0].triangles)),
-            (
-                "voxels",
-                format!(
-                    "{} that triangles touch: {} seen, {} not tested and kept, {} occluded and \
-                     dropped ({})",
-                    grouped(self.touched),
-                    grouped(self.kept - self.untested),
-                    grouped(self.untested),
-                    grouped(self.occluded()),
-                    percent(self.dropped_share())
-                ),
-            ),
-            (
-                "surface",
-                format!(
-                    "{} decimated triangles of inner nodes",
-                    grouped(self.surface)
-                ),
-            ),
-            (
-                "rays",
-                format!(
-                    "{}, {} of them hits; {:.1} through a kept voxel",
-                    grouped(self.rays),
-                    grouped(self.hits),
-                    self.rays_per_voxel()
-                ),
-            ),
-            (
-                "opacity",
-                format!(
-                    "{} opaque, {} one number, {} six",
-                    percent(self.share(|_, o| o == OpacityKind::Opaque)),
-                    percent(self.share(|_, o| o == OpacityKind::Scalar)),
-                    percent(self.share(|_, o| o == OpacityKind::Six))
-                ),
-            ),
-            (
-                "shaders",
-                format!(
-                    "{} complex",
-                    percent(self.share(|s, _| s == ShaderKind::Complex))
-                ),
-            ),
-            (
-                "bytes",
-                format!(
-                    "{}, {:.1} a triangle; unpacked voxels {}, of which opacities {}, and \
-                     triangles {}",
-                    grouped(file.len()),
-                    file.len() as f64 / f64::from(file.nodes()[0].triangles),
-                    grouped(self.voxel_bytes),
-                    grouped(self.opacity_bytes),
-                    grouped(self.surface_bytes)
-                ),
-            ),
-        ];
-        let text: Vec<String> = lines
-            .iter()
-            .map(|(name, value)| format!("{name:<9} {value}"))
-            .collect();
-        let rows = self.levels.iter().enumerate().map(|(number, level)| {
-            let error = libm::sqrt(level.square_error / level.voxels.max(1) as f64);
-            vec![
-                number.to_string(),
-                grouped(level.nodes),
-                grouped(level.leaves),
-                grouped(level.voxels),
-                grouped(level.surface),
-                format!("{:.4}", level.greatest_voxel),
-                format!("{error:.4}"),
-            ]
-        });
-        let head = [
-            "level",
-            "nodes",
-            "leaves",
+fn text(described: &Value, file: &FarFile) -> String {
+    let n = |key: &str| report::figure(&described[key]);
+    let real = |key: &str| described[key].as_f64().unwrap_or_default();
+    let percent = |key: &str| format!("{:.1} %", real(key) * 100.0);
+    let (low, high) = file.bounds();
+    let lines = [
+        (
+            "scene",
+            described["scene"].as_str().unwrap_or_default().to_owned(),
+        ),
+        ("format", "far voxels (.far)".to_owned()),
+        ("box", format!("{low} to {high}")),
+        ("triangles", n("triangles")),
+        (
             "voxels",
-            "triangles",
-            "voxel size",
-            "fit error",
-        ];
-        let head = head.map(String::from).into();
-        format!(
-            "{}\n\n{}",
-            text.join("\n"),
-            report::table(head, rows.collect())
-        )
-    }
+            format!(
+                "{} that triangles touch: {} seen, {} not tested and kept, {} occluded and dropped ({})",
+                n("voxels_touched"),
+                n("voxels_seen"),
+                n("voxels_untested"),
+                n("voxels_occluded"),
+                percent("voxels_dropped_share")
+            ),
+        ),
+        (
+            "surface",
+            format!(
+                "{} decimated triangles of inner nodes",
+                n("surface_triangles")
+            ),
+        ),
+        (
+            "rays",
+            format!(
+                "{}, {} of them hits; {:.1} through a kept voxel",
+                n("rays"),
+                n("rays_hit"),
+                real("rays_per_voxel")
+            ),
+        ),
+        (
+            "opacity",
+            format!(
+                "{} opaque, {} one number, {} six",
+                percent("opaque_share"),
+                percent("scalar_share"),
+                percent("six_share")
+            ),
+        ),
+        ("shaders", format!("{} complex", percent("complex_share"))),
+        (
+            "bytes",
+            format!(
+                "{}, {:.1} a triangle; unpacked voxels {}, of which opacities {}, and triangles {}",
+                n("bytes"),
+                real("bytes") / real("triangles"),
+                n("voxel_bytes"),
+                n("opacity_bytes"),
+                n("surface_bytes")
+            ),
+        ),
+    ];
+    let columns = [
+        ("level", "level"),
+        ("nodes", "nodes"),
+        ("leaves", "leaves"),
+        ("voxels", "voxels"),
+        ("triangles", "surface_triangles"),
+        ("voxel size", "greatest_voxel_world"),
+        ("fit error", "fit_error"),
+    ];
+    let table = report::table_of(&described["levels"], &columns);
+    format!("{}\n\n{table}", report::lines(&lines))
 }

@@ -71,98 +71,59 @@ fn of_one(
 ) -> Result<Option<Value>, CliError> {
     let started = Instant::now();
     let source = Source::find(names::path(name))?;
-    match source.kind() {
-        Some(FileKind::Far) => far::info(name, console),
-        Some(FileKind::Tvx) => textured::info(name, args.levels, console),
+    let (described, text) = match source.kind() {
+        Some(FileKind::Far) => far::info(name)?,
+        Some(FileKind::Tvx) => textured::info(name, args.levels)?,
         _ => {
-            let scene = scenes::open_source(
-                source,
-                name,
-                &args.scene,
-                scenes::Verify::All,
-                started,
-                console,
-            )?;
-            if console.json {
-                return Ok(Some(describe(&scene)));
-            }
-            console.data(description(&scene, several))?;
-            Ok(None)
+            let verify = scenes::Verify::All;
+            let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
+            let described = describe(&scene);
+            let gap = if several { "\n" } else { "" };
+            let text = text(&described, &scene) + gap;
+            (described, text)
         }
+    };
+    if console.json {
+        return Ok(Some(described));
     }
-}
-
-/// The described numbers of a scene.
-struct Facts {
-    low: [i64; 3],
-    high: [i64; 3],
-    levels: Vec<(u64, u128)>,
-    bytes: u64,
-    /// Nodes per node that is left when equal subtrees are merged, with attributes and by shape. `None` if there is too
-    /// little memory.
-    gains: Option<[f64; 2]>,
-    colors: usize,
-    camera_line: String,
-}
-
-impl Facts {
-    fn of(scene: &Scene) -> Self {
-        let graph = &scene.graph;
-        let (low, high) = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
-        let origin = graph.placement.origin_index;
-        let file = |corner: [i64; 3]| [0, 1, 2].map(|k| corner[k] + origin[k]);
-        let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-        Self {
-            low: file(low),
-            high: file(high),
-            levels: levels(graph),
-            bytes: graph.bytes(),
-            gains: merge_gains(graph),
-            colors: distinct_leaf_colors(graph),
-            camera_line: camera_line(&camera),
-        }
-    }
-
-    fn size(&self) -> [i64; 3] {
-        [0, 1, 2].map(|k| self.high[k] - self.low[k])
-    }
-
-    fn bytes_per_voxel(&self, graph: &Graph) -> f64 {
-        self.bytes as f64 / graph.voxels.max(1) as f64
-    }
+    console.data(text)?;
+    Ok(None)
 }
 
 fn describe(scene: &Scene) -> Value {
-    let facts = Facts::of(scene);
     let graph = &scene.graph;
-    let levels: Vec<Value> = facts
-        .levels
-        .iter()
+    let bounds = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
+    let origin = graph.placement.origin_index;
+    let [low, high] = [bounds.0, bounds.1].map(|corner| [0, 1, 2].map(|k| corner[k] + origin[k]));
+    let size = [0, 1, 2].map(|k| high[k] - low[k]);
+    let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
+    let gains = merge_gains(graph);
+    let levels = levels(graph)
+        .into_iter()
         .enumerate()
-        .map(|(level, &(nodes, in_tree))| {
+        .map(|(level, (nodes, in_tree))| {
             let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
             json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
-        })
-        .collect();
+        });
     json!({
         "scene": scene.source,
         "format": scene.format,
-        "index_low": facts.low,
-        "index_high": facts.high,
-        "opacities": opacities(&scene.graph),
-        "size": facts.size(),
+        "index_low": low,
+        "index_high": high,
+        "opacities": opacities(graph),
+        "size": size,
         "voxel_size_world": graph.placement.voxel_size,
         "depth": graph.depth,
         "voxels": graph.voxels,
         "nodes": graph.len(),
-        "levels": levels,
-        "bytes": facts.bytes,
-        "bytes_per_voxel": facts.bytes_per_voxel(graph),
-        "dag_gain": facts.gains.map(|gains| gains[0]),
-        "dag_gain_by_shape": facts.gains.map(|gains| gains[1]),
+        "levels": levels.collect::<Vec<Value>>(),
+        "bytes": graph.bytes(),
+        "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
+        "dag_gain": gains.map(|gains| gains[0]),
+        "dag_gain_by_shape": gains.map(|gains| gains[1]),
         "palette_entries": scene.palette,
-        "colors": facts.colors,
-        "camera": facts.camera_line,
+        "colors": distinct_leaf_colors(graph),
+        "camera": camera_line(&camera),
         "mesh": scene.mesh.as_ref().map(|mesh| json!({
             "triangles": mesh.triangles,
             "positions": mesh.positions,
@@ -179,74 +140,76 @@ fn describe(scene: &Scene) -> Value {
     })
 }
 
-fn description(scene: &Scene, several: bool) -> String {
-    let facts = Facts::of(scene);
-    let graph = &scene.graph;
-    let [x, y, z] = facts.size();
+fn text(described: &Value, scene: &Scene) -> String {
+    let n = |key: &str| report::figure(&described[key]);
+    let real = |key: &str| described[key].as_f64();
+    let text = |key: &str| described[key].as_str().unwrap_or_default().to_owned();
+    let size = [0, 1, 2].map(|k| described["size"][k].to_string());
+    let index = |key: &str| described[key].to_string().replace(',', ", ");
+    let gain = match (real("dag_gain"), real("dag_gain_by_shape")) {
+        (Some(all), Some(shape)) => {
+            format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
+        }
+        _ => "not found out: merging takes more memory than is free".to_owned(),
+    };
     let palette = scene
         .palette
         .map_or_else(|| "none".to_owned(), |n| format!("{n} entries"));
-    let lines = [
-        ("scene", scene.source.clone()),
-        ("format", scene.format.clone()),
-        ("size", format!("{x} x {y} x {z} voxels")),
+    let mut lines = vec![
+        ("scene", text("scene")),
+        ("format", text("format")),
+        ("size", format!("{} voxels", size.join(" x "))),
         (
             "indices",
-            format!("{:?} up to, not including, {:?}", facts.low, facts.high),
+            format!(
+                "{} up to, not including, {}",
+                index("index_low"),
+                index("index_high")
+            ),
         ),
-        ("depth", format!("{} levels below the root", graph.depth)),
-        ("voxels", grouped(graph.voxels)),
-        ("nodes", grouped(graph.len() as u64)),
+        (
+            "depth",
+            format!("{} levels below the root", described["depth"]),
+        ),
+        ("voxels", n("voxels")),
+        ("nodes", n("nodes")),
         (
             "memory",
             format!(
                 "{} bytes, {:.2} a voxel",
-                grouped(facts.bytes),
-                facts.bytes_per_voxel(graph)
+                n("bytes"),
+                real("bytes_per_voxel").unwrap_or_default()
             ),
         ),
-        (
-            "DAG gain",
-            match facts.gains {
-                Some([all, shape]) => {
-                    format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
-                }
-                None => "not found out: merging takes more memory than is free".to_owned(),
-            },
-        ),
+        ("DAG gain", gain),
         ("palette", palette),
-        ("opacities", opacities(graph)),
-        (
-            "colours",
-            format!("{} different", grouped(facts.colors as u64)),
-        ),
-        ("camera", facts.camera_line.clone()),
+        ("opacities", text("opacities")),
+        ("colours", format!("{} different", n("colors"))),
+        ("camera", text("camera")),
     ];
-    let mesh = scene.mesh.as_ref().map(|mesh| {
+    if let Some(mesh) = &scene.mesh {
         let (low, high) = mesh.bounds;
-        format!(
-            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
-             voxelised in {:.1} ms",
-            grouped(mesh.triangles),
-            grouped(mesh.positions),
-            grouped(mesh.materials),
-            "",
-            mesh.load_ms,
-            mesh.voxelize_ms
-        )
-    });
-    let lines = lines.into_iter().chain(mesh.map(|mesh| ("mesh", mesh)));
-    let rows = facts.levels.iter().enumerate();
-    let rows = rows
-        .map(|(level, &(nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)])
-        .collect();
-    let head = ["level", "nodes", "in a tree"].map(String::from).into();
-    let levels = report::table(head, rows);
-    let text: Vec<String> = lines
-        .map(|(name, value)| format!("{name:<9} {value}"))
-        .collect();
-    let gap = if several { "\n" } else { "" };
-    format!("{}\n\n{levels}{gap}", text.join("\n"))
+        lines.push((
+            "mesh",
+            format!(
+                "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
+                 voxelised in {:.1} ms",
+                grouped(mesh.triangles),
+                grouped(mesh.positions),
+                grouped(mesh.materials),
+                "",
+                mesh.load_ms,
+                mesh.voxelize_ms
+            ),
+        ));
+    }
+    let columns = [
+        ("level", "level"),
+        ("nodes", "nodes"),
+        ("in a tree", "nodes_in_tree"),
+    ];
+    let levels = report::table_of(&described["levels"], &columns);
+    format!("{}\n\n{levels}", report::lines(&lines))
 }
 
 /// How many of the nodes without children let light through, and how much

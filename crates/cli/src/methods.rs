@@ -8,12 +8,13 @@ use std::time::Instant;
 
 use super::args::{DataBudget, EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
 use super::console::Console;
-use super::error::CliError;
+use super::error::{CliError, Kind};
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use super::{engines, names};
-use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, milliseconds_since};
+use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
 use shiftvox::picture::Buffer;
+use shiftvox::project::Camera;
 use shiftvox::scene::{FileKind, Source};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
@@ -242,6 +243,17 @@ impl Opened {
             }
         })
     }
+}
+
+/// Draws a frame, `repeat` times.
+pub(super) fn frame<'d>(
+    drawable: &'d mut dyn Drawable,
+    camera: &Camera,
+    repeat: u32,
+) -> Result<Shown<'d>, CliError> {
+    drawable.draw(camera, repeat)?;
+    let shown = drawable.shown()?;
+    shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
 }
 
 /// A voxel scene as something that can be drawn.

@@ -206,10 +206,7 @@ fn render_one(
     if args.print_camera && !console.json {
         console.data(camera_line(&camera))?;
     }
-    let at_scene = |error| CliError::from(error).at(name);
-    drawable.draw(&camera, args.repeat).map_err(at_scene)?;
-    let shown = drawable.shown().map_err(at_scene)?;
-    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+    let shown = methods::frame(&mut *drawable, &camera, args.repeat).map_err(|e| e.at(name))?;
     let hash = match is_hashed {
         true => Some(picture::hash_rows(&shown.buffers).map_err(|e| CliError::from(e).at(name))?),
         false => None,

@@ -78,6 +78,29 @@ pub(super) fn table(head: Vec<String>, rows: Vec<Vec<String>>) -> String {
     table.trim_fmt()
 }
 
+/// A table of JSON objects, by the heads and keys of its columns.
+pub(super) fn table_of(rows: &Value, columns: &[(&str, &str)]) -> String {
+    let cell = |value: &Value| match value {
+        Value::String(text) => text.clone(),
+        value if value.is_f64() => format!("{:.4}", value.as_f64().unwrap_or_default()),
+        value => figure(value),
+    };
+    let row = |row: &Value| columns.iter().map(|(_, key)| cell(&row[*key])).collect();
+    let rows = rows.as_array().into_iter().flatten().map(row).collect();
+    table(
+        columns.iter().map(|(head, _)| (*head).to_owned()).collect(),
+        rows,
+    )
+}
+
+/// Lines of names and values.
+pub(super) fn lines(lines: &[(&str, String)]) -> String {
+    let lines = lines
+        .iter()
+        .map(|(name, value)| format!("{name:<9} {value}"));
+    lines.collect::<Vec<String>>().join("\n")
+}
+
 /// Operations by stage and class, then accesses by memory.
 pub(super) fn counts(counter: &Counter) -> String {
     let classes: Vec<OpClass> = OpClass::ALL

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::args::SceneArgs;
 use super::console::Console;
@@ -33,6 +33,24 @@ pub(super) struct Conversion<'a> {
     pub(super) force: bool,
     /// How the scene is read.
     pub(super) scene: &'a SceneArgs,
+}
+
+impl Conversion<'_> {
+    /// Reports a built file with `--json`, given its description.
+    pub(super) fn report(
+        &self,
+        mut described: Value,
+        build_ms: f64,
+        console: &Console,
+    ) -> Result<(), CliError> {
+        if console.json {
+            described["input"] = json!(self.input);
+            described["output"] = json!(names::of_path(self.output));
+            described["build_ms"] = json!(build_ms);
+            console.document(&report::document("convert", described))?;
+        }
+        Ok(())
+    }
 }
 
 /// The result of a conversion.

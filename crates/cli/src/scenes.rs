@@ -211,10 +211,8 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
 }
 
 fn load_options(args: &SceneArgs) -> LoadOptions {
-    LoadOptions {
-        mtl_colors: args.mesh_colors,
-        ..LoadOptions::default()
-    }
+    let mtl_colors = args.mesh_colors;
+    LoadOptions { mtl_colors }
 }
 
 fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {

@@ -31,9 +31,8 @@ pub(super) fn convert(
     let build_ms = milliseconds_since(started);
     whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
     let file = TexturedFile::open(of.output)?;
-    let voxels: u64 = (0..file.grids())
-        .map(|g| file.grid(g).voxels().len() as u64)
-        .sum();
+    let grids = (0..file.grids()).map(|number| file.grid(number));
+    let voxels: u64 = grids.map(|grid| grid.voxels().len() as u64).sum();
     console.note(format!(
         "{}: {} triangles, {} voxels, {} bytes, built in {:.2} s",
         of.output.display(),
@@ -42,29 +41,16 @@ pub(super) fn convert(
         grouped(file.len()),
         build_ms / 1e3
     ));
-    if console.json {
-        let mut fields = describe(&file, of.input);
-        fields["input"] = json!(of.input);
-        fields["output"] = json!(names::of_path(of.output));
-        fields["build_ms"] = json!(build_ms);
-        console.document(&report::document("convert", fields))?;
-    }
-    Ok(())
+    of.report(describe(&file, of.input), build_ms, console)
 }
 
-/// Checks all of a file and describes it: prints that, or with `--json` returns it.
-pub(super) fn info(
-    name: &str,
-    with_levels: bool,
-    console: &Console,
-) -> Result<Option<Value>, CliError> {
+/// Checks all of a file and describes it, as JSON and as text.
+pub(super) fn info(name: &str, with_levels: bool) -> Result<(Value, String), CliError> {
     let file = TexturedFile::open(&names::path(name))?;
     file.verify()?;
-    if console.json {
-        return Ok(Some(describe(&file, name)));
-    }
-    console.data(description(&file, name, with_levels))?;
-    Ok(None)
+    let described = describe(&file, name);
+    let text = text(&described, &file, with_levels);
+    Ok((described, text))
 }
 
 fn describe(file: &TexturedFile, name: &str) -> Value {
@@ -120,67 +106,52 @@ fn element_name(element: Element) -> &'static str {
     }
 }
 
-fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
+fn text(described: &Value, file: &TexturedFile, with_levels: bool) -> String {
     let (low, high) = file.bounds();
-    let mut parts = vec![format!(
-        "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles \
-         {}\nbytes     {}",
-        grouped(file.primitives().len() as u64),
-        grouped(file.len())
-    )];
-    let head = [
-        "grid",
-        "texels",
-        "voxels",
-        "listed",
-        "sub-textures",
-        "bytes",
-        "levels",
+    let lines = [
+        (
+            "scene",
+            described["scene"].as_str().unwrap_or_default().to_owned(),
+        ),
+        ("format", "textured voxels (.tvx)".to_owned()),
+        ("box", format!("{low} to {high}")),
+        ("triangles", report::figure(&described["triangles"])),
+        ("bytes", report::figure(&described["bytes"])),
     ];
-    let head = head.map(String::from).to_vec();
-    let rows = (0..file.grids()).map(|number| {
-        let grid = file.grid(number);
-        let lattice = grid.cell_grid();
-        vec![
-            format!("{} ({})", lattice.cells(), element_name(grid.element())),
-            lattice.texels().to_string(),
-            grouped(grid.voxels().len() as u64),
-            grouped(grid.listed()),
-            grouped(grid.textures()),
-            grouped(grid.bytes().iter().sum::<u64>()),
-            grid.levels().rows().len().to_string(),
-        ]
-    });
-    parts.push(report::table(head, rows.collect()));
-    for number in 0..file.grids() {
-        let grid = file.grid(number);
-        let [projected, afresh] = grid.projected();
+    let mut grids = described["grids"].clone();
+    for (number, grid) in grids.as_array_mut().into_iter().flatten().enumerate() {
+        let bytes = file.grid(number).bytes().iter().sum::<u64>();
+        grid["name"] = json!(format!(
+            "{} ({})",
+            grid["cells"],
+            element_name(file.grid(number).element())
+        ));
+        grid["bytes"] = json!(bytes);
+        grid["level_count"] = json!(file.grid(number).levels().rows().len());
+    }
+    let columns = [
+        ("grid", "name"),
+        ("texels", "texels"),
+        ("voxels", "voxels"),
+        ("listed", "listed_primitives"),
+        ("sub-textures", "textures"),
+        ("bytes", "bytes"),
+        ("levels", "level_count"),
+    ];
+    let mut parts = vec![report::lines(&lines), report::table_of(&grids, &columns)];
+    for grid in grids.as_array().into_iter().flatten() {
         parts.push(format!(
-            "grid {}: {} texels projected, slice by slice; {} had each volume been projected \
-             afresh",
-            grid.cell_grid().cells(),
-            grouped(projected),
-            grouped(afresh)
+            "grid {}: {} texels projected, slice by slice; {} had each volume been projected afresh",
+            grid["cells"],
+            report::figure(&grid["texels_projected"]),
+            report::figure(&grid["texels_projected_afresh"])
         ));
         if with_levels {
-            parts.push(level_table(&grid));
+            // Tellier and Baroud 2003, Fig. 12 (c).
+            let columns =
+                ["level", "faces", "primitives", "voxels", "surfels"].map(|key| (key, key));
+            parts.push(report::table_of(&grid["levels"], &columns));
         }
     }
     parts.join("\n\n")
-}
-
-/// Tellier and Baroud 2003, Fig. 12 (c): what each level shows.
-fn level_table(grid: &Grid<'_>) -> String {
-    let head = ["level", "faces", "primitives", "voxels", "surfels"];
-    let rows = grid.levels().rows().iter().map(|row| {
-        let numbers = [
-            u64::from(row.level),
-            row.faces,
-            row.primitives,
-            row.voxels,
-            row.surfels,
-        ];
-        numbers.map(grouped).to_vec()
-    });
-    report::table(head.map(String::from).to_vec(), rows.collect())
 }

@@ -11,8 +11,8 @@ use serde_json::json;
 
 use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
-use super::error::{CliError, Kind};
-use super::{names, outputs, report, scenes};
+use super::error::CliError;
+use super::{methods, names, outputs, report, scenes};
 use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::{Background, Buffer, Shading};
@@ -92,10 +92,8 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     let style = args.style()?;
     let mut drawing = TrianglesDrawing::new(&mesh, up, style, console.progress());
     let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
-    let at_output = |error| CliError::from(error).at(args.output.display());
-    drawing.draw(&camera, 1).map_err(at_output)?;
-    let shown = drawing.shown().map_err(at_output)?;
-    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+    let shown = methods::frame(&mut drawing, &camera, 1);
+    let shown = shown.map_err(|error| error.at(args.output.display()))?;
     let draw_ms = shown.times_ms[0];
     let of_picture: &[Buffer] = match args.aov.contains(&BufferName::Depth) {
         true => &[Buffer::Depth],

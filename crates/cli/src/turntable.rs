@@ -9,7 +9,7 @@ use super::args::{
     CameraArgs, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
 };
 use super::console::Console;
-use super::error::{CliError, Kind};
+use super::error::CliError;
 use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
 use shiftvox::drawing::Shown;
@@ -151,9 +151,7 @@ fn draw(
         let size = args.picture.size();
         let camera = args.camera.camera(&bounds, up, size, degrees);
         let result = (|| {
-            drawable.draw(&camera, 1)?;
-            let shown = drawable.shown()?;
-            let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+            let shown = methods::frame(&mut *drawable, &camera, 1)?;
             let hash = keep(args, &shown, path, console)?;
             turn.times_ms.extend(shown.times_ms);
             let load_ms = opened.load_ms;

@@ -22,11 +22,11 @@ pub mod textured;
 pub mod voxelize;
 
 use glam::DVec3;
-pub use shiftvox::scene::SceneError;
+pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 
 pub use builder::{BadIndex, MeshBuilder};
 pub use geometry::barycentric;
-pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, read};
+pub use load::{Beside, LoadOptions, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
 pub use surface::{Instances, Surface, Triangle, mesh_box};

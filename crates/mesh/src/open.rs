@@ -10,7 +10,7 @@ use shiftvox::scene::{
 };
 
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
-use crate::{Beside, LoadOptions, Mesh, MeshFormat, Nothing, SameFolder, mesh_box};
+use crate::{Beside, LoadOptions, Mesh, Nothing, SameFolder, mesh_box};
 
 /// Levels at which the voxels of many more levels are estimated.
 const COUNTED_DEPTH: u32 = 8;
@@ -124,19 +124,20 @@ fn read(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh, OpenError> {
-    let format = match file.kind {
-        FileKind::Stl => MeshFormat::Stl,
-        FileKind::Gltf => MeshFormat::Gltf,
-        FileKind::Glb => MeshFormat::Glb,
-        FileKind::Obj => MeshFormat::Obj,
-        _ => MeshFormat::Ply,
-    };
     let folder = file.folder.as_deref().map(SameFolder::new);
     let beside: &dyn Beside = match &folder {
         Some(folder) => folder,
         None => &Nothing,
     };
-    crate::read(&file.bytes, format, &file.name, beside, options, progress).map_err(OpenError::from)
+    crate::read(
+        &file.bytes,
+        file.kind,
+        &file.name,
+        beside,
+        options,
+        progress,
+    )
+    .map_err(OpenError::from)
 }
 
 /// A mesh that is ready to be voxelised.

@@ -1,14 +1,13 @@
 //! The table of generators and their keys.
 
-use super::settings::{Key, Settings};
 use super::{maze, shapes, sierpinski, terrain};
 use crate::graph::{Graph, Progress, Voxel};
 
 /// The range and default of a generator's key.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyRange {
-    /// The key.
-    pub key: Key,
+    /// The key: `depth`, `density` or `seed`.
+    pub key: &'static str,
     /// Its default value.
     pub default: u32,
     /// Least value.
@@ -17,12 +16,34 @@ pub struct KeyRange {
     pub most: u32,
 }
 
+/// The numbers of a spec; a key that the generator does not take is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Settings {
+    /// Levels of the scene: it fits a cube of `2^depth` voxels per side. For `menger`, its iterations.
+    pub depth: u32,
+    /// Seed of a random scene.
+    pub seed: u32,
+    /// Filled voxels, percent.
+    pub density: u32,
+}
+
+impl Settings {
+    /// The number of a key of [`KeyRange`].
+    pub(super) fn of(&mut self, key: &str) -> &mut u32 {
+        match key {
+            "depth" => &mut self.depth,
+            "density" => &mut self.density,
+            _ => &mut self.seed,
+        }
+    }
+}
+
 /// One kind of scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Generator {
     /// Its name in a spec.
     pub name: &'static str,
-    /// The keys it takes.
+    /// The keys it takes, in the order in which a spec is written.
     pub keys: &'static [KeyRange],
     pub(super) shape: Shape,
 }
@@ -36,35 +57,21 @@ pub(super) enum Shape {
     Linked(fn(&Settings) -> Graph),
 }
 
-impl Generator {
-    /// The range of `key`, if it has that key.
-    pub fn range(&self, key: Key) -> Option<&'static KeyRange> {
-        self.keys.iter().find(|range| range.key == key)
-    }
-}
-
-const fn depth(default: u32, least: u32, most: u32) -> KeyRange {
+const fn key(key: &'static str, default: u32, least: u32, most: u32) -> KeyRange {
     KeyRange {
-        key: Key::Depth,
+        key,
         default,
         least,
         most,
     }
 }
 
-const SEED: KeyRange = KeyRange {
-    key: Key::Seed,
-    default: 1,
-    least: 0,
-    most: u32::MAX,
-};
+const fn depth(default: u32, least: u32, most: u32) -> KeyRange {
+    key("depth", default, least, most)
+}
 
-const DENSITY: KeyRange = KeyRange {
-    key: Key::Density,
-    default: 10,
-    least: 0,
-    most: 100,
-};
+const SEED: KeyRange = key("seed", 1, 0, u32::MAX);
+const DENSITY: KeyRange = key("density", 10, 0, 100);
 
 const fn voxels(
     name: &'static str,

@@ -1,6 +1,6 @@
 //! A perfect maze.
 
-use super::settings::Settings;
+use super::list::Settings;
 use super::{gradient, hash, palette};
 use crate::graph::{Progress, Voxel};
 

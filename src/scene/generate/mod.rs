@@ -3,14 +3,12 @@
 
 mod list;
 mod maze;
-mod settings;
 mod shapes;
 mod sierpinski;
 mod spec;
 mod terrain;
 
-pub use list::{GENERATORS, Generator, KeyRange};
-pub use settings::{Key, Settings};
+pub use list::{GENERATORS, Generator, KeyRange, Settings};
 pub use spec::{PREFIX, Spec, SpecError};
 
 /// A few colours (sRGB) that go together.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::settings::Settings;
+use super::list::Settings;
 use super::{gradient, hash, palette};
 use crate::graph::{Progress, Voxel};
 

@@ -1,6 +1,6 @@
 //! Sierpinski's tetrahedron: the smallest graph with a cycle.
 
-use super::settings::Settings;
+use super::list::Settings;
 use crate::graph::{Graph, PackedNormal, Placement};
 
 /// The octants that are filled: no two share a face.

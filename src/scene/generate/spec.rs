@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use super::list::{GENERATORS, Generator, Shape};
-use super::settings::{Key, Settings};
+use super::list::{GENERATORS, Generator, Settings, Shape};
 use crate::graph::{Graph, GraphView, Progress, Voxel};
 
 /// The beginning of every specification.
@@ -16,119 +15,61 @@ pub struct Spec {
     settings: Settings,
 }
 
-/// A fault in a specification.
+/// A fault in a specification; the message lists the alternatives.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum SpecError {
-    /// It does not begin with [`PREFIX`].
-    #[error("a generated scene is written gen:NAME,key=value,...; `{0}` does not begin with gen:")]
-    Prefix(String),
-    /// There is no such generator.
-    #[error("there is no generator `{name}`; there are {}", names())]
-    Generator {
-        /// The name given.
-        name: String,
-    },
-    /// The generator takes no such key.
-    #[error("{generator} has no key `{key}`; it takes {}", keys(generator))]
-    Key {
-        /// The generator.
-        generator: &'static str,
-        /// The key given.
-        key: String,
-    },
-    /// A setting that is not `key=value`.
-    #[error("`{0}` is not of the form key=value")]
-    Form(String),
-    /// A key given twice.
-    #[error("{0} is given twice")]
-    Twice(Key),
-    /// A value that is not a whole number within the generator's range.
-    #[error("{key} of {generator} must be a whole number from {least} to {most}, not `{value}`")]
-    Value {
-        /// The generator.
-        generator: &'static str,
-        /// The key.
-        key: Key,
-        /// The value given.
-        value: String,
-        /// Least value.
-        least: u32,
-        /// Greatest value.
-        most: u32,
-    },
-}
-
-fn names() -> String {
-    let names: Vec<&str> = GENERATORS.iter().map(|g| g.name).collect();
-    names.join(", ")
-}
-
-fn keys(generator: &str) -> String {
-    let found = GENERATORS.iter().find(|g| g.name == generator);
-    let keys = found.map_or(&[][..], |g| g.keys);
-    let list: Vec<String> = keys
-        .iter()
-        .map(|k| {
-            format!(
-                "{} ({} to {}, default {})",
-                k.key, k.least, k.most, k.default
-            )
-        })
-        .collect();
-    list.join(", ")
-}
+#[error("{0}")]
+pub struct SpecError(String);
 
 impl Spec {
     /// Reads a spec; keys left out have the generator's defaults.
     ///
     /// # Errors
-    /// When the text is no spec; the message lists what there is.
+    /// When the text is no spec.
     pub fn parse(text: &str) -> Result<Self, SpecError> {
-        let body = text
-            .strip_prefix(PREFIX)
-            .ok_or_else(|| SpecError::Prefix(text.to_owned()))?;
+        let wrong = |message: String| Err(SpecError(message));
+        let Some(body) = text.strip_prefix(PREFIX) else {
+            return wrong(format!(
+                "a generated scene is written gen:NAME,key=value,...; `{text}` does not begin with gen:"
+            ));
+        };
         let mut parts = body.split(',').map(str::trim);
         let name = parts.next().unwrap_or_default();
-        let generator = GENERATORS
-            .iter()
-            .find(|generator| generator.name == name)
-            .ok_or_else(|| SpecError::Generator {
-                name: name.to_owned(),
-            })?;
+        let Some(generator) = GENERATORS.iter().find(|g| g.name == name) else {
+            let names: Vec<&str> = GENERATORS.iter().map(|g| g.name).collect();
+            let names = names.join(", ");
+            return wrong(format!("there is no generator `{name}`; there are {names}"));
+        };
         let mut settings = Settings::default();
         for range in generator.keys {
-            settings.set(range.key, range.default);
+            *settings.of(range.key) = range.default;
         }
         let mut given = Vec::new();
         for part in parts {
-            let (key, value) = part
-                .split_once('=')
-                .ok_or_else(|| SpecError::Form(part.to_owned()))?;
+            let Some((key, value)) = part.split_once('=') else {
+                return wrong(format!("`{part}` is not of the form key=value"));
+            };
             let (key, value) = (key.trim(), value.trim());
-            let range = generator
-                .keys
-                .iter()
-                .find(|range| range.key.name() == key)
-                .ok_or_else(|| SpecError::Key {
-                    generator: generator.name,
-                    key: key.to_owned(),
-                })?;
-            if given.contains(&range.key) {
-                return Err(SpecError::Twice(range.key));
+            let Some(range) = generator.keys.iter().find(|range| range.key == key) else {
+                let known = generator.keys.iter().map(|k| {
+                    let (least, most, default) = (k.least, k.most, k.default);
+                    format!("{} ({least} to {most}, default {default})", k.key)
+                });
+                let known = known.collect::<Vec<String>>().join(", ");
+                return wrong(format!("{name} has no key `{key}`; it takes {known}"));
+            };
+            if given.contains(&key) {
+                return wrong(format!("{key} is given twice"));
             }
-            given.push(range.key);
-            let number = value
-                .parse()
-                .ok()
-                .filter(|number| (range.least..=range.most).contains(number))
-                .ok_or_else(|| SpecError::Value {
-                    generator: generator.name,
-                    key: range.key,
-                    value: value.to_owned(),
-                    least: range.least,
-                    most: range.most,
-                })?;
-            settings.set(range.key, number);
+            given.push(key);
+            let (least, most) = (range.least, range.most);
+            match value.parse() {
+                Ok(number) if (least..=most).contains(&number) => *settings.of(key) = number,
+                _ => {
+                    return wrong(format!(
+                        "{key} of {name} must be a whole number from {least} to {most}, not `{value}`"
+                    ));
+                }
+            }
         }
         Ok(Self {
             generator,
@@ -214,10 +155,9 @@ fn walk(
 impl fmt::Display for Spec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{PREFIX}{}", self.generator.name)?;
-        for key in Key::ALL {
-            if self.generator.range(key).is_some() {
-                write!(f, ",{key}={}", self.settings.of(key))?;
-            }
+        let mut settings = self.settings;
+        for range in self.generator.keys {
+            write!(f, ",{}={}", range.key, settings.of(range.key))?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@
 //! and colours are the benchmark's.
 
 use super::hash;
-use super::settings::Settings;
+use super::list::Settings;
 use crate::graph::{Progress, Voxel};
 
 const OCTAVES: u32 = 7;

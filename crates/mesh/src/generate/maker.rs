@@ -6,7 +6,7 @@ use crate::{Material, Mesh, MeshBuilder};
 use shiftvox::split_mix::SplitMix;
 
 /// A collector of triangles.
-pub(super) struct Maker {
+pub(crate) struct Maker {
     builder: MeshBuilder,
     pub(super) lot: SplitMix,
 }
@@ -15,14 +15,14 @@ pub(super) struct Maker {
 const TURN: f64 = core::f64::consts::TAU;
 
 impl Maker {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self {
             builder: MeshBuilder::new(),
             lot: SplitMix::new(seed),
         }
     }
 
-    pub(super) fn finish(self) -> Mesh {
+    pub(crate) fn finish(self) -> Mesh {
         // Every kind has triangles.
         self.builder.finish("generated").unwrap_or_default()
     }
@@ -56,7 +56,7 @@ impl Maker {
     }
 
     /// A box with sides along the axes.
-    pub(super) fn block(&mut self, low: DVec3, high: DVec3, material: u32) {
+    pub(crate) fn block(&mut self, low: DVec3, high: DVec3, material: u32) {
         let corner = |bits: u32| {
             let pick = |k: u32| if bits >> k & 1 == 1 { high } else { low };
             DVec3::new(pick(0).x, pick(1).y, pick(2).z)

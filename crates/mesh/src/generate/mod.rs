@@ -3,7 +3,7 @@
 //! +Y is up. The same seed gives the same mesh on every computer: sines are those of `libm`.
 
 mod kinds;
-mod maker;
+pub(crate) mod maker;
 
 use super::{Mesh, Surface, linear_to_srgb};
 use maker::Maker;

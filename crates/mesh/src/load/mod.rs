@@ -8,7 +8,6 @@ mod stl;
 mod text;
 mod texture;
 
-use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -17,33 +16,7 @@ pub(super) use shiftvox::scene::{Fault, Place, Problem};
 use super::{ColorSpace, Mesh, MeshBuilder, SceneError};
 use shiftvox::bounded;
 use shiftvox::graph::Progress;
-
-/// The formats that meshes are read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum MeshFormat {
-    /// Wavefront, with its material library.
-    Obj,
-    /// Stanford polygons, ASCII or binary.
-    Ply,
-    /// Stereolithography, ASCII or binary.
-    Stl,
-    /// glTF 2.0, JSON.
-    Gltf,
-    /// glTF 2.0, binary.
-    Glb,
-}
-
-impl fmt::Display for MeshFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Obj => ".obj",
-            Self::Ply => ".ply",
-            Self::Stl => ".stl",
-            Self::Gltf => ".gltf",
-            Self::Glb => ".glb",
-        })
-    }
-}
+use shiftvox::scene::FileKind;
 
 /// How a mesh is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -130,7 +103,7 @@ fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {
 /// that does not exist, or holds no triangle that can be drawn.
 pub fn read(
     bytes: &[u8],
-    format: MeshFormat,
+    format: FileKind,
     name: &str,
     beside: &dyn Beside,
     options: &LoadOptions,
@@ -139,11 +112,15 @@ pub fn read(
     progress.begin(&format!("reading {name}"), 0);
     let mut builder = MeshBuilder::new();
     let result = match format {
-        MeshFormat::Obj => obj::read(bytes, beside, options, &mut builder),
-        MeshFormat::Ply => ply::read(bytes, &mut builder),
-        MeshFormat::Stl => stl::read(bytes, &mut builder),
-        MeshFormat::Gltf => gltf::read_json(bytes, beside, &mut builder),
-        MeshFormat::Glb => gltf::read_binary(bytes, beside, &mut builder),
+        FileKind::Obj => obj::read(bytes, beside, options, &mut builder),
+        FileKind::Ply | FileKind::PlyMesh => ply::read(bytes, &mut builder),
+        FileKind::Stl => stl::read(bytes, &mut builder),
+        FileKind::Gltf => gltf::read_json(bytes, beside, &mut builder),
+        FileKind::Glb => gltf::read_binary(bytes, beside, &mut builder),
+        kind => {
+            let file = name.to_owned();
+            return Err(SceneError::NotMesh { file, kind });
+        }
     };
     progress.end();
     result.map_err(|error| error.in_file(name))?;

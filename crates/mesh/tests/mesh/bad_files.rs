@@ -58,7 +58,7 @@ const FILES: [(MeshFormat, &[u8], &str); 10] = [
     (
         Stl,
         &[0; 20],
-        "header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short",
+        "header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short or damaged",
     ),
     (Gltf, b"{\"asset\": ", "JSON at line 1: expected glTF 2.0"),
     (Glb, b"glTF\x02", "header at byte 0: expected 12 bytes"),

@@ -12,34 +12,16 @@ use super::shot::{Own, Target};
 use super::{MOST_RAYS, Ordered, shader_fit};
 use crate::far::blend::by_cosines;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
+use crate::generate::maker::Maker;
 use crate::{Material, Mesh, MeshBuilder, Surface};
 
 /// A mesh of boxes.
 fn boxes(boxes: &[(DVec3, DVec3)]) -> Mesh {
-    let mut builder = MeshBuilder::new();
+    let mut maker = Maker::new(0);
     for &(low, high) in boxes {
-        let corners: Vec<u32> = (0..8)
-            .map(|i| {
-                let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
-                builder.position([pick(0) as f32, pick(1) as f32, pick(2) as f32])
-            })
-            .collect();
-        let faces = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        for [a, b, c, d] in faces {
-            for triangle in [[a, b, c], [a, c, d]] {
-                let triangle = triangle.map(|i: usize| corners[i]);
-                builder.triangle(triangle, None, 0).unwrap();
-            }
-        }
+        maker.block(low, high, 0);
     }
-    builder.finish("boxes").unwrap()
+    maker.finish()
 }
 
 /// Unit voxels from the origin.

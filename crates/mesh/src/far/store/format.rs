@@ -5,6 +5,7 @@
 
 use std::io::{self, Write};
 
+use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::FarData;
@@ -21,21 +22,26 @@ pub(super) const FORMAT: Format = Format {
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
 
-/// Offsets in the header, beside those of every header.
-pub(super) mod at {
-    pub(in super::super) const NODES: usize = 24;
-    pub(in super::super) const DATA_BYTES: usize = 32;
-    pub(in super::super) const TRIANGLES: usize = 40;
-    pub(in super::super) const CENTRE: usize = 48;
-    pub(in super::super) const DISTANCE: usize = 72;
-    pub(in super::super) const LEAF: usize = 80;
-    pub(in super::super) const GRID: usize = 84;
-    pub(in super::super) const BLENDS: usize = 88;
-    pub(in super::super) const Y_UP: usize = 90;
-    pub(in super::super) const SPARE: std::ops::Range<usize> = 91..96;
-    pub(in super::super) const NODES_CHECKSUM: usize = 96;
-    pub(in super::super) const BEVELS: usize = 104;
-    pub(in super::super) const MORE_SPARE: std::ops::Range<usize> = 112..120;
+/// Where [`Fields`] begin in the header.
+pub(super) const FIELDS: usize = 24;
+
+/// The fields of the header, beside those of every header.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Fields {
+    pub(super) nodes: u64,
+    pub(super) data_bytes: u64,
+    pub(super) triangles: u64,
+    pub(super) centre: [f64; 3],
+    pub(super) distance_voxels: f64,
+    pub(super) leaf_triangles: u32,
+    pub(super) grid: u32,
+    pub(super) blends: [u8; 2],
+    pub(super) y_up: u8,
+    pub(super) spare: [u8; 5],
+    pub(super) nodes_checksum: u64,
+    pub(super) bevels: [u8; 8],
+    pub(super) more_spare: [u8; 8],
 }
 
 /// Opacities are blended by cosines, normals and materials by their squares.
@@ -67,20 +73,21 @@ pub(in crate::far) fn write_parts(
     let nodes: &[u8] = bytemuck::cast_slice::<Node, u8>(&data.nodes);
     let [node_place, [begin, end]] = layout(data.nodes.len() as u64, data_bytes);
     let settings = &data.settings;
-    let header = FORMAT.header(end, |put| {
-        put(at::NODES, &(data.nodes.len() as u64).to_le_bytes());
-        put(at::DATA_BYTES, &data_bytes.to_le_bytes());
-        put(at::TRIANGLES, &data.triangles().to_le_bytes());
-        let centre = settings.centre.to_array();
-        put(at::CENTRE, bytemuck::bytes_of(&centre));
-        put(at::DISTANCE, &settings.distance_voxels.to_le_bytes());
-        put(at::LEAF, &settings.leaf_triangles.to_le_bytes());
-        put(at::GRID, &settings.grid.to_le_bytes());
-        put(at::BLENDS, &BLENDS);
-        put(at::Y_UP, &[u8::from(settings.y_up)]);
-        put(at::BEVELS, &settings.bevels);
-        put(at::NODES_CHECKSUM, &xxh3_64(nodes).to_le_bytes());
-    });
+    let fields = Fields {
+        nodes: data.nodes.len() as u64,
+        data_bytes,
+        triangles: data.triangles(),
+        centre: settings.centre.to_array(),
+        distance_voxels: settings.distance_voxels,
+        leaf_triangles: settings.leaf_triangles,
+        grid: settings.grid,
+        blends: BLENDS,
+        y_up: u8::from(settings.y_up),
+        nodes_checksum: xxh3_64(nodes),
+        bevels: settings.bevels,
+        ..Zeroable::zeroed()
+    };
+    let header = FORMAT.header(end, |put| put(FIELDS, bytemuck::bytes_of(&fields)));
     // The zeros before the data are written before an empty section.
     let sections = [(node_place, nodes), ([begin; 2], &[][..])];
     file::write(&FORMAT, &header, sections.into_iter(), out)?;

@@ -1,6 +1,7 @@
 //! Reading a `.far` file: on demand, or all of it.
 
 use std::io;
+use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
 use super::data::{NodeData, Slot};
-use super::format::{BLENDS, FORMAT, at, layout};
+use super::format::{BLENDS, FIELDS, FORMAT, Fields, layout};
 use super::pack::unpack;
 use crate::far::FarSettings;
 use crate::far::record::Node;
@@ -52,7 +53,7 @@ impl FarFile {
     pub fn open(path: &Path) -> Result<Self, FarError> {
         let refused = |refused| FarError::refused(path, refused);
         let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
-        Header::read(&opened.beginning, opened.bytes, path)?;
+        read_header(&opened.beginning, opened.bytes, path)?;
         Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
@@ -94,9 +95,10 @@ impl FarFile {
     fn of(bytes: Bytes, path: &Path) -> Result<Self, FarError> {
         FORMAT.check_byte_order(path)?;
         let all = bytes.get();
-        let header = Header::read(all, all.len() as u64, path)?;
-        let [place, section] = header.places;
-        check_padding(all, header.places.into_iter(), path)?;
+        let header = read_header(all, all.len() as u64, path)?;
+        let places = layout(header.nodes, header.data_bytes);
+        let [place, section] = places;
+        check_padding(all, places.into_iter(), path)?;
         let damaged =
             |section, offset, expected| FarError::damaged(path, section, offset, expected);
         let node_bytes = &all[range(place)];
@@ -115,7 +117,14 @@ impl FarFile {
         })?;
         // Checked: there is a root, and fewer than 2^32 of all.
         let file = Self {
-            settings: header.settings,
+            settings: FarSettings {
+                centre: DVec3::from_array(header.centre),
+                distance_voxels: header.distance_voxels,
+                leaf_triangles: header.leaf_triangles,
+                grid: header.grid,
+                y_up: header.y_up == 1,
+                bevels: header.bevels,
+            },
             path: path.to_owned(),
             section,
             first_voxel: first_of(&nodes, |node| node.voxels() as u32),
@@ -131,7 +140,7 @@ impl FarFile {
         let finest = extents.fold(0.0, f64::max) / MOST_PARTS;
         if !can_be_seen(low.to_array(), high.to_array(), finest) {
             let expected = "a centre from which the boxes of nodes can be told apart";
-            return Err(damaged("header", at::CENTRE as u64, expected.to_owned()));
+            return Err(damaged("header", CENTRE, expected.to_owned()));
         }
         Ok(file)
     }
@@ -256,49 +265,45 @@ fn first_of(nodes: &[Node], items: impl Fn(&Node) -> u32) -> Vec<u32> {
     nodes.iter().map(first).collect()
 }
 
-/// The header, decoded and checked.
-struct Header {
-    /// The sections of nodes and data.
-    places: [[u64; 2]; 2],
-    triangles: u64,
-    settings: FarSettings,
-    nodes_checksum: u64,
-}
+/// Where the centre is in the header.
+const CENTRE: u64 = (FIELDS + offset_of!(Fields, centre)) as u64;
 
-impl Header {
-    /// Reads a header from the beginning of a file of `file_bytes`.
-    fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, FarError> {
-        let header = FORMAT.read(beginning, file_bytes, path)?;
-        let [nodes, data_bytes, triangles] =
-            [at::NODES, at::DATA_BYTES, at::TRIANGLES].map(|at| header.u64_at(at));
-        let places = layout(nodes, data_bytes);
-        header.ensure(places[1][1] == file_bytes, at::NODES, || {
-            format!("sections that end with the file at byte {file_bytes}")
-        })?;
-        let is_spare = header.is_zero(at::SPARE) && header.is_zero(at::MORE_SPARE);
-        header.ensure(is_spare, at::SPARE.start, || "zeros")?;
-        let [distance_voxels] = header.f64s_at(at::DISTANCE);
-        let settings = FarSettings {
-            centre: DVec3::from_array(header.f64s_at(at::CENTRE)),
-            distance_voxels,
-            leaf_triangles: header.u32_at(at::LEAF),
-            grid: header.u32_at(at::GRID),
-            y_up: header.byte_at(at::Y_UP) == 1,
-            bevels: header.bytes_at(at::BEVELS),
-        };
-        header.ensure(settings.centre.is_finite(), at::CENTRE, || "finite numbers")?;
-        let is_distance = (1.0..=1e6).contains(&distance_voxels);
-        header.ensure(is_distance, at::DISTANCE, || "1 to 1,000,000 voxels")?;
-        header.ensure(settings.leaf_triangles >= 2, at::LEAF, || "2 or more")?;
-        header.ensure((2..=255).contains(&settings.grid), at::GRID, || "2 to 255")?;
-        let is_known = BLENDS == [0, 1].map(|k| header.byte_at(at::BLENDS + k));
-        header.ensure(is_known, at::BLENDS, || "1 and 0")?;
-        header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        Ok(Self {
-            places,
-            triangles,
-            settings,
-            nodes_checksum: header.u64_at(at::NODES_CHECKSUM),
-        })
+/// Reads and checks a header from the beginning of a file of `file_bytes`.
+fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, FarError> {
+    let header = FORMAT.read(beginning, file_bytes, path)?;
+    let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
+    let fields: Fields = bytemuck::pod_read_unaligned(&bytes);
+    let ends = format!("sections that end with the file at byte {file_bytes}");
+    let [_, [_, end]] = layout(fields.nodes, fields.data_bytes);
+    let is_finite = fields.centre.iter().all(|c| c.is_finite());
+    let is_spare = fields.spare == [0; 5] && fields.more_spare == [0; 8];
+    for (holds, offset, expected) in [
+        (end == file_bytes, offset_of!(Fields, nodes), &ends[..]),
+        (is_spare, offset_of!(Fields, spare), "zeros"),
+        (is_finite, offset_of!(Fields, centre), "finite numbers"),
+        (
+            (1.0..=1e6).contains(&fields.distance_voxels),
+            offset_of!(Fields, distance_voxels),
+            "1 to 1,000,000 voxels",
+        ),
+        (
+            fields.leaf_triangles >= 2,
+            offset_of!(Fields, leaf_triangles),
+            "2 or more",
+        ),
+        (
+            (2..=255).contains(&fields.grid),
+            offset_of!(Fields, grid),
+            "2 to 255",
+        ),
+        (
+            fields.blends == BLENDS,
+            offset_of!(Fields, blends),
+            "1 and 0",
+        ),
+        (fields.y_up <= 1, offset_of!(Fields, y_up), "0 or 1"),
+    ] {
+        header.ensure(holds, FIELDS + offset, || expected)?;
     }
+    Ok(fields)
 }

@@ -12,34 +12,24 @@ const HARMLESS: [&str; 4] = [
     "KHR_texture_basisu",
 ];
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct Document {
     asset: Asset,
     pub(super) scene: Option<usize>,
-    #[serde(default)]
     pub(super) scenes: Vec<Scene>,
-    #[serde(default)]
     pub(super) nodes: Vec<Node>,
-    #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
-    #[serde(default)]
     pub(super) materials: Vec<Material>,
-    #[serde(default)]
     pub(super) textures: Vec<Texture>,
-    #[serde(default)]
     pub(super) images: Vec<Image>,
-    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
-    #[serde(default)]
     pub(super) buffer_views: Vec<BufferView>,
-    #[serde(default)]
     pub(super) buffers: Vec<Buffer>,
-    #[serde(default)]
     extensions_required: Vec<String>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 struct Asset {
     version: String,
 }

@@ -19,17 +19,22 @@ pub(super) const FORMAT: Format = Format {
     not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
 };
 
-/// Where things are in the header, beside what every header has.
-pub(super) mod at {
-    pub(in super::super) const PRIMITIVES: usize = 24;
-    pub(in super::super) const LOW: usize = 32;
-    pub(in super::super) const HIGH: usize = 56;
-    pub(in super::super) const GRIDS: usize = 80;
-    pub(in super::super) const Y_UP: usize = 84;
-    pub(in super::super) const SPARE: std::ops::Range<usize> = 85..96;
-    pub(in super::super) const BEVELS: usize = 96;
-    pub(in super::super) const PRIMITIVES_CHECKSUM: usize = 104;
-    pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
+/// Where [`Fields`] begin in the header.
+pub(super) const FIELDS: usize = 24;
+
+/// The fields of the header, beside those of every header.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Fields {
+    pub(super) primitives: u64,
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+    pub(super) grids: u32,
+    pub(super) y_up: u8,
+    pub(super) spare: [u8; 11],
+    pub(super) bevels: [u8; 8],
+    pub(super) primitives_checksum: u64,
+    pub(super) grids_checksum: u64,
 }
 
 /// A grid's entry in the file.

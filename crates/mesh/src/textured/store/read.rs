@@ -1,14 +1,15 @@
 //! Reading a `.tvx` file: mapped, or held in memory.
 
+use std::mem::offset_of;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::TexturedError;
 use super::check::{Part, check, check_entry, check_primitives};
-use super::format::{ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, at};
+use super::format::{ENTRY_BYTES, FIELDS, FORMAT, Fields, GridEntry, GridPlaces, Layout};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
@@ -31,7 +32,6 @@ pub struct TexturedFile {
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
     is_checked: Vec<AtomicBool>,
-    levels_made: AtomicU64,
 }
 
 impl TexturedFile {
@@ -42,7 +42,7 @@ impl TexturedFile {
     pub fn open(path: &Path) -> Result<Self, TexturedError> {
         let refused = |refused| TexturedError::refused(path, refused);
         let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
-        Header::read(&opened.beginning, opened.bytes, path)?;
+        read_header(&opened.beginning, opened.bytes, path)?;
         Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
@@ -57,8 +57,8 @@ impl TexturedFile {
     fn of(bytes: Bytes, path: &Path) -> Result<Self, TexturedError> {
         FORMAT.check_byte_order(path)?;
         let all = bytes.get();
-        let header = Header::read(all, all.len() as u64, path)?;
-        let entries = header.entries(all, path)?;
+        let header = read_header(all, all.len() as u64, path)?;
+        let entries = read_entries(&header, all, path)?;
         let layout = Layout::of(header.primitives, &entries);
         if layout.end() != all.len() as u64 {
             let expected = format!("sections that end with the file at byte {}", all.len());
@@ -71,13 +71,12 @@ impl TexturedFile {
             is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
             bytes,
             layout,
-            low: header.low,
-            high: header.high,
-            y_up: header.y_up,
+            low: header.low.into(),
+            high: header.high.into(),
+            y_up: header.y_up == 1,
             bevels: header.bevels,
             entries,
             levels: Vec::new(),
-            levels_made: AtomicU64::new(0),
         };
         file.check_primitives(header.primitives_checksum)?;
         for number in 0..file.entries.len() {
@@ -86,7 +85,6 @@ impl TexturedFile {
             let (voxels, lists) = (file.voxels(number), file.lists(number));
             let levels = Levels::of(voxels, lists, file.primitives().len(), grid.cells);
             file.levels.push(levels);
-            file.levels_made.fetch_add(1, Ordering::Relaxed);
         }
         Ok(file)
     }
@@ -177,11 +175,6 @@ impl TexturedFile {
     /// A grid, coarse before fine; `number` is below [`TexturedFile::grids`].
     pub fn grid(&self, number: usize) -> Grid<'_> {
         Grid { file: self, number }
-    }
-
-    /// How often tables of levels were made: once for each grid, on opening.
-    pub fn levels_made(&self) -> u64 {
-        self.levels_made.load(Ordering::Relaxed)
     }
 
     /// Checks everything, also texels and erosion depths.
@@ -320,83 +313,63 @@ impl<'f> Grid<'f> {
     }
 }
 
-/// The header, decoded and checked.
-struct Header {
-    primitives: u64,
-    grids: usize,
-    low: DVec3,
-    high: DVec3,
-    y_up: bool,
-    bevels: [u8; 8],
-    primitives_checksum: u64,
-    grids_checksum: u64,
+/// Reads and checks a header from the beginning of a file of `file_bytes`.
+fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, TexturedError> {
+    let header = FORMAT.read(beginning, file_bytes, path)?;
+    let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
+    let fields: Fields = bytemuck::pod_read_unaligned(&bytes);
+    let grids = format!("1 to {MOST_GRIDS} grids, not {}", fields.grids);
+    let [low, high] = [fields.low, fields.high].map(DVec3::from_array);
+    let extent = (high - low).max_element();
+    let is_box = low.is_finite() && high.is_finite() && extent > 0.0;
+    let is_seen = can_be_seen(fields.low, fields.high, extent / MOST_PARTS);
+    for (holds, offset, expected) in [
+        (fields.spare == [0; 11], offset_of!(Fields, spare), "zeros"),
+        (
+            (1..=MOST_GRIDS).contains(&(fields.grids as usize)),
+            offset_of!(Fields, grids),
+            &grids[..],
+        ),
+        (
+            (1..u64::from(u32::MAX)).contains(&fields.primitives),
+            offset_of!(Fields, primitives),
+            "1 to 2^32 primitives",
+        ),
+        (is_box, offset_of!(Fields, low), "a box of finite numbers"),
+        (
+            is_seen,
+            offset_of!(Fields, low),
+            "a box whose parts can be told apart",
+        ),
+        (fields.y_up <= 1, offset_of!(Fields, y_up), "0 or 1"),
+    ] {
+        header.ensure(holds, FIELDS + offset, || expected)?;
+    }
+    Ok(fields)
 }
 
-impl Header {
-    /// Reads a header from the beginning of a file of `file_bytes`.
-    fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, TexturedError> {
-        let header = FORMAT.read(beginning, file_bytes, path)?;
-        header.ensure(header.is_zero(at::SPARE), at::SPARE.start, || "zeros")?;
-        let grids = header.u32_at(at::GRIDS) as usize;
-        header.ensure((1..=MOST_GRIDS).contains(&grids), at::GRIDS, || {
-            format!("1 to {MOST_GRIDS} grids, not {grids}")
-        })?;
-        let primitives = header.u64_at(at::PRIMITIVES);
-        let is_numbered = (1..u64::from(u32::MAX)).contains(&primitives);
-        header.ensure(is_numbered, at::PRIMITIVES, || "1 to 2^32 primitives")?;
-        let [low, high] = [at::LOW, at::HIGH].map(|at| DVec3::from_array(header.f64s_at(at)));
-        let is_box = low.is_finite() && high.is_finite() && (high - low).max_element() > 0.0;
-        header.ensure(is_box, at::LOW, || "a box of finite numbers")?;
-        let finest = (high - low).max_element() / MOST_PARTS;
-        let is_seen = can_be_seen(low.to_array(), high.to_array(), finest);
-        header.ensure(is_seen, at::LOW, || "a box whose parts can be told apart")?;
-        header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        Ok(Self {
-            primitives,
-            grids,
-            low,
-            high,
-            y_up: header.byte_at(at::Y_UP) == 1,
-            bevels: header.bytes_at(at::BEVELS),
-            primitives_checksum: header.u64_at(at::PRIMITIVES_CHECKSUM),
-            grids_checksum: header.u64_at(at::GRIDS_CHECKSUM),
-        })
+/// The entries of the grids, which follow the header.
+fn read_entries(header: &Fields, all: &[u8], path: &Path) -> Result<Vec<GridEntry>, TexturedError> {
+    let damaged = |number: usize, expected: String| {
+        let offset = (HEADER_BYTES + number * ENTRY_BYTES) as u64;
+        TexturedError::damaged(path, "grids", offset, expected)
+    };
+    let length = header.grids as usize * ENTRY_BYTES;
+    let bytes = all.get(HEADER_BYTES..HEADER_BYTES + length);
+    let bytes = bytes.ok_or_else(|| damaged(0, format!("{} grids", header.grids)))?;
+    if xxh3_64(bytes) != header.grids_checksum {
+        return Err(damaged(
+            0,
+            format!("checksum {:016x}", header.grids_checksum),
+        ));
     }
-
-    /// The entries of the grids, which follow the header.
-    fn entries(&self, all: &[u8], path: &Path) -> Result<Vec<GridEntry>, TexturedError> {
-        let [begin, end] = [HEADER_BYTES, HEADER_BYTES + self.grids * ENTRY_BYTES];
-        let Some(bytes) = all.get(begin..end) else {
-            let expected = format!("{} grids", self.grids);
-            return Err(TexturedError::damaged(
-                path,
-                "grids",
-                begin as u64,
-                expected,
-            ));
-        };
-        if xxh3_64(bytes) != self.grids_checksum {
-            let expected = format!("checksum {:016x}", self.grids_checksum);
-            return Err(TexturedError::damaged(
-                path,
-                "grids",
-                begin as u64,
-                expected,
-            ));
-        }
-        let entries: Vec<GridEntry> = bytemuck::pod_collect_to_vec(bytes);
-        for (number, entry) in entries.iter().enumerate() {
-            let is_finer = number == 0 || entries[number - 1].cells < entry.cells;
-            let sound = check_entry(entry).and(if is_finer {
-                Ok(())
-            } else {
-                Err("grids from coarse to fine")
-            });
-            sound.map_err(|expected| {
-                let offset = (begin + number * ENTRY_BYTES) as u64;
-                TexturedError::damaged(path, "grids", offset, expected)
-            })?;
-        }
-        Ok(entries)
+    let entries: Vec<GridEntry> = bytemuck::pod_collect_to_vec(bytes);
+    for (number, entry) in entries.iter().enumerate() {
+        let is_finer = number == 0 || entries[number - 1].cells < entry.cells;
+        let order = is_finer.then_some(()).ok_or("grids from coarse to fine");
+        check_entry(entry)
+            .and(order)
+            .map_err(|expected| damaged(number, expected.to_owned()))?;
     }
+    Ok(entries)
 }

@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
-use bytemuck::cast_slice;
+use bytemuck::{bytes_of, cast_slice};
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::format::{FORMAT, GridEntry, Layout, at};
+use super::format::{FIELDS, FORMAT, Fields, GridEntry, Layout};
 use crate::textured::{Element, GridData, TexturedData};
-use shiftvox::graph::file::{self, HEADER_BYTES};
+use shiftvox::graph::file;
 
 /// Writes textured voxels: to a temporary file, say, that then gets its name
 /// ([`shiftvox::whole::write_with`]).
@@ -26,7 +26,19 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         ];
         sections.extend(parts);
     }
-    let header = header(data, &entries, &layout);
+    let fields = Fields {
+        primitives: data.primitives.len() as u64,
+        low: data.low.to_array(),
+        high: data.high.to_array(),
+        // At most 16.
+        grids: entries.len() as u32,
+        y_up: u8::from(data.y_up),
+        spare: [0; 11],
+        bevels: data.bevels,
+        primitives_checksum: xxh3_64(cast_slice(&data.primitives)),
+        grids_checksum: xxh3_64(cast_slice(&entries)),
+    };
+    let header = FORMAT.header(layout.end(), |put| put(FIELDS, bytes_of(&fields)));
     file::write(&FORMAT, &header, layout.sections().zip(sections), out)
 }
 
@@ -45,7 +57,10 @@ fn entry(grid: &GridData) -> GridEntry {
     GridEntry {
         cells: grid.cells,
         texels: grid.texels,
-        element: element_number(grid.element),
+        element: match grid.element {
+            Element::Cube => 0,
+            Element::Sides => 1,
+        },
         spare: 0,
         voxels: grid.voxels.len() as u64,
         listed: grid.lists.len() as u64,
@@ -56,32 +71,4 @@ fn entry(grid: &GridData) -> GridEntry {
         lists_checksum: xxh3_64(cast_slice(&grid.lists)),
         textures_checksum: xxh3_64(cast_slice(&grid.textures)),
     }
-}
-
-pub(super) fn element_number(element: Element) -> u32 {
-    match element {
-        Element::Cube => 0,
-        Element::Sides => 1,
-    }
-}
-
-fn header(data: &TexturedData, entries: &[GridEntry], layout: &Layout) -> [u8; HEADER_BYTES] {
-    FORMAT.header(layout.end(), |put| {
-        put(
-            at::PRIMITIVES,
-            &(data.primitives.len() as u64).to_le_bytes(),
-        );
-        for k in 0..3 {
-            put(at::LOW + 8 * k, &data.low[k].to_le_bytes());
-            put(at::HIGH + 8 * k, &data.high[k].to_le_bytes());
-        }
-        // At most 16.
-        put(at::GRIDS, &(entries.len() as u32).to_le_bytes());
-        put(at::Y_UP, &[u8::from(data.y_up)]);
-        put(at::BEVELS, &data.bevels);
-        let primitives = xxh3_64(cast_slice(&data.primitives));
-        put(at::PRIMITIVES_CHECKSUM, &primitives.to_le_bytes());
-        let grids = xxh3_64(cast_slice(entries));
-        put(at::GRIDS_CHECKSUM, &grids.to_le_bytes());
-    })
 }
