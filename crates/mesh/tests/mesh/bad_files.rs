@@ -19,7 +19,7 @@ obj  | f 1 2 3\nf 2 3                         | face at line 5: expected three o
 obj  | vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 3/  | face at line 6: expected three
 obj  |                                        | mesh: expected at least one triangle, found none; 
 obj  | v nan 0 0\nv inf 0 0\nf 3 4 5\n        | found none that can be drawn: 1 of 1 triangles with a coordinate that is infinite or not a number
-obj  | v 2 0 0\nf 1 2 4\nf 1 1 2\n            | 2 of 2 triangles without area
+obj  | v 2 0 0\nf 1 2 4\nf 1 1 2\n            | mesh: expected at least one triangle, found none that can be drawn: 2 of 2 triangles without area (corners equal, or on a line); export the mesh again, with its faces
 ply  | ascii 3: 0 0 0\n1 0 0\n1 1 0\n3 0 1 3\n  | face 0 at byte 182: expected corners from 0 to 2, found 3
 ply  | ascii 3: 0 0 0\n1 0 0\n1 1 0\n3 0 -1 2\n | expected corners from 0 to 2, found -1
 ply  | ascii 3: 0 0 0\n1 0 0\n                | vertex 2 at byte 176: expected as many elements as the header says
