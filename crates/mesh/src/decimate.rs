@@ -312,91 +312,61 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Material;
     use crate::generate::{Kind, generate};
-    use crate::{Material, MeshBuilder};
+    use crate::shared::{shape, sheet};
 
-    /// A square of two halves of different materials, each of 8 by 16 cells.
-    fn halves() -> Mesh {
-        let mut builder = MeshBuilder::new();
-        let colors = [[200, 0, 0], [0, 0, 200]];
-        let materials = colors.map(|color| builder.material(Material::of_srgb("m", color)));
-        for i in 0..17 {
-            for j in 0..17 {
-                builder.position([i as f32, j as f32, 0.0]);
-            }
-        }
-        for i in 0..16u32 {
-            for j in 0..16u32 {
-                let [a, b] = [17 * i + j, 17 * (i + 1) + j];
-                let material = materials[usize::from(i >= 8)];
-                for corners in [[a, b, b + 1], [a, b + 1, a + 1]] {
-                    builder.triangle(corners, None, material).unwrap();
-                }
-            }
-        }
-        builder.finish("halves").unwrap()
-    }
-
-    fn area_of(mesh: &Mesh, material: u32) -> f64 {
-        let own = (0..mesh.len()).filter(|&n| mesh.material_of[n] == material);
-        let areas = own.map(|n| {
-            let [a, b, c] = Surface::corners(mesh, n);
-            (b - a).cross(c - a).length() / 2.0
-        });
-        areas.sum()
+    fn decimated(mesh: &Mesh, triangles: usize, error: Option<f64>, prunes: bool) -> Option<Mesh> {
+        let how = Decimation {
+            triangles,
+            error,
+            prunes,
+        };
+        decimate(mesh, &how).unwrap()
     }
 
     #[test]
     fn flat_parts_lose_triangles_and_keep_their_materials() {
-        let how = Decimation {
-            triangles: 0,
-            error: Some(0.01),
-            prunes: false,
-        };
-        let few = decimate(&halves(), &how).unwrap().unwrap();
+        // A square of two materials.
+        let square = shape(|builder| {
+            let other = builder.material(Material::of_srgb("other", [0; 3]));
+            for (left, material) in [(0, 0), (8, other)] {
+                let at = |i, j| DVec3::new(f64::from(left + j), f64::from(i), 0.0);
+                sheet(builder, [16, 8], material, at);
+            }
+        });
+        let few = decimated(&square, 0, Some(0.01), false).unwrap();
         assert!(few.triangles().len() <= 8, "{}", few.triangles().len());
         for material in [0, 1] {
-            assert!((area_of(&few, material) - 128.0).abs() < 1e-3);
+            let own = (0..few.len()).filter(|&n| few.material_of[n] == material);
+            let areas = own.map(|n| {
+                let [a, b, c] = Surface::corners(&few, n);
+                (b - a).cross(c - a).length() / 2.0
+            });
+            assert!((areas.sum::<f64>() - 128.0).abs() < 1e-3);
         }
         assert!(few.corner_normals().iter().flatten().all(|n| n[2] > 0.999));
     }
 
     #[test]
     fn a_budget_is_kept_and_a_compact_mesh_is_near() {
-        let mesh = generate(Kind::Scan, 1);
-        let how = Decimation {
-            triangles: 500,
-            error: None,
-            prunes: true,
-        };
-        let few = decimate(&mesh, &how).unwrap().unwrap();
+        let few = decimated(&generate(Kind::Scan, 1), 500, None, true).unwrap();
         assert!((300..=500).contains(&few.triangles().len()));
         let (rounded, bytes) = compact(&few);
         let extent = (few.bounds().1 - few.bounds().0).max_element();
         for (a, b) in few.positions().iter().zip(rounded.positions()) {
             assert!((point(*a) - point(*b)).length() < extent / 30_000.0);
         }
-        // At least two bytes an index and a vertex for two triangles; less than unindexed.
-        assert!(
-            (3000 + 250 * 8..500 * 52).contains(&(bytes as usize)),
-            "{bytes}"
-        );
+        // At least two bytes per index and a vertex for two triangles; less than unindexed.
+        let range = 3000 + 250 * 8..500 * 52;
+        assert!(range.contains(&(bytes as usize)), "{bytes}");
     }
 
     #[test]
-    fn what_is_smaller_than_the_error_goes_if_asked() {
-        let how = |prunes| Decimation {
-            triangles: 0,
-            error: Some(100.0),
-            prunes,
-        };
+    fn parts_smaller_than_the_error_vanish_on_request() {
         let tree = generate(Kind::Tree, 1);
-        assert!(
-            decimate(&tree, &how(true))
-                .unwrap()
-                .is_none_or(|m| m.len() < 100)
-        );
-        let kept = decimate(&tree, &how(false)).unwrap().unwrap();
-        assert!(kept.len() > 1000);
+        let pruned = decimated(&tree, 0, Some(100.0), true);
+        assert!(pruned.is_none_or(|mesh| mesh.len() < 100));
+        assert!(decimated(&tree, 0, Some(100.0), false).unwrap().len() > 1000);
     }
 }

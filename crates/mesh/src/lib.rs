@@ -21,6 +21,12 @@ mod surface;
 pub mod textured;
 pub mod voxelize;
 
+#[cfg(test)]
+extern crate self as shiftvox_mesh;
+#[cfg(test)]
+#[path = "../tests/shared/mod.rs"]
+mod shared;
+
 use glam::DVec3;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 

@@ -116,39 +116,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_byte_is_found() {
-        let slow = |light: f64| {
+    fn light_becomes_the_nearest_byte() {
+        let nearest = |light: f64| {
             let distance = |byte: &u8| (f64::from(srgb_to_linear(*byte)) - light).abs();
-            let nearest = (0..=255u8)
-                .rev()
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            nearest.unwrap()
+            let bytes = (0..=255u8).rev();
+            bytes
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+                .unwrap()
         };
-        for step in -100..20_300 {
-            let light = f64::from(step) / 20_000.0;
-            assert_eq!(linear_to_srgb(light), slow(light), "{light}");
+        let steps = (-100..20_300).map(|step| f64::from(step) / 20_000.0);
+        let bytes = (0..=255).map(|byte| f64::from(srgb_to_linear(byte)));
+        for light in steps.chain(bytes).chain([-1.0, 2.0]) {
+            assert_eq!(linear_to_srgb(light), nearest(light), "{light}");
         }
+        assert_eq!(linear_to_srgb(0.5), 188);
         assert_eq!(linear_to_srgb(f64::NAN), 0);
     }
 
     #[test]
-    fn every_byte_survives_linear_light() {
-        for byte in 0..=255 {
-            assert_eq!(linear_to_srgb(f64::from(srgb_to_linear(byte))), byte);
-        }
-        assert_eq!(linear_to_srgb(-1.0), 0);
-        assert_eq!(linear_to_srgb(2.0), 255);
-        assert_eq!(linear_to_srgb(0.5), 188);
-    }
-
-    #[test]
-    fn numbers_of_files_are_made_colours() {
+    fn numbers_of_files_become_colours() {
         let srgb = Material::of_numbers("a", [0.5, -1.0, f32::NAN], ColorSpace::Srgb, 2.0);
         assert!((srgb.diffuse[0] - 0.2140).abs() < 1e-4);
-        assert_eq!(srgb.diffuse[1..], [0.0, 0.0]);
-        assert_eq!(srgb.alpha, 1.0);
+        assert_eq!((&srgb.diffuse[1..], srgb.alpha), (&[0.0, 0.0][..], 1.0));
         let linear = Material::of_numbers("b", [0.5, 7.0, 0.0], ColorSpace::Linear, -0.5);
-        assert_eq!(linear.diffuse, [0.5, 1.0, 0.0]);
-        assert_eq!(linear.alpha, 0.0);
+        assert_eq!((linear.diffuse, linear.alpha), ([0.5, 1.0, 0.0], 0.0));
     }
 }

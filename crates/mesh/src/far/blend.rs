@@ -125,6 +125,7 @@ impl<const N: usize> Fit<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared::directions;
 
     #[test]
     fn six_values_are_found_again() {
@@ -132,12 +133,8 @@ mod tests {
         for blend in [by_squares, by_cosines] {
             assert_eq!(blend(DVec3::NEG_Z)[2], (5, 1.0));
             let (mut fit, mut square) = (Fit::<1>::new(), 0.0);
-            for i in 0..2000 {
-                let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 2000.0;
-                let around = f64::from(i) * 2.399_963_229_728_653;
-                let ring = libm::sqrt(1.0 - z * z);
-                let d = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
-                let shares = blend(d);
+            for direction in directions(2000) {
+                let shares = blend(direction);
                 assert!((shares.iter().map(|s| s.1).sum::<f64>() - 1.0).abs() < 1e-12);
                 let value = shares.iter().map(|&(k, share)| share * truth[k]).sum();
                 fit.add(&shares, &[value], 2.0);
@@ -145,12 +142,10 @@ mod tests {
             }
             assert!((fit.square_of(&truth) - square).abs() < 1e-3 * square);
             let found = fit.solve(&[1.0], 1e-6, (0.0, 1.0));
-            assert!(
-                (0..DIRECTIONS).all(|k| (found[k][0] - truth[k]).abs() < 1e-3),
-                "{found:?}"
-            );
+            let is_near = (0..DIRECTIONS).all(|k| (found[k][0] - truth[k]).abs() < 1e-3);
+            assert!(is_near, "{found:?}");
         }
-        // Without observations: the value that it is drawn to.
+        // Without observations, the default.
         let nothing = Fit::<1>::new().solve(&[0.75], 0.25, (0.0, 1.0));
         assert!(nothing.iter().all(|v| (v[0] - 0.75).abs() < 1e-12));
     }

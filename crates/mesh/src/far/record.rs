@@ -509,32 +509,22 @@ mod tests {
     #[test]
     fn records_have_their_sizes_and_come_back() {
         assert_eq!((NODE_BYTES, TRIANGLE_BYTES), (144, 52));
-        let white = DVec3::ONE;
-        let axes = [
-            DVec3::X,
-            DVec3::NEG_X,
-            DVec3::Y,
-            DVec3::NEG_Y,
-            DVec3::Z,
-            DVec3::NEG_Z,
-        ];
-        let shaders = [
-            Shader::Flat {
-                normal: DVec3::Y,
-                colors: [white, DVec3::ZERO],
-            },
-            Shader::Complex {
-                normals: axes,
-                colors: [white, white, DVec3::ZERO, white, DVec3::ZERO, white],
-            },
-        ];
-        let opacities = [
-            (OpacityKind::Opaque, [0, 0], [1.0; 6]),
-            (OpacityKind::Scalar, [3, 0], [1.0; 6]),
-            (OpacityKind::Six, [4, 1], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
-        ];
-        for shader in shaders {
-            for (opacity_kind, solid, opacity) in opacities {
+        let (white, black) = (DVec3::ONE, DVec3::ZERO);
+        let [x, y, z] = DVec3::AXES;
+        let flat = Shader::Flat {
+            normal: y,
+            colors: [white, black],
+        };
+        let complex = Shader::Complex {
+            normals: [x, -x, y, -y, z, -z],
+            colors: [white, white, black, white, black, white],
+        };
+        for shader in [flat, complex] {
+            for (opacity_kind, solid, opacity) in [
+                (OpacityKind::Opaque, [0, 0], [1.0; 6]),
+                (OpacityKind::Scalar, [3, 0], [1.0; 6]),
+                (OpacityKind::Six, [4, 1], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
+            ] {
                 let sides = solid.map(|solid_from| SideOpacity {
                     scalar: if solid_from == 0 { 1.0 } else { 1.0 / 3.0 },
                     solid_from,
@@ -557,15 +547,15 @@ mod tests {
     #[test]
     fn rounded_opacities_keep_their_mean() {
         for opacity in [0.01, 0.3, 0.5, 0.97] {
-            let mut sum = 0.0;
-            for place in 0..4096u32 {
+            let rounded = |place: u32| {
                 let place = [place % 16, place / 16 % 16, place / 256].map(|c| c as u8);
                 let [a, b, c] = six_bytes(&[opacity; DIRECTIONS], place);
-                let (_, six) = opacity_of(OpacityKind::Six, &[0, 0, a, b, c]);
-                assert!(six.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
-                sum += six.iter().sum::<f64>() / DIRECTIONS as f64;
-            }
-            assert!((sum / 4096.0 - opacity).abs() < 2e-3, "{opacity}: {sum}");
+                opacity_of(OpacityKind::Six, &[0, 0, a, b, c]).1
+            };
+            let all: Vec<f64> = (0..4096).flat_map(rounded).collect();
+            assert!(all.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            assert!((mean - opacity).abs() < 2e-3, "{opacity}: {mean}");
         }
     }
 }

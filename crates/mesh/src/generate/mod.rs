@@ -125,11 +125,8 @@ mod tests {
     fn every_kind_is_small_follows_its_seed_and_survives_its_file() {
         for (name, kind) in Kind::ALL {
             let mesh = generate(kind, 1);
-            assert!(
-                (1_000..60_000).contains(&mesh.len()),
-                "{name}: {}",
-                mesh.len()
-            );
+            let is_small = (1_000..60_000).contains(&mesh.len());
+            assert!(is_small, "{name}: {}", mesh.len());
             assert!(mesh.warnings().is_empty(), "{name}: {:?}", mesh.warnings());
             assert_eq!(mesh, generate(kind, 1), "{name}");
             assert_ne!(mesh.positions(), generate(kind, 2).positions(), "{name}");
@@ -147,14 +144,11 @@ mod tests {
     }
 
     #[test]
-    fn specs_are_read() {
+    fn specifications_are_read() {
         assert_eq!(parse("mesh:tree"), Ok((Kind::Tree, 1)));
         assert_eq!(parse("mesh:scan,seed=7"), Ok((Kind::Scan, 7)));
-        assert!(
-            parse("mesh:bush")
-                .unwrap_err()
-                .contains("there are scan, machine")
-        );
-        assert!(parse("mesh:tree,sed=7").unwrap_err().contains("seed=N"));
+        let error = |text| parse(text).unwrap_err();
+        assert!(error("mesh:bush").contains("there are scan, machine"));
+        assert!(error("mesh:tree,sed=7").contains("seed=N"));
     }
 }

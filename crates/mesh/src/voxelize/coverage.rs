@@ -151,66 +151,48 @@ mod tests {
     /// Lattice units of a voxel's side in these tests.
     const SIDE: i64 = 1 << 10;
 
-    fn covered(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> [u32; 3] {
+    fn masks(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> Masks {
         let mut masks = Masks::default();
         for &triangle in triangles {
             cover(&Prepared::new(triangle), corner, SIDE, &mut masks);
         }
-        masks.map(u64::count_ones)
+        masks
+    }
+
+    /// The two triangles of a parallelogram with the corners a, b and c.
+    fn quad([a, b, c]: [[i64; 3]; 3]) -> [[[i64; 3]; 3]; 2] {
+        [[a, b, c], [a, c, [0, 1, 2].map(|k| a[k] + c[k] - b[k])]]
     }
 
     #[test]
     fn a_wall_covers_its_face_and_no_other() {
-        let wall = |low: i64, high: i64| {
-            [
-                [[500, low, -100], [500, high, -100], [500, high, 3000]],
-                [[500, low, -100], [500, high, 3000], [500, low, 3000]],
-            ]
+        let covered = |low: i64, high: i64, corner| {
+            let wall = quad([[500, low, -100], [500, high, -100], [500, high, 3000]]);
+            masks(&wall, corner).map(u64::count_ones)
         };
-        assert_eq!(covered(&wall(-9, 3000), [0; 3]), [64, 0, 0]);
-        assert_eq!(covered(&wall(-9, 512), [0; 3]), [32, 0, 0]);
+        assert_eq!(covered(-9, 3000, [0; 3]), [64, 0, 0]);
+        assert_eq!(covered(-9, 512, [0; 3]), [32, 0, 0]);
         // A strip of an eighth of the side, anywhere: an eighth of the points, to a 64th of the side.
         for low in (0..896).step_by(37) {
-            let [points, ..] = covered(&wall(low, low + 128), [0; 3]);
+            let [points, ..] = covered(low, low + 128, [0; 3]);
             assert!((7..=9).contains(&points), "{low}: {points}");
         }
-        // Not in this voxel, but in the next.
-        assert_eq!(covered(&wall(-9, 3000), [-SIDE, 0, 0]), [0; 3]);
+        // In the next voxel.
+        assert_eq!(covered(-9, 3000, [-SIDE, 0, 0]), [0; 3]);
     }
 
     #[test]
     fn two_halves_of_a_slanted_wall_make_a_whole_one() {
         // The plane x + y = 1.3 sides, in the voxel (0, 0) and the next along x.
         let (far, reach) = (4000, 1331);
-        let slant = [
-            [
-                [-far, reach + far, -far],
-                [far, reach - far, -far],
-                [far, reach - far, far],
-            ],
-            [
-                [-far, reach + far, -far],
-                [far, reach - far, far],
-                [-far, reach + far, far],
-            ],
-        ];
-        let near = covered(&slant, [0; 3])[0];
-        let mut masks = [Masks::default(); 8];
-        for octant in 0..8u8 {
-            for triangle in slant {
-                let at = child([0; 3], SIDE, octant);
-                cover(
-                    &Prepared::new(triangle),
-                    at,
-                    SIDE,
-                    &mut masks[octant as usize],
-                );
-            }
-        }
-        assert!((40..=50).contains(&near), "{near}");
+        let [high, low] = [reach + far, reach - far];
+        let slant = quad([[-far, high, -far], [far, low, -far], [far, low, far]]);
+        let near = masks(&slant, [0; 3])[0].count_ones();
         // One voxel alone has seven tenths; both, one before the other, are whole.
+        assert!((40..=50).contains(&near), "{near}");
+        let octants = [0, 1, 2, 3, 4, 5, 6, 7].map(|o| masks(&slant, child([0; 3], SIDE, o)));
         let lower_half = 0x0f0f_0f0f_0f0f_0f0f;
-        assert_eq!(joined(&masks)[0] & lower_half, lower_half);
+        assert_eq!(joined(&octants)[0] & lower_half, lower_half);
     }
 
     #[test]
@@ -219,10 +201,8 @@ mod tests {
             let opacity =
                 |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
             let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
-            assert!(
-                (mean - f64::from(points) / 4.0).abs() < 0.13,
-                "{points}: {mean}"
-            );
+            let error = mean - f64::from(points) / 4.0;
+            assert!(error.abs() < 0.13, "{points}: {mean}");
         }
         assert!((0..256).all(|dither| opacity_of(64, dither) == 15));
         assert!((0..256).all(|dither| opacity_of(0, dither) == 0));
@@ -234,7 +214,7 @@ mod tests {
             let points = (1u64 << covered) - 1;
             let block = points & 3 | (points >> 2) << 8;
             let all = (0..16).fold(0u64, |all, at| all | block << (at / 4 * 16 + at % 4 * 2));
-            let joined = joined(&[[all, all, all]; 8]);
+            let joined = joined(&[[all; 3]; 8]);
             assert_eq!(joined[0].count_ones(), 16 * covered, "{covered}");
         }
     }

@@ -132,28 +132,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_within_a_cube() {
-        // A plane through the middle, far larger than the cube.
-        let (area, mean) = part_in_unit_cube(&[
-            DVec3::new(-9.0, -9.0, 0.5),
-            DVec3::new(20.0, -9.0, 0.5),
-            DVec3::new(-9.0, 20.0, 0.5),
-        ]);
-        assert!((area - 1.0).abs() < 1e-12);
-        assert!((mean - DVec3::splat(0.5)).length() < 1e-12);
-        // The regular hexagon across the diagonal: side sqrt(1/2).
-        let (area, _) = part_in_unit_cube(&[
-            DVec3::new(4.5, -1.5, -1.5),
-            DVec3::new(-1.5, 4.5, -1.5),
-            DVec3::new(-1.5, -1.5, 4.5),
-        ]);
-        assert!((area - 0.75 * 3f64.sqrt()).abs() < 1e-12, "{area}");
-        // It touches in a corner.
-        let (area, mean) = part_in_unit_cube(&[
-            DVec3::new(1.0, 1.0, 1.0),
-            DVec3::new(2.0, 1.0, 1.0),
-            DVec3::new(1.0, 2.0, 1.0),
-        ]);
-        assert_eq!((area, mean), (0.0, DVec3::ONE));
+    fn parts_within_a_cube_have_their_area_and_middle() {
+        let half = DVec3::splat(0.5);
+        for (triangle, area, middle) in [
+            // A plane through the middle, far larger than the cube.
+            (
+                [[-9.0, -9.0, 0.5], [20.0, -9.0, 0.5], [-9.0, 20.0, 0.5]],
+                1.0,
+                half,
+            ),
+            // The regular hexagon across the diagonal: side sqrt(1/2).
+            (
+                [[4.5, -1.5, -1.5], [-1.5, 4.5, -1.5], [-1.5, -1.5, 4.5]],
+                0.75 * 3f64.sqrt(),
+                half,
+            ),
+            // A triangle that touches in a corner.
+            (
+                [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]],
+                0.0,
+                DVec3::ONE,
+            ),
+        ] {
+            let found = part_in_unit_cube(&triangle.map(DVec3::from_array));
+            assert!((found.0 - area).abs() < 1e-12, "{found:?}");
+            assert!((found.1 - middle).length() < 1e-12, "{found:?}");
+        }
     }
 }

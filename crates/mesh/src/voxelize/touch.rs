@@ -138,27 +138,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_meets_in_a_point_touches() {
-        let triangle = Prepared::new([[4, 4, 4], [8, 4, 4], [4, 8, 4]]);
-        assert!(triangle.touches([0, 0, 0], 4));
-        assert!(triangle.touches([0, 0, 4], 4));
-        assert!(!triangle.touches([0, 0, 5], 4));
-        assert!(!triangle.touches([0, 0, 0], 3));
-        // The slanted edge passes through (6, 6).
-        assert!(triangle.touches([6, 6, 4], 2));
-        assert!(!triangle.touches([7, 6, 4], 2));
-        assert!(triangle.touches([6, 6, 2], 2));
-    }
-
-    #[test]
-    fn segments_and_points_touch_what_they_meet() {
-        let segment = Prepared::new([[0, 0, 0], [8, 8, 0], [4, 4, 0]]);
-        assert!(segment.touches([5, 5, 0], 1));
-        assert!(!segment.touches([5, 3, 0], 1));
-        assert!(segment.touches([5, 4, 0], 1));
-        let point = Prepared::new([[3, 3, 3]; 3]);
-        assert!(point.touches([3, 3, 3], 1) && point.touches([2, 2, 2], 1));
-        assert!(!point.touches([4, 3, 3], 1));
+    fn segments_and_points_touch_the_cubes_that_they_meet() {
+        let segment = [[0, 0, 0], [8, 8, 0], [4, 4, 0]];
+        let point = [[3; 3]; 3];
+        for (triangle, corner, touches) in [
+            (segment, [5, 5, 0], true),
+            (segment, [5, 3, 0], false),
+            (segment, [5, 4, 0], true),
+            (point, [3, 3, 3], true),
+            (point, [2, 2, 2], true),
+            (point, [4, 3, 3], false),
+        ] {
+            let found = Prepared::new(triangle).touches(corner, 1);
+            assert_eq!(found, touches, "{triangle:?} {corner:?}");
+        }
     }
 
     #[test]

@@ -1,30 +1,22 @@
-//! Building: the same bytes on any number of threads, better pictures with more rays, smaller voxels at each level.
+//! Building: the same bytes on any threads, better pictures with more rays, smaller voxels at each level.
 
 use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, build};
-use shiftvox_mesh::raster::RasterCamera;
 
-use super::city::{city, far, file_of, light, options, view};
-use super::shared::{difference, on_threads, triangles};
-
-fn with_rays(rays: u64) -> FarData {
-    let rays = Some(rays);
-    far(&BuildOptions { rays, ..options() })
-}
+use super::city::{city, draw, far, file_of, lit, options, view, with_rays};
+use super::shared::{difference, on_any_threads, triangles};
 
 fn sum(data: &FarData, of: fn(&Node) -> u64) -> u64 {
     data.nodes.iter().map(of).sum()
 }
 
 #[test]
-fn the_same_bytes_on_one_and_two_threads() {
-    let [one, two] = [1, 2].map(|n| on_threads(n, || encode(&far(&options())).unwrap()));
-    assert!(one == two, "{} and {} bytes", one.len(), two.len());
+fn files_have_the_same_bytes_on_any_number_of_threads() {
+    on_any_threads(|| encode(&far()).unwrap());
 }
 
 #[test]
@@ -34,7 +26,7 @@ fn a_ray_budget_is_kept() {
         let shot = sum(data, |n| u64::from(n.rays));
         assert!(shot <= budget && shot > budget - 1000, "{shot}");
     }
-    // A voxel that no ray reached is kept, not taken as hidden.
+    // A voxel that no ray reached is kept and not regarded as hidden.
     let untested = [&few, &more, &enough].map(|data| sum(data, |n| u64::from(n.untested)));
     assert!(untested[0] > untested[1] && untested[1] > 0 && untested[2] == 0);
     let touched = [&few, &enough].map(|data| sum(data, |n| u64::from(n.touched)));
@@ -45,19 +37,16 @@ fn a_ray_budget_is_kept() {
 }
 
 #[test]
-fn bad_options_are_refused() {
-    for (grid, leaf_triangles, distance_voxels) in [
-        (1, 60, 40.0),
-        (256, 60, 40.0),
-        (24, 1, 40.0),
-        (24, 60, f64::NAN),
-    ] {
-        let options = BuildOptions {
-            grid,
-            leaf_triangles,
-            distance_voxels,
-            ..options()
-        };
+fn invalid_options_are_refused() {
+    let faults: [fn(&mut BuildOptions); 4] = [
+        |options| options.grid = 1,
+        |options| options.grid = 256,
+        |options| options.leaf_triangles = 1,
+        |options| options.distance_voxels = f64::NAN,
+    ];
+    for fault in faults {
+        let mut options = options();
+        fault(&mut options);
         let refused = build(&city(), &options, &Silent);
         assert!(matches!(refused, Err(BuildError::Option(_))), "{options:?}");
     }
@@ -65,50 +54,36 @@ fn bad_options_are_refused() {
 
 #[test]
 fn voxels_shrink_from_level_to_level() {
-    let data = far(&options());
+    let data = far();
     // The voxel of the next node above that has any. Parents come first.
     let mut above = vec![f32::INFINITY; data.nodes.len()];
-    let (mut sizes, mut without) = (Vec::new(), 0);
+    let (mut finest, mut without) = (f32::INFINITY, 0);
     for (number, node) in data.nodes.iter().enumerate() {
         without += usize::from(!node.is_leaf() && !node.has_grid());
+        let mut voxel = above[number];
         if node.has_grid() {
             // The root of the hierarchy and the nodes above it have halves; rounded layers add a little.
-            assert!(node.voxel <= 0.75 * above[number], "{number}");
-            sizes.push(node.voxel);
+            assert!(node.voxel <= 0.75 * voxel, "{number}");
+            voxel = node.voxel;
+            finest = finest.min(voxel);
         }
         for child in node.below() {
-            above[child] = if node.has_grid() {
-                node.voxel
-            } else {
-                above[number]
-            };
+            above[child] = voxel;
         }
     }
-    let shrunk = sizes[0] / sizes.iter().copied().fold(f32::INFINITY, f32::min);
-    assert!(shrunk > 8.0, "{shrunk}");
+    assert!(data.nodes[0].voxel > 8.0 * finest, "{finest}");
     assert!(without > 3, "boxes halved across another axis: {without}");
 }
 
-fn shown(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
-    ViewOptions {
-        voxel_px,
-        light: light(view),
-        background: Some([240, 240, 245]),
-        ..ViewOptions::default()
-    }
-}
-
-/// A mesh scaled by a power of two, from 10^-12 to 10^12, has the same voxels and the same picture.
+/// From 10^-12 to 10^12.
 #[test]
-fn size_does_not_matter() {
-    let usual = far(&options());
+fn a_mesh_scaled_by_a_power_of_two_has_the_same_picture() {
+    let usual = far();
     let picture = |data: &FarData, scale: f64| {
         let mut view = view(30.0, 0.6, 150.0, 192);
         view.eye *= scale;
         view.near *= scale;
-        let shown = shown(&view, 2.0);
-        let file = file_of(data);
-        FarViewer::new(&file).draw(&view, &shown).unwrap().0.rgba
+        draw(&file_of(data), &view, &lit(&view, 2.0)).0.rgba
     };
     let expected = picture(&usual, 1.0);
     for scale in [-40, -17, 40].map(|power| 2f64.powi(power)) {
@@ -117,24 +92,21 @@ fn size_does_not_matter() {
         let data = build(&scaled, &options(), &Silent).unwrap();
         let voxels = [&data, &usual].map(|data| sum(data, Node::voxels));
         assert_eq!(voxels[0], voxels[1], "{scale}");
-        // Other numbers round otherwise, and so some rays end elsewhere.
+        // Rounding differs, and so some rays end elsewhere.
         let error = difference(&picture(&data, scale), &expected, f64::from);
         assert!(error < 2.0, "{scale}: {error}");
     }
 }
 
-/// Root mean square difference of the channels from 256 samples per pixel.
-fn error(data: &FarData, size: u32, voxel_px: f64) -> f64 {
-    let view = view(30.0, 0.6, 150.0, size);
-    let options = shown(&view, voxel_px);
-    let reference = triangles(&city(), &view, 256, options.light, options.background);
-    let file = file_of(data);
-    let (picture, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
-    difference(&picture.rgba, &reference.rgba, f64::from)
-}
-
 #[test]
-fn finer_levels_and_more_rays_have_less_error() {
+fn smaller_voxels_and_more_rays_have_less_error() {
+    let error = |data: &FarData, size, voxel_px| {
+        let view = view(30.0, 0.6, 150.0, size);
+        let options = lit(&view, voxel_px);
+        let reference = triangles(&city(), &view, 256, options.light, options.background);
+        let (picture, _) = draw(&file_of(data), &view, &options);
+        difference(&picture.rgba, &reference.rgba, f64::from)
+    };
     let data = with_rays(800_000);
     let errors = [1.0, 2.0, 4.0].map(|px| error(&data, 256, px));
     assert!(errors.is_sorted_by(|a, b| a < b), "{errors:?}");
@@ -143,7 +115,7 @@ fn finer_levels_and_more_rays_have_less_error() {
     assert!(errors[3] < errors[0], "{errors:?}");
 }
 
-/// More triangles than a cluster of the ray hierarchy has (2^17).
+/// A cluster of the ray hierarchy has at most 2^17 triangles.
 #[test]
 fn a_mesh_of_several_clusters_is_built() {
     let mesh = city();

@@ -1,13 +1,14 @@
-//! A mesh in which much is hidden: blocks on a ground, a wall, thin masts, a ball.
+//! A mesh in which much is hidden: blocks, a wall, thin masts.
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::far::store::encode;
+use shiftvox_mesh::far::view::{FarCounts, FarPicture, FarViewer, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
 use shiftvox_mesh::raster::{Light, RasterCamera};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
-use super::shared::{cuboid, looking, quad};
+use super::shared::{cuboid, looking, sheet};
 
 /// About 4000 triangles, 40 units wide.
 pub(crate) fn city() -> Mesh {
@@ -17,9 +18,8 @@ pub(crate) fn city() -> Mesh {
 /// The city, on a ground or not, behind a high wall or not.
 fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
     let mut builder = MeshBuilder::new();
-    let colors = [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]];
-    for (i, color) in colors.into_iter().enumerate() {
-        builder.material(Material::of_srgb(format!("m{i}"), color));
+    for color in [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]] {
+        builder.material(Material::of_srgb("a colour", color));
     }
     for x in 0..16u32 {
         for z in 0..16u32 {
@@ -34,20 +34,15 @@ fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
             }
         }
     }
-    // A wall in many small squares, which hides much from +z.
-    for x in 0..20u32 {
-        for y in 0..4u32 {
-            let low = [x as f32 * 2.0, y as f32 * 1.5, 42.0];
-            let high = [low[0] + 2.0, low[1] + 1.5, 42.1];
-            cuboid(&mut builder, low, high, (x + y) % 4);
-        }
+    // A wall in many small parts, which hides much from +z.
+    for i in 0..80u32 {
+        let low = [(i / 4) as f32 * 2.0, (i % 4) as f32 * 1.5, 42.0];
+        let high = [low[0] + 2.0, low[1] + 1.5, 42.1];
+        cuboid(&mut builder, low, high, (i / 4 + i % 4) % 4);
     }
-    // The ground, behind everything that is seen from above.
-    for i in 0..if has_ground { 196 } else { 0 } {
-        let (x, z) = ((i % 14) as f32 * 3.0, (i / 14) as f32 * 3.0);
-        let corners = [[x, z], [x, z + 3.0], [x + 3.0, z + 3.0], [x + 3.0, z]];
-        let corners = corners.map(|[x, z]| builder.position([x, -0.2, z]));
-        quad(&mut builder, corners, 1);
+    if has_ground {
+        let at = |i, j| DVec3::new(f64::from(i) * 3.0, -0.2, f64::from(j) * 3.0);
+        sheet(&mut builder, [14, 14], 1, at);
     }
     for i in 0..if has_wall { 400 } else { 0 } {
         let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
@@ -68,13 +63,19 @@ pub(crate) fn options() -> BuildOptions {
 }
 
 /// The city as far voxels, on a ground or not, behind a high wall or not.
-pub(crate) fn far_of(has_ground: bool, has_wall: bool, options: &BuildOptions) -> FarData {
-    build(&blocks(has_ground, has_wall), options, &Silent).unwrap()
+pub(crate) fn far_of(has_ground: bool, has_wall: bool) -> FarData {
+    build(&blocks(has_ground, has_wall), &options(), &Silent).unwrap()
+}
+
+/// The city as far voxels, built with so many rays.
+pub(crate) fn with_rays(rays: u64) -> FarData {
+    let rays = Some(rays);
+    build(&city(), &BuildOptions { rays, ..options() }, &Silent).unwrap()
 }
 
 /// The city as far voxels.
-pub(crate) fn far(options: &BuildOptions) -> FarData {
-    far_of(false, false, options)
+pub(crate) fn far() -> FarData {
+    far_of(false, false)
 }
 
 /// The built data as a file.
@@ -90,9 +91,23 @@ pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> Raste
     looking(eye, target, [size; 2], f64::from(size))
 }
 
-/// From above, behind the eye.
-pub(crate) fn light(view: &RasterCamera) -> Option<Light> {
+/// Lit from above and behind the eye, before a bright background.
+pub(crate) fn lit(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
     let towards = (view.up + view.right * 0.5 - view.forward).normalize();
     let ambient = 90;
-    Some(Light { towards, ambient })
+    ViewOptions {
+        voxel_px,
+        light: Some(Light { towards, ambient }),
+        background: Some([240, 240, 245]),
+        ..ViewOptions::default()
+    }
+}
+
+/// Draws with a new viewer.
+pub(crate) fn draw(
+    file: &FarFile,
+    view: &RasterCamera,
+    options: &ViewOptions,
+) -> (FarPicture, FarCounts) {
+    FarViewer::new(file).draw(view, options).unwrap()
 }

@@ -1,20 +1,20 @@
-//! Triangles to voxels: known answers, an exact oracle, no holes, nothing lost.
+//! Triangles to voxels: known answers, and an oracle with rational numbers.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashMap, HashSet};
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, EulerRot};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
-use shiftvox::split_mix::SplitMix;
 use shiftvox_mesh::voxelize::{Grid, GridError, voxelize};
-use shiftvox_mesh::{Instances, Material, Mesh, MeshBuilder, Surface};
+use shiftvox_mesh::{Instances, Material, Mesh, Surface};
 
-use super::shapes::{ball, cuboid, mesh_of, point, soup, turned};
-use super::shared::on_threads;
+use super::shared::{
+    ball, indexed, on_any_threads, one_box, quad, shape, sheet, soup, triangle, turned,
+};
 
-fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
+pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
     let mut found = Vec::new();
     let report = voxelize(surface, &grid, &mut |voxel| found.push(voxel), &Silent);
@@ -28,226 +28,73 @@ fn cells(voxels: &[Voxel]) -> HashSet<[i32; 3]> {
     set
 }
 
+/// A square of side 1 at some height.
+fn square(z: f32) -> Mesh {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, z]), 0))
+}
+
 #[test]
-fn a_square_is_one_layer() {
-    let square = mesh_of(
-        &[
-            [0.0, 0.0, 5.0],
-            [1.0, 0.0, 5.0],
-            [1.0, 1.0, 5.0],
-            [0.0, 1.0, 5.0],
-        ],
-        &[[0, 1, 2], [0, 2, 3]],
-    );
-    for depth in 1..=7 {
-        let found = voxels(&square, depth);
-        let side = 1 << depth;
-        assert_eq!(found.len(), side * side);
-        for voxel in &found {
-            assert_eq!(voxel.index[2], 0);
+fn simple_shapes_have_known_voxels_and_normals() {
+    let outwards = |voxel: &Voxel| {
+        let side = |c| f64::from(i32::from(c == 31) - i32::from(c == 0));
+        DVec3::from_array(voxel.index.map(side)).normalize()
+    };
+    let from_middle = |voxel: &Voxel| {
+        let offset = DVec3::from_array(voxel.index.map(f64::from)) - DVec3::splat(31.5);
+        offset.normalize()
+    };
+    type Normal<'n> = &'n dyn Fn(&Voxel) -> DVec3;
+    // Mesh, depth, number of voxels where it is known, the normal of a voxel and its least cosine.
+    let cases: [(Mesh, u32, Option<usize>, Normal<'_>, f64); 4] = [
+        (square(5.0), 1, Some(4), &|_| DVec3::Z, 1.0 - 1e-9),
+        (square(5.0), 7, Some(1 << 14), &|_| DVec3::Z, 1.0 - 1e-9),
+        (
+            one_box([-1.0; 3], [1.0; 3]),
+            5,
+            Some(32 * 32 * 32 - 30 * 30 * 30),
+            &outwards,
+            0.999,
+        ),
+        (ball(24), 6, None, &from_middle, 0.97),
+    ];
+    for (mesh, depth, count, normal, least) in cases {
+        let found = voxels(&mesh, depth);
+        assert!(count.is_none_or(|count| count == found.len()));
+        for voxel in found {
             assert_eq!(voxel.color, [90, 120, 150]);
-            assert_eq!(voxel.normal.unwrap().decode(), Some(DVec3::Z));
-        }
-        let grid = Grid::around(&square, depth).unwrap();
-        let layer = (5.0 - grid.origin().z) / grid.voxel_size();
-        assert!((layer - 0.5).abs() < 1e-9);
-    }
-}
-
-#[test]
-fn a_cube_is_a_shell_with_its_normals() {
-    let found = voxels(&cuboid([-1.0; 3], [1.0; 3]), 5);
-    assert_eq!(found.len(), 32 * 32 * 32 - 30 * 30 * 30);
-    for voxel in found {
-        let normal = voxel.normal.unwrap().decode().unwrap();
-        let expected = DVec3::from_array(voxel.index.map(|c| match c {
-            0 => -1.0,
-            31 => 1.0,
-            _ => 0.0,
-        }));
-        assert!(
-            normal.dot(expected.normalize()) > 0.999,
-            "{:?} {normal}",
-            voxel.index
-        );
-    }
-}
-
-#[test]
-fn a_ball_is_near_its_radius_all_over() {
-    let depth = 6;
-    let mesh = ball(24);
-    let grid = Grid::around(&mesh, depth).unwrap();
-    let found = voxels(&mesh, depth);
-    // Half a diagonal, and the mesh's own distance from the ball.
-    let slack = grid.voxel_size() * 0.87 + 0.01;
-    for voxel in &found {
-        let centre = grid.origin()
-            + (DVec3::from_array(voxel.index.map(f64::from)) + 0.5) * grid.voxel_size();
-        assert!((centre.length() - 1.0).abs() < slack, "{:?}", voxel.index);
-        let normal = voxel.normal.unwrap().decode().unwrap();
-        assert!(
-            normal.dot(centre.normalize()) > 0.97,
-            "{:?}: {normal}",
-            voxel.index
-        );
-    }
-    // Area over the face of a voxel, times the mean of |x| + |y| + |z| over
-    // directions, 3/2, is what a thin surface crosses; edges touched add to it.
-    let faces = 4.0 * std::f64::consts::PI / grid.voxel_size().powi(2);
-    let share = found.len() as f64 / faces;
-    assert!(share > 1.4 && share < 2.2, "{share}");
-}
-
-/// Whether the empty cells are two regions that do not meet even in a corner,
-/// and the full ones one region that hangs together by faces.
-fn is_closed_shell(full: &HashSet<[i32; 3]>, side: i32, within: [i32; 3]) {
-    assert!(!full.contains(&within));
-    let steps = |far: bool| {
-        (0..27i32)
-            .map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1])
-            .filter(move |s| {
-                let moved = s.iter().filter(|c| **c != 0).count();
-                if far { moved > 0 } else { moved == 1 }
-            })
-            .collect::<Vec<_>>()
-    };
-    let flood = |from: [i32; 3], far: bool, open: &dyn Fn(&[i32; 3]) -> bool| {
-        let steps = steps(far);
-        let mut seen = HashSet::from([from]);
-        let mut queue = VecDeque::from([from]);
-        while let Some(at) = queue.pop_front() {
-            for step in &steps {
-                let next = [0, 1, 2].map(|k| at[k] + step[k]);
-                if next.iter().all(|c| (-1..=side).contains(c)) && open(&next) && seen.insert(next)
-                {
-                    queue.push_back(next);
-                }
-            }
-        }
-        seen
-    };
-    let outside = flood([-1; 3], true, &|cell| !full.contains(cell));
-    assert!(!outside.contains(&within), "there is a hole");
-    let first = *full.iter().next().unwrap();
-    let shell = flood(first, false, &|cell| full.contains(cell));
-    assert_eq!(shell.len(), full.len(), "the shell is in pieces");
-}
-
-#[test]
-fn closed_meshes_are_closed_shells() {
-    for depth in [3, 4, 5, 6] {
-        let side = 1 << depth;
-        let middle = [side / 2; 3];
-        is_closed_shell(&cells(&voxels(&ball(9), depth)), side, middle);
-        is_closed_shell(
-            &cells(&voxels(&cuboid([0.0; 3], [1.0; 3]), depth)),
-            side,
-            middle,
-        );
-    }
-    // A turned body with a waist, in a skew place.
-    let vase = turned(
-        &[
-            (-2.0, 0.0),
-            (-1.5, 1.0),
-            (0.0, 0.45),
-            (1.0, 1.3),
-            (1.3, 0.0),
-        ],
-        7,
-    );
-    let skew = DAffine3::from_mat3(glam::DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7));
-    let vase = Instances::new(vase, vec![skew]);
-    let grid = Grid::around(&vase, 6).unwrap();
-    let centre = ((DVec3::ZERO - grid.origin()) / grid.voxel_size()).floor();
-    let within = [centre.x as i32, centre.y as i32, centre.z as i32];
-    is_closed_shell(&cells(&voxels(&vase, 6)), 64, within);
-}
-
-#[test]
-fn slivers_and_needles_never_vanish() {
-    // Two far corners hold the box; needles of no width to speak of are within.
-    let mut dice = SplitMix::new(7);
-    let mut random = || dice.unit() as f32;
-    for _ in 0..40 {
-        let (a, b) = (
-            [random(), random(), random()],
-            [random(), random(), random()],
-        );
-        let c = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0 + 1e-6 * random());
-        let mesh = mesh_of(
-            &[
-                [0.0; 3],
-                [0.0, 1e-4, 0.0],
-                [1.0; 3],
-                [1.0, 1.0, 0.999],
-                a,
-                b,
-                c,
-            ],
-            &[[0, 1, 4], [2, 3, 4], [4, 5, 6]],
-        );
-        for depth in [3, 6, 9] {
-            let grid = Grid::around(&mesh, depth).unwrap();
-            let full = cells(&voxels(&mesh, depth));
-            for i in 0..=2000 {
-                let at = point(a).lerp(point(b), f64::from(i) / 2000.0);
-                let inside = (at - grid.origin()) / grid.voxel_size();
-                // Rounding to the lattice moves a corner by less than this.
-                let hit = [-1e-5, 1e-5].iter().any(|&shift| {
-                    full.contains(&(inside + shift).to_array().map(|c| c.floor() as i32))
-                });
-                assert!(hit, "depth {depth}: {at} of {a:?} to {b:?}");
-            }
+            let found = voxel.normal.unwrap().decode().unwrap();
+            assert!(found.dot(normal(&voxel)) > least, "{voxel:?}: {found}");
         }
     }
+    // A flat mesh lies in the middle of its layer.
+    let grid = Grid::around(&square(5.0), 4).unwrap();
+    let layer = (5.0 - grid.origin().z) / grid.voxel_size();
+    assert!((layer - 0.5).abs() < 1e-9);
 }
 
 #[test]
 fn colours_are_weighted_by_area_in_linear_light() {
-    // A square of four voxels' width, three quarters of it white, the rest black.
-    let mut builder = MeshBuilder::new();
-    let white = builder.material(Material::of_srgb("white", [255; 3]));
-    let black = builder.material(Material::of_srgb("black", [0; 3]));
-    // At depth 1 a voxel is one unit and the grid begins half a unit lower.
-    for corner in [
-        [0.0, 0.0],
-        [0.75, 0.0],
-        [1.0, 0.0],
-        [0.0, 1.0],
-        [0.75, 1.0],
-        [1.0, 1.0],
-    ] {
-        builder.position([corner[0], corner[1], 0.0]);
-    }
-    for (triangle, material) in [
-        ([0, 1, 4], white),
-        ([0, 4, 3], white),
-        ([1, 2, 5], black),
-        ([1, 5, 4], black),
-    ] {
-        builder.triangle(triangle, None, material).unwrap();
-    }
-    let mesh = builder.finish("a").unwrap();
-    let found: HashMap<[i32; 3], [u8; 3]> = voxels(&mesh, 1)
-        .iter()
-        .map(|v| (v.index, v.color))
-        .collect();
-    // Voxel 0 holds x from 0 to 0.5: white; voxel 1 from 0.5 to 1: half of each.
-    assert_eq!(found[&[0, 0, 0]], [255; 3]);
-    assert_eq!(found[&[1, 1, 0]], [188; 3]);
+    // Three quarters of the square are white, the rest is black.
+    let mesh = shape(|builder| {
+        for (byte, low, high) in [(255, 0.0, 0.75), (0, 0.75, 1.0)] {
+            let material = builder.material(Material::of_srgb("m", [byte; 3]));
+            let corners = [[low, 0.0], [high, 0.0], [high, 1.0], [low, 1.0]];
+            quad(builder, corners.map(|[x, y]| [x, y, 0.0]), material);
+        }
+    });
+    let found = voxels(&mesh, 1);
+    let colors: HashMap<[i32; 3], [u8; 3]> = found.iter().map(|v| (v.index, v.color)).collect();
+    // Voxel 0 holds x from 0 to 0.5, which is white. Voxel 1 holds half of each.
+    assert_eq!(colors[&[0, 0, 0]], [255; 3]);
+    assert_eq!(colors[&[1, 1, 0]], [188; 3]);
 }
 
 #[test]
 fn a_wall_with_two_sides_keeps_one_normal() {
-    let corners = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ];
-    let wall = mesh_of(&corners, &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
+    let [a, b] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+    let [c, d] = [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let wall = indexed(&[a, b, c, d], &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
     for voxel in voxels(&wall, 3) {
         assert_eq!(voxel.normal.unwrap().decode(), Some(DVec3::Z));
     }
@@ -256,57 +103,44 @@ fn a_wall_with_two_sides_keeps_one_normal() {
 #[test]
 fn threads_and_instances_change_nothing() {
     let mesh = ball(12);
-    let [one, two, three] = [1, 2, 3].map(|n| on_threads(n, || voxels(&mesh, 7)));
-    assert!(one == two && two == three);
-    // The same places as one mesh.
-    let places: Vec<DAffine3> = (0..5)
-        .map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i)))
-        .collect();
-    let mut positions = Vec::new();
-    let mut triangles = Vec::new();
-    for i in 0..5u8 {
-        let base = positions.len() as u32;
-        positions.extend(
-            mesh.positions()
-                .iter()
-                .map(|p| [p[0] + 3.0 * f64::from(i), p[1], p[2]].map(|c| c as f32)),
-        );
-        triangles.extend(mesh.triangles().iter().map(|t| t.map(|c| c + base)));
-    }
-    let flat = mesh_of(&positions, &triangles);
-    let instances = Instances::new(mesh, places);
+    on_any_threads(|| voxels(&mesh, 7));
+    // Five balls as instances, and as one mesh.
+    let flat = shape(|builder| {
+        for i in 0..5u8 {
+            for corners in soup(&mesh) {
+                let moved = corners.map(|[x, y, z]| [x + 3.0 * f32::from(i), y, z]);
+                triangle(builder, moved, 0);
+            }
+        }
+    });
+    let places = (0..5).map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i)));
+    let instances = Instances::new(mesh, places.collect());
     assert_eq!(instances.len(), Surface::len(&flat));
     let (a, b) = (cells(&voxels(&instances, 7)), cells(&voxels(&flat, 7)));
-    // Positions in f32 differ in the last bit from those moved in f64.
+    // Single precision rounds the positions of the mesh.
     let differing = a.symmetric_difference(&b).count();
     assert!(differing * 100 < a.len(), "{differing} of {}", a.len());
 }
 
 #[test]
-fn what_cannot_be_voxelised_is_refused() {
+fn invalid_grids_are_refused() {
     let mesh = ball(4);
     for depth in [0, 21, 1000] {
         assert_eq!(Grid::around(&mesh, depth), Err(GridError::Depth(depth)));
     }
     let nowhere = Instances::new(mesh, Vec::new());
     assert_eq!(Grid::around(&nowhere, 4), Err(GridError::Empty));
-    let far = mesh_of(
-        &[[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]],
-        &[[0, 1, 2]],
-    );
-    assert!(matches!(
-        Grid::around(&far, 4),
-        Err(GridError::Coordinates { .. })
-    ));
+    let corners = [[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]];
+    let far = shape(|builder| triangle(builder, corners, 0));
+    let refused = Grid::around(&far, 4);
+    assert!(matches!(refused, Err(GridError::Coordinates { .. })));
 }
 
 type Exact = [BigRational; 3];
 
-/// Whether a triangle meets a closed cube: cut at its six planes in rational
-/// numbers, something is left.
-fn meets(triangle: [[i64; 3]; 3], corner: [i64; 3], side: i64) -> bool {
+/// The part of a polygon in a closed cube: cut at six planes in rational numbers.
+fn cut(mut polygon: Vec<Exact>, corner: [i64; 3], side: i64) -> Vec<Exact> {
     let whole = |value: i64| BigRational::from_integer(BigInt::from(value));
-    let mut polygon: Vec<Exact> = triangle.iter().map(|p| p.map(whole)).collect();
     for axis in 0..3 {
         for (plane, sign) in [(corner[axis], 1), (corner[axis] + side, -1)] {
             let zero = whole(0);
@@ -320,72 +154,115 @@ fn meets(triangle: [[i64; 3]; 3], corner: [i64; 3], side: i64) -> bool {
                 }
                 if (a >= zero) != (b >= zero) {
                     let t = a.clone() / (a - b);
-                    kept.push(std::array::from_fn(|k| {
-                        here[k].clone() + (next[k].clone() - here[k].clone()) * t.clone()
-                    }));
+                    let between = |k: usize| &here[k] + (&next[k] - &here[k]) * &t;
+                    kept.push([0, 1, 2].map(between));
                 }
             }
             polygon = kept;
         }
     }
-    !polygon.is_empty()
+    polygon
 }
 
-/// The voxels of a mesh by trying all of them with rational numbers.
-fn by_force(mesh: &Mesh, depth: u32) -> HashSet<[i32; 3]> {
-    let grid = Grid::around(mesh, depth).unwrap();
-    let side = 1i64 << (30 - depth);
-    let count = 1i32 << depth;
-    let mut found = HashSet::new();
-    for number in 0..mesh.triangles().len() as u32 {
-        let corners = grid.corners(mesh, number);
-        for x in 0..count {
-            for y in 0..count {
-                for z in 0..count {
-                    let index = [x, y, z];
-                    if !found.contains(&index)
-                        && meets(corners, index.map(|c| i64::from(c) * side), side)
-                    {
-                        found.insert(index);
-                    }
-                }
-            }
-        }
+/// Adds the voxels that a polygon meets, cube by cube.
+fn add(
+    polygon: Vec<Exact>,
+    index: [i32; 3],
+    level: u32,
+    depth: u32,
+    found: &mut HashSet<[i32; 3]>,
+) {
+    let side = 1i64 << (30 - level);
+    let polygon = cut(polygon, index.map(|c| i64::from(c) * side), side);
+    if polygon.is_empty() {
+        return;
     }
-    found
+    if level == depth {
+        found.insert(index);
+        return;
+    }
+    for octant in 0..8 {
+        let child = [0, 1, 2].map(|k| 2 * index[k] + (octant >> k & 1));
+        add(polygon.clone(), child, level + 1, depth, found);
+    }
+}
+
+/// Compares the voxels of a surface with those of rational arithmetic.
+fn check<S: Surface>(surface: &S, depth: u32) {
+    let grid = Grid::around(surface, depth).unwrap();
+    let mut expected = HashSet::new();
+    for number in 0..surface.len() as u32 {
+        let corners = grid.corners(surface, number);
+        let exact = corners.map(|p| p.map(|c| BigRational::from_integer(c.into())));
+        add(exact.to_vec(), [0; 3], 0, depth, &mut expected);
+    }
+    assert_eq!(cells(&voxels(surface, depth)), expected, "depth {depth}");
+}
+
+#[test]
+fn voxels_of_closed_surfaces_are_exact() {
+    check(&ball(9), 5);
+    check(&one_box([0.0; 3], [1.0; 3]), 4);
+    // A turned body with a waist, in a skew place.
+    let profile = [
+        (2.0, 0.0),
+        (1.5, 1.0),
+        (0.0, 0.45),
+        (-1.0, 1.3),
+        (-1.3, 0.0),
+    ];
+    let vase = shape(|builder| turned(builder, DVec3::ZERO, &profile, 7, 0));
+    let skew = DAffine3::from_mat3(DMat3::from_euler(EulerRot::XYZ, 0.3, 1.1, -0.7));
+    check(&Instances::new(vase, vec![skew]), 6);
+    // A surface that bends across all octants.
+    let bent = shape(|builder| {
+        sheet(builder, [12, 12], 0, |i, j| {
+            let [x, y] = [i, j].map(|c| f64::from(c) / 12.0);
+            DVec3::new(x, y, 0.5 + (5.0 * x).sin() * (4.0 * y).cos() / 3.0)
+        });
+    });
+    check(&bent, 6);
+}
+
+/// Coordinates in a voxel's quarters at depth 3, so that faces, edges and corners of cubes are met exactly; or anywhere.
+fn corners() -> impl Strategy<Value = Vec<[f32; 3]>> {
+    let quarters = (0u8..=28).prop_map(|n| f32::from(n) / 4.0);
+    let anywhere = 0f32..=7.0;
+    let list = |coordinate: BoxedStrategy<f32>| {
+        prop::collection::vec(prop::array::uniform3(coordinate), 3..9)
+    };
+    prop_oneof![list(quarters.boxed()), list(anywhere.boxed())]
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Corners on quarters of a voxel, so that faces, edges and corners of
-    /// cubes are met exactly, and anywhere.
     #[test]
-    fn voxels_are_those_of_exact_arithmetic(
-        quarters in prop::collection::vec(prop::array::uniform3(0u8..=28), 3..9),
-        is_even in any::<bool>(),
-        shift in prop::collection::vec(prop::array::uniform3(-0.1f32..0.1), 9),
-    ) {
+    fn voxels_of_random_triangles_are_exact(corners in corners()) {
         // At depth 3 a voxel has side 1 where the box has 7.
-        let mut positions: Vec<[f32; 3]> = vec![[0.0; 3], [7.0; 3], [7.0, 0.0, 7.0]];
-        for (at, by) in quarters.iter().zip(&shift) {
-            positions.push([0, 1, 2].map(|k| {
-                let exact = f32::from(at[k]) / 4.0;
-                if is_even { exact } else { (exact + by[k]).clamp(0.0, 7.0) }
-            }));
-        }
-        let mut builder = MeshBuilder::new();
-        for &position in &positions {
-            builder.position(position);
-        }
-        builder.triangle([0, 1, 2], None, 0).unwrap();
-        for i in 3..positions.len() as u32 - 2 {
-            builder.triangle([i, i + 1, i + 2], None, 0).unwrap();
-        }
-        let mesh = builder.finish("random").unwrap();
-        prop_assert!(!soup(&mesh).is_empty());
-        let found = cells(&voxels(&mesh, 3));
-        let expected = by_force(&mesh, 3);
-        prop_assert_eq!(found, expected);
+        let box_corners = [[0.0; 3], [7.0; 3], [7.0, 0.0, 7.0]];
+        let mesh = shape(|builder| {
+            triangle(builder, box_corners, 0);
+            for corners in corners.windows(3) {
+                triangle(builder, [corners[0], corners[1], corners[2]], 0);
+            }
+        });
+        check(&mesh, 3);
+    }
+
+    /// A triangle of almost no width loses no voxel.
+    #[test]
+    fn voxels_of_needles_are_exact(
+        [a, b, off] in prop::array::uniform3(prop::array::uniform3(0f32..1.0)),
+        depth in 3u32..9,
+    ) {
+        let c = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0 + 1e-6 * off[k]);
+        let mesh = shape(|builder| {
+            // Two far corners hold the box.
+            triangle(builder, [[0.0; 3], [0.0, 1e-4, 0.0], a], 0);
+            triangle(builder, [[1.0; 3], [1.0, 1.0, 0.999], a], 0);
+            triangle(builder, [a, b, c], 0);
+        });
+        check(&mesh, depth);
     }
 }

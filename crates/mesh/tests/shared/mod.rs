@@ -1,10 +1,11 @@
-//! Cameras, pictures of reference and simple meshes that several test crates use.
+//! Cameras, reference pictures and simple meshes for all tests of this crate.
 #![allow(
     dead_code,
     unreachable_pub,
     reason = "each test crate uses a part of it"
 )]
 
+use std::fmt::Debug;
 use std::path::PathBuf;
 
 use glam::DVec3;
@@ -12,7 +13,10 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::raster::{
     self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
 };
-use shiftvox_mesh::{Mesh, MeshBuilder, Surface};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
+
+/// The corners of a triangle.
+pub type Corners = [[f32; 3]; 3];
 
 /// A camera at `eye` that looks at `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
 pub fn looking(
@@ -57,6 +61,15 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
+/// Triangles with a regular pattern of samples, unlit, without a background.
+pub fn plain(samples: u32) -> RasterOptions {
+    RasterOptions {
+        samples: Samples::new(samples, Pattern::Regular).unwrap(),
+        light: None,
+        background: None,
+    }
+}
+
 /// The triangles of a surface, drawn with a regular pattern of samples.
 pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
@@ -66,9 +79,9 @@ pub fn triangles<S: Surface + ?Sized>(
     background: Option<[u8; 3]>,
 ) -> RasterPicture {
     let options = RasterOptions {
-        samples: Samples::new(samples, Pattern::Regular).unwrap(),
         light,
         background,
+        ..plain(samples)
     };
     raster::draw(surface, view, &options, &Silent).unwrap()
 }
@@ -87,14 +100,47 @@ pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f6
     (sum / (3 * a.len()) as f64).sqrt()
 }
 
-/// Adds a box to a mesh, two triangles per face.
+/// A mesh whose material 0 is grey.
+pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    builder.material(Material::of_srgb("grey", [90, 120, 150]));
+    fill(&mut builder);
+    builder.finish("a shape").unwrap()
+}
+
+/// A grey mesh of positions and their numbers.
+pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
+    shape(|builder| {
+        for &position in positions {
+            builder.position(position);
+        }
+        for &triangle in triangles {
+            builder.triangle(triangle, None, 0).unwrap();
+        }
+    })
+}
+
+/// The corners of all triangles of a mesh.
+pub fn soup(mesh: &Mesh) -> Vec<Corners> {
+    let corner = |i: u32| mesh.positions()[i as usize].map(|c| c as f32);
+    mesh.triangles().iter().map(|t| t.map(corner)).collect()
+}
+
+/// Adds one triangle.
+pub fn triangle(builder: &mut MeshBuilder, corners: Corners, material: u32) {
+    let corners = corners.map(|p| builder.position(p));
+    builder.triangle(corners, None, material).unwrap();
+}
+
+/// Adds two triangles.
+pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [[f32; 3]; 4], material: u32) {
+    triangle(builder, [a, b, c], material);
+    triangle(builder, [a, c, d], material);
+}
+
+/// Adds a box, whose faces are two triangles each.
 pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
-    let corners: Vec<u32> = (0..8)
-        .map(|i| {
-            let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
-            builder.position([pick(0), pick(1), pick(2)])
-        })
-        .collect();
+    let corner = |i: usize| [0, 1, 2].map(|k| [low[k], high[k]][i >> k & 1]);
     for face in [
         [0, 2, 3, 1],
         [4, 5, 7, 6],
@@ -103,21 +149,88 @@ pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material
         [0, 4, 6, 2],
         [1, 3, 7, 5],
     ] {
-        quad(builder, face.map(|i: usize| corners[i]), material);
+        quad(builder, face.map(corner), material);
     }
 }
 
-/// Adds two triangles.
-pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [u32; 4], material: u32) {
-    for triangle in [[a, b, c], [a, c, d]] {
-        builder.triangle(triangle, None, material).unwrap();
+/// Adds a surface of rows and columns of quads.
+pub fn sheet(
+    builder: &mut MeshBuilder,
+    [rows, columns]: [u32; 2],
+    material: u32,
+    at: impl Fn(u32, u32) -> DVec3,
+) {
+    for i in 0..rows {
+        for j in 0..columns {
+            let corners = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
+            let corners = corners.map(|(i, j)| at(i, j).as_vec3().to_array());
+            quad(builder, corners, material);
+        }
     }
 }
 
-/// Runs work on a number of threads.
-pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().unwrap().install(work)
+/// Adds a surface of revolution around a line along y, through heights and radii from top to bottom.
+pub fn turned(
+    builder: &mut MeshBuilder,
+    middle: DVec3,
+    profile: &[(f64, f64)],
+    columns: u32,
+    material: u32,
+) {
+    let rows = profile.len() as u32 - 1;
+    sheet(builder, [rows, columns], material, |i, j| {
+        let (height, radius) = profile[i as usize];
+        // The last column is the first, so that the surface is closed to the last bit.
+        let turn = f64::from(j % columns) / f64::from(columns);
+        let (sin, cos) = libm::sincos(turn * std::f64::consts::TAU);
+        middle + DVec3::new(radius * cos, height, radius * sin)
+    });
+}
+
+/// Adds a sphere.
+pub fn sphere(
+    builder: &mut MeshBuilder,
+    middle: DVec3,
+    radius: f64,
+    [rows, columns]: [u32; 2],
+    material: u32,
+) {
+    let ring = |i: u32| {
+        let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(rows));
+        let is_pole = i == 0 || i == rows;
+        (radius * cos, if is_pole { 0.0 } else { radius * sin })
+    };
+    let profile: Vec<(f64, f64)> = (0..=rows).map(ring).collect();
+    turned(builder, middle, &profile, columns, material);
+}
+
+/// A ball of radius 1 around the origin.
+pub fn ball(rows: u32) -> Mesh {
+    shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [rows, 2 * rows], 0))
+}
+
+/// A box.
+pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
+    shape(|builder| cuboid(builder, low, high, 0))
+}
+
+/// The result of work that gives the same on one and three threads.
+pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(&work)
+    });
+    assert!(one == three, "threads change the result");
+    one
+}
+
+/// Whether a text has all parts.
+#[track_caller]
+pub fn has(text: impl Debug, parts: &[&str]) {
+    let text = format!("{text:?}");
+    for part in parts {
+        assert!(text.contains(part), "expected {part}\n   found {text}");
+    }
 }
 
 /// A model of the shared data, which `SHIFTVOX_DATA` names.

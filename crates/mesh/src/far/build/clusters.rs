@@ -192,35 +192,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_met_depends_neither_on_clusters_nor_on_memory() {
+    fn meetings_depend_neither_on_clusters_nor_on_memory() {
         let mut chance = Chance::new(5);
         let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit());
-        let mut triangles: Vec<[DVec3; 3]> = (0..2000)
-            .map(|_| {
-                let corner = random();
-                [corner, corner + random() * 0.1, corner + random() * 0.1]
-            })
-            .collect();
-        // Every other one twice: equally near.
+        let mut triangles: Vec<[DVec3; 3]> = Vec::new();
+        for _ in 0..2000 {
+            let corner = random();
+            triangles.push([corner, corner + random() * 0.1, corner + random() * 0.1]);
+        }
+        // Every other triangle twice: equally near.
         triangles.extend_from_within(..1000);
-        let queries: Vec<Query> = (0..4000)
-            .map(|_| {
-                let (from, to) = (random() * 4.0 - DVec3::splat(1.5), random());
-                Query {
-                    origin: from.as_vec3(),
-                    direction: (to - from).normalize().as_vec3(),
-                    most: 3.0,
-                }
-            })
-            .collect();
+        let mut query = || {
+            let (from, to) = (random() * 4.0 - DVec3::splat(1.5), random());
+            Query {
+                origin: from.as_vec3(),
+                direction: (to - from).normalize().as_vec3(),
+                most: 3.0,
+            }
+        };
+        let queries: Vec<Query> = (0..4000).map(|_| query()).collect();
         let around = Around::of(DVec3::splat(-0.1), DVec3::splat(1.2));
         let met = |size: usize, within: Option<u64>| {
-            let parts: Vec<Part> = (0..3000 / size)
-                .map(|part| Part {
-                    triangles: part * size..(part + 1) * size,
-                    around,
-                })
-                .collect();
+            let part = |part| Part {
+                triangles: part * size..(part + 1) * size,
+                around,
+            };
+            let parts: Vec<Part> = (0..3000 / size).map(part).collect();
             let corners = |own: Range<usize>| triangles[own].iter().copied();
             let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
             let occluders = Occluders::new(&parts, corners, within).unwrap();
@@ -229,12 +226,10 @@ mod tests {
             meetings
         };
         let one = met(3000, None);
-        let hits = one.iter().filter(|meeting| **meeting != Meeting::NONE);
-        assert!(hits.clone().count() > 2000);
-        assert!(
-            hits.clone().all(|meeting| meeting.triangle < 2000),
-            "the first of equal ones"
-        );
+        let hits: Vec<_> = one.iter().filter(|m| **m != Meeting::NONE).collect();
+        assert!(hits.len() > 2000);
+        // The first of equal ones.
+        assert!(hits.iter().all(|meeting| meeting.triangle < 2000));
         for (size, within) in [
             (500, None),
             (500, Some(1)),

@@ -6,43 +6,31 @@ use super::clusters::{Occluders, Part};
 use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Around;
-use super::sample::{MOST_VISIBILITY_RAYS, Rays, Triangles};
-use super::shader_fit::ShaderFit;
+use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled, Triangles};
+use super::shader_fit::{self, ShaderFit};
 use super::shot::{Own, Target};
-use super::{MOST_RAYS, Ordered, shader_fit};
+use super::{MOST_RAYS, Ordered};
 use crate::far::blend::by_cosines;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
-use crate::generate::maker::Maker;
-use crate::{Material, Mesh, MeshBuilder, Surface};
+use crate::shared::{cuboid, quad, shape};
+use crate::{Material, Mesh, Surface};
 
 /// A mesh of boxes.
-fn boxes(boxes: &[(DVec3, DVec3)]) -> Mesh {
-    let mut maker = Maker::new(0);
-    for &(low, high) in boxes {
-        maker.block(low, high, 0);
-    }
-    maker.finish()
+fn boxes(boxes: &[([f32; 3], [f32; 3])]) -> Mesh {
+    shape(|builder| {
+        for &(low, high) in boxes {
+            cuboid(builder, low, high, 0);
+        }
+    })
 }
 
-/// Unit voxels from the origin.
-fn unit(cells: [u8; 3]) -> Grid {
-    Grid {
-        origin: DVec3::ZERO,
-        voxel: 1.0,
-        cells,
-    }
-}
-
-/// The result of a node's rays.
-struct Sampled {
-    seen: Vec<(Seen, ShaderFit)>,
-    touched: u32,
-    untested: u32,
+/// The voxels and counts of a node with unit voxels, whose own triangles are the mesh's first.
+fn sampled(
+    mesh: &Mesh,
+    own: usize,
+    cells: [u8; 3],
     rays: u32,
-    hits: u32,
-}
-
-fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32) -> Sampled {
+) -> (Vec<(Seen, ShaderFit)>, Sampled) {
     let order: Vec<u32> = (0..Surface::len(mesh) as u32).collect();
     let triangles = Ordered {
         surface: mesh,
@@ -57,6 +45,11 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32) -> Sampled {
     };
     let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
     let occluders = Occluders::new(&[part], corners, None).unwrap();
+    let grid = Grid {
+        origin: DVec3::ZERO,
+        voxel: 1.0,
+        cells,
+    };
     let target = Target {
         occluders: &occluders,
         grid,
@@ -65,71 +58,48 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32) -> Sampled {
     };
     let mut seen = Vec::new();
     let keep = |voxel: &Seen, shown: &ShaderFit, _| seen.push((voxel.clone(), *shown));
-    let rays = Rays::InAll(rays);
-    let found = target.sample(rays, MOST_RAYS, 7, &triangles, |_| (), keep);
-    let found = found.unwrap();
-    Sampled {
-        seen,
-        touched: found.touched,
-        untested: found.untested,
-        rays: found.rays,
-        hits: found.hits,
-    }
+    let found = target.sample(Rays::InAll(rays), MOST_RAYS, 7, &triangles, |_| (), keep);
+    (seen, found.unwrap())
 }
 
-fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
-    sampled(mesh, Surface::len(mesh), grid, rays)
+/// The voxels and counts of a node that is the whole mesh.
+fn all(mesh: &Mesh, cells: [u8; 3], rays: u32) -> (Vec<(Seen, ShaderFit)>, Sampled) {
+    sampled(mesh, Surface::len(mesh), cells, rays)
 }
 
-fn at(sampled: &Sampled, place: [u8; 3]) -> &Seen {
-    let mut seen = sampled.seen.iter().map(|(seen, _)| seen);
-    seen.find(|seen| seen.place == place).unwrap()
-}
-
-/// Six opacities, of all that was counted.
-fn six(seen: &Seen) -> [f64; 6] {
+/// The six opacities of a voxel.
+fn six(seen: &[(Seen, ShaderFit)], place: [u8; 3]) -> [f64; 6] {
+    let (seen, _) = seen.iter().find(|(seen, _)| seen.place == place).unwrap();
     let [front, back] = [0, 1].map(|side| seen.counted_below(side, STEEPNESSES));
     front.with(&back).six()
 }
 
 #[test]
 fn an_opaque_slab_is_opaque_from_six_directions() {
-    // Two layers thick, but for so little that its faces are within them.
-    let slab = boxes(&[(DVec3::new(0.3, 0.3, 2.001), DVec3::new(7.7, 7.7, 3.999))]);
-    let sampled = all(&slab, unit([8, 8, 6]), 100_000);
-    let mut inner = 0;
-    for (seen, shown) in &sampled.seen {
-        let [x, y, _] = seen.place;
-        // The rim's voxels are filled in part.
-        if (1..7).contains(&x) && (1..7).contains(&y) {
-            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-            inner += 1;
-            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-                for eye in [axis, -axis] {
-                    let opacity = voxel.opacity_from(eye, Opacity::Six);
-                    let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
-                    assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
-                }
-            }
+    // Almost two layers thick, so that its faces are within them.
+    let slab = boxes(&[([0.3, 0.3, 2.001], [7.7, 7.7, 3.999])]);
+    let (seen, _) = all(&slab, [8, 8, 6], 100_000);
+    // The slab fills the voxels of the rim in part.
+    let is_inner = |seen: &Seen| seen.place[..2].iter().all(|c| (1..7).contains(c));
+    let inner: Vec<_> = seen.iter().filter(|(seen, _)| is_inner(seen)).collect();
+    assert_eq!(inner.len(), 2 * 6 * 6);
+    for (seen, shown) in inner {
+        let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
+        for eye in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
+            let opacity = voxel.opacity_from(eye, Opacity::Six);
+            let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
+            assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
         }
     }
-    assert_eq!(inner, 2 * 6 * 6);
 }
 
 #[test]
-fn a_voxel_whose_lower_half_is_solid() {
-    let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
-    let sampled = all(&half, unit([1, 1, 1]), 60_000);
-    let opacity = six(at(&sampled, [0, 0, 0]));
-    for (k, expected) in [0.5, 0.5, 1.0, 1.0, 0.5, 0.5].into_iter().enumerate() {
-        assert!((opacity[k] - expected).abs() < 0.02, "{k}: {opacity:?}");
+fn a_voxel_with_a_solid_lower_half_has_opacities_that_blend_by_cosines() {
+    let half = boxes(&[([0.0; 3], [1.0, 0.5, 1.0])]);
+    let opacity = six(&all(&half, [1; 3], 60_000).0, [0; 3]);
+    for (found, expected) in opacity.into_iter().zip([0.5, 0.5, 1.0, 1.0, 0.5, 0.5]) {
+        assert!((found - expected).abs() < 0.02, "{opacity:?}");
     }
-}
-
-#[test]
-fn cosines_blend_a_box_exactly() {
-    let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
-    let opacity = six(at(&sampled(&half, 12, unit([1; 3]), 60_000), [0; 3]));
     for degrees in 0..=90 {
         let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
         let shares = by_cosines(DVec3::new(cos, sin, 0.0)).into_iter();
@@ -140,104 +110,79 @@ fn cosines_blend_a_box_exactly() {
 }
 
 #[test]
-fn a_fan_of_wires_has_analytic_coverage() {
-    // Square wires along z, one in the middle of every other column, so that
-    // each is alone in its voxels seen along y.
-    let wires: Vec<(DVec3, DVec3)> = (0..5)
-        .map(|i| {
-            let width = 0.1 + 0.1 * f64::from(i);
-            let x = 2.0 * f64::from(i) + 0.5;
-            let low = DVec3::new(x - width / 2.0, 0.5 - width / 2.0, 0.0);
-            (low, DVec3::new(x + width / 2.0, 0.5 + width / 2.0, 8.0))
-        })
-        .collect();
-    let sampled = all(&boxes(&wires), unit([9, 1, 8]), 200_000);
-    for i in 0..5u8 {
-        let width = 0.1 + 0.1 * f64::from(i);
-        let rows: Vec<&Seen> = (2..6).map(|z| at(&sampled, [2 * i, 0, z])).collect();
+fn wires_have_the_opacity_of_their_width() {
+    // Square wires along z in every other column: each is alone in its voxels along y.
+    let widths = [0.1f32, 0.2, 0.3, 0.4, 0.5];
+    let wire = |i: usize| {
+        let (x, half) = (2.0 * i as f32 + 0.5, widths[i] / 2.0);
+        ([x - half, 0.5 - half, 0.0], [x + half, 0.5 + half, 8.0])
+    };
+    let wires: Vec<_> = (0..5).map(wire).collect();
+    let (seen, _) = all(&boxes(&wires), [9, 1, 8], 200_000);
+    for (i, width) in widths.into_iter().enumerate() {
         for k in [2, 3] {
-            let mean = rows.iter().map(|seen| six(seen)[k]).sum::<f64>() / rows.len() as f64;
-            assert!(
-                (mean - width).abs() < 0.05,
-                "width {width}, direction {k}: {mean}"
-            );
+            let rows = (2..6).map(|z| six(&seen, [2 * i as u8, 0, z])[k]);
+            let mean = rows.sum::<f64>() / 4.0;
+            let error = mean - f64::from(width);
+            assert!(error.abs() < 0.05, "width {width}, direction {k}: {mean}");
         }
     }
 }
 
 #[test]
-fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
-    let core = (DVec3::splat(3.2), DVec3::splat(4.8));
-    let shell = (DVec3::splat(0.5), DVec3::splat(7.5));
-    let open = sampled(&boxes(&[core]), 12, unit([8; 3]), 4000);
-    assert_eq!(open.seen.len(), 8);
-    // The shell is environment: not of the node, but around it.
-    let hidden = sampled(&boxes(&[core, shell]), 12, unit([8; 3]), 4000);
-    assert_eq!((hidden.seen.len(), hidden.hits), (0, 0));
-    assert_eq!(
-        hidden.rays,
-        8 * MOST_VISIBILITY_RAYS,
-        "all are visibility rays and there is nothing to probe"
-    );
-    let both = all(&boxes(&[core, shell]), unit([8; 3]), 20_000);
-    assert!(
-        both.seen
-            .iter()
-            .all(|(seen, _)| seen.place.iter().any(|&c| c == 0 || c == 7))
-    );
+fn enclosed_voxels_are_dropped_whoever_hides_them() {
+    let core = ([3.2; 3], [4.8; 3]);
+    let shell = ([0.5; 3], [7.5; 3]);
+    assert_eq!(sampled(&boxes(&[core]), 12, [8; 3], 4000).0.len(), 8);
+    // The shell belongs to another node.
+    let (seen, found) = sampled(&boxes(&[core, shell]), 12, [8; 3], 4000);
+    assert_eq!((seen.len(), found.hits), (0, 0));
+    // All rays are visibility rays, because there is nothing to probe.
+    assert_eq!(found.rays, 8 * MOST_VISIBILITY_RAYS);
+    let (both, _) = all(&boxes(&[core, shell]), [8; 3], 20_000);
+    let is_outer = |seen: &Seen| seen.place.iter().any(|&c| c == 0 || c == 7);
+    assert!(both.iter().all(|(seen, _)| is_outer(seen)));
 }
 
 #[test]
-fn what_a_window_shows_is_found_from_what_is_beside_it() {
-    // A picture on the wall of a closed room, in one layer of voxels; the wall opposite has a
-    // window.
-    let picture = (DVec3::new(2.1, 2.1, 1.4), DVec3::new(13.9, 13.9, 1.6));
-    let wall = |low: [f64; 3], high: [f64; 3]| (DVec3::from_array(low), DVec3::from_array(high));
+fn probes_find_neighbours_of_visible_voxels_through_a_window() {
+    // A picture on the wall of a closed room, in one layer of voxels. The wall opposite has a window.
     let room = [
-        picture,
-        wall([0.0, 0.0, 0.5], [16.0, 16.0, 0.6]),
-        wall([0.0, 0.0, 0.5], [16.0, 0.1, 15.0]),
-        wall([0.0, 15.9, 0.5], [16.0, 16.0, 15.0]),
-        wall([0.0, 0.0, 0.5], [0.1, 16.0, 15.0]),
-        wall([15.9, 0.0, 0.5], [16.0, 16.0, 15.0]),
+        ([2.1, 2.1, 1.4], [13.9, 13.9, 1.6]),
+        ([0.0, 0.0, 0.5], [16.0, 16.0, 0.6]),
+        ([0.0, 0.0, 0.5], [16.0, 0.1, 15.0]),
+        ([0.0, 15.9, 0.5], [16.0, 16.0, 15.0]),
+        ([0.0, 0.0, 0.5], [0.1, 16.0, 15.0]),
+        ([15.9, 0.0, 0.5], [16.0, 16.0, 15.0]),
         // Around the window.
-        wall([0.0, 0.0, 14.9], [6.0, 16.0, 15.0]),
-        wall([10.0, 0.0, 14.9], [16.0, 16.0, 15.0]),
-        wall([6.0, 0.0, 14.9], [10.0, 6.0, 15.0]),
-        wall([6.0, 10.0, 14.9], [10.0, 16.0, 15.0]),
+        ([0.0, 0.0, 14.9], [6.0, 16.0, 15.0]),
+        ([10.0, 0.0, 14.9], [16.0, 16.0, 15.0]),
+        ([6.0, 0.0, 14.9], [10.0, 6.0, 15.0]),
+        ([6.0, 10.0, 14.9], [10.0, 16.0, 15.0]),
     ];
-    // So few rays that probes, which find something too, do not find all.
-    let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000);
-    // The window covers at most a 150th of a voxel's directions. So 24 random rays would find one voxel in seven, and
-    // with probes one in five. All 144 can be seen.
-    assert_eq!(sampled.touched, 144);
-    assert!(sampled.seen.len() > 72, "{}", sampled.seen.len());
+    // All 144 voxels can be seen. The window covers at most a 150th of a voxel's directions, so that 24 random rays
+    // would find one voxel in seven, and with probes one in five.
+    let (seen, found) = sampled(&boxes(&room), 12, [16, 16, 3], 7000);
+    assert_eq!(found.touched, 144);
+    assert!(seen.len() > 72, "{}", seen.len());
 }
 
 #[test]
 fn a_thin_floor_has_no_holes() {
-    // Two triangles across the middle of voxels, and tilted.
-    let mut builder = MeshBuilder::new();
+    // Tilted, across the middle of voxels.
     let corners = [
-        [0.5, 1.2, 0.5],
-        [7.5, 2.9, 0.5],
-        [7.5, 2.9, 7.5],
-        [0.5, 1.2, 7.5],
+        (0.5, 1.2, 0.5),
+        (7.5, 2.9, 0.5),
+        (7.5, 2.9, 7.5),
+        (0.5, 1.2, 7.5),
     ];
-    let corners = corners.map(|p| builder.position(p));
-    for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-        builder
-            .triangle([corners[a], corners[b], corners[c]], None, 0)
-            .unwrap();
-    }
-    let floor = builder.finish("floor").unwrap();
-    let sampled = all(&floor, unit([8, 4, 8]), 100_000);
-    // A corner of the floor in a voxel is distinguished from a thin thing: one sees through
-    // no column, from above or below.
+    let floor = shape(|builder| quad(builder, corners.map(|(x, y, z)| [x, y, z]), 0));
+    let (seen, _) = all(&floor, [8, 4, 8], 100_000);
+    // A voxel with a corner of the floor is not taken for a thin thing: no column is transparent.
     for mode in [Opacity::Scalar, Opacity::Six] {
         for eye in [DVec3::Y, DVec3::NEG_Y] {
             let mut through = [[1.0; 8]; 8];
-            for (seen, shown) in &sampled.seen {
+            for (seen, shown) in &seen {
                 let [x, _, z] = seen.place.map(usize::from);
                 let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
                 through[z][x] *= 1.0 - voxel.opacity_from(eye, mode);
@@ -250,51 +195,41 @@ fn a_thin_floor_has_no_holes() {
 }
 
 #[test]
-fn what_was_not_tested_is_kept_and_looks_like_its_triangles() {
-    // Red walls in a row; one ray for eight voxels of them.
-    let mut builder = MeshBuilder::new();
-    let red = builder.material(Material::of_srgb("red".to_owned(), [255, 0, 0]));
-    for i in 0..16u8 {
-        let x = f32::from(i) + 0.5;
-        let corners = [[x, 0.0, 0.0], [x, 8.0, 0.0], [x, 8.0, 8.0], [x, 0.0, 8.0]];
-        let corners = corners.map(|p| builder.position(p));
-        for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = [corners[a], corners[b], corners[c]];
-            builder.triangle(triangle, None, red).unwrap();
+fn untested_voxels_are_kept_and_look_like_their_triangles() {
+    // Red walls in a row, with one ray for eight of their voxels.
+    let walls = shape(|builder| {
+        let red = builder.material(Material::of_srgb("red", [255, 0, 0]));
+        for x in (0..16u8).map(|i| f32::from(i) + 0.5) {
+            let corners = [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]];
+            quad(builder, corners.map(|[y, z]| [x, y, z]), red);
         }
-    }
-    let walls = builder.finish("walls").unwrap();
-    let few = all(&walls, unit([16, 8, 8]), 128);
+    });
+    let (seen, few) = all(&walls, [16, 8, 8], 128);
     assert_eq!((few.touched, few.rays), (1024, 128));
-    assert_eq!(few.seen.len(), 1024, "none is known to be hidden");
+    assert_eq!(seen.len(), 1024, "none is known to be hidden");
     assert!(few.untested > 512, "{}", few.untested);
-    for (seen, shown) in &few.seen {
+    for (seen, shown) in &seen {
         let (normal, color) = shown.shader.seen_from(DVec3::X);
         assert!(normal.x.abs() > 0.99 && color.x > 0.9 && color.y < 0.1);
         if seen.crossings == 0 {
             let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-            assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
+            assert_eq!(voxel.opacity_kind, OpacityKind::Opaque);
         }
     }
-    // With enough rays all voxels are tested, and those between the walls are hidden.
-    let enough = all(&walls, unit([16, 8, 8]), 100_000);
+    // Enough rays test all voxels.
+    let (_, enough) = all(&walls, [16, 8, 8], 100_000);
     assert_eq!((enough.touched, enough.untested), (1024, 0));
 }
 
 #[test]
-fn no_more_is_kept_than_is_touched() {
-    // Walls exactly between voxels, of which rays see the end on either side.
-    let walls: Vec<(DVec3, DVec3)> = (1..4)
-        .map(|i| {
-            let x = f64::from(2 * i);
-            (DVec3::new(x, 1.0, 1.0), DVec3::new(x + 1.0, 7.0, 7.0))
-        })
-        .collect();
-    let sampled = all(&boxes(&walls), unit([8; 3]), 200_000);
+fn no_more_voxels_are_kept_than_touched() {
+    // Walls exactly between voxels: rays see the end on either side.
+    let walls = [2.0, 4.0, 6.0].map(|x| ([x, 1.0, 1.0], [x + 1.0, 7.0, 7.0]));
+    let (seen, found) = all(&boxes(&walls), [8; 3], 200_000);
+    let kept = seen.len();
     assert!(
-        sampled.seen.len() <= sampled.touched as usize,
-        "{} of {}",
-        sampled.seen.len(),
-        sampled.touched
+        kept <= found.touched as usize,
+        "{kept} of {}",
+        found.touched
     );
 }

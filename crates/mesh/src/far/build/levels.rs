@@ -63,34 +63,33 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dense_nodes_are_those_of_sixteen_voxels_a_triangle() {
+    fn dense_nodes_have_sixteen_voxels_per_triangle_or_more() {
         assert!(is_dense(160, 10) && !is_dense(159, 10));
-        // A grid of 64 voxels a side holds no more.
+        // A grid of 64 voxels along a side holds no more.
         assert!(is_dense(64 * 64 * 64, 16_384) && !is_dense(64 * 64 * 64, 16_385));
     }
 
     #[test]
     fn a_box_halved_across_another_axis_has_no_voxels() {
         // A coarser node, the root, a chain of halves across x, y, z and x, and a leaf.
-        let branch = |level: u32, size: [f64; 3], children: Option<[usize; 2]>| Branch {
+        let rows = [
+            ([8.0, 8.0, 8.0], Some([1, 0]), true),
+            ([8.0, 8.0, 8.0], Some([2, 6]), true),
+            ([4.0, 8.0, 8.0], Some([3, 6]), false),
+            ([4.0, 4.0, 8.0], Some([4, 6]), false),
+            ([4.0, 4.0, 4.0], Some([5, 6]), true),
+            ([2.0, 4.0, 4.0], Some([6, 6]), false),
+            ([2.0, 2.0, 4.0], None, true),
+        ];
+        let branch = |level: usize| Branch {
             low: DVec3::ZERO,
-            high: size.into(),
-            level,
+            high: rows[level].0.into(),
+            level: level as u32,
             first: 0,
             count: 1,
-            children,
+            children: rows[level].1,
         };
-        let below = |number: usize| Some([number + 1, 6]);
-        let branches = [
-            branch(0, [8.0, 8.0, 8.0], Some([1, 0])),
-            branch(1, [8.0, 8.0, 8.0], below(1)),
-            branch(2, [4.0, 8.0, 8.0], below(2)),
-            branch(3, [4.0, 4.0, 8.0], below(3)),
-            branch(4, [4.0, 4.0, 4.0], below(4)),
-            branch(5, [2.0, 4.0, 4.0], below(5)),
-            branch(6, [2.0, 2.0, 4.0], None),
-        ];
-        let expected = [true, true, false, false, true, false, true];
-        assert_eq!(with_voxels(&branches, 1), expected);
+        let branches: Vec<Branch> = (0..7).map(branch).collect();
+        assert_eq!(with_voxels(&branches, 1), rows.map(|row| row.2));
     }
 }

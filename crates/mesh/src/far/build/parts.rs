@@ -138,15 +138,10 @@ mod tests {
     #[test]
     fn a_leaf_is_as_wide_as_its_smaller_side() {
         // A strip of 1 by 8 in four parts of two triangles that share edges, and a far triangle.
-        let point = |i: u32, y: f32| [2.0 * i as f32, y, 0.0];
         let mut triangles: Vec<[[f32; 3]; 3]> = Vec::new();
-        for i in 0..4 {
-            let [a, b, c, d] = [
-                point(i, 0.0),
-                point(i + 1, 0.0),
-                point(i + 1, 1.0),
-                point(i, 1.0),
-            ];
+        for x in [0.0, 2.0, 4.0, 6.0] {
+            let [a, b] = [[x, 0.0, 0.0], [x + 2.0, 0.0, 0.0]];
+            let [c, d] = [[x + 2.0, 1.0, 0.0], [x, 1.0, 0.0]];
             triangles.extend([[a, b, c], [a, c, d]]);
         }
         triangles.push([[50.0, 0.0, 0.0], [50.0, 3.0, 0.0], [50.0, 0.0, 4.0]]);
@@ -157,13 +152,13 @@ mod tests {
         }
         assert!((parts.size(8).width - 6.0 / 5.0).abs() < 1e-6);
         assert!((parts.size(8).radius - 2.5).abs() < 1e-6);
-        // The middle of the strip is of triangles 2 to 5, its end of 6 and 7.
-        let normals = parts.shared(&(0..4), point(2, 0.0)).unwrap();
-        let sums: Vec<f64> = normals.iter().map(|n| n.x).collect();
-        assert_eq!(sums, [3.0 * 2.0, 5.0 * 2.0, 6.0 * 2.0]);
-        assert_eq!(parts.shared(&(4..9), point(2, 0.0)), Some(normals));
-        assert_eq!(parts.shared(&(0..8), point(2, 0.0)), None);
-        assert_eq!(parts.shared(&(4..9), point(4, 0.0)), None);
-        assert_eq!(parts.shared(&(0..4), [9.0; 3]), None);
+        // The point in the middle of the strip belongs to triangles 2 to 5, its end to 6 and 7.
+        let middle = [4.0, 0.0, 0.0];
+        let normals = parts.shared(&(0..4), middle).unwrap();
+        assert!(normals.iter().map(|n| n.x).eq([6.0, 10.0, 12.0]));
+        assert_eq!(parts.shared(&(4..9), middle), Some(normals));
+        for (own, point) in [(0..8, middle), (4..9, [8.0, 0.0, 0.0]), (0..4, [9.0; 3])] {
+            assert_eq!(parts.shared(&own, point), None);
+        }
     }
 }

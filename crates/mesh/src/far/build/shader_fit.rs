@@ -215,34 +215,29 @@ fn error(shader: &Shader, samples: &[SurfaceSample]) -> f64 {
 mod tests {
     use super::*;
     use crate::far::blend::by_cosines;
+    use crate::far::build::chance::Chance;
     use crate::far::build::count::main_normal;
+    use crate::shared::directions;
 
+    /// Samples from all sides of a surface whose normal and colour depend on the side.
     fn samples(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<SurfaceSample> {
-        (0..500)
-            .map(|i| {
-                let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 500.0;
-                let around = f64::from(i) * 2.399_963_229_728_653;
-                let ring = libm::sqrt(1.0 - z * z);
-                let towards_eye = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
-                let (normal, color) = of(towards_eye);
-                SurfaceSample {
-                    towards_eye,
-                    normal,
-                    color,
-                }
-            })
-            .collect()
+        let sample = |towards_eye| {
+            let (normal, color) = of(towards_eye);
+            SurfaceSample {
+                towards_eye,
+                normal,
+                color,
+            }
+        };
+        directions(500).map(sample).collect()
     }
 
     #[test]
     fn a_wall_with_two_colours_is_flat() {
         let up = DVec3::new(0.6, 0.0, 0.8);
-        let wall = samples(|eye| {
-            if eye.dot(up) > 0.0 {
-                (up, DVec3::X)
-            } else {
-                (-up, DVec3::Y)
-            }
+        let wall = samples(|eye| match eye.dot(up) > 0.0 {
+            true => (up, DVec3::X),
+            false => (-up, DVec3::Y),
         });
         let shader = flat(&wall, main_normal(&wall));
         assert!(error(&shader, &wall) < 1e-9);
@@ -262,54 +257,44 @@ mod tests {
         assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
     }
 
-    /// Counts of evenly spread directions, of which a share of each hits.
-    fn counted(rays: u32, share: impl Fn(DVec3) -> f64) -> Counted {
-        let mut counted = Counted::default();
-        let mut chance = crate::far::build::chance::Chance::new(5);
-        let samples = samples(|eye| (eye, eye));
-        for ray in 0..rays as usize {
-            // The first few are spread, too.
-            let sample = &samples[ray * 191 % samples.len()];
-            let is_hit = chance.unit() < share(sample.towards_eye);
-            let shares = by_cosines(sample.towards_eye);
-            counted.add(&shares, is_hit, 1.0);
-        }
-        counted
-    }
-
     #[test]
     fn six_opacities_are_stored_where_they_differ_by_more_than_chance() {
-        let classify = |counted: Counted, most| {
+        let solid = |_: DVec3| 1.0;
+        let veil = |_: DVec3| 0.4;
+        // A sheet across y: all from above, little from the sides.
+        let sheet = |eye: DVec3| 0.2 + 0.8 * eye.y.abs();
+        let kind = |share: &dyn Fn(DVec3) -> f64, rays: usize, most| {
+            let (mut counted, mut chance) = (Counted::default(), Chance::new(5));
+            let directions: Vec<DVec3> = directions(500).collect();
+            for ray in 0..rays {
+                // The first few are spread, too.
+                let eye = directions[ray * 191 % directions.len()];
+                counted.add(&by_cosines(eye), chance.unit() < share(eye), 1.0);
+            }
+            // Nothing is known of any solid surface.
             let mut seen = Seen::default();
             seen.begin([0; 3], 1.0);
-            // Nothing known of any solid surface.
             seen.found[0][0].counted = counted;
             seen.found[0][0].probes = counted.independent() as u32;
             seen.found[0][0].passed = 1.0;
             classify(&seen, most).kind
         };
-        let kind = |rays, share: fn(DVec3) -> f64| classify(counted(rays, share), Opacity::Six);
-        let solid = |_: DVec3| 1.0;
-        let veil = |_: DVec3| 0.4;
-        // A sheet across y: all from above, little from the sides.
-        let sheet = |eye: DVec3| 0.2 + 0.8 * eye.y.abs();
         for rays in [30, 100, 1000, 100_000] {
-            assert_eq!(kind(rays, solid), OpacityKind::Opaque, "{rays}");
-            assert_eq!(kind(rays, veil), OpacityKind::Scalar, "{rays}");
-        }
-        for rays in [100, 1000, 100_000] {
-            assert_eq!(kind(rays, sheet), OpacityKind::Six, "{rays}");
+            assert_eq!(kind(&solid, rays, Opacity::Six), OpacityKind::Opaque);
+            assert_eq!(kind(&veil, rays, Opacity::Six), OpacityKind::Scalar);
+            if rays > 30 {
+                assert_eq!(kind(&sheet, rays, Opacity::Six), OpacityKind::Six);
+            }
         }
         // The requested kind is the most that is stored.
-        let sheet = counted(1000, sheet);
-        assert_eq!(classify(sheet, Opacity::Scalar), OpacityKind::Scalar);
-        assert_eq!(classify(sheet, Opacity::None), OpacityKind::Opaque);
-        assert_eq!(kind(0, solid), OpacityKind::Opaque);
+        assert_eq!(kind(&sheet, 1000, Opacity::Scalar), OpacityKind::Scalar);
+        assert_eq!(kind(&sheet, 1000, Opacity::None), OpacityKind::Opaque);
+        assert_eq!(kind(&solid, 0, Opacity::Six), OpacityKind::Opaque);
     }
 
     #[test]
     fn the_scalar_is_hits_over_hits_and_passes() {
-        // Half of what comes from +y hits, nothing of the rest: not the mean of six.
+        // Half of the rays from +y hit, and none of the others. This is not the mean of six.
         let mut counted = Counted::default();
         for (eye, is_hit, weight) in [
             (DVec3::Y, true, 1.0),

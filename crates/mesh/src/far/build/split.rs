@@ -256,61 +256,49 @@ fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Mesh, MeshBuilder};
-
-    fn row(count: u32) -> Mesh {
-        let mut builder = MeshBuilder::new();
-        for i in 0..count {
-            let x = i as f32;
-            let corners = [[x, 0.0, 0.0], [x + 0.5, 0.0, 0.0], [x, 0.5, 0.0]];
-            let corners = corners.map(|p| builder.position(p));
-            builder.triangle(corners, None, 0).unwrap();
-        }
-        builder.finish("row").unwrap()
-    }
+    use crate::shared::{shape, triangle};
 
     #[test]
     fn every_triangle_is_in_one_leaf_of_fewer_than_the_limit() {
-        let mesh = row(1000);
-        let (branches, order) = split(&mesh, 10);
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        assert!(sorted.iter().enumerate().all(|(i, &n)| i as u32 == n));
+        let row = shape(|builder| {
+            for x in (0..1000u16).map(f32::from) {
+                let corners = [[x, 0.0, 0.0], [x + 0.5, 0.0, 0.0], [x, 0.5, 0.0]];
+                triangle(builder, corners, 0);
+            }
+        });
+        let (branches, mut order) = split(&row, 10);
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..1000));
         let mut next = 0;
-        for (i, branch) in branches.iter().enumerate() {
-            match branch.children {
-                None => {
-                    assert!(branch.count < 10 && branch.count > 0);
-                    assert_eq!(branch.first, next);
-                    next += branch.count;
-                }
-                Some(children) => {
-                    assert!(branch.count >= 10);
-                    assert!(children.iter().all(|&c| c > i));
-                    let sum: usize = children.iter().map(|&c| branches[c].count).sum();
-                    assert_eq!(sum, branch.count);
-                    for c in children {
-                        assert!(branches[c].low.cmpge(branch.low).all());
-                        assert!(branches[c].high.cmple(branch.high).all());
-                        assert_eq!(branches[c].level, branch.level + 1);
-                    }
-                }
+        for (number, branch) in branches.iter().enumerate() {
+            let Some(children) = branch.children else {
+                assert!((1..10).contains(&branch.count));
+                assert_eq!(branch.first, next);
+                next += branch.count;
+                continue;
+            };
+            assert!(branch.count >= 10);
+            let sum: usize = children.iter().map(|&c| branches[c].count).sum();
+            assert_eq!(sum, branch.count);
+            for child in children {
+                assert!(child > number);
+                let child = &branches[child];
+                assert!(child.low.cmpge(branch.low).all() && child.high.cmple(branch.high).all());
+                assert_eq!(child.level, branch.level + 1);
             }
         }
         assert_eq!(next, 1000);
     }
 
     #[test]
-    fn triangles_at_one_place_end_too() {
-        let mut builder = MeshBuilder::new();
-        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|p| builder.position(p));
-        for _ in 0..100 {
-            builder.triangle(corners, None, 0).unwrap();
-        }
-        let (branches, _) = split(&builder.finish("pile").unwrap(), 2);
-        assert_eq!(
-            branches.iter().filter(|b| b.children.is_none()).count(),
-            100
-        );
+    fn equal_triangles_are_split_by_number() {
+        let pile = shape(|builder| {
+            for _ in 0..100 {
+                triangle(builder, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 0);
+            }
+        });
+        let (branches, _) = split(&pile, 2);
+        let leaves = branches.iter().filter(|b| b.children.is_none());
+        assert_eq!(leaves.count(), 100);
     }
 }

@@ -189,25 +189,24 @@ impl Polygon {
 mod tests {
     use super::*;
 
-    fn unit() -> Grid {
-        Grid {
-            origin: DVec3::ZERO,
-            voxel: 1.0,
-            cells: [8, 8, 8],
-        }
-    }
+    /// 8 x 8 x 8 unit voxels from the origin.
+    const UNIT: Grid = Grid {
+        origin: DVec3::ZERO,
+        voxel: 1.0,
+        cells: [8; 3],
+    };
 
     #[test]
-    fn parts_together_are_the_triangle_and_lie_in_their_voxels() {
+    fn parts_lie_in_their_voxels_and_make_up_the_triangle() {
         let mut chance = Chance::new(3);
         let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit()) * 8.0;
         for _ in 0..200 {
             let corners = [random(), random(), random()];
             let mut sum = 0.0;
-            parts(&unit(), &corners, |number, piece| {
+            parts(&UNIT, &corners, |number, piece| {
                 let part = piece.cut();
                 sum += part.area();
-                let low = DVec3::from_array(unit().place(number as usize).map(f64::from));
+                let low = DVec3::from_array(UNIT.place(number as usize).map(f64::from));
                 for &corner in part.corners() {
                     let inside = corner - low;
                     assert!(inside.min_element() > -1e-9 && inside.max_element() < 1.0 + 1e-9);
@@ -218,26 +217,20 @@ mod tests {
     }
 
     #[test]
-    fn points_are_drawn_by_area_and_what_is_not_touched_has_none() {
+    fn points_are_drawn_by_area_in_touched_voxels() {
         // A large and a small triangle in one voxel, and one beside it.
-        let at = |x: f64, side: f64, z: f64| {
+        let triangles = [(0.1, 0.8, 0.5), (0.1, 0.4, 0.2), (1.3, 0.5, 0.5)].map(|(x, side, z)| {
             let low = DVec3::new(x, 0.1, z);
             [low, low + DVec3::X * side, low + DVec3::Y * side]
-        };
-        let triangles = [at(0.1, 0.8, 0.5), at(0.1, 0.4, 0.2), at(1.3, 0.5, 0.5)];
+        });
+        assert_eq!(count(&UNIT, triangles.into_iter()), 2);
         let mut low = 0;
         for seed in 0..500 {
-            let voxels = touched(
-                &unit(),
-                triangles.into_iter().enumerate(),
-                &mut Chance::new(seed),
-            );
-            let numbers: Vec<u32> = voxels.iter().map(|voxel| voxel.number).collect();
-            assert_eq!(numbers, [0, 1]);
-            assert_eq!(count(&unit(), triangles.into_iter()), 2);
-            let points = voxels.iter().flat_map(|voxel| voxel.points);
+            let numbered = triangles.into_iter().enumerate();
+            let voxels = touched(&UNIT, numbered, &mut Chance::new(seed));
+            assert!(voxels.iter().map(|voxel| voxel.number).eq([0, 1]));
             // Each is on the triangle that it names.
-            for (point, triangle) in points {
+            for (point, triangle) in voxels.iter().flat_map(|voxel| voxel.points) {
                 assert_eq!(point.z, triangles[triangle as usize][0].z);
             }
             low += voxels[0].points.iter().filter(|p| p.0.z < 0.3).count();

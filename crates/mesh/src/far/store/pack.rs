@@ -90,78 +90,76 @@ mod tests {
     }
 
     #[test]
-    fn data_comes_back_and_wrong_lengths_do_not() {
+    fn data_comes_back_and_wrong_lengths_are_refused() {
         let lists: [Vec<u8>; 6] = std::array::from_fn(|list| {
             let bytes = RECORD_BYTES[list] * COUNTS[list] as usize;
             (0..bytes).map(|at| (at * at / 5) as u8).collect()
         });
         let packed = pack(&lists, &[]);
-        let voxels = |counts| unpack(&packed, &node(counts)).map(|(records, _)| records);
-        assert_eq!(voxels(COUNTS), Some(lists.concat()));
+        let records = |packed: &[u8], counts| unpack(packed, &node(counts)).map(|found| found.0);
+        assert_eq!(records(&packed, COUNTS), Some(lists.concat()));
         for list in [0, 5] {
             let mut counts = COUNTS;
             counts[list] ^= 1;
-            assert_eq!(voxels(counts), None);
+            assert_eq!(records(&packed, counts), None);
         }
-        assert_eq!(unpack(&packed[1..], &node(COUNTS)), None);
-        let packed = pack(&Default::default(), &[]);
-        assert_eq!(
-            unpack(&packed, &node([0; 6])),
-            Some((Vec::new(), Vec::new()))
-        );
+        assert_eq!(records(&packed[1..], COUNTS), None);
+        let empty = unpack(&pack(&Default::default(), &[]), &node([0; 6]));
+        assert_eq!(empty, Some((Vec::new(), Vec::new())));
     }
 
     /// Shared vertices come back exactly, others within half a step of the box, with few or many colours, and with or
     /// without normals.
     #[test]
     fn surfaces_come_back() {
-        for (count, colors, is_flat) in [(1u32, 1u32, false), (400, 7, true), (40_000, 9000, false)]
-        {
+        // Triangles, their colours, the colours in the node's table, and whether normals are those of the planes.
+        for (count, colors, in_table, is_flat) in [
+            (1u32, 1u32, 1, false),
+            (400, 7, 7, true),
+            (40_000, 9000, 0, false),
+        ] {
             let at = |i: u32| (f64::from(i) * 0.618_033).fract();
-            let point = |i: u32| [4.0 * at(i) - 1.0, at(3 * i + 1), 0.0].map(|c| c as f32);
-            let triangle = |i: u32| LeafTriangle {
-                corners: [point(i), point(i + 1), point(i + 2)],
-                normals: match is_flat {
-                    true => [surface::flat_normal(&[point(i), point(i + 1), point(i + 2)]); 3],
-                    false => [i, i + 1, i + 2].map(|i| (i % 9000) as u16),
-                },
-                colors: [i, i + 1, i + 2].map(|i| {
+            let triangle = |i: u32| {
+                let numbers = [i, i + 1, i + 2];
+                let point = |i: u32| [4.0 * at(i) - 1.0, at(3 * i + 1), 0.0].map(|c| c as f32);
+                let corners = numbers.map(point);
+                let color = |i: u32| {
                     let [a, b, ..] = (i % colors).to_le_bytes();
                     [a, b, 9]
-                }),
+                };
+                LeafTriangle {
+                    corners,
+                    normals: match is_flat {
+                        true => [surface::flat_normal(&corners); 3],
+                        false => numbers.map(|i| (i % 9000) as u16),
+                    },
+                    colors: numbers.map(color),
+                }
             };
             let triangles: Vec<LeafTriangle> = (0..count).map(triangle).collect();
             let is_shared = |p: [f32; 3]| p[0] > 0.5;
             let mut node = node([0; 6]);
             let bytes = surface::lay_out(&mut node, &triangles, is_shared);
             assert_eq!(bytes.len() as u64, node.surface_bytes());
-            assert_eq!(
-                u32::from(node.colors),
-                if colors > 256 {
-                    0
-                } else {
-                    colors.min(3 * count).min(colors)
-                }
-            );
-            let (_, back) = unpack(&pack(&Default::default(), &bytes), &node).unwrap();
+            assert_eq!(node.colors, in_table);
+            let packed = pack(&Default::default(), &bytes);
+            let (_, back) = unpack(&packed, &node).unwrap();
             assert_eq!(back.len(), triangles.len());
             for (was, is) in triangles.iter().zip(&back) {
-                for k in 0..3 {
-                    let [p, q] = [was.corners[k], is.corners[k]];
+                for (p, q) in was.corners.into_iter().zip(is.corners) {
                     let off = (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f32::max);
                     let most = if is_shared(p) { 0.0 } else { 2.0001 / 65535.0 };
                     assert!(off <= most, "{p:?} {q:?}");
                 }
                 assert_eq!(was.colors, is.colors);
-                let normals = if is_flat {
-                    [surface::flat_normal(&is.corners); 3]
-                } else {
-                    was.normals
+                let normals = match is_flat {
+                    true => [surface::flat_normal(&is.corners); 3],
+                    false => was.normals,
                 };
                 assert_eq!(normals, is.normals);
             }
             node.surface += 1;
-            assert_eq!(unpack(&pack(&Default::default(), &bytes), &node), None);
+            assert_eq!(unpack(&packed, &node), None);
         }
     }
 }

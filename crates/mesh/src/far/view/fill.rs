@@ -74,34 +74,35 @@ impl Fill {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared::looking;
     use glam::DVec3;
 
     #[test]
-    fn only_what_is_behind_everything_is_hidden() {
-        let view = RasterCamera {
-            eye: DVec3::ZERO,
-            right: DVec3::X,
-            up: DVec3::Y,
-            forward: DVec3::Z,
-            focal_px: 20.0,
-            width: 37,
-            height: 21,
-            near: 0.1,
-        };
+    fn only_boxes_behind_everything_are_hidden() {
+        let view = looking(DVec3::ZERO, DVec3::Z, [37, 21], 20.0);
         let mut depth = vec![5.0f32; 37 * 21];
         depth[10 * 37 + 30] = f32::INFINITY;
         let fill = Fill::of(&depth, &view);
-        let outline = |x: f64, y: f64, side: f64, depth: f64| Outline {
-            pixels: Some([[x, y], [x + side, y + side]]),
-            depth,
-            ..Outline::anywhere()
-        };
-        assert!(fill.hides(&view, &outline(3.0, 3.0, 9.0, 6.0)));
-        assert!(!fill.hides(&view, &outline(3.0, 3.0, 9.0, 4.0)));
-        assert!(!fill.hides(&view, &outline(3.0, 3.0, 9.0, 5.0)));
-        assert!(!fill.hides(&view, &outline(28.0, 8.0, 4.0, 6.0)));
-        assert!(fill.hides(&view, &outline(31.0, 10.0, 0.0, 6.0)));
-        assert!(!fill.hides(&view, &outline(0.0, 0.0, 40.0, 6.0)));
+        // Left, top, side and depth of a box.
+        for (x, y, side, depth, is_hidden) in [
+            (3.0, 3.0, 9.0, 6.0, true),
+            (3.0, 3.0, 9.0, 4.0, false),
+            (3.0, 3.0, 9.0, 5.0, false),
+            (28.0, 8.0, 4.0, 6.0, false),
+            (31.0, 10.0, 0.0, 6.0, true),
+            (0.0, 0.0, 40.0, 6.0, false),
+        ] {
+            let outline = Outline {
+                pixels: Some([[x, y], [x + side, y + side]]),
+                depth,
+                ..Outline::anywhere()
+            };
+            assert_eq!(
+                fill.hides(&view, &outline),
+                is_hidden,
+                "{x} {y} {side} {depth}"
+            );
+        }
         assert!(!fill.hides(&view, &Outline::anywhere()));
     }
 }

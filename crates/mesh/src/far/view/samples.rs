@@ -49,28 +49,3 @@ pub(super) fn middles<T: Copy>(samples: Vec<T>, size: [usize; 2], across: usize)
     };
     (0..width * height).map(middle).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pixels_are_made_of_their_own_samples() {
-        // Two pixels across and one down, of two by two samples.
-        let sample = |light: f32, coverage: f32| Pixel {
-            light: [light, 0.0, 2.0 * light],
-            coverage,
-            depth: 1.0,
-        };
-        let rows = [[1.0, 3.0, 0.0, 8.0], [2.0, 2.0, 0.0, 0.0]];
-        let samples: Vec<Pixel> = rows.iter().flatten().map(|&l| sample(l, l / 8.0)).collect();
-        let pixels = averaged(samples.clone(), [2, 1], 2);
-        let light: Vec<[f32; 3]> = pixels.iter().map(|p| p.light).collect();
-        assert_eq!(light, [[2.0, 0.0, 4.0], [2.0, 0.0, 4.0]]);
-        assert!(pixels.iter().all(|p| p.coverage == 0.25));
-        assert_eq!(averaged(samples.clone(), [4, 2], 1), samples);
-        let numbers: Vec<i32> = (0..8).collect();
-        assert_eq!(middles(numbers.clone(), [2, 1], 2), [5, 7]);
-        assert_eq!(middles(numbers.clone(), [4, 2], 1), numbers);
-    }
-}

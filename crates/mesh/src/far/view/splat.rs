@@ -172,6 +172,7 @@ pub(super) const PARTS: usize = 4;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shared::looking;
 
     #[test]
     fn squares_side_by_side_share_the_parts_of_pixels() {
@@ -181,8 +182,7 @@ mod tests {
             depth: 1.0,
             towards_eye: DVec3::Z,
         };
-        for edge in 0..60 {
-            let edge = 2.0 + f64::from(edge) / 37.0;
+        for edge in (0..60).map(|step| 2.0 + f64::from(step) / 37.0) {
             let (left, right) = (square(0.3, edge), square(edge, 5.2));
             let mut parts = 0;
             for pixel in 0..6 {
@@ -196,46 +196,34 @@ mod tests {
     }
 
     #[test]
-    fn a_hexagon_has_the_area_of_its_square_and_cubes_side_by_side_leave_no_gap() {
+    fn hexagons_have_the_area_of_their_squares_and_leave_no_gap() {
         let forward = DVec3::new(0.48, 0.6, 0.64);
-        let right = forward.cross(DVec3::Y).normalize();
-        let view = RasterCamera {
-            eye: DVec3::ZERO,
-            right,
-            up: right.cross(forward),
-            forward,
-            focal_px: 400.0,
-            width: 64,
-            height: 64,
-            near: 0.1,
-        };
+        let view = looking(DVec3::ZERO, forward, [64; 2], 400.0);
         let places = Places {
             origin: forward * 40.0 - DVec3::splat(2.0),
             voxel: 1.0,
         };
+        // A block of 4 x 4 x 4 cubes.
         let mut covered = vec![0u32; 64 * 64];
-        let mut of_one = (0, 0.0);
+        let (mut pixels, mut area) = (0, 0.0);
         for number in 0..64u8 {
             let place = [number % 4, number / 4 % 4, number / 16];
             let square = places.square(&view, &place).unwrap();
             let hexagon = places.hexagon(&view, &square);
             let [[x0, y0], [x1, y1]] = hexagon.pixels(&view);
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let held = u32::from(hexagon.holds(x, y));
-                    covered[y * 64 + x] += held;
-                    of_one.0 += held;
-                }
+            for (y, x) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))) {
+                let held = u32::from(hexagon.holds(x, y));
+                covered[y * 64 + x] += held;
+                pixels += held;
             }
-            of_one.1 += (2.0 * square.half).powi(2);
+            area += (2.0 * square.half).powi(2);
         }
-        let error = f64::from(of_one.0) / of_one.1 - 1.0;
+        let error = f64::from(pixels) / area - 1.0;
         assert!(error.abs() < 0.03, "{error}");
-        // A row that begins outside the block goes in once and out once.
+        // A row that begins outside the block enters and leaves it once.
         for row in covered.chunks(64) {
-            let edges = row
-                .windows(2)
-                .filter(|pair| (pair[0] == 0) != (pair[1] == 0));
+            let pairs = row.windows(2);
+            let edges = pairs.filter(|pair| (pair[0] == 0) != (pair[1] == 0));
             assert!(edges.count() <= 2, "{row:?}");
         }
     }
