@@ -10,7 +10,7 @@ use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::{Instances, generate};
 
 /// Frames of the walk.
-const FRAMES: u32 = 5;
+const FRAMES: u32 = 10;
 
 /// The camera of a frame of Wagner et al. 2007, Fig. 5: once around, from two and a half sizes away
 /// to a third of one and back, from a little above.
@@ -46,7 +46,7 @@ fn only_times_change_on_a_walk() {
     });
     let mesh = Instances::new(village, places.collect());
     let options = BuildOptions {
-        rays: Some(80_000),
+        rays: Some(200_000),
         leaf_triangles: 500,
         ..BuildOptions::default()
     };
