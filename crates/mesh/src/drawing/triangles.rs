@@ -48,7 +48,7 @@ impl<'m> TrianglesDrawing<'m> {
 
 impl Method for TrianglesMethod<'_> {
     fn mesh_box(&self) -> MeshBox {
-        self.mesh_box.clone()
+        self.mesh_box
     }
 
     fn aa_log2(&self) -> u32 {

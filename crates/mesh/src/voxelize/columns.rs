@@ -1,12 +1,12 @@
-//! From what nodes cover each for themselves to their opacities.
+//! Opacities of nodes from their coverage.
 //!
 //! An engine blends the voxels of a ray as if each covered its part by chance. That is right for leaves. But the parts
 //! of one surface fill neighbouring voxels side by side, and the back of a thin tube is behind its front. So the voxels
-//! of large objects are put together along their columns:
+//! of large objects are combined along their columns:
 //!
-//! - What the voxels of a column cover all together makes each of them opaque, but those with little of it: a wall that
+//! - If a column's voxels cover the face together, each of them is opaque, except those with few points. So a wall that
 //!   is cut into two parts is whole in both.
-//! - Otherwise a voxel has the points that those before it, seen from a side, leave open: of a tube that lies in two
+//! - Otherwise a voxel has the points that those before it, seen from a side, leave open. Of a tube that lies in two
 //!   voxels the second adds nothing.
 
 use std::sync::atomic::{AtomicU32, Ordering};

@@ -61,11 +61,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     let mtl = "newmtl red one\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\nd 0.5\nmap_Kd a.png\nnewmtl gone\nd 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
-        let options = LoadOptions {
-            mtl_colors,
-            ..LoadOptions::default()
-        };
-        let mesh = obj(text, mtl, &options);
+        let mesh = obj(text, mtl, &LoadOptions { mtl_colors });
         let names = ["red one", "red one", "red one", "blue", "no material"];
         assert_eq!([0, 1, 2, 3, 4].map(|n| material(&mesh, n)), names);
         assert_eq!(mesh.triangles().len(), 5);

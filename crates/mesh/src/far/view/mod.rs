@@ -1,13 +1,11 @@
 //! Far voxels to a picture.
 //!
 //! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
-//! 2. Opaque voxels and triangles, front to back, into one word per pixel with the depth above and the number below.
-//! The least word counts.
-//!    above, number below, the least counts. That does not depend on the order
-//!    of drawing, hence neither on threads nor on what was found hidden.
-//! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
-//! hierarchy that are behind it are left out, with all below. 4. The winners' colours, then transparent voxels over
-//! them, back to front. 5. With several samples per pixel all this happens per sample, and `samples` averages them.
+//! 2. Opaque voxels and triangles, front to back, into one word per pixel with the depth above and the number below. The
+//!    least word counts. So the result is independent of the order of drawing, of threads and of culling.
+//! 3. `visible`, with the depth pyramid of `fill`: branches of the hierarchy behind it are culled.
+//! 4. The winners' colours, then transparent voxels over them, back to front.
+//! 5. With several samples per pixel all this happens per sample, and `samples` averages them.
 
 mod cut;
 mod fill;
