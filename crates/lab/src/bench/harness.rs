@@ -6,6 +6,7 @@
 //! counters and the picture.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::hint::black_box;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -205,9 +206,8 @@ impl<'p> Harness<'p> {
         let mut counters = Vec::new();
         self.progress.begin("drawing", contenders.len() as u64);
         for (place, contender) in contenders.iter_mut().enumerate() {
-            if !self.pools.contains_key(&contender.threads) {
-                self.pools
-                    .insert(contender.threads, pool(contender.threads)?);
+            if let Entry::Vacant(place) = self.pools.entry(contender.threads) {
+                place.insert(pool(contender.threads)?);
             }
             let (width, height) = (contender.setup.width, contender.setup.height);
             let buffer = self.buffers.entry((width, height));

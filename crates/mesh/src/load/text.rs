@@ -39,21 +39,3 @@ fn joined(text: &str) -> Cow<'_, str> {
     }
     result.into()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn marks_go_and_lines_are_joined_without_losing_count() {
-        assert_eq!(decoded("\u{feff}v 0 0 0\n".as_bytes()), "v 0 0 0\n");
-        assert_eq!(decoded(b"f 1 \\\n2\\\r\n 3\nv\n"), "f 1  2  3\n\n\nv\n");
-        assert_eq!(decoded(b"# C:\\\nv 1\n"), "# C:\\\nv 1\n");
-        for whole in ["f 1 2 \\", "", "a\\b\nc", "f \\\n1"] {
-            let lines = |text: &str| text.lines().count();
-            assert!(lines(&decoded(whole.as_bytes())) <= lines(whole));
-        }
-        assert_eq!(decoded(b"f 1 \\\n2"), "f 1  2");
-        assert_eq!(decoded(b"a\xff \\\nb\n"), "a\u{fffd}  b\n\n");
-    }
-}

@@ -3,7 +3,7 @@
 use shiftvox::graph::Silent;
 use shiftvox::scene::{FileKind, detect};
 use shiftvox_mesh::Surface;
-use shiftvox_mesh::far::record::{NODE_BYTES, RECORD_BYTES};
+use shiftvox_mesh::far::record::{NODE_BYTES, Node, RECORD_BYTES};
 use shiftvox_mesh::far::store::{FarError, encode};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::generate::{Kind, generate};
@@ -142,5 +142,29 @@ fn fields_are_checked_behind_their_checksums() {
         for flip in [0x01, 0x80, 0xff] {
             let _ = is_refused(&with_checksums(flipped(&bytes, place, flip)));
         }
+    }
+}
+
+/// Faulty hierarchies with right checksums.
+#[test]
+fn inconsistent_hierarchies_are_refused() {
+    type Harm = fn(&mut Vec<Node>);
+    let harms: [(&str, Harm); 5] = [
+        ("a child on the level of its parent", |n| {
+            n[1].level = n[0].level
+        }),
+        ("a first child that is not the next node", |n| {
+            n[0].children[0] += 1
+        }),
+        ("a second child outside", |n| n[0].children[1] = u32::MAX),
+        ("a triangle too many", |n| n[1].triangles += 1),
+        ("data before that of the node before", |n| {
+            n.last_mut().unwrap().data_at = 0
+        }),
+    ];
+    for (name, harm) in harms {
+        let mut data = far();
+        harm(&mut data.nodes);
+        assert!(is_refused(&encode(&data).unwrap()), "{name}");
     }
 }

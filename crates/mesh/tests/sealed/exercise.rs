@@ -12,7 +12,7 @@ use shiftvox::picture::{Background, Shading, hash_rows};
 use shiftvox::project::{Direction, SetupOptions, fit_camera};
 use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::{self, FarFile, view::Opacity};
-use shiftvox_mesh::open::{MeshOptions, OpenOptions, open_bytes};
+use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::{self, Element, TexturedFile};
 use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
@@ -36,36 +36,29 @@ struct Sound {
     fields: usize,
 }
 
-/// Small files of every kind that there is, made by the program.
+/// Small files of every kind, made by the program.
 fn sound_files() -> &'static [Sound] {
     static FILES: OnceLock<Vec<Sound>> = OnceLock::new();
+    let sound = |format, bytes, fields| Sound {
+        format,
+        bytes,
+        fields,
+    };
     FILES.get_or_init(|| {
-        let mut files = Vec::new();
-        for graph in graphs() {
+        let graphs = graphs().into_iter().map(|graph| {
             let mut bytes = Vec::new();
             vxg::write_to(&graph, &mut bytes).unwrap();
-            files.push(Sound {
-                format: Format::Vxg,
-                bytes,
-                fields: 512,
-            });
-        }
-        let load = LoadOptions::default();
-        let mesh = read(
-            OBJ.as_bytes(),
-            MeshFormat::Obj,
-            "a",
-            &Nothing,
-            &load,
-            &Silent,
-        )
-        .unwrap();
-        for (leaf_triangles, opacity, hybrid) in [
+            sound(Format::Vxg, bytes, 512)
+        });
+        let (text, load) = (OBJ.as_bytes(), LoadOptions::default());
+        let mesh = read(text, MeshFormat::Obj, "a", &Nothing, &load, &Silent).unwrap();
+        let far = [
             (1000, Opacity::Six, false),
             (3, Opacity::Six, false),
             (2, Opacity::None, false),
             (3, Opacity::Six, true),
-        ] {
+        ];
+        let far = far.map(|(leaf_triangles, opacity, hybrid)| {
             let options = far::BuildOptions {
                 rays: Some(500),
                 grid: 4,
@@ -75,15 +68,11 @@ fn sound_files() -> &'static [Sound] {
                 ..far::BuildOptions::default()
             };
             let data = far::build(&mesh, &options, &Silent).unwrap();
-            let bytes = far::store::encode(&data).unwrap();
             let fields = 128 + far::record::NODE_BYTES * data.nodes.len();
-            files.push(Sound {
-                format: Format::Far,
-                bytes,
-                fields,
-            });
-        }
-        for (grids, element) in [(vec![2], Element::Sides), (vec![2, 4], Element::Cube)] {
+            sound(Format::Far, far::store::encode(&data).unwrap(), fields)
+        });
+        let textured = [(vec![2], Element::Sides), (vec![2, 4], Element::Cube)];
+        let textured = textured.map(|(grids, element)| {
             let fields = 128 + 80 * grids.len();
             let options = textured::BuildOptions {
                 grids,
@@ -91,43 +80,31 @@ fn sound_files() -> &'static [Sound] {
                 element,
             };
             let data = textured::build(&mesh, &options, &Silent).unwrap();
-            let bytes = textured::store::encode(&data).unwrap();
-            files.push(Sound {
-                format: Format::Tvx,
-                bytes,
-                fields,
-            });
-        }
-        files
+            sound(Format::Tvx, textured::store::encode(&data).unwrap(), fields)
+        });
+        graphs.chain(far).chain(textured).collect()
     })
 }
 
 /// A tree, the same with opacities, with equal subtrees merged, and a cyclic graph.
 fn graphs() -> Vec<Graph> {
-    let of_mesh = |opacities| {
-        let options = OpenOptions {
-            mesh: MeshOptions {
-                depth: 3,
-                opacities,
-                ..MeshOptions::default()
-            },
-            ..OpenOptions::default()
-        };
-        open_bytes(OBJ.as_bytes(), "a.obj", &options, &Silent)
-            .unwrap()
-            .graph
-    };
-    let tree = of_mesh(false);
+    let [tree, with_opacities] = [false, true].map(|opacities| {
+        let mut options = OpenOptions::default();
+        options.mesh.depth = 3;
+        options.mesh.opacities = opacities;
+        let opened = open_bytes(OBJ.as_bytes(), "a.obj", &options, &Silent);
+        opened.unwrap().graph
+    });
     let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
     let mut cyclic = LinkedGraph::new(7);
     let (one, two) = (Some(0), Some(1));
     cyclic.add_node([1, 2, 3], [one, None, None, two, None, one, two, None]);
     cyclic.add_node([9, 9, 9], [None; 8]);
-    vec![tree, of_mesh(true), dag, cyclic.build().unwrap()]
+    vec![tree, with_opacities, dag, cyclic.build().unwrap()]
 }
 
-/// A sound file after edits, with lengths and checksums put right: the first choice is that of the file, and whether
-/// places within it are put right too. None where a length is beyond reason.
+/// A sound file after edits, with right lengths and checksums. The first choice is the file, and whether places within
+/// it are put right too. `None` where a length is too large.
 pub(crate) fn edited(mut choices: impl Iterator<Item = u64>) -> Option<(Format, Vec<u8>)> {
     let first = choices.next()?;
     let files = sound_files();
@@ -136,16 +113,16 @@ pub(crate) fn edited(mut choices: impl Iterator<Item = u64>) -> Option<(Format, 
     for choice in choices {
         edit::edit(&mut bytes, sound.fields, choice);
     }
-    let place = first >> 32 & 3 != 0;
-    let sealed = match sound.format {
-        Format::Vxg => seal::vxg(bytes, place),
-        Format::Far => seal::far(bytes, place),
-        Format::Tvx => seal::tvx(bytes, place),
+    let seal = match sound.format {
+        Format::Vxg => seal::vxg,
+        Format::Far => seal::far,
+        Format::Tvx => seal::tvx,
     };
-    Some((sound.format, sealed?))
+    Some((sound.format, seal(bytes, first >> 32 & 3 != 0)?))
 }
 
-/// Does with a file what the program does. Gives whether it was found sound; `path` is that of a file to map.
+/// Reads, verifies and draws a file as the program does. Returns whether it is sound. Graphs are written to `path` and
+/// mapped.
 pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
     let (shading, background) = (Shading::Lambert, Background::default());
     match format {
@@ -159,20 +136,33 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             if let Ok(graph) = &read {
                 let mut again = Vec::new();
                 vxg::write_to(graph, &mut again).unwrap();
-                // All but reserved parts of the header.
+                // Reserved parts of the header may differ.
                 assert!(again[512..] == bytes[512..]);
                 assert_eq!(vxg::from_bytes(&again).unwrap().placement, graph.placement);
                 assert!(merge(graph, MergeBy::Shape, &Silent).0.validate().is_ok());
             }
             if let Ok(graph) = &opened {
-                draw_graph(graph, shading, background);
+                let style = GraphStyle {
+                    options: SetupOptions::default(),
+                    shading,
+                    background,
+                    buffers: Vec::new(),
+                    is_hashed: true,
+                };
+                let machine = || Box::new(Machine::default());
+                let engine = || -> Box<dyn shiftvox::project::Engine + Send> {
+                    Box::new(Fast::new(FastOptions::default(), machine()))
+                };
+                draw(&mut GraphDrawing::new(
+                    graph,
+                    shiftvox::Up::Z,
+                    style,
+                    engine,
+                ));
             }
             read.is_ok()
         }
-        Format::Far => {
-            let Ok(file) = FarFile::from_bytes(bytes) else {
-                return false;
-            };
+        Format::Far => FarFile::from_bytes(bytes).is_ok_and(|file| {
             let style = FarStyle {
                 voxel_px: 1.0,
                 aa_log2: 0,
@@ -182,17 +172,12 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             };
             draw(&mut FarDrawing::new(&file, style));
             file.verify().is_ok()
-        }
-        Format::Tvx => {
-            let Ok(file) = TexturedFile::from_bytes(bytes) else {
-                return false;
-            };
+        }),
+        Format::Tvx => TexturedFile::from_bytes(bytes).is_ok_and(|file| {
+            let (level, cells) = (1, None);
             for erosion in [
                 Erosion::Auto { texel_px: 1.0 },
-                Erosion::Level {
-                    level: 1,
-                    cells: None,
-                },
+                Erosion::Level { level, cells },
             ] {
                 let style = TexturedStyle {
                     erosion,
@@ -203,29 +188,11 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 draw(&mut TexturedDrawing::new(&file, style));
             }
             file.verify().is_ok()
-        }
+        }),
     }
 }
 
-fn draw_graph(graph: &Graph, shading: Shading, background: Background) {
-    let style = GraphStyle {
-        options: SetupOptions::default(),
-        shading,
-        background,
-        buffers: Vec::new(),
-        is_hashed: true,
-    };
-    let up = shiftvox::Up::Z;
-    let engine = || -> Box<dyn shiftvox::project::Engine + Send> {
-        Box::new(Fast::new(
-            FastOptions::default(),
-            Box::new(Machine::default()),
-        ))
-    };
-    draw(&mut GraphDrawing::new(graph, up, style, engine));
-}
-
-/// Draws a small picture from near and far. A file that opens can be drawn.
+/// Draws a small picture from near and far. An open file can be drawn.
 fn draw(drawable: &mut dyn Drawable) {
     let (bounds, up) = (drawable.bounds(), drawable.up());
     for zoom in [0.05, 1.0, 20.0] {
