@@ -396,7 +396,7 @@ fn select<'v>(value: &'v Value, path: &str) -> Result<&'v Value, String> {
             Some((key, wanted)) => {
                 let fits = |element: &&Value| match &element[key] {
                     Value::String(text) => text == wanted,
-                    other => other.to_string() == wanted,
+                    other => format!("{other}") == wanted,
                 };
                 found.into_iter().filter(fits).collect()
             }
