@@ -82,25 +82,14 @@ pub(super) fn write_page(
     let Some(path) = &args.files.html else {
         return Ok(());
     };
-    let mut page = Page::new(title);
-    page.lines(&results.preface);
-    page.pictures(pictures);
-    let section = |page: &mut Page, table: &Table| {
-        page.section(&table.title);
-        page.table(table);
+    let page = Page {
+        title,
+        preface: &results.preface,
+        pictures,
+        tables: &results.tables,
+        plots: &plot::svg(&results.panels),
+        details: &results.more_tables,
     };
-    page.chapter("Tables");
-    results
-        .tables
-        .iter()
-        .for_each(|table| section(&mut page, table));
-    page.chapter("Plots");
-    page.plot(&plot::svg(&results.panels), "");
-    page.chapter("Details");
-    results
-        .more_tables
-        .iter()
-        .for_each(|table| section(&mut page, table));
     file(path, page.finish().as_bytes(), args.export.force, console)
 }
 
