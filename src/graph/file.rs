@@ -30,7 +30,9 @@ pub enum FileError {
     },
     #[error("{}: the file exists already", .0.display())]
     Exists(PathBuf),
-    #[error("{}: section {section}, byte {offset}: expected {expected}; {advice}", file.display())]
+    #[error(
+        "{}: {}{section}, byte {offset}: expected {expected}; {advice}", file.display(), prefix(file)
+    )]
     Malformed {
         file: PathBuf,
         /// `header`, `padding`, or the name of a section.
@@ -51,6 +53,14 @@ pub enum FileError {
 
 const DAMAGED: &str = "the file is damaged: copy it again, or convert it again from its source";
 const NEWER: &str = "the file is of another version: convert it again with this one";
+
+/// Messages about `.far` and `.tvx` files give the bare name of a section.
+fn prefix(file: &Path) -> &'static str {
+    match file.extension().and_then(|ending| ending.to_str()) {
+        Some("far" | "tvx") => "",
+        _ => "section ",
+    }
+}
 
 impl FileError {
     pub fn damaged(
