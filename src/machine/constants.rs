@@ -6,7 +6,7 @@ use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 use crate::graph::{GraphView, NodeLayout};
 use crate::project::FrameSetup;
 use crate::project::options::{OutlineRule, ShiftSum};
-use crate::project::vector::cross;
+use crate::project::vector::cross; // host: for a constant of the frame
 
 /// Comparison of a clip-space box with a bisector of the quadtree.
 #[derive(Debug, Clone)]
@@ -129,17 +129,17 @@ impl Constants {
             Word::from_host((units as i64).max(LEAST_SIZE))
         };
         let near = word(setup.near, scale);
-        let near_crossing = near.to_host() >> NEAR_CROSSING_SHIFT;
+        let near_crossing = near.to_host() >> NEAR_CROSSING_SHIFT; // host: a constant of the frame
 
         let mut axis_ab = [[WideWord::ZERO; 2]; 3];
         let mut axis_c = [WideWord::ZERO; 3];
         let mut edge_planes = [[WideWord::ZERO; 3]; 3];
         if outline.has_planes() {
             for k in 0..3 {
-                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3); // host: an index
                 let mut plane = |a: [i64; 3], b: [i64; 3]| {
                     // Beyond 64 bits it is clamped to a number that no format holds, so that the load overflows.
-                    cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c)))
+                    cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c))) // host: a constant of the frame
                 };
                 let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
                 axis_ab[k] = [a, b];
@@ -216,21 +216,21 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
     let flags = (0..).zip(flags).map(|(at, flag)| i64::from(flag) << at);
     put(7, &[flags.sum()]);
     let sizes = [c.size_limit_screen, c.lod_limit_screen, c.least_size_screen];
-    put(8, &[c.near, c.near_crossing].map(Word::to_host));
-    put(10, &sizes.map(Word::to_host));
-    put(16, &c.origin.map(Word::to_host));
-    put(19, &c.edges.map(|edges| edges.map(Word::to_host)).concat());
-    put(13, &c.eye_ceil.map(Word::to_host));
-    put(28, &c.eye_floor.map(Word::to_host));
+    put(8, &[c.near, c.near_crossing].map(Word::to_host)); // host: a register of rtl/
+    put(10, &sizes.map(Word::to_host)); // host: a register of rtl/
+    put(16, &c.origin.map(Word::to_host)); // host: a register of rtl/
+    put(19, &c.edges.map(|edges| edges.map(Word::to_host)).concat()); // host: a register of rtl/
+    put(13, &c.eye_ceil.map(Word::to_host)); // host: a register of rtl/
+    put(28, &c.eye_floor.map(Word::to_host)); // host: a register of rtl/
     put(31, &[i64::from(bricks.start)]);
     let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);
-    let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));
+    let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host)); // host: a register of rtl/
     put(LEVEL_REGISTERS, &depths.collect::<Vec<_>>());
     if c.outline.has_planes() {
         let across = c.axis_ab.iter().zip(&c.axis_c);
         let across = across.flat_map(|(&[a, b], &c)| [a, b, c]);
         for number in across.chain(c.edge_planes.concat()) {
-            let number = number.to_host();
+            let number = number.to_host(); // host: a register of rtl/
             registers.extend([number, number >> setup.format.bits().min(63)]);
         }
     }

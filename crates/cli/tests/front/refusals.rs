@@ -14,13 +14,10 @@ const SCENE: &str = "gen:sphere,depth=3";
 #[test]
 fn a_wrong_name_is_told_before_other_scenes_are_made() {
     let folder = folder();
-    let line = [
-        "reproduce",
-        "--growing",
-        "gen:terrain,depth=3",
-        "--outdir",
-        "r",
-    ];
+    let list = "[[run]]\ntable = \"t\"\nsettings = \"default\"\nengines = [\"fast\"]\nsizes = [16]\n\
+        scenes = [\"gen:terrain,depth=12\", \"gen:terrain,depth=3\"]\n";
+    fs::write(folder.path().join("list.toml"), list).unwrap();
+    let line = ["reproduce", "list.toml", "--outdir", "r"];
     let started = Instant::now();
     let assert = run(folder.path(), &line).code(4);
     assert!(stderr_of(&assert).contains("from 5 to 16"));

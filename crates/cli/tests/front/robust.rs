@@ -229,7 +229,7 @@ fn inspect(folder: &Path, what: &str) -> bool {
             Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
             Some("svg") => ends(b"</svg>"),
             Some("html") => ends(b"</html>"),
-            Some("csv" | "md" | "toml" | "hex" | "txt" | "v" | "vh") => bytes.ends_with(b"\n"),
+            Some("csv" | "md" | "toml" | "hex" | "jsonl") => bytes.ends_with(b"\n"),
             _ => panic!("{what}: {name} should not be there"),
         };
         assert!(is_whole, "{what}: {name} is not whole");
