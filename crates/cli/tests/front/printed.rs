@@ -1,6 +1,6 @@
 //! Every command that README and docs print does what it says, in a fresh folder, and does it again.
 //!
-//! Commands are the lines that begin with `shiftvox` (or `sed`) in blocks of code. A block after `<!-- takes 5 min -->`
+//! Commands are the lines that begin with `shiftvox` (`sed`, `mkdir`) in blocks of code. A block after `<!-- takes 5 min -->`
 //! is long: it runs only where `SHIFTVOX_PRINTED` is `all`. A block after `<!-- forms -->` has placeholders.
 #![cfg(unix)]
 
@@ -51,7 +51,10 @@ fn commands(page: &str) -> Vec<(String, Mark)> {
             .map_or((part, false), |part| (part, true));
         if std::mem::replace(&mut is_continued, goes_on) {
             found.last_mut().unwrap().0 += part;
-        } else if part.starts_with("shiftvox ") || part.starts_with("sed ") {
+        } else if ["shiftvox ", "sed ", "mkdir "]
+            .iter()
+            .any(|name| part.starts_with(name))
+        {
             let fails = code.contains("exit code 3");
             let check = if fails { "; [ $? = 3 ]" } else { "" };
             found.push((format!("{part}{check}"), mark));
