@@ -51,11 +51,6 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
         std::array::from_fn(|octant| Self::child(pool, octant))
     }
 
-    /// The eight children's coordinates, in Morton order.
-    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
-        Self::all(&self.pool(dp))
-    }
-
     /// The least and the greatest vertex.
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word);
 

@@ -4,9 +4,8 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, with_cage};
-use super::options::MachineOptions;
-use super::records_by_sample::RecordsBySample;
-use super::state::State;
+use super::state::{MachineOptions, State};
+use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -15,15 +14,8 @@ use crate::project::{Engine, EngineError, FrameSetup, Stats};
 #[derive(Debug, Default)]
 pub struct Machine {
     pub(super) options: MachineOptions,
-    fill: Option<SizedFill>,
-}
-
-/// Fill vectors, kept from frame to frame, and their size.
-#[derive(Debug)]
-struct SizedFill {
-    /// Level of the samples, samples across and down.
-    size: (u32, u32, u32),
-    vectors: FillVectors,
+    /// Kept from frame to frame, with its level of the samples, samples across and down.
+    fill: Option<((u32, u32, u32), FillVectors)>,
 }
 
 impl Machine {
@@ -42,7 +34,9 @@ impl Machine {
         frame: &mut Frame,
         probe: P,
     ) -> Result<(Stats, P), EngineError> {
-        let drawn = self.run(graph, setup, frame, probe, u64::MAX)?;
+        let drawn = with_cage!(setup, L => {
+            self.run_as::<P, L>(graph, setup, frame, probe, u64::MAX)
+        })?;
         Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
     }
 
@@ -56,19 +50,10 @@ impl Machine {
         frame: &mut Frame,
         most_records: u64,
     ) -> Result<Option<Stats>, EngineError> {
-        let drawn = self.run(graph, setup, frame, NoProbe, most_records)?;
+        let drawn = with_cage!(setup, L => {
+            self.run_as::<_, L>(graph, setup, frame, NoProbe, most_records)
+        })?;
         Ok(drawn.map(|(stats, _)| stats))
-    }
-
-    fn run<P: Probe>(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-        probe: P,
-        most: u64,
-    ) -> Result<Option<(Stats, P)>, EngineError> {
-        with_cage!(setup, L => self.run_as::<P, L>(graph, setup, frame, probe, most))
     }
 
     /// Draws a frame in cages of type `L`, in at most `most` records.
@@ -100,19 +85,18 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
+    /// Clears a frame. Returns its fill vectors.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
         frame.set_blending(setup.options.coverage.blends());
         let size = (setup.levels, setup.width, setup.height);
-        if self.fill.as_ref().is_some_and(|kept| kept.size != size) {
+        if self.fill.as_ref().is_some_and(|(kept, _)| *kept != size) {
             self.fill = None;
         }
-        let kept = self.fill.get_or_insert_with(|| SizedFill {
-            size,
-            vectors: FillVectors::new(setup.levels, setup.width, setup.height),
-        });
-        kept.vectors.clear();
-        &mut kept.vectors
+        let new = || (size, FillVectors::new(size.0, size.1, size.2));
+        let (_, vectors) = self.fill.get_or_insert_with(new);
+        vectors.clear();
+        vectors
     }
 }
 

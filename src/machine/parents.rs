@@ -174,9 +174,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// The whole object in a tile, if it must be subdivided; otherwise it is drawn or dropped.
     pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
-        let fill = &self.canvas.fill;
-        self.traversal
-            .push_object(&mut self.dp, &self.job, fill, tile);
+        self.push_object(tile);
         self.work_on_new()
     }
 

@@ -10,28 +10,21 @@ use super::counters::Counts;
 use super::fill::FillStore;
 use super::record::{Child, Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use super::smallest_node;
-use super::state::{Job, Traversal};
+use super::state::{Job, State, Traversal};
 use super::watch::{Event, Watch};
 use crate::frame::QuadNode;
 use crate::project::options::OutlineRule;
 
-impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
-    /// Begins a tile, or the picture: makes the record of the whole object and pushes it.
-    pub(super) fn push_object<P: Probe>(
-        &mut self,
-        dp: &mut Datapath<P>,
-        job: &Job<'_>,
-        fill: &FillStore<'_>,
-        tile: QuadNode,
-    ) {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
+    /// Begins a tile, or the picture: pushes the record of the whole object.
+    pub(super) fn push_object(&mut self, tile: QuadNode) {
+        let (dp, job, fill) = (&mut self.dp, &self.job, &self.canvas.fill);
         // A tile begins at level 0, also after another tile.
         dp.resume(0);
         fill.begin_tile(dp, tile);
         dp.stage(Stage::Push);
         let c = &job.constants;
-        let mut coordinate =
-            |coordinate: usize| L::from_frame(dp, c.origin[coordinate], c.edges[coordinate]);
-        let (x, y, w) = (coordinate(0), coordinate(1), coordinate(2));
+        let [x, y, w] = [0, 1, 2].map(|k| L::from_frame(dp, c.origin[k], c.edges[k]));
         let (w_min, w_max) = w.span(dp);
         let side = dp.load(1i64 << (c.depth + c.sub_levels));
         let object = Child {
@@ -50,11 +43,14 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
             axis_c: c.axis_c,
         };
         let clip = Clip { x, y, w, w_min };
-        if !is_behind(dp, c, &mut self.counts, w_max) {
-            self.push_clip(dp, job, fill, object, clip, planes);
+        let traversal = &mut self.traversal;
+        if !is_behind(dp, c, &mut traversal.counts, w_max) {
+            traversal.push_clip(dp, job, fill, object, clip, planes);
         }
     }
+}
 
+impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     /// Pushes a record in clip space, unless the search for its quadtree node rejects it. Returns whether it was pushed.
     pub(super) fn push_clip<P: Probe>(
         &mut self,

@@ -18,9 +18,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         tile: QuadNode,
         most_records: u64,
     ) -> Result<bool, EngineError> {
-        let fill = &self.canvas.fill;
-        self.traversal
-            .push_object(&mut self.dp, &self.job, fill, tile);
+        self.push_object(tile);
         while !self.traversal.stack.is_empty() {
             if self.traversal.counts.records >= most_records {
                 return Ok(false);

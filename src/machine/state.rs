@@ -1,26 +1,47 @@
 //! The parts of the record loop's state. Each step takes the parts that it reads or writes.
 
 use hwmodel::cycles::Organisation;
-use hwmodel::{Datapath, Probe, Stage};
+use hwmodel::{Datapath, Overflow, Probe, Stage};
 
 use super::canvas::Canvas;
 use super::constants::Constants;
 use super::counters::Counts;
 use super::fill::FillStore;
-use super::options::MachineOptions;
 use super::record::Record;
 use super::watch::Watch;
 use crate::frame::{FillVectors, Frame};
 use crate::graph::{GraphView, NodeLayout};
-use crate::project::{FrameSetup, Stats};
+use crate::project::{FrameSetup, OCCLUSION_ORDER, Stats};
+
+/// Settings of the machine that are not part of a frame set-up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MachineOptions {
+    /// Treatment of a result that does not fit its word.
+    pub overflow: Overflow,
+    /// Whether records whose quadrants are all full are rejected; does not change the picture.
+    pub reject_filled: bool,
+    /// Children by octant, nearest first, for octant 000; only tests use another array than [`OCCLUSION_ORDER`].
+    pub order: [u8; 8],
+    /// Organisation of stack, nodes and tiles; changes a frame's records and accesses, but not its picture.
+    pub organisation: Organisation,
+}
+
+impl Default for MachineOptions {
+    fn default() -> Self {
+        Self {
+            overflow: Overflow::Trap,
+            reject_filled: true,
+            order: OCCLUSION_ORDER,
+            organisation: Organisation::default(),
+        }
+    }
+}
 
 /// The inputs of a frame, constant.
 pub(super) struct Job<'a> {
     pub(super) constants: Constants,
     pub(super) graph: &'a GraphView<'a>,
-    /// Addresses of the graph's nodes.
     pub(super) layout: NodeLayout,
-    /// [`MachineOptions::order`].
     pub(super) order: [u8; 8],
     pub(super) organisation: Organisation,
 }
@@ -32,7 +53,6 @@ pub(super) struct Traversal<L, W> {
     pub(super) watch: W,
 }
 
-/// The record loop's state, in cages of type `L`.
 pub(super) struct State<'a, P: Probe, L, W> {
     pub(super) dp: Datapath<P>,
     pub(super) job: Job<'a>,

@@ -1,8 +1,9 @@
-//! Events of whole records, for a [`Watch`]. Operations, memory accesses and wires go to an [`hwmodel::Probe`] instead.
+//! Events of whole records. Operations, memory accesses and wires go to an [`hwmodel::Probe`] instead.
 
 use super::cage::CageCoordinate;
 use super::record::Record;
 use crate::frame::QuadNode;
+use crate::frame::quadtree::nodes_to;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'r, L> {
@@ -28,6 +29,50 @@ impl<W: Watch> Watch for Option<W> {
     fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
         if let Some(watch) = self {
             watch.see(event);
+        }
+    }
+}
+
+/// Counts the turns at each quadtree node, for a map of work.
+#[derive(Debug)]
+pub(super) struct RecordsBySample {
+    /// Level of the samples.
+    levels: u32,
+    /// By address of the quadtree node.
+    turns: Vec<u32>,
+}
+
+impl RecordsBySample {
+    pub(super) fn new(levels: u32) -> Self {
+        Self {
+            levels,
+            turns: vec![0; nodes_to(levels)],
+        }
+    }
+
+    /// Writes each sample's share, in rows of `width` samples: a record counts 1, spread evenly over the samples of its
+    /// node.
+    pub(super) fn write_shares(&self, width: u32, shares: &mut [f32]) {
+        let width = width as usize;
+        for (at, share) in shares.iter_mut().enumerate() {
+            let (level, x, y) = (self.levels, (at % width) as u32, (at / width) as u32); // host: a map of work
+            let sample = QuadNode { level, x, y };
+            *share = (0..=self.levels)
+                .map(|level| {
+                    let below = self.levels - level;
+                    let samples = f64::from(1u32 << below) * f64::from(1u32 << below); // host: a map of work
+                    f64::from(self.turns[sample.ancestor(level).address()]) / samples // host: a map of work
+                })
+                .sum::<f64>() as f32;
+        }
+    }
+}
+
+impl Watch for RecordsBySample {
+    #[inline(always)]
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
+        if let Event::Turn(quad) = event {
+            self.turns[quad.address()] += 1;
         }
     }
 }

@@ -1,11 +1,11 @@
-//! The rule that blends: against a plain reference, by hand, by property, and its cost.
+//! The rule that blends: against a plain reference, by property, and its cost.
 
 use crate::common::*;
 use hwmodel::count::Counter;
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 use shiftvox::frame::{Blend, Frame, NO_NODE};
-use shiftvox::graph::{Graph, GraphView, Opacity};
+use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions};
 
@@ -22,16 +22,9 @@ fn draw_lit(graph: &Graph, light: &[[u16; 3]], setup: &FrameSetup) -> Frame {
         ..graph.view()
     };
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Machine::default()
-        .render(&view, setup, &mut frame)
-        .expect("no overflow");
+    let drawn = Machine::default().render(&view, setup, &mut frame);
+    drawn.expect("no overflow");
     frame
-}
-
-/// The cells of a graph's finest level, by node and lowest corner.
-fn cells(graph: &Graph) -> Vec<(u32, [i64; 3])> {
-    let cell = |cell: shiftvox::graph::Cell| (cell.node, cell.corner.map(i64::from));
-    graph.voxels().map(cell).collect()
 }
 
 /// Where a ray enters and leaves the cube of side 1 at a corner.
@@ -54,13 +47,14 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
     let ray = (axes.forward * axes.focal_px + axes.right * across - axes.up * down).to_array();
     let eye = camera.eye.to_array();
     let mut met = Vec::new();
-    for (node, corner) in cells(graph) {
+    for cell in graph.voxels() {
+        let corner = cell.corner.map(i64::from);
         let (enter, leave) = slabs(eye, ray, corner);
         if (enter - leave).abs() < 1e-5 * leave.abs() {
             return None;
         }
         if enter < leave && leave > 0.0 {
-            met.push((enter, node, corner));
+            met.push((enter, cell.node, corner));
         }
     }
     met.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -76,12 +70,8 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
         let x = nearest(0);
         let y = nearest(1).min(16 - x);
         let shares = [x, y, 16 - x - y];
-        let length = shares
-            .map(|s| (s * s) as f64)
-            .iter()
-            .sum::<f64>()
-            .sqrt()
-            .round();
+        let squares: f64 = shares.iter().map(|s| (s * s) as f64).sum();
+        let length = squares.sqrt().round();
         // Halves up: no square over a length ends in a quarter of a half.
         let counts = shares.map(|s| ((s * s) as f64 / length + 0.5).floor() as i64);
         let sides = graph.opacity[node as usize].0;
@@ -116,14 +106,6 @@ fn any_opacities() -> impl Strategy<Value = Vec<[u8; 3]>> {
     proptest::collection::vec(proptest::array::uniform3(byte), 700)
 }
 
-/// A graph with these opacities, in turn.
-fn opacities_of(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
-    let nodes = 0..graph.len();
-    let opacity = nodes.map(|i| Opacity(opacities[i % opacities.len()]));
-    graph.opacity = opacity.collect::<Vec<_>>().into();
-    graph
-}
-
 proptest! {
     #![proptest_config(cases(30))]
 
@@ -137,7 +119,7 @@ proptest! {
         prop_assume!(camera.eye.to_array().iter().any(|&c| !(-0.5..=8.5).contains(&c)));
         // Where it is not on a lattice point the rounded eye is on its side.
         prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
-        let graph = opacities_of(graph, &opacities);
+        let graph = with_opacities(&graph, &opacities);
         let light = lights(&graph);
         let setup = setup(&graph, &camera, &alpha(0.0));
         let frame = draw_lit(&graph, &light, &setup);
@@ -165,23 +147,17 @@ proptest! {
     ) {
         let options = alpha(lod_px);
         let exact = SetupOptions { coverage: Coverage::Exact, ..options };
-        let right = draw(&graph, &setup(&graph, &camera, &exact));
-        let graph = if stored { opacities_of(graph, &[[255; 3]]) } else { graph };
+        let (right, _) = draw(&graph, &setup(&graph, &camera, &exact));
+        let graph = if stored { with_opacities(&graph, &[[255; 3]]) } else { graph };
         let light = lights(&graph);
         let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &options));
-        prop_assert_eq!(&right.node, &frame.node);
         prop_assert_eq!(&right.voxel, &frame.voxel);
-        let blend = frame.blend.as_ref().expect("blended");
-        for (&node, sample) in frame.node.iter().zip(blend) {
-            let right = match node {
-                NO_NODE => Blend::default(),
-                node => Blend {
-                    left: 0,
-                    light: light[node as usize].map(|c| 256 * u32::from(c)),
-                },
-            };
-            prop_assert_eq!(*sample, right);
-        }
+        let blend = right.node.iter().map(|&node| match node {
+            NO_NODE => Blend::default(),
+            node => Blend { left: 0, light: light[node as usize].map(|c| 256 * u32::from(c)) },
+        });
+        prop_assert_eq!(frame.blend, Some(blend.collect()));
+        prop_assert_eq!(right.node, frame.node);
     }
 
     #[test]
@@ -196,65 +172,21 @@ proptest! {
         };
         let high: Vec<[u8; 3]> = low.iter().zip(&more).map(higher).collect();
         let setup = setup(&graph, &camera, &alpha(1.0));
-        let left = |opacities: &[[u8; 3]]| -> Vec<u16> {
-            let graph = opacities_of(graph.clone(), opacities);
-            let frame = draw_lit(&graph, &[], &setup);
-            frame.blend.expect("blended").iter().map(|b| b.left).collect()
-        };
-        for (low, high) in left(&low).into_iter().zip(left(&high)) {
-            prop_assert!(high <= low);
+        let [low, high] = [low, high].map(|opacities| {
+            let frame = draw_lit(&with_opacities(&graph, &opacities), &[], &setup);
+            frame.blend.expect("blended")
+        });
+        for (low, high) in low.into_iter().zip(high) {
+            prop_assert!(high.left <= low.left);
         }
     }
 }
 
-/// Two voxels in a column, looked at along it: what each adds, by hand.
-#[test]
-fn two_voxels_by_hand() {
-    let graph = octree(3, &|[x, y, z]| x == 0 && y == 0 && (z == 0 || z == 7));
-    // The eye is above both; the upper one's number is higher.
-    let camera = camera([0.5, 0.5, 20.0], [0.5, 0.5, 0.0], 9);
-    let blended = |upper: u8, lower: u8| {
-        let mut graph = opacities_of(graph.clone(), &[[0; 3]]);
-        let mut opacity = graph.opacity.to_vec();
-        let of_height = |z: i64| {
-            cells(&graph)
-                .iter()
-                .find(|cell| cell.1[2] == z)
-                .expect("a voxel")
-                .0
-        };
-        let (top, bottom) = (of_height(7), of_height(0));
-        // Seen from above: the high side of z. Other sides must not count, as they are not opaque.
-        opacity[top as usize] = Opacity([238, 238, upper << 4 | 15]);
-        opacity[bottom as usize] = Opacity([238, 238, lower << 4 | 15]);
-        graph.opacity = opacity.into();
-        let mut light = vec![[0; 3]; graph.len()];
-        light[top as usize] = [1000, 0, 7];
-        light[bottom as usize] = [0, 1, 7];
-        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &alpha(0.0)));
-        let at = 4 * 9 + 4;
-        let first = frame.node[at];
-        let blend = frame.blend.expect("blended")[at];
-        (blend.left, blend.light, first == top, first == bottom)
-    };
-    // Nothing, all of the upper, all of the lower.
-    assert_eq!(blended(0, 0), (256, [0; 3], false, false));
-    assert_eq!(blended(15, 3), (0, [256_000, 0, 7 * 256], true, false));
-    assert_eq!(blended(0, 15), (0, [0, 256, 7 * 256], false, true));
-    // 4 is 64 of 256: 192 are left, of which the lower takes 48.
-    assert_eq!(blended(4, 4), (144, [64_000, 48, 7 * 112], true, false));
-    // 8 is nine sixteenths, 144. Of the 112 that are left the lower would take 63. The other 49 are too few to
-    // continue, so it takes them too.
-    assert_eq!(blended(8, 8), (0, [144_000, 112, 7 * 256], true, false));
-    // 1 is 16; of 240 it takes 15.
-    assert_eq!(blended(1, 1), (225, [16_000, 15, 7 * 31], true, false));
-}
-
 /// Operations of the stage `blend`: so many for a voxel, so many for a sample.
 #[test]
-fn what_blending_costs() {
+fn blending_costs_what_its_steps_do() {
     for size in [1, 7, 41] {
-        let graph = opacities_of(octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
+        let graph = with_opacities(&octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
         let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
         let setup = setup(&graph, &camera, &alpha(0.0));
         let mut frame = Frame::new(setup.width, setup.height, false);
@@ -262,55 +194,31 @@ fn what_blending_costs() {
             .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
             .expect("no overflow");
         let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
-        assert_eq!(solids, 1, "{size}: {stats:?}");
-        assert!(blended > 0);
-        let count = |class| counter.ops_at(Stage::Blend, class);
+        assert!(solids == 1 && blended > 0, "{size}: {stats:?}");
         // The weights of the sides, once per voxel: the way, its shares, their squares, a root, three quotients.
-        let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
-        let sub = 3 + 3 + 2;
-        let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;
-        let [select, compare] = [3 * 5 + 7, 7];
-        // The voxel's weight: which sides, a product of five bits for each.
-        let voxel = [
-            3 + 3 * (1 + 5),
-            3 + 3 * (1 + 5),
-            select + 3 * (1 + 5) + 1,
-            compare + 3 + 1,
-        ];
-        // A sample: four products of nine bits.
-        let product = 4 * 9;
-        assert_eq!(count(OpClass::Add), add + voxel[0] + product * blended);
-        assert_eq!(
-            count(OpClass::Shift),
-            shift + voxel[1] + (product + 1) * blended
-        );
-        assert_eq!(count(OpClass::Select), voxel[2] + (product + 2) * blended);
-        assert_eq!(count(OpClass::Compare), voxel[3] + blended);
-        assert_eq!(count(OpClass::Sub), sub + blended);
-        assert_eq!(count(OpClass::MinMax), 3 + 1 + 1);
-        assert_eq!(count(OpClass::DivideStep), 2 * 6 + 3 * 6);
-        assert_eq!(count(OpClass::Logic), 0);
+        // The voxel's weight: which sides, a product of five bits for each. A sample: four products of nine bits.
+        let [sides, product] = [3 * (1 + 5), 4 * 9];
+        for (class, of_voxel, of_sample) in [
+            (OpClass::Add, 3 + 2 + 2 + 3 * 5 + 2 + 3 + 3 + sides, product),
+            (OpClass::Sub, 3 + 3 + 2, 1),
+            (
+                OpClass::Shift,
+                3 + 3 + 2 + 3 * 5 + 3 * 2 + 3 + sides,
+                product + 1,
+            ),
+            (OpClass::Select, 3 * 5 + 7 + sides + 1, product + 2),
+            (OpClass::Compare, 7 + 3 + 1, 1),
+            (OpClass::MinMax, 3 + 1 + 1, 0),
+            (OpClass::DivideStep, 2 * 6 + 3 * 6, 0),
+            (OpClass::Logic, 0, 0),
+        ] {
+            let found = counter.ops_at(Stage::Blend, class);
+            assert_eq!(found, of_voxel + of_sample * blended, "{class:?}");
+        }
         assert_eq!(counter.reads(Memory::Accumulator), blended);
         assert_eq!(counter.writes(Memory::Accumulator), blended);
         // Each sample shows its first voxel, and this is the only one.
         assert_eq!(counter.writes(Memory::Pixel), blended);
         assert_eq!(counter.reads(Memory::Attribute), 1);
-    }
-}
-
-/// Other rules do not blend.
-#[test]
-fn other_rules_blend_nothing() {
-    let graph = opacities_of(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);
-    let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
-    for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
-        let setup = setup(&graph, &camera, &SetupOptions::of(coverage));
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let (_, counter) = Machine::default()
-            .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
-            .expect("no overflow");
-        assert_eq!(counter.sum(|cell| cell.stage == Stage::Blend), 0);
-        assert_eq!(counter.writes(Memory::Accumulator), 0);
-        assert!(frame.blend.is_none());
     }
 }

@@ -8,16 +8,12 @@
 //! - 11 where a line of nodes (A's, which holds all) or of attributes (C's, which holds all) is missed;
 //! - 21 where the picture's fill vectors are cleared, 1 + 4 + 16, and 6 for a tile of 2 x 2: root, tile, four samples.
 //!
-//! With children on the stack every child is stored, read and tested when its turn comes. With parents there the child
-//! that is made goes on at once; only B's parent part is stored, E is made after D is drawn, and hidden. Leaf masks save
-//! the nodes' reads of C, D and E. What is hidden is not read: one more look at the fill vectors before a node is. Joined
-//! fill vectors are one word for two levels: every pair of reads or writes is one, and clearing is one word. By tiles A
-//! is walked four times, and B is in one of them.
+//! With parents on the stack only B is stored, and E is hidden when it is made. Leaf masks save the nodes' reads of C, D and
+//! E. Occluded nodes that are not read cost one more look at the fill vectors. With joined fill vectors every pair of reads
+//! or writes is one. By tiles A is walked four times, and B in one of them.
 //!
-//! *Sequential* hardware does one step after the other: a read takes a cycle more, in which it is looked at. A silhouette
-//! takes one for its planes, and one for each quadrant that they are moved to. Here every node's word is that of the root,
-//! which is read once a turn, for the fit; the sample's attributes are a step after it was found open. The way back from B
-//! to A is out of a quadrant and up a level.
+//! On *sequential* hardware a read takes a cycle more. A silhouette takes one for its planes, and one for each quadrant to
+//! which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
 use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};

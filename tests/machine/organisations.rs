@@ -1,34 +1,38 @@
-//! Each setting of an organisation saves reads and writes of the same picture. Tiles are drawn one after the other.
+//! Each setting of an organisation saves reads and writes. Tiles are drawn one after the other.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Organisation, StackHolds};
 use hwmodel::{Memory, OpClass, Probe, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::{FrameSetup, SetupOptions};
+use shiftvox::project::{SetupOptions, Stats};
 
-use crate::common::stat;
+use crate::common::{setup, stat};
 use crate::scenes::*;
 
-fn machine(organisation: Organisation) -> Machine {
-    Machine::new(MachineOptions {
+fn watch<P: Probe>(organisation: Organisation, depth: u32, probe: P) -> (Stats, P) {
+    let graph = graph_of_spec(&format!("gen:terrain,depth={depth}"));
+    let size = 1 << depth;
+    let camera = camera_at(
+        CameraPlace::Outside,
+        &graph,
+        (size, size),
+        &mut Dice::new(3),
+    );
+    let setup = setup(&graph, &camera, &SetupOptions::default());
+    let mut machine = Machine::new(MachineOptions {
         organisation,
         ..MachineOptions::default()
-    })
+    });
+    let mut frame = Frame::new(size, size, false);
+    let drawn = machine.render_probed(&graph.view(), &setup, &mut frame, probe);
+    drawn.unwrap()
 }
 
 /// Reads and writes of the stack, nodes and fill vectors for a picture, and its statistics.
 fn accesses(organisation: Organisation) -> ([(u64, u64); 3], impl Fn(&str) -> u64) {
-    let graph = graph_of_spec("gen:terrain,depth=7");
-    let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
-    let options = SetupOptions::default();
-    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn =
-        machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
-    let (stats, counter) = drawn.unwrap();
-    let all = counter.accesses_by(|cell| cell.memory);
-    let of = |memory| all.get(&memory).map_or((0, 0), |of| (of.reads, of.writes));
+    let (stats, counter) = watch(organisation, 7, Counter::new());
+    let of = |memory| (counter.reads(memory), counter.writes(memory));
     let all = [Memory::Stack, Memory::Node, Memory::FillVector].map(of);
     (all, move |name| stat(&stats, name))
 }
@@ -95,10 +99,6 @@ impl Probe for Drawn {
 /// A walk for a tile draws nothing outside of it.
 #[test]
 fn tiles_are_drawn_one_after_the_other() {
-    let graph = graph_of_spec("gen:terrain,depth=6");
-    let camera = camera_at(CameraPlace::Outside, &graph, (64, 64), &mut Dice::new(7));
-    let options = SetupOptions::default();
-    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
     for stack in [StackHolds::Children, StackHolds::Parents, StackHolds::Path] {
         let organisation = Organisation {
             stack,
@@ -106,14 +106,7 @@ fn tiles_are_drawn_one_after_the_other() {
             tile_levels: 2,
             ..Organisation::default()
         };
-        let mut frame = Frame::new(64, 64, false);
-        let drawn = machine(organisation).render_probed(
-            &graph.view(),
-            &setup,
-            &mut frame,
-            Drawn::default(),
-        );
-        let (_, Drawn(samples)) = drawn.unwrap();
+        let (_, Drawn(samples)) = watch(organisation, 6, Drawn::default());
         let tile = |sample: &u64| (sample / 64 / 16, sample % 64 / 16);
         assert!(samples.is_sorted_by_key(tile), "{stack:?}");
         let tiles: std::collections::BTreeSet<_> = samples.iter().map(tile).collect();

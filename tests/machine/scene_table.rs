@@ -1,7 +1,5 @@
-//! The scenes that every engine must draw to the same bits.
-//!
-//! Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic, 30 levels
-//! deep, a million voxels from the origin, and voxel files.
+//! The scenes that every engine must draw to the same bits: small voxels and large leaves, thin and solid, shared and
+//! cyclic, 30 levels deep, a million voxels from the origin, and voxel files.
 
 use std::sync::OnceLock;
 
@@ -10,7 +8,6 @@ use shiftvox::graph::Graph;
 use crate::common::{octree, sierpinski, solid};
 use crate::scenes::graph_of;
 
-/// A scene of the table: its name, and its graph, which is made when it is first needed.
 pub(crate) struct TestScene {
     pub(crate) name: &'static str,
     graph: OnceLock<Graph>,
@@ -23,7 +20,7 @@ const fn scene(name: &'static str) -> TestScene {
     }
 }
 
-/// All scenes: generators, files of `tests/data`, and graphs by hand.
+/// Generators, files of `tests/data`, and graphs by hand.
 pub(crate) static SCENES: [TestScene; 17] = [
     scene("gen:checker,depth=5"),
     scene("gen:maze,depth=6"),
@@ -45,10 +42,9 @@ pub(crate) static SCENES: [TestScene; 17] = [
 ];
 
 impl TestScene {
-    /// The scene's graph.
     pub(crate) fn graph(&self) -> &Graph {
-        // On a thread and in a pool of its own. A worker that waits for parts of the graph takes up other work, which
-        // may wait for the same graph.
+        // In a pool of its own: a worker that waits for parts of the graph takes up other work, which may wait for the
+        // same graph.
         let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let build = || pool().expect("a thread").install(|| self.build());
         let spawned = || std::thread::scope(|scope| scope.spawn(build).join());

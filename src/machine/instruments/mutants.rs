@@ -2,12 +2,12 @@
 
 use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 
-use super::descent::{Cage, cages_as};
+use super::positions::{Cage, cages_as};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::machine::engine::Machine;
-use crate::machine::options::MachineOptions;
+use crate::machine::state::MachineOptions;
 use crate::project::{CageKind, EngineError, FrameSetup, Stats};
 
 /// An error built into the machine.
@@ -52,7 +52,7 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
 
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
         let one = Word::from_host(1);
-        let mut children = self.0.children(dp);
+        let mut children = L::all(&self.0.pool(dp));
         match MUTATION {
             ULP => children[5] = children[5].moved(dp, one),
             HALVES_DOWN => {
@@ -65,7 +65,7 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
             MIDPOINTS_UP => {
                 // -floor((-a - b) / 2) is the midpoint rounded up.
                 let negative = self.0.map(|a| dp.neg(a));
-                let halved = negative.children(dp);
+                let halved = L::all(&negative.pool(dp));
                 children = halved.map(|child| child.map(|a| dp.neg(a)));
             }
             _ => {}

@@ -1,16 +1,109 @@
-//! The machine's vertices of many voxels in real numbers, to measure errors.
+//! The machine's vertices of voxels, to measure errors: computed by its own steps in the root of the quadtree.
 
-use super::descent::{Cage, CageWords, Descent};
+use std::collections::HashSet;
+
 use crate::machine::cage::{CageCoordinate, with_cage};
+use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
+
+use crate::machine::constants::Constants;
+use crate::machine::record::{Clip, ImagePlace, Screen};
+use crate::machine::to_screen;
 use crate::project::FrameSetup;
 
-/// Space of a record's vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Space {
-    /// In clip space, where halving is exact.
-    Clip,
-    /// On the screen, where it is an approximation.
-    Screen,
+/// The eight vertices of a voxel, in Morton order, relative to the whole picture, in units of the last place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Cage {
+    /// X, Y, W.
+    Clip([[i64; 8]; 3]),
+    /// x and y, in screen units.
+    Screen([[i64; 8]; 2]),
+}
+
+#[derive(Debug, Clone, Copy)]
+enum CageWords<L> {
+    Clip([L; 3]),
+    Screen([L; 2]),
+}
+
+/// A walk down an octree.
+struct Descent {
+    dp: Datapath<NoProbe>,
+    constants: Constants,
+}
+
+impl Descent {
+    /// A descent, and the root's cage.
+    fn new<L: CageCoordinate>(setup: &FrameSetup) -> (Self, CageWords<L>) {
+        let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
+        let constants = Constants::load(&mut dp, setup);
+        let root =
+            [0, 1, 2].map(|c| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]));
+        let mut descent = Self { dp, constants };
+        let root = descent.arrive(0, CageWords::Clip(root));
+        (descent, root)
+    }
+
+    /// Changes a cage of a level to screen space where the machine does so.
+    fn arrive<L: CageCoordinate>(&mut self, level: u32, held: CageWords<L>) -> CageWords<L> {
+        let CageWords::Clip([x, y, w]) = held else {
+            return held;
+        };
+        let (dp, constants) = (&mut self.dp, &self.constants);
+        let (w_min, _) = w.span(dp);
+        let clip = Clip { x, y, w, w_min };
+        if to_screen::may_change(dp, constants, level, ImagePlace::ROOT, &clip) {
+            let Screen { x, y, .. } = to_screen::change(dp, constants, ImagePlace::ROOT, &clip);
+            CageWords::Screen([x, y])
+        } else {
+            held
+        }
+    }
+
+    fn children<L: CageCoordinate>(&mut self, held: CageWords<L>) -> [CageWords<L>; 8] {
+        let mut of = |coordinate: L| L::all(&coordinate.pool(&mut self.dp));
+        match held {
+            CageWords::Clip(coordinates) => {
+                let children = coordinates.map(&mut of);
+                std::array::from_fn(|i| CageWords::Clip(children.map(|of| of[i])))
+            }
+            CageWords::Screen(coordinates) => {
+                let children = coordinates.map(&mut of);
+                std::array::from_fn(|i| CageWords::Screen(children.map(|of| of[i])))
+            }
+        }
+    }
+
+    /// Fails if a word has overflowed.
+    fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
+        let dp = &mut self.dp;
+        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);
+        let cage = match held {
+            CageWords::Clip(coordinates) => Cage::Clip(coordinates.map(&mut vertices)),
+            CageWords::Screen(coordinates) => Cage::Screen(coordinates.map(&mut vertices)),
+        };
+        self.dp.trap().map_or(Ok(cage), Err)
+    }
+}
+
+/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the
+/// machine does so. Fails if a word overflows. The machine has these vertices relative to a node of the quadtree, where
+/// they are never larger.
+pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+    with_cage!(setup, L => cages_as::<L>(setup, path))
+}
+
+pub(super) fn cages_as<L: CageCoordinate>(
+    setup: &FrameSetup,
+    path: &[u8],
+) -> Result<Vec<Cage>, Trap> {
+    let (mut descent, mut held) = Descent::new::<L>(setup);
+    let mut cages = vec![descent.vertices(held)?];
+    for (level, &octant) in (1..).zip(path) {
+        let child = descent.children(held)[usize::from(octant)];
+        held = descent.arrive(level, child);
+        cages.push(descent.vertices(held)?);
+    }
+    Ok(cages)
 }
 
 /// The vertices of one record.
@@ -20,114 +113,70 @@ pub struct Positions {
     pub level: u32,
     /// The voxel's lowest corner, finest voxels.
     pub corner: [i64; 3],
-    pub space: Space,
     /// Vertices in Morton order: samples across and down, from the picture's top left. `None`: not before the eye.
     pub samples: [Option<[f64; 2]>; 8],
 }
 
-/// Calls `visit` for some voxels and all their ancestors, each once. Voxels are given as in a frame: lowest corner in
-/// finest voxels, and level. Returns whether all arithmetic stayed within its words.
-pub fn visit_positions(
-    setup: &FrameSetup,
-    voxels: &[[i32; 4]],
-    visit: &mut dyn FnMut(&Positions),
-) -> bool {
-    let mut paths: Vec<PathToVoxel> = voxels
-        .iter()
-        .map(|voxel| PathToVoxel::to(setup, voxel))
-        .collect();
-    paths.sort_unstable();
-    paths.dedup();
-    with_cage!(setup, L => visit_as::<L>(setup, &paths, visit))
-}
-
-fn visit_as<L: CageCoordinate>(
-    setup: &FrameSetup,
-    paths: &[PathToVoxel],
-    visit: &mut dyn FnMut(&Positions),
-) -> bool {
-    let (descent, root) = Descent::new::<L>(setup);
-    let mut visitor = Visitor {
-        descent,
-        setup,
-        visit,
+/// Calls `visit` for some voxels and all their ancestors, each once, until a word overflows. Voxels are given as in a
+/// frame: lowest corner in finest voxels, and level.
+pub fn visit_positions(setup: &FrameSetup, voxels: &[[i32; 4]], visit: &mut dyn FnMut(&Positions)) {
+    let ancestors = |&[x, y, z, level]: &[i32; 4]| {
+        let levels = 0..=(level.max(0) as u32).min(setup.depth);
+        levels.map(move |level| {
+            let side = setup.depth - level;
+            (level, [x, y, z].map(|c| i64::from(c) >> side << side))
+        })
     };
-    visitor.node(0, [0; 3], root, paths).is_some()
+    let wanted = voxels.iter().flat_map(ancestors).collect();
+    with_cage!(setup, L => {
+        let (descent, root) = Descent::new::<L>(setup);
+        let mut visitor = Visitor { descent, setup, wanted, visit };
+        // A trap ends the visits.
+        let _ = visitor.node((0, [0; 3]), root);
+    });
 }
 
-/// The path from the root to a voxel: octants, three bits each from bit 92 downwards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct PathToVoxel {
-    octants: u128,
-    level: u32,
-}
-
-/// Place of the first octant's lowest bit.
-const FIRST_OCTANT: u32 = 90;
-
-impl PathToVoxel {
-    fn to(setup: &FrameSetup, voxel: &[i32; 4]) -> Self {
-        let level = voxel[3].max(0) as u32;
-        let octants = (0..level.min(setup.depth)).fold(0u128, |octants, step| {
-            let bit = setup.depth - 1 - step;
-            let octant = (0..3).fold(0u128, |octant, k| {
-                octant << 1 | (voxel[k] >> bit & 1) as u128
-            });
-            octants | octant << (FIRST_OCTANT - 3 * step)
-        });
-        Self { octants, level }
-    }
-
-    fn octant(&self, step: u32) -> usize {
-        (self.octants >> (FIRST_OCTANT - 3 * step) & 7) as usize
-    }
-}
+/// Level, and lowest corner in finest voxels.
+type Voxel = (u32, [i64; 3]);
 
 struct Visitor<'v> {
     descent: Descent,
     setup: &'v FrameSetup,
+    wanted: HashSet<Voxel>,
     visit: &'v mut dyn FnMut(&Positions),
 }
 
 impl Visitor<'_> {
-    /// Visits a voxel and those below it on the paths. `None` if a word overflowed.
     fn node<L: CageCoordinate>(
         &mut self,
-        level: u32,
-        corner: [i64; 3],
+        (level, corner): Voxel,
         held: CageWords<L>,
-        paths: &[PathToVoxel],
-    ) -> Option<()> {
-        if paths.is_empty() {
-            return Some(());
-        }
-        let held = self.descent.arrive(level, held);
-        let cage = self.descent.vertices(held).ok()?;
+    ) -> Result<(), Trap> {
+        let cage = self.descent.vertices(held)?;
         let samples = self.samples(&cage);
         (self.visit)(&Positions {
             level,
             corner,
-            space: match cage {
-                Cage::Clip(_) => Space::Clip,
-                Cage::Screen(_) => Space::Screen,
-            },
             samples,
         });
-        let deeper = |path: &PathToVoxel| path.level > level;
-        if level >= self.setup.depth || !paths.iter().any(deeper) {
-            return Some(());
+        let Some(below) = self.setup.depth.checked_sub(level + 1) else {
+            return Ok(());
+        };
+        let child = |octant: i64| {
+            let along = |k: usize| corner[k] + ((octant >> (2 - k) & 1) << below);
+            (level + 1, [0, 1, 2].map(along))
+        };
+        let wanted = (0..8).filter(|&octant| self.wanted.contains(&child(octant)));
+        let wanted: Vec<i64> = wanted.collect();
+        if wanted.is_empty() {
+            return Ok(());
         }
-        let side = 1i64 << (self.setup.depth - level - 1);
-        for (octant, child) in self.descent.children(held).into_iter().enumerate() {
-            let below: Vec<PathToVoxel> = paths
-                .iter()
-                .copied()
-                .filter(|path| deeper(path) && path.octant(level) == octant)
-                .collect();
-            let axis = |k: usize| corner[k] + side * (octant as i64 >> (2 - k) & 1);
-            self.node(level + 1, [axis(0), axis(1), axis(2)], child, &below)?;
+        let children = self.descent.children(held);
+        for octant in wanted {
+            let held = self.descent.arrive(level + 1, children[octant as usize]);
+            self.node(child(octant), held)?;
         }
-        Some(())
+        Ok(())
     }
 
     fn samples(&self, cage: &Cage) -> [Option<[f64; 2]>; 8] {
@@ -143,104 +192,6 @@ impl Visitor<'_> {
             Cage::Screen([x, y]) => {
                 let unit = libm::ldexp(1.0, -(self.setup.format.frac() as i32));
                 std::array::from_fn(|i| Some([x[i], y[i]].map(|c| c as f64 * unit)))
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use super::*;
-    use crate::graph::Placement;
-    use crate::machine::cages_along;
-    use crate::project::{CageKind, Camera, Coverage, SetupOptions};
-
-    const DEPTH: u32 = 4;
-
-    fn set_up(options: &SetupOptions) -> FrameSetup {
-        let camera = Camera {
-            eye: DVec3::new(90.0, -70.0, 80.0),
-            target: DVec3::splat(8.0),
-            up: DVec3::Z,
-            fov_degrees: 10.0,
-            width: 256,
-            height: 256,
-        };
-        FrameSetup::new(&camera, &Placement::default(), DEPTH, options).unwrap()
-    }
-
-    fn found(setup: &FrameSetup, voxels: &[[i32; 4]]) -> Vec<Positions> {
-        let mut found = Vec::new();
-        assert!(visit_positions(setup, voxels, &mut |p| found.push(*p)));
-        found
-    }
-
-    #[test]
-    fn ancestors_come_once_and_lead_there() {
-        let setup = set_up(&SetupOptions::default());
-        let voxels = [[5, 6, 7, 4], [5, 6, 6, 4], [5, 6, 7, 4], [8, 0, 0, 1]];
-        let found = found(&setup, &voxels);
-        let places: Vec<_> = found.iter().map(|p| (p.level, p.corner)).collect();
-        // The root, [0..8], [4..8], [4, 6, 6], the two voxels; and the octant.
-        let expected = [
-            (0, [0, 0, 0]),
-            (1, [0, 0, 0]),
-            (2, [4, 4, 4]),
-            (3, [4, 6, 6]),
-            (4, [5, 6, 6]),
-            (4, [5, 6, 7]),
-            (1, [8, 0, 0]),
-        ];
-        assert_eq!(places, expected);
-    }
-
-    #[test]
-    fn the_papers_vertices_are_those_of_the_loop() {
-        let setup = set_up(&SetupOptions {
-            cage: CageKind::Corners,
-            tolerance_px: f64::INFINITY,
-            coverage: Coverage::Any,
-            ..SetupOptions::of(Coverage::Any)
-        });
-        let last = *found(&setup, &[[5, 6, 7, 4]]).last().unwrap();
-        // 5, 6, 7 are 0101, 0110, 0111: octants from the top.
-        let cages = cages_along(&setup, &[0, 7, 3, 5]).unwrap();
-        let Some(Cage::Screen(expected)) = cages.last() else {
-            panic!("{cages:?}");
-        };
-        for corner in 0..8 {
-            let expected = [0, 1].map(|c| expected[c][corner] as f64 / 65536.0);
-            assert_eq!(last.samples[corner], Some(expected));
-        }
-        assert_eq!(last.space, Space::Screen);
-    }
-
-    #[test]
-    fn all_rules_and_spaces_are_near_the_truth() {
-        let truth = set_up(&SetupOptions {
-            tolerance_px: 0.0,
-            ..SetupOptions::default()
-        });
-        let voxel = [[5, 6, 7, 4]];
-        let truth = *found(&truth, &voxel).last().unwrap();
-        assert_eq!(truth.space, Space::Clip);
-        for coverage in [Coverage::Any, Coverage::Center] {
-            for cage in [CageKind::Corners, CageKind::Frame] {
-                let setup = set_up(&SetupOptions {
-                    coverage,
-                    cage,
-                    tolerance_px: 0.5,
-                    ..SetupOptions::of(coverage)
-                });
-                let held = *found(&setup, &voxel).last().unwrap();
-                assert_eq!(held.space, Space::Screen, "{coverage:?} {cage:?}");
-                for (held, truth) in held.samples.iter().zip(truth.samples) {
-                    let (held, truth) = (held.unwrap(), truth.unwrap());
-                    let off = libm::hypot(held[0] - truth[0], held[1] - truth[1]);
-                    assert!(off > 0.0 && off < 0.5, "{coverage:?} {cage:?}: {off}");
-                }
             }
         }
     }

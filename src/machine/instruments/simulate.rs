@@ -1,6 +1,4 @@
-//! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack, each
-//! with its rank in the occlusion order and its quadtree node. A turn finds the fill vectors as previous turns left
-//! them.
+//! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack.
 
 use hwmodel::cycles::{
     self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
@@ -13,21 +11,21 @@ use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
-use crate::machine::options::MachineOptions;
 use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
 use crate::machine::record_loop::check_trap;
-use crate::machine::records_by_sample::RecordsBySample;
+use crate::machine::state::MachineOptions;
 use crate::machine::state::State;
-use crate::machine::watch::{Event, Watch};
+use crate::machine::watch::{Event, RecordsBySample, Watch};
 use crate::project::{EngineError, FrameSetup, Stats};
 
 /// The results of a simulated frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulated {
     pub cycles: CycleReport,
-    /// The machine's counts of the frame, without the stack's depth.
+    /// The machine's counts, without the stack's depth; at last the most tiles in progress at once, each of which needs
+    /// fill vectors on the chip.
     pub counts: Stats,
 }
 
@@ -35,20 +33,15 @@ pub struct Simulated {
 pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
-    /// Draws a frame on simulated hardware, in the hardware's [`Organisation`](cycles::Organisation). Each record has its
-    /// turn in the cycle in which `hardware` begins it, and finds the fill vectors of that time.
+    /// Draws a frame on simulated hardware, in its organisation. Each record has its turn in the cycle in which `hardware`
+    /// begins it, and finds the fill vectors of that time.
     ///
-    /// Under [`Independence::None`] and [`Image`] the machine does exactly the serial work on any hardware. Under
-    /// [`Classes`] and [`Both`] the picture is the same if no two children of one class draw the same sample, as under the
-    /// exact rule.
+    /// Under [`Independence::None`](cycles::Independence) and `Image` the machine does exactly the serial work. Under
+    /// `Classes` and `Both` the picture is the same if no two children of one class draw the same sample, as under the exact
+    /// rule.
     ///
     /// Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not
     /// spill is full.
-    ///
-    /// [`Independence::None`]: hwmodel::cycles::Independence::None
-    /// [`Image`]: hwmodel::cycles::Independence::Image
-    /// [`Classes`]: hwmodel::cycles::Independence::Classes
-    /// [`Both`]: hwmodel::cycles::Independence::Both
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
@@ -116,17 +109,17 @@ impl Machine {
             handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
-            // The first is the whole picture, without vectors above it.
-            tiles: vec![TileView::new(QuadNode::ROOT)],
-            walks: vec![Walk::default()],
-            open: Open::default(),
+            // The first is the whole picture.
+            tiles: vec![Tile::new(QuadNode::ROOT)],
+            open: 0,
+            most_open: 0,
             shown: 0,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
-        let most_open = steps.open.most;
+        let most_open = steps.most_open;
         let (mut counts, log, watch) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
-        counts.push((MOST_OPEN_TILES, most_open));
+        counts.push(("most_open_tiles", most_open));
         if let (Some(records), Some(shares)) = (watch.records, &mut frame.records) {
             records.write_shares(frame.width, shares);
         }
@@ -159,31 +152,24 @@ enum Work<L: CageCoordinate> {
     Path(PathEntry, QuadNode),
 }
 
-/// The walk that draws a tile.
-struct Walk<L> {
+/// A tile, and the walk that draws it.
+struct Tile<L> {
+    view: TileView,
+    /// The last record of the walk.
     last: Option<Record<L>>,
-    /// Number of its waiting work items.
+    /// Number of waiting work items.
     waiting: u32,
 }
 
-impl<L> Default for Walk<L> {
-    fn default() -> Self {
+impl<L> Tile<L> {
+    fn new(quad: QuadNode) -> Self {
         Self {
+            view: TileView::new(quad),
             last: None,
             waiting: 0,
         }
     }
 }
-
-/// Number of tiles in progress.
-#[derive(Default)]
-struct Open {
-    now: u64,
-    most: u64,
-}
-
-/// The counter of the most tiles in progress at once: as many need fill vectors on the chip.
-pub const MOST_OPEN_TILES: &str = "most_open_tiles";
 
 /// The machine, and the waiting work.
 struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
@@ -193,10 +179,10 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     /// Unused numbers of work.
     free: Vec<u32>,
     handed_out: Vec<QuadNode>,
-    /// Each tile's view of the fill vectors above it.
-    tiles: Vec<TileView>,
-    walks: Vec<Walk<L>>,
-    open: Open,
+    tiles: Vec<Tile<L>>,
+    /// Tiles in progress, now and at most.
+    open: u64,
+    most_open: u64,
     /// The tile whose view is in place.
     shown: usize,
 }
@@ -219,11 +205,11 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             x: quad.x,
             y: quad.y,
         };
-        let walk = &mut self.walks[self.shown];
         if !matches!(work, Work::Tiles(_)) {
-            walk.waiting += 1;
-            self.open.now += u64::from(walk.waiting == 1);
-            self.open.most = self.open.most.max(self.open.now);
+            let tile = &mut self.tiles[self.shown];
+            tile.waiting += 1;
+            self.open += u64::from(tile.waiting == 1);
+            self.most_open = self.most_open.max(self.open);
         }
         let entry = (work, self.shown);
         let item = if let Some(at) = self.free.pop() {
@@ -254,8 +240,8 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     fn switch_to(&mut self, tile: usize) {
         if tile != self.shown {
             let fill = &mut self.state.canvas.fill;
-            self.tiles[self.shown].swap(fill);
-            self.tiles[tile].swap(fill);
+            self.tiles[self.shown].view.swap(fill);
+            self.tiles[tile].view.swap(fill);
             self.shown = tile;
         }
     }
@@ -273,18 +259,11 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             }
             return;
         }
-        self.tiles.push(TileView::new(quad));
-        self.walks.push(Walk::default());
+        self.tiles.push(Tile::new(quad));
         self.switch_to(self.tiles.len() - 1);
         match self.state.job.organisation.stack {
             StackHolds::Children => {
-                let State {
-                    dp,
-                    job,
-                    canvas,
-                    traversal,
-                } = &mut self.state;
-                traversal.push_object(dp, job, &canvas.fill, quad);
+                self.state.push_object(quad);
                 if !self.state.traversal.stack.is_empty() {
                     // The object has no siblings: any rank is correct.
                     self.state.traversal.watch.pushed.push(FIRST_PLACE);
@@ -303,7 +282,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         // The scheduler has its own stacks; addresses only distinguish reads.
         let address = u64::from(parent.record.cube.level);
         let child = self.state.parent_turn(&mut parent, address);
-        self.walks[self.shown].last = Some(parent.record);
+        self.tiles[self.shown].last = Some(parent.record);
         let Some(child) = child else {
             if !parent.is_done() {
                 self.hand_over(Work::Parent(parent), LAST_PLACE, children);
@@ -322,7 +301,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     }
 
     fn path_turn(&mut self, entry: &PathEntry, children: &mut Vec<Child>) {
-        let from = self.walks[self.shown].last.as_ref();
+        let from = self.tiles[self.shown].last.as_ref();
         let address = u64::from(entry.level);
         if let Some(parent) = self.state.take_back(entry, from, address) {
             self.parent_turn(parent, children);
@@ -368,9 +347,9 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
             Work::Path(entry, _) => self.path_turn(&entry, children),
         }
         if !matches!(work, Work::Tiles(_)) {
-            let walk = &mut self.walks[tile];
-            walk.waiting -= 1;
-            self.open.now -= u64::from(walk.waiting == 0);
+            let tile = &mut self.tiles[tile];
+            tile.waiting -= 1;
+            self.open -= u64::from(tile.waiting == 0);
         }
         self.state.dp.probe_mut().ended(Some(item), children);
         self.trap()

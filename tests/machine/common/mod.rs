@@ -1,24 +1,20 @@
-//! Random scenes and cameras that several tests share.
-#![expect(unreachable_pub, reason = "a module of several test crates")]
-#![allow(dead_code, reason = "each test uses a part of it")]
+//! Random graphs and cameras, and drawing with the machine.
+#![expect(unreachable_pub, reason = "shared by the tests of the folder")]
 
 use glam::DVec3;
 use proptest::prelude::*;
-use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, LinkedGraph, Opacity};
-use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::{Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats};
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 use shiftvox::split_mix::SplitMix;
 
-/// How many times as many cases as usual `SHIFTVOX_CASES` asks for.
-pub fn times() -> u32 {
-    std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"))
-}
+pub use crate::scenes::up_of;
 
-/// So many cases of a property, other ones in every run.
+/// New cases in every run; `SHIFTVOX_CASES` multiplies their number.
 pub fn cases(usual: u32) -> ProptestConfig {
-    ProptestConfig::with_cases(usual * times())
+    let times = std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"));
+    ProptestConfig::with_cases(usual * times)
 }
 
 /// A graph from each node's children by octant; a node without any is a leaf.
@@ -37,11 +33,8 @@ pub fn solid(depth: u32) -> Graph {
 
 /// The Sierpinski tetrahedron: one node, four of whose children are itself.
 pub fn sierpinski(depth: u32) -> Graph {
-    let mut children = [None; 8];
-    for octant in [0, 3, 5, 6] {
-        children[octant] = Some(0);
-    }
-    linked(depth, &[children])
+    let child = |octant| [0, 3, 5, 6].contains(&octant).then_some(0);
+    linked(depth, &[std::array::from_fn(child)])
 }
 
 /// A full octree over the voxels of a predicate, leaves at the finest level.
@@ -52,33 +45,24 @@ pub fn octree(depth: u32, is_filled: &dyn Fn([i32; 3]) -> bool) -> Graph {
         side: i32,
         is_filled: &dyn Fn([i32; 3]) -> bool,
     ) -> Option<u32> {
-        if side == 1 {
-            if !is_filled(at) {
-                return None;
-            }
-            nodes.push([None; 8]);
-            return Some(nodes.len() as u32 - 1);
+        if side == 1 && !is_filled(at) {
+            return None;
         }
         let me = nodes.len();
         nodes.push([None; 8]);
-        let half = side / 2;
-        let mut any = false;
-        for octant in 0..8usize {
-            let corner = [
-                at[0] + half * (octant as i32 >> 2),
-                at[1] + half * (octant as i32 >> 1 & 1),
-                at[2] + half * (octant as i32 & 1),
-            ];
-            let child = node(nodes, corner, half, is_filled);
-            nodes[me][octant] = child;
-            any |= child.is_some();
+        if side > 1 {
+            let half = side / 2;
+            for octant in 0..8 {
+                let bit = |axis: usize| at[axis] + half * (octant >> (2 - axis) & 1);
+                let child = node(nodes, [bit(0), bit(1), bit(2)], half, is_filled);
+                nodes[me][octant as usize] = child;
+            }
+            if nodes[me] == [None; 8] {
+                nodes.truncate(me);
+                return None;
+            }
         }
-        if any {
-            Some(me as u32)
-        } else {
-            nodes.truncate(me);
-            None
-        }
+        Some(me as u32)
     }
     let mut nodes = Vec::new();
     node(&mut nodes, [0; 3], 1 << depth, is_filled).expect("an octree needs a voxel");
@@ -97,7 +81,7 @@ pub fn any_graph(depths: std::ops::Range<u32>) -> impl Strategy<Value = Graph> {
     })
 }
 
-/// Random octrees with some large leaves.
+/// Random octrees of the finest voxels.
 pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
     let side = 1usize << depth;
     proptest::collection::vec(proptest::bool::weighted(density), side * side * side).prop_map(
@@ -112,26 +96,23 @@ pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
 
 /// Random octrees with leaves of two and four finest voxels among the finest.
 pub fn any_mixed_octree(depth: u32) -> impl Strategy<Value = Graph> {
-    /// Adds a node whose children are that of numbers which `next` throws.
-    fn node(nodes: &mut Vec<[Option<u32>; 8]>, side: u32, next: &mut dyn FnMut() -> u64) -> u32 {
+    fn node(nodes: &mut Vec<[Option<u32>; 8]>, side: u32, numbers: &mut SplitMix) -> u32 {
         let me = nodes.len();
         nodes.push([None; 8]);
-        let is_leaf = side == 1 || side <= 4 && next().is_multiple_of(4);
+        let is_leaf = side == 1 || side <= 4 && numbers.below(4) == 0;
         let most = if is_leaf { 0 } else { 8 };
         for octant in 0..most {
             // One of them at least, or it would be a leaf.
-            if next() % 5 < 2 || octant == 7 {
-                let child = node(nodes, side / 2, next);
+            if numbers.below(5) < 2 || octant == 7 {
+                let child = node(nodes, side / 2, numbers);
                 nodes[me][octant] = Some(child);
             }
         }
         me as u32
     }
     any::<u64>().prop_map(move |seed| {
-        let mut numbers = SplitMix::new(seed);
-        let mut next = || numbers.below(1 << 24);
         let mut nodes = Vec::new();
-        node(&mut nodes, 1 << depth, &mut next);
+        node(&mut nodes, 1 << depth, &mut SplitMix::new(seed));
         linked(depth, &nodes)
     })
 }
@@ -143,10 +124,8 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
     let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
     let coordinate = prop_oneof![3 => free, 1 => lattice].boxed();
     let eye = proptest::array::uniform3(coordinate);
-    let axis = (0..3usize, any::<bool>()).prop_map(|(axis, back)| {
-        let sign = if back { -1.0 } else { 1.0 };
-        [DVec3::X, DVec3::Y, DVec3::Z][axis] * sign
-    });
+    let axis = (0..3usize, prop_oneof![Just(1.0), Just(-1.0)])
+        .prop_map(|(axis, sign)| DVec3::AXES[axis] * sign);
     let towards = prop_oneof![
         3 => proptest::array::uniform3(0.0..1.0f64).prop_map(Some),
         1 => Just(None),
@@ -155,10 +134,7 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
         "a camera that sees",
         move |(eye, towards, axis, fov_degrees, width, height)| {
             let eye = DVec3::from_array(eye) * side;
-            let target = match towards {
-                Some(target) => DVec3::from_array(target) * side,
-                None => eye + axis,
-            };
+            let target = towards.map_or(eye + axis, |target| DVec3::from_array(target) * side);
             let camera = Camera {
                 eye,
                 target,
@@ -172,26 +148,13 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
     )
 }
 
-/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the
-/// same.
-pub fn up_of(forward: DVec3) -> DVec3 {
-    if forward.normalize_or_zero().z.abs() > 0.9 {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    }
-}
-
-/// A camera at `eye` towards `target`, 60 degrees, square.
+/// A square camera of 60 degrees.
 pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
+    let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
     Camera {
-        eye: DVec3::from_array(eye),
-        target: DVec3::from_array(target),
-        up: if eye[..2] == target[..2] {
-            DVec3::Y
-        } else {
-            DVec3::Z
-        },
+        eye,
+        target,
+        up: up_of(target - eye),
         fov_degrees: 60.0,
         width: size,
         height: size,
@@ -200,27 +163,17 @@ pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
 
 /// The tolerance, or 0 under the rules that draw outlines, which have no other.
 pub fn tolerance_of(coverage: Coverage, tolerance_px: f64) -> f64 {
-    if coverage.draws_outlines() {
-        0.0
-    } else {
-        tolerance_px
+    match coverage.draws_outlines() {
+        true => 0.0,
+        false => tolerance_px,
     }
 }
 
-/// Opacities by node: some nothing, some all, some unlike from their sides.
-pub fn with_opacities(graph: &Graph) -> Graph {
-    let opacity = (0..graph.len() as u32).map(|node| {
-        let [kind, x, y, z] = (node + 7).wrapping_mul(0x9e37_79b1).to_be_bytes();
-        Opacity(match kind & 7 {
-            0 => [0; 3],
-            1 => [255; 3],
-            2 => [0x0f, 0, 0],
-            3 => [0x11; 3],
-            _ => [x, y, z],
-        })
-    });
+/// Opacities by node, in turn.
+pub fn with_opacities(graph: &Graph, opacities: &[[u8; 3]]) -> Graph {
+    let opacity = opacities.iter().cycle().take(graph.len());
     Graph {
-        opacity: opacity.collect::<Vec<_>>().into(),
+        opacity: opacity.map(|&of| Opacity(of)).collect::<Vec<_>>().into(),
         ..graph.clone()
     }
 }
@@ -232,42 +185,17 @@ pub fn lights(graph: &Graph) -> Vec<[u16; 3]> {
         .collect()
 }
 
-/// Sets a frame up.
 pub fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> FrameSetup {
     FrameSetup::new(camera, &graph.placement, graph.depth, options).expect("a frame")
 }
 
-/// Draws with the machine; as it is by default, with the fast engine too.
-pub fn draw_with(
-    options: MachineOptions,
-    graph: &Graph,
-    setup: &FrameSetup,
-) -> Result<(Frame, Stats), EngineError> {
+pub fn draw(graph: &Graph, setup: &FrameSetup) -> (Frame, Stats) {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
-    if options == MachineOptions::default() {
-        // Each test of the machine tests the default engine too.
-        let mut fast = Frame::new(setup.width, setup.height, false);
-        Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
-            .render(&graph.view(), setup, &mut fast)
-            .expect("what the machine draws");
-        assert!(fast == frame, "the fast engine draws other bits");
-    }
-    Ok((frame, stats))
+    let drawn = Machine::default().render(&graph.view(), setup, &mut frame);
+    (frame, drawn.expect("no overflow"))
 }
 
-/// Draws with the machine as it is.
-pub fn draw(graph: &Graph, setup: &FrameSetup) -> Frame {
-    draw_with(MachineOptions::default(), graph, setup)
-        .expect("no overflow")
-        .0
-}
-
-/// One number of a frame's statistics.
 pub fn stat(stats: &Stats, name: &str) -> u64 {
-    stats
-        .iter()
-        .find(|(n, _)| *n == name)
-        .unwrap_or_else(|| panic!("no statistic {name}"))
-        .1
+    let named = stats.iter().find(|(n, _)| *n == name);
+    named.unwrap_or_else(|| panic!("no statistic {name}")).1
 }

@@ -1,5 +1,4 @@
-//! Whole scenes for whole-picture tests: files and generators as graphs, and
-//! cameras that are drawn from a seed.
+//! Scenes by name, and cameras drawn from a seed.
 #![expect(unreachable_pub, reason = "a module of several test crates")]
 #![allow(dead_code, reason = "each test uses a part of it")]
 
@@ -12,9 +11,8 @@ use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
 use shiftvox::split_mix::SplitMix;
 
-/// The `.vox` files that come with the repository, by name.
-pub fn shipped_files() -> Vec<PathBuf> {
-    vox_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"))
+pub fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data")
 }
 
 /// All `.vox` files of a folder and the folders in it, sorted.
@@ -35,18 +33,15 @@ pub fn vox_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A voxel file as a graph, without normals, which no engine reads, or the importer's error.
 pub fn graph_of_file(path: &Path) -> Result<Graph, String> {
     let mut builder = builder();
     let read = ReadOptions::default();
     read_voxels(path, &read, &mut |voxel| builder.push(voxel), &Silent)
         .map_err(|error| error.to_string())?;
-    builder
-        .finish(([0.0; 3], 1.0), &Silent)
-        .map_err(|error| error.to_string())
+    let built = builder.finish(([0.0; 3], 1.0), &Silent);
+    built.map_err(|error| error.to_string())
 }
 
-/// A generator's scene as a graph, without normals.
 pub fn graph_of_spec(spec: &str) -> Graph {
     let parsed = Spec::parse(spec).expect(spec);
     if let Some(graph) = parsed.linked() {
@@ -59,13 +54,13 @@ pub fn graph_of_spec(spec: &str) -> Graph {
 
 /// The graph of a generator, or of a file of `tests/data`.
 pub fn graph_of(name: &str) -> Graph {
-    if name.starts_with("gen:") {
-        return graph_of_spec(name);
+    match name.starts_with("gen:") {
+        true => graph_of_spec(name),
+        false => graph_of_file(&data().join(name)).expect(name),
     }
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    graph_of_file(&data.join(name)).expect(name)
 }
 
+/// Without normals, which no engine reads.
 fn builder() -> Builder {
     Builder::new(BuildOptions {
         normals: Normals::None,
@@ -82,12 +77,11 @@ pub fn cube(graph: &Graph) -> (DVec3, f64) {
     )
 }
 
-/// Numbers from a seed: the same on every machine.
+/// Reproducible random numbers.
 #[derive(Debug, Clone)]
 pub struct Dice(SplitMix);
 
 impl Dice {
-    /// The numbers that follow from a seed.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix::new(seed))
     }
@@ -97,74 +91,53 @@ impl Dice {
         low + (high - low) * self.0.unit()
     }
 
-    /// A whole number below `end`, which is above 0.
     pub fn below(&mut self, end: u32) -> u32 {
         self.0.below(u64::from(end)) as u32
     }
 
-    /// One of some choices.
     pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len() as u32) as usize]
     }
 
     /// A point of the cube `[low, high)^3`.
     pub fn point(&mut self, low: f64, high: f64) -> DVec3 {
-        DVec3::new(
-            self.between(low, high),
-            self.between(low, high),
-            self.between(low, high),
-        )
+        DVec3::from_array([(); 3].map(|()| self.between(low, high)))
     }
 }
 
-/// A voxel that is there, found by a random way down the graph: its lowest
-/// corner in world units. A graph has one, or it would not have been built.
+/// The lowest corner of a random voxel, world units.
 pub fn any_voxel(graph: &Graph, dice: &mut Dice) -> DVec3 {
     let mut at = DVec3::ZERO;
     let mut node = graph.root;
     let mut side = (1u64 << graph.depth) as f64;
     for _ in 0..graph.depth {
         side /= 2.0;
-        let children: Vec<(u32, u32)> = (0..8)
-            .filter_map(|octant| {
-                let child = graph.view().child(node, octant as u8)?;
-                Some((octant, child))
-            })
-            .collect();
+        let child = |octant| Some((octant, graph.view().child(node, octant as u8)?));
+        let children: Vec<(u32, u32)> = (0..8).filter_map(child).collect();
         // A solid leaf consists of all its voxels.
         let (octant, child) = match children.len() {
             0 => (dice.below(8), node),
             n => children[dice.below(n as u32) as usize],
         };
-        at += side
-            * DVec3::new(
-                f64::from(octant >> 2),
-                f64::from(octant >> 1 & 1),
-                f64::from(octant & 1),
-            );
+        let bits = [octant >> 2, octant >> 1 & 1, octant & 1];
+        at += side * DVec3::from_array(bits.map(f64::from));
         node = child;
     }
     cube(graph).0 + at * graph.placement.voxel_size
 }
 
-/// Where the eye of a camera is.
+/// A place of the eye, relative to the object's cube or to a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CameraPlace {
-    /// Outside the object's cube, up to one and a half sides away.
+    /// Up to one and a half sides away.
     Outside,
-    /// Anywhere in the cube.
     Inside,
-    /// Inside a voxel that is there.
     Solid,
-    /// On a face of a voxel that is there.
     VoxelFace,
-    /// On a corner of a voxel that is there.
     VoxelCorner,
-    /// On a face of the object's cube.
     CubeFace,
 }
 
-/// All places.
 pub const PLACES: [CameraPlace; 6] = [
     CameraPlace::Outside,
     CameraPlace::Inside,
@@ -174,8 +147,8 @@ pub const PLACES: [CameraPlace; 6] = [
     CameraPlace::CubeFace,
 ];
 
-/// A camera with its eye at a place, looking at a voxel or, one time in
-/// four, from beside one along an axis, so that ties abound. `fov_degrees` 5 to 150.
+/// A camera with its eye at a place, looking at a voxel or, one time in four, from beside one along an axis, so that ties
+/// abound. 5 to 150 degrees.
 pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut Dice) -> Camera {
     let (low, side) = cube(graph);
     let voxel = graph.placement.voxel_size;
@@ -205,24 +178,17 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
             CameraPlace::CubeFace => eye[axis] = low[axis] + end * side,
             CameraPlace::Inside | CameraPlace::Solid | CameraPlace::VoxelCorner => {}
         }
-        let seen = any_voxel(graph, dice) + dice.point(0.0, voxel);
-        let target = if dice.below(4) == 0 {
-            let along = (0..3)
-                .max_by(|&a, &b| (seen - eye)[a].abs().total_cmp(&(seen - eye)[b].abs()))
-                .unwrap_or(axis);
-            eye + DVec3::AXES[along] * (seen - eye)[along]
-        } else {
-            seen
-        };
-        let forward = (target - eye).normalize_or_zero();
+        let mut target = any_voxel(graph, dice) + dice.point(0.0, voxel);
+        if dice.below(4) == 0 {
+            let way = target - eye;
+            let longest = (0..3).max_by(|&a, &b| way[a].abs().total_cmp(&way[b].abs()));
+            let along = longest.unwrap_or(axis);
+            target = eye + DVec3::AXES[along] * way[along];
+        }
         let camera = Camera {
             eye,
             target,
-            up: if forward.z.abs() > 0.9 {
-                DVec3::Y
-            } else {
-                DVec3::Z
-            },
+            up: up_of(target - eye),
             fov_degrees: dice.between(5.0, 150.0),
             width: size.0,
             height: size.1,
@@ -230,5 +196,13 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
         if camera.axes().is_ok() {
             return camera;
         }
+    }
+}
+
+/// Z, or Y for a camera that looks along Z.
+pub fn up_of(forward: DVec3) -> DVec3 {
+    match forward.normalize_or_zero().z.abs() > 0.9 {
+        true => DVec3::Y,
+        false => DVec3::Z,
     }
 }
