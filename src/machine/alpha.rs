@@ -1,10 +1,5 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, R11): the share of its outline that a voxel covers, and its contribution
-//! to a sample.
-//!
-//! At most three sides of a voxel are visible. The share of each is the eye's distance along its axis divided by the sum
-//! of the three, in sixteenths. A side counts by the square of its cosine, which is unbiased over all directions. Counts
-//! and opacities of the sides give the voxel's weight, and a sample takes that weight times its transmittance. Products
-//! are sums of shifts over the at most nine bits of one factor.
+//! Blending, under the rule `alpha` (`SPEC.md`, R11). A side counts by the square of its cosine, which is unbiased over all
+//! directions. Products are sums of shifts over the at most nine bits of one factor.
 
 use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
@@ -23,10 +18,8 @@ const WEIGHT_BITS: u32 = 9;
 const PRODUCT_BITS: u32 = 17;
 /// Bits of a colour in linear light times a share, and of the sum of those.
 const LIGHT_BITS: u32 = 24;
-/// Bits of a colour in linear light.
 const COLOR_BITS: u32 = 16;
 const OPACITY_BITS: u32 = 4;
-/// The weight of an opaque voxel.
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
 /// By axis, the sixteenths of a voxel's outline for which the visible side counts.
@@ -34,7 +27,6 @@ const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 struct VisibleSides([Narrow; 3]);
 
 impl VisibleSides {
-    /// Of a voxel between two corners.
     fn new<P: Probe>(
         dp: &mut Datapath<P>,
         eye: &BlendEye,
@@ -87,8 +79,7 @@ impl VisibleSides {
             let eighth = dp.shr_narrow(OPACITY_BITS, opacity, 3);
             let covered = dp.add_narrow(SHARE_BITS, opacity, eighth);
             weight = plus_product(dp, WEIGHT_BITS, weight, covered, count, SHARE_BITS);
-            // Sixteen sixteenths: one bit. Such a side is opaque at any angle. Otherwise a ray that grazes a wall would
-            // pass many of its voxels, since each covers little from there.
+            // Sixteen sixteenths: one bit. Otherwise a ray that grazes a wall would pass many of its voxels.
             is_whole |= dp.bit_narrow(covered, OPACITY_BITS);
         }
         let weight = dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight);
@@ -122,7 +113,7 @@ fn sixteenths_of<P: Probe>(dp: &mut Datapath<P>, a: Word, all: Word) -> Word {
     dp.shr(up, 1)
 }
 
-/// The square root of the sum of three squares of numbers whose sum is 16, to the nearest whole number: 9 to 16.
+/// The root of the sum of three squares of numbers whose sum is 16, to the nearest: 9 to 16.
 fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
     let two = dp.add_narrow(WEIGHT_BITS, x, y);
     let all = dp.add_narrow(WEIGHT_BITS, two, z);
@@ -172,7 +163,7 @@ fn plus_product<P: Probe>(
     sum
 }
 
-/// Weight and colour of a voxel at each sample where it is drawn.
+/// A voxel as it is blended.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendColor {
     /// 0 to 256.

@@ -1,5 +1,5 @@
-//! The blocks of the machine: combinational parts that a designer would build and test separately.
-//! [`Datapath::tap`](hwmodel::Datapath::tap) reports their inputs and outputs, and `shiftvox model --vectors` writes them.
+//! Combinational blocks that a designer would build and test separately. [`Datapath::tap`](hwmodel::Datapath::tap)
+//! reports their inputs and outputs, and `shiftvox model --vectors` writes them.
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
@@ -14,7 +14,6 @@ macro_rules! numbered {
         }
 
         impl $enum {
-            /// All, in the order of their numbers.
             pub const ALL: [Self; $count] = [$(Self::$name,)*];
         }
     };
@@ -100,27 +99,24 @@ impl From<Block> for u32 {
 }
 
 numbered! {
-    /// A port between a record's turn and the machine's memories. For a probe it is a block, numbered after all
-    /// [`Block`]s: its input is the address, and its output the written or read data.
+    /// A port to a memory. For a probe it is a block, numbered after all [`Block`]s: its input is the address, and its output
+    /// the written or read data.
     Port, 8:
-    /// A record is taken from the stack: its turn begins.
+    /// A record is taken from the stack.
     Pop,
-    /// A record is put on the stack.
     Push,
     FillRead,
-    /// A fill vector is written.
     FillWrite,
     NodeRead,
-    /// The attributes of a node are read. The record loop does not use them.
+    /// The record loop does not use the attributes.
     AttributeRead,
-    /// A pixel is written: the node that it shows.
+    /// The node that a pixel shows.
     PixelWrite,
     /// With parents on the stack: a record is in registers, new (0) or restored (1).
     Made,
 }
 
 impl Port {
-    /// Shows the port's signals to a probe.
     #[inline(always)]
     pub(super) fn tap<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
         let number = Block::ALL.len() as u32 + self as u32;
@@ -128,7 +124,6 @@ impl Port {
     }
 }
 
-/// Wires of an address, and of a node's number.
 pub(super) const ADDRESS_BITS: u32 = 32;
 /// Wires of an octree or quadtree level, or of a shift by levels.
 pub(super) const LEVEL_BITS: u32 = 6;

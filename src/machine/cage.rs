@@ -1,8 +1,5 @@
 //! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, as eight corners (the image-order paper)
-//! or as one corner and three edges.
-//!
-//! A cage coordinate yields its children's by adds and shifts, and the least and the greatest of its vertices. A cage is
-//! two coordinates in screen space (x, y), three in clip space (X, Y, W).
+//! or as one corner and three edges. A cage has two coordinates in screen space (x, y), three in clip space (X, Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
@@ -23,30 +20,26 @@ macro_rules! with_cage {
 }
 pub(super) use with_cage;
 
-/// One coordinate of eight vertices.
 pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The vertices of a parallelepiped with this corner and these edges (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
-    /// All numbers of the children's coordinates.
+    /// All numbers of the children.
     type Pool: Copy;
 
-    /// Computes the children's numbers. The children's vertices lie between this coordinate's least and greatest.
+    /// The children's vertices lie between this coordinate's least and greatest.
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
 
-    /// The coordinate of one child, selected from the pool without an operation.
+    /// The coordinate of one child; no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
     /// The numbers from which children are made one at a time.
     type Seed: Copy;
 
-    /// Computes the numbers from which children are made.
     fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed;
 
-    /// The coordinate of one child, equal to that of [`child`](Self::child).
     fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self::Seed, octant: usize) -> Self;
 
-    /// The children's coordinates, in Morton order, selected from the pool.
     fn all(pool: &Self::Pool) -> [Self; 8] {
         std::array::from_fn(|octant| Self::child(pool, octant))
     }
@@ -57,19 +50,18 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The middle of the lowest and the highest corner, rounded down.
     fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word;
 
-    /// The eight vertices, in Morton order.
     fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8];
 
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
-    /// `f`, which must be linear, applied to each number of the coordinate.
+    /// Applies a linear function to each number.
     fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
 
-    /// `f`, which must be linear, applied to each pair of numbers.
+    /// Applies a linear function to each pair of numbers.
     fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
 
-    /// The parent's coordinate, of a child in an octant whose numbers were halved without a remainder.
+    /// The parent's coordinate: undoes exact halving.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self;
 
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
@@ -113,8 +105,8 @@ impl CageCoordinate for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The image-order paper's 27-vertex pool (3.4): the 3 x 3 x 3 vertices of the eight children, by 4 midpoints along
-    /// x, 6 along y, 9 along z. The order is normative, because midpoints are rounded down.
+    /// The image-order paper's 27-vertex pool (3.4): midpoints along x, then y, then z. The order is normative, because they
+    /// are rounded down.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
@@ -165,7 +157,6 @@ impl CageCoordinate for Corners {
         }))
     }
 
-    /// Seven minima and seven maxima, as a tree of three levels.
     #[inline]
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
         let mut around = |a: (Word, Word), b: (Word, Word)| (dp.min(a.0, b.0), dp.max(a.1, b.1));
@@ -247,14 +238,13 @@ impl CageCoordinate for CornerAndEdges {
         Self { corner, edges }
     }
 
-    /// Halves edges towards zero (the sign bit is added before the shift), so that children stay within their parent.
+    /// Halves edges towards zero, so that children stay within their parent.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
         let Self { corner, edges } = self.seed(dp);
         (parallelepiped(dp, corner, edges), edges)
     }
 
-    /// The lowest child.
     type Seed = Self;
 
     #[inline]
@@ -266,7 +256,6 @@ impl CageCoordinate for CornerAndEdges {
         Self { edges, ..*self }
     }
 
-    /// Moved by up to three edges.
     #[inline]
     fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self, octant: usize) -> Self {
         let mut child = *seed;
@@ -333,7 +322,6 @@ impl CageCoordinate for CornerAndEdges {
         }
     }
 
-    /// The octant's edges lead from the parent's lowest corner to the child's.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
         let mut corner = self.corner;
         for (k, &edge) in self.edges.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The canvas: draws samples and updates the fill vectors (image-order paper, 3.3).
+//! The picture and its fill vectors (image-order paper, 3.3).
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -20,7 +20,6 @@ pub(super) struct Paint {
     pub(super) color: Option<BlendColor>,
 }
 
-/// The picture and its fill vectors.
 #[derive(Debug)]
 pub(super) struct Canvas<'f> {
     pub(super) fill: FillStore<'f>,
@@ -28,7 +27,7 @@ pub(super) struct Canvas<'f> {
 }
 
 impl Canvas<'_> {
-    /// Draws one sample, unless it is full already.
+    /// Draws one sample, unless it is full.
     #[inline]
     pub(super) fn draw<P: Probe>(
         &mut self,
@@ -99,35 +98,19 @@ impl Canvas<'_> {
         taken.is_full
     }
 
-    /// Draws all samples of `quad` inside a silhouette that are not full. Returns the level of the last node that was
-    /// divided, at or below `quad`; its parent's if that was not.
+    /// Draws all samples of `quad` inside a silhouette that are not full.
     pub(super) fn draw_silhouette<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
         counts: &mut Counts,
         quad: QuadNode,
-        mut silhouette: Silhouette,
+        silhouette: Silhouette,
         paint: &Paint,
-    ) -> u32 {
-        dp.stage(Stage::Draw);
-        let below = self.fill.levels() - quad.level;
-        let mut divided = quad.level.saturating_sub(1);
-        match silhouette.cover(dp, below) {
-            Cover::None => {}
-            Cover::All => self.draw_all(dp, counts, quad, paint),
-            Cover::Some => {
-                divided = quad.level;
-                for quadrant in self.open_quadrants(dp, quad) {
-                    // Hardware has the planes of one node, and restores them one level at a time.
-                    dp.next_step(divided - quad.level);
-                    let inner = silhouette.in_quadrant(dp, quadrant);
-                    dp.next_step(0);
-                    let quad = quad.quadrant(quadrant);
-                    divided = self.draw_silhouette(dp, counts, quad, inner, paint);
-                }
-            }
-        }
-        divided
+    ) {
+        let _ = self.find(dp, quad, silhouette, &mut |canvas, dp, quad| {
+            canvas.draw_all(dp, counts, quad, paint);
+            false
+        });
     }
 
     fn draw_all<P: Probe>(
@@ -147,30 +130,46 @@ impl Canvas<'_> {
         }
     }
 
-    /// Whether a sample of `quad` inside a silhouette is not full. `Err`: none is; with the level of the last divided node,
-    /// as in [`Self::draw_silhouette`].
+    /// Whether a sample of `quad` inside a silhouette is not full.
     pub(super) fn sees<P: Probe>(
-        &self,
+        &mut self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        silhouette: Silhouette,
+    ) -> bool {
+        let mut is_open = |canvas: &mut Self, dp: &mut Datapath<P>, quad| {
+            canvas.open_quadrants(dp, quad).next().is_some()
+        };
+        self.find(dp, quad, silhouette, &mut is_open).is_ok()
+    }
+
+    /// Passes the nodes of `quad` inside a silhouette, and not full, to `is_found` until it returns true. `Err`: it never
+    /// does; with the level of the last divided node, or of the parent of `quad` if that was not divided.
+    fn find<P: Probe>(
+        &mut self,
         dp: &mut Datapath<P>,
         quad: QuadNode,
         mut silhouette: Silhouette,
+        is_found: &mut impl FnMut(&mut Self, &mut Datapath<P>, QuadNode) -> bool,
     ) -> Result<(), u32> {
+        dp.stage(Stage::Draw);
         let below = self.fill.levels() - quad.level;
         let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {
             Cover::None => {}
             Cover::All => {
-                if self.open_quadrants(dp, quad).next().is_some() {
+                if is_found(self, dp, quad) {
                     return Ok(());
                 }
             }
             Cover::Some => {
                 divided = quad.level;
                 for quadrant in self.open_quadrants(dp, quad) {
+                    // Hardware has the planes of one node, and restores them one level at a time.
                     dp.next_step(divided - quad.level);
                     let inner = silhouette.in_quadrant(dp, quadrant);
                     dp.next_step(0);
-                    match self.sees(dp, quad.quadrant(quadrant), inner) {
+                    match self.find(dp, quad.quadrant(quadrant), inner, is_found) {
                         Ok(()) => return Ok(()),
                         Err(deepest) => divided = deepest,
                     }

@@ -14,7 +14,6 @@ use super::state::{Job, Traversal};
 use super::watch::{Event, Watch};
 
 impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
-    /// Makes a record's children and pushes the visible ones.
     pub(super) fn subdivide<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -47,8 +46,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         }
     }
 
-    /// Pushes the existing children, the farthest first. `push` receives the child's octant and cube, and returns whether
-    /// it pushed the child.
+    /// Pushes the existing children, the farthest first. `push` returns whether it pushed the child.
     #[inline(always)]
     fn push_children<P: Probe>(
         &mut self,
@@ -70,7 +68,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         }
     }
 
-    /// Pushes a child in clip space, if it is visible. `planes` are its parent's, in which it has an octant.
+    /// Pushes a child in clip space, if it is visible. `planes` are its parent's.
     pub(super) fn push_clip_child<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -96,7 +94,6 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     }
 }
 
-/// The centre of a cube, and its octants, nearest first.
 #[inline(always)]
 pub(super) fn centre_and_order<P: Probe>(
     dp: &mut Datapath<P>,

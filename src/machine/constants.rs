@@ -1,5 +1,4 @@
-//! The frame's constants as machine words. The only module of the machine that multiplies, on the host. Every load
-//! checks that the constant fits its word.
+//! The frame's constants as machine words. The only module of the machine that multiplies, on the host.
 
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
@@ -13,22 +12,19 @@ use crate::project::vector::cross; // host: for a constant of the frame
 pub(super) enum Margin {
     /// Half-open boxes.
     Plain,
-    /// Closed boxes, widened by `2^-shift` samples on each side: the most that the change to screen space may add.
+    /// Closed boxes, widened by `2^-shift` samples on each side.
     Grow(i32),
-    /// Closed boxes, narrowed by half a sample on each side: a quadrant counts only if the box contains one of its
-    /// sample points. Only under the rules that draw outlines, which never leave clip space.
+    /// Closed boxes, narrowed by half a sample on each side, under the rules that draw outlines: a quadrant counts only if
+    /// the box contains one of its sample points.
     Gap,
 }
 
-/// Size, in units of the last place of a screen position, up to which a record is drawn as a solid. Rounded midpoints
-/// cannot separate closer vertices.
+/// Units of the last place of a screen position: rounded midpoints cannot separate closer vertices.
 const LEAST_SIZE: i64 = 4;
 
-/// Records across the near plane are dropped if the depth that they span is less than the near plane's, shifted right by
-/// this.
+/// Records across the near plane are dropped if they span less than its depth, shifted right by this.
 const NEAR_CROSSING_SHIFT: u32 = 6;
 
-/// The eye, for directions to blended voxels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendEye {
     /// Places by which coordinates are shifted right.
@@ -50,7 +46,6 @@ impl BlendEye {
 #[derive(Debug)]
 pub(super) struct Constants {
     pub(super) outline: OutlineRule,
-    /// `Some` under the rule that blends.
     pub(super) blend_eye: Option<BlendEye>,
     /// Level of the samples in the image quadtree.
     pub(super) levels: u32,
@@ -62,11 +57,11 @@ pub(super) struct Constants {
     pub(super) level_bound: u32,
     /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
-    /// Places to the left, then to the right, that turn half samples into screen positions: one less than `screen_frac`.
+    /// Places to the left, then to the right, that turn half samples into screen positions.
     pub(super) half_sample_places: [u32; 2],
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
-    /// As [`Margin::Grow`], for the picture's edges, where boxes are never narrowed.
+    /// As [`Margin::Grow`], for the picture's edges.
     pub(super) grow: Option<i32>,
     /// Samples that a voxel drawn at its centre may span.
     pub(super) size_limit: ShiftSum,
@@ -76,16 +71,12 @@ pub(super) struct Constants {
     pub(super) size_limit_screen: Word,
     pub(super) lod_limit_screen: Word,
     pub(super) least_size_screen: Word,
-    /// Depth of the near plane.
     pub(super) near: Word,
-    /// Depth that a record across the near plane must span to be subdivided.
     pub(super) near_crossing: Word,
     /// By level, least depth of a record that may change to screen space.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a clip-space node that level of detail draws as a solid.
     pub(super) lod_depth: Vec<Option<Word>>,
-    /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded down and up, and moved to just beyond
-    /// the object if it is far away.
+    /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, moved to just beyond the object if it is far away.
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     /// Whether the edges' clip vectors, as columns, have a positive determinant.
@@ -187,9 +178,8 @@ impl Constants {
     }
 }
 
-/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`. A level without a
-/// depth has the greatest word. Under the rules that draw outlines the constants of silhouette planes follow
-/// (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
+/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, then those of planes
+/// (`rtl/stage_b/plane_constants.v`), each in two registers. A level without a depth has the greatest word.
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);
@@ -237,7 +227,6 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
     registers
 }
 
-/// Number of registers without those of planes, and the first register of the depths by octree level.
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 

@@ -18,12 +18,11 @@ use super::verdict::{Verdict, is_hidden, verdict};
 use crate::frame::QuadNode;
 
 pub(super) enum RemainingWork {
-    /// None: it is drawn, hidden or dropped.
     Nothing,
     Children,
 }
 
-/// Draws or drops a record whose quadtree node is not full, unless its children are needed.
+/// Draws or drops a record, unless its children are needed.
 #[inline(always)]
 pub(super) fn decide<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -69,7 +68,6 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
             counts.hidden_across_bisectors += 1;
         }
         Verdict::Subdivide => {
-            // Parts of a solid have no node of their own.
             if is_read_late && !record.cube.solid {
                 dp.stage(Stage::OnePixel);
                 read_node(dp, job, record.cube.node, record.cube.level);
@@ -93,7 +91,7 @@ fn read_node<P: Probe>(dp: &mut Datapath<P>, job: &Job<'_>, node: u32, level: u3
     }
 }
 
-/// The sample that contains a record's centre, if it is in the picture and not before the near plane.
+/// The sample of a record's centre, if it is in the picture and not before the near plane.
 fn centre_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -142,7 +140,6 @@ fn draw_solid<P: Probe, L: CageCoordinate>(
     canvas.draw_silhouette(dp, counts, record.place.quad, silhouette, &paint);
 }
 
-/// The node and the voxel that a record shows.
 fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Paint {
     let cube = &record.cube;
     let side_log2 = c.depth - cube.voxel_level;

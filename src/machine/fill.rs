@@ -1,9 +1,8 @@
-//! The machine's fill vectors: four bits per node of the image quadtree, or the lowest two levels joined. Both decisions
-//! of R6 (`SPEC.md`) that follow from one vector are here.
+//! Fill vectors: four bits per node of the image quadtree. Both decisions of R6 (`SPEC.md`) that follow from one vector are
+//! here.
 //!
-//! A sample's vector is all ones or all zeros, like its bit in its parent's vector. *Joined*, a node two levels above the
-//! samples has one word of 16 bits, one per sample, instead of its own and its descendants' 21 vectors. The last word
-//! read stays in a register during a record's turn.
+//! *Joined*, a node two levels above the samples has one word of 16 bits, one per sample, instead of its own and its
+//! descendants' 21 vectors. The last word read stays in a register during a record's turn.
 
 use std::cell::Cell;
 
@@ -15,25 +14,22 @@ use super::quadrants::only;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
-/// Levels of fill vectors that a word replaces, below its own.
 const LEVELS_BELOW: u32 = 2;
 const WORD_BITS: u32 = 16;
 const ALL_DRAWN: u16 = u16::MAX;
 const NO_WORD: u64 = u64::MAX;
 
-/// Fill vectors, joined or not.
 #[derive(Debug)]
 pub(super) struct FillStore<'f> {
     vectors: &'f mut FillVectors,
     /// Of the nodes two levels above the samples, row by row; empty if not joined.
     words: Vec<u16>,
-    /// The address of the word in the register.
     latched: Cell<u64>,
     pub(super) rejects_full: bool,
 }
 
 impl<'f> FillStore<'f> {
-    /// Joins the lowest two levels if the organisation says so and there are as many below the tiles.
+    /// Joins the lowest two levels if there are as many below the tiles.
     pub(super) fn new(
         vectors: &'f mut FillVectors,
         organisation: Organisation,
@@ -63,8 +59,7 @@ impl<'f> FillStore<'f> {
         self.vectors.levels()
     }
 
-    /// Begins a tile, or a picture of one tile: reports the writes of its vectors and of those above it, which are up to
-    /// date.
+    /// Reports the writes of a tile's vectors and of those above it, which are up to date.
     pub(super) fn begin_tile<P: Probe>(&self, dp: &mut Datapath<P>, tile: QuadNode) {
         if !P::ENABLED {
             return;
@@ -92,7 +87,6 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Begins a record's turn: empties the register.
     #[inline(always)]
     pub(super) fn begin_turn(&self) {
         self.latched.set(NO_WORD);
@@ -121,11 +115,9 @@ impl<'f> FillStore<'f> {
         full
     }
 
-    /// Whether the search for a box's node rejects the box, which overlaps `quadrants` of `quad`: none of them is open.
+    /// Whether the search for a box's node rejects the box, because none of the quadrants that it overlaps is open.
     ///
-    /// The search never enters a full node. It continues only with an open quadrant, and a node that becomes full sets
-    /// its bit in its parent's vector ([`Self::mark`]). Only the first node of the search may be full: a parent that draws
-    /// its children one by one may have filled its own node. Then no quadrant is open, and the box is rejected here.
+    /// The search never enters a full node, but begins in one if a parent that draws its children one by one filled it.
     #[inline]
     pub(super) fn rejects<P: Probe>(
         &self,
@@ -151,7 +143,6 @@ impl<'f> FillStore<'f> {
         rejects
     }
 
-    /// A node's vector, unreported.
     #[inline(always)]
     pub(super) fn peek(&self, node: QuadNode) -> u8 {
         if self.is_joined(node) {
@@ -199,7 +190,7 @@ impl<'f> FillStore<'f> {
         }
     }
 
-    /// Sets a sample's bit in its word. If that fills the word, returns the node above it, and its bit there.
+    /// Returns the node above a word that becomes full, and its bit there.
     fn mark_in_word<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -209,7 +200,7 @@ impl<'f> FillStore<'f> {
         self.read_word(dp, sample);
         let word = &mut self.words[at];
         let quadrant = sample.ancestor(sample.level - 1).in_parent();
-        // Four gates per quadrant, of which one changes; the word is in its register.
+        // Four gates per quadrant, of which one changes.
         let before = (*word >> (quadrant << 2)) as u8 & FULL;
         dp.beside(Stage::FillUpdate, |dp| {
             dp.or_bits(4, before, 1 << sample.in_parent());
@@ -236,7 +227,6 @@ impl<'f> FillStore<'f> {
         !self.words.is_empty() && node.level + LEVELS_BELOW >= self.levels()
     }
 
-    /// The node whose word contains a joined node, and the word's index.
     fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
         let level = self.levels() - LEVELS_BELOW;
         let holder = node.ancestor(level);
@@ -270,7 +260,6 @@ impl<'f> FillStore<'f> {
     }
 }
 
-/// The samples of a node two levels above them that are full from the start.
 fn word_of(vectors: &FillVectors, node: QuadNode) -> u16 {
     (0..4).fold(0, |word, quadrant| {
         let bits = vectors.vector(node.quadrant(quadrant));

@@ -11,14 +11,10 @@
 //!     when none is left: take the current record from the stack; end when that is empty
 //! ```
 //!
-//! The image-order paper's loop stores each visible child with its vertices. Here only a subdivided record is stored,
-//! while it has remaining children. So the stack is never deeper than the octree, and never contains a drawn voxel. The
-//! search for a child's node runs in its turn, when more of the picture is drawn. The vertices of a parent's children are
-//! in registers, and computed again when the parent returns from the stack. The stack contains whole parents, or a path
-//! entry of each: its node and the remaining children. Then the rest is restored from a descendant (`path.rs`).
+//! The stack holds subdivided records with remaining children, as a whole or as path entries (`path.rs`), so it is never
+//! deeper than the octree. Children are computed again when their parent returns from the stack.
 //!
-//! *Tiles*: the object is drawn once per tile of the picture, with everything outside the tile full from the start. Only
-//! the fill vectors above the tiles differ between tiles.
+//! *Tiles*: the object is drawn once per tile of the picture, with everything outside the tile full from the start.
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Stage, Word};
@@ -43,12 +39,10 @@ pub(super) struct Parent<L: CageCoordinate> {
     pub(super) record: Record<L>,
     /// Remaining children, one bit per place in the order, nearest first.
     left: u8,
-    /// Numbers of its children; `None` if it is new or was stored.
     expanded: Option<Expanded<L>>,
     is_stored: bool,
 }
 
-/// An entry of the stack: a whole parent, or the path to it.
 #[expect(
     clippy::large_enum_variant,
     reason = "a stack holds one kind or the other; boxes would be slower"
@@ -59,7 +53,6 @@ pub(super) enum Stored<L: CageCoordinate> {
     Path(PathEntry),
 }
 
-/// The numbers from which a record's children are computed.
 #[derive(Clone, Copy)]
 struct Expanded<L: CageCoordinate> {
     centre: [Word; 3],
@@ -78,7 +71,6 @@ impl<L: CageCoordinate> Parent<L> {
         }
     }
 
-    /// Whether all its children had their turn.
     pub(super) fn is_done(&self) -> bool {
         self.left == 0
     }
@@ -94,15 +86,14 @@ impl<L: CageCoordinate> Parent<L> {
         }
     }
 
-    /// Whether it was never on the stack.
     fn is_new(&self) -> bool {
         self.left == u8::MAX
     }
 }
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough. Fails when a
-    /// word overflows under the trap policy.
+    /// Draws the object tile by tile. Returns whether at most `most_records` records were enough. Fails when a word overflows
+    /// under the trap policy.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);
@@ -116,7 +107,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The tiles of an empty picture, row by row.
     pub(super) fn tiles(&self) -> Vec<QuadNode> {
         let level = self.tile_levels();
         let side = 1u32 << level;
@@ -140,7 +130,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let mut stack = Vec::new();
         let mut current = self.object(tile);
         check_trap(&self.dp)?;
-        // The previous record of the walk.
         let mut last = None;
         loop {
             let mut parent = match current.take().map(Stored::Whole).or_else(|| stack.pop()) {
@@ -172,7 +161,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The whole object in a tile, if it must be subdivided; otherwise it is drawn or dropped.
+    /// The object in a tile, if it must be subdivided; otherwise it is drawn or dropped.
     pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
         self.push_object(tile);
         self.work_on_new()
@@ -194,8 +183,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
     }
 
-    /// Restores a parent from its path entry on the stack, at `address`. `None`: its quadtree node is full. `from`: the
-    /// previous record of the walk.
+    /// Restores a parent from its path entry, at `address`, and the previous record. `None`: its quadtree node is full.
     pub(super) fn take_back(
         &mut self,
         entry: &PathEntry,
@@ -227,7 +215,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 
     /// Continues with a parent's children until one is visible. Draws that one, or returns it if it must be subdivided.
-    /// `address`: the parent's on the stack, if it was there.
     pub(super) fn parent_turn(
         &mut self,
         parent: &mut Parent<L>,
@@ -304,7 +291,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// Reports a restored parent to the probe, without the numbers that its turn does not need: node and least depth.
+/// Reports a restored parent, without the numbers that its turn does not need: node and least depth.
 fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: Record<L>) {
     record.cube.node = 0;
     if let Pose::Clip(clip, _) = &mut record.pose {
@@ -313,7 +300,6 @@ fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: 
     Port::Made.tap(dp, u64::from(true), &record);
 }
 
-/// Computes the numbers from which a record's children are computed.
 fn expand<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -334,11 +320,11 @@ fn expand<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// A tile's own view of the fill vectors above it: everything outside the path to the tile is full.
+/// A tile's view of the fill vectors above it: everything outside the path to the tile is full.
 #[derive(Debug, Clone)]
 pub(super) struct TileView {
     tile: QuadNode,
-    /// Vectors of the nodes above the tile, from the root; while the view is in use, the replaced ones.
+    /// Vectors of the nodes above, from the root; while the view is in use, the replaced ones.
     above: Vec<u8>,
 }
 
@@ -354,7 +340,6 @@ impl TileView {
         }
     }
 
-    /// Exchanges the view's vectors with the current ones.
     pub(super) fn swap(&mut self, fill: &mut FillStore<'_>) {
         for (level, own) in (0..self.tile.level).zip(&mut self.above) {
             *own = fill.replace(self.tile.ancestor(level), *own);

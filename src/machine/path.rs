@@ -1,10 +1,5 @@
-//! Restores a record's ancestor from the record.
-//!
-//! Under the rules that draw outlines every step down can be undone exactly:
-//!
-//! - Edges were halved without a remainder, since no record is finer than the finest voxels.
-//! - A child's vertices and planes are its parent's, moved by its own edges.
-//! - Coordinates in a quadrant, `2x` or `2x - w`, return by an add and a shift by one place.
+//! Restores a record's ancestor from the record. Under the rules that draw outlines every step down can be undone
+//! exactly: edges were halved without a remainder, since no record is finer than the finest voxels.
 
 use hwmodel::{Datapath, Probe, Short, Signal, Wires};
 
@@ -39,7 +34,7 @@ impl Wires for PathEntry {
     }
 }
 
-/// The parent of a stored entry, from one of its descendants.
+/// A stored entry's record, from one of its descendants.
 pub(super) fn back<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -64,7 +59,7 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         for coordinate in [&mut clip.x, &mut clip.y, &mut clip.w] {
             *coordinate = coordinate.of_parent(dp, octant);
         }
-        planes::to_parent(dp, constants, &mut planes, level, octant);
+        planes::move_edges(dp, constants, &mut planes, (level, octant), false);
         min = min.map(|corner| dp.without_bit(corner, place));
         if level > entry.level {
             dp.next_step(0);
@@ -89,7 +84,6 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Makes vertices and planes relative to the parent of their quadrant.
 fn out_of_quadrant<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,9 +1,5 @@
-//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
-//!
-//! A ray meets the inside of a cube if and only if for each axis j the four edges along j do not all pass on one side of
-//! it. The plane through the eye and the edge from `A` along `e_j` has the normal `A x e_j` (Plücker coordinates); moving
-//! the edge by another edge adds a constant of the object. So children's planes follow by shifts and adds of constants,
-//! and planes relative to a quadrant by `c' = 2c + bx a + by b` (`bx`, `by`: the quadrant's column and row).
+//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space. Children's planes follow by shifts and adds of
+//! constants, since moving an edge by another edge adds a constant of the object to its plane `A x e_j`.
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
@@ -11,13 +7,11 @@ use super::blocks::{Block, LEVEL_BITS};
 use super::constants::Constants;
 use super::record::{Cube, Planes};
 
-/// Side of a plane on which all samples of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     Both,
     Positive,
     Negative,
-    /// On neither: a degenerate edge, whose line contains the eye.
     Nowhere,
 }
 
@@ -59,7 +53,7 @@ impl Plane {
         }
     }
 
-    /// Finds the side of a node's samples, which lie strictly inside it.
+    /// Finds the side of the node's samples, which lie strictly inside it.
     fn resolve<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) {
         if self.side != Side::Both {
             return;
@@ -82,8 +76,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal and below it by
-    /// one infinitely smaller.
+    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal, and below it by a
+    /// smaller one.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -100,7 +94,6 @@ impl Plane {
         Side::Nowhere
     }
 
-    /// Relative to a quadrant of the node.
     fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
         if self.side != Side::Both {
             return *self;
@@ -112,31 +105,28 @@ impl Plane {
     }
 }
 
-/// Coverage of a quadtree node by a silhouette.
+/// The covered samples of a quadtree node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
-    /// No sample is covered.
     None,
     Some,
     All,
 }
 
 impl Cover {
-    /// Encoded in two bits: 0 none, 1 some, 2 all.
     #[inline]
     fn wires(self) -> Short {
         Short::unsigned(self as u8, 2)
     }
 }
 
-/// The silhouette of a cube, relative to a quadtree node. On the way down the image quadtree, whole quadrants are covered
-/// or not; samples are decided by their centres.
+/// The silhouette of a cube, relative to a quadtree node.
 #[derive(Debug, Clone)]
 pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
     /// Of a cube that is not wholly before the eye: a plane perpendicular to an axis, and the side on which rays reach the
-    /// cube. Those on the other side reach its mirror image behind the eye.
+    /// cube, not its mirror image behind the eye.
     front: Option<(Plane, Side)>,
 }
 
@@ -151,7 +141,7 @@ impl Silhouette {
     ) -> Self {
         let is_before_eye = dp.is_positive(w_min);
         let side_shift = constants.depth - cube.level;
-        // By axis: the change of an edge's plane when the edge moves one side along it.
+        // The change of an edge's plane when the edge moves one side along an axis.
         let across = [0, 1, 2].map(|l| {
             let axis = axis_plane(constants, planes, l);
             axis.map(|v| dp.shl(v, side_shift))
@@ -178,7 +168,7 @@ impl Silhouette {
     }
 
     /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those towards it along an axis on which the eye
-    /// is outside it. `None` for a cube that contains the eye.
+    /// is outside. `None`: the cube contains the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -210,7 +200,6 @@ impl Silhouette {
         front.map(|(_, plane, side)| (plane, side))
     }
 
-    /// Finds the sides of all planes, and the resulting cover.
     fn resolve<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
         for edges in &mut self.edges {
@@ -254,7 +243,7 @@ impl Silhouette {
         cover
     }
 
-    /// The silhouette relative to a quadrant (`y << 1 | x`) of the node.
+    /// Relative to a quadrant (`y << 1 | x`) of the node.
     pub(super) fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
         Self {
             edges: std::array::from_fn(|j| {
@@ -272,7 +261,7 @@ fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord;
     [a, b, planes.axis_c[axis]]
 }
 
-/// The sum of two planes' coefficients, or their difference.
+/// The sum or the difference of two planes.
 fn combine<P: Probe>(
     dp: &mut Datapath<P>,
     a: [WideWord; 3],
@@ -296,36 +285,27 @@ pub(super) fn of_child<P: Probe>(
     parent_level: u32,
     octant: u8,
 ) -> Planes {
-    let half_shift = constants.depth - parent_level - 1;
     let mut planes = *parent;
-    for j in 0..3 {
-        let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
-        for (axis, of, add) in [(k, l, false), (l, k, true)] {
-            if octant >> (2 - axis) & 1 != 0 {
-                let across = axis_plane(constants, parent, of).map(|v| dp.shl(v, half_shift));
-                planes.edge[j] = combine(dp, planes.edge[j], across, add);
-            }
-        }
-    }
+    move_edges(dp, constants, &mut planes, (parent_level, octant), true);
     let axes = (constants.axis_ab, parent.axis_c);
-    let half = Short::unsigned(half_shift, LEVEL_BITS);
+    let half = Short::unsigned(constants.depth - parent_level - 1, LEVEL_BITS);
     let stimulus = (parent.edge, axes, half, Short::unsigned(octant, 3));
     dp.tap(Block::ChildPlanes, &stimulus, &planes.edge);
     planes
 }
 
-/// The planes of a parent at a level: undoes [`of_child`].
-pub(super) fn to_parent<P: Probe>(
+/// Moves the planes of edges from a parent at a level to its child in an octant, or back.
+pub(super) fn move_edges<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     planes: &mut Planes,
-    parent_level: u32,
-    octant: u8,
+    (parent_level, octant): (u32, u8),
+    to_child: bool,
 ) {
     let half_shift = constants.depth - parent_level - 1;
     for j in 0..3 {
         let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
-        for (axis, of, add) in [(k, l, true), (l, k, false)] {
+        for (axis, of, add) in [(k, l, !to_child), (l, k, to_child)] {
             if octant >> (2 - axis) & 1 != 0 {
                 let across = axis_plane(constants, planes, of).map(|v| dp.shl(v, half_shift));
                 planes.edge[j] = combine(dp, planes.edge[j], across, add);
@@ -341,21 +321,15 @@ pub(super) fn move_out_of_quadrant<P: Probe>(
     planes: &mut Planes,
     quadrant: u8,
 ) {
-    let mut undo = |[a, b]: [WideWord; 2], c: &mut WideWord| {
+    each_constant(constants, planes, |[a, b], mut c| {
         if quadrant & 1 != 0 {
-            *c = dp.sub(*c, a);
+            c = dp.sub(c, a);
         }
         if quadrant & 2 != 0 {
-            *c = dp.sub(*c, b);
+            c = dp.sub(c, b);
         }
-        *c = dp.shr(*c, 1);
-    };
-    for [a, b, c] in &mut planes.edge {
-        undo([*a, *b], c);
-    }
-    for (c, &ab) in planes.axis_c.iter_mut().zip(&constants.axis_ab) {
-        undo(ab, c);
-    }
+        dp.shr(c, 1)
+    });
 }
 
 pub(super) fn move_to_quadrant<P: Probe>(
@@ -364,16 +338,25 @@ pub(super) fn move_to_quadrant<P: Probe>(
     planes: &mut Planes,
     quadrant: u8,
 ) {
+    each_constant(constants, planes, |ab, c| {
+        constant_in_quadrant(dp, ab, c, quadrant)
+    });
+}
+
+fn each_constant(
+    constants: &Constants,
+    planes: &mut Planes,
+    mut replaced: impl FnMut([WideWord; 2], WideWord) -> WideWord,
+) {
     for [a, b, c] in &mut planes.edge {
-        *c = constant_in_quadrant(dp, [*a, *b], *c, quadrant);
+        *c = replaced([*a, *b], *c);
     }
     for (c, &ab) in planes.axis_c.iter_mut().zip(&constants.axis_ab) {
-        *c = constant_in_quadrant(dp, ab, *c, quadrant);
+        *c = replaced(ab, *c);
     }
 }
 
-/// The constant of `a x + b y + c` in a quadrant's own coordinates, where the function is doubled: `2c`, plus `a` in the
-/// right half, plus `b` in the lower.
+/// The constant of `a x + b y + c` in a quadrant's own coordinates, where the function is doubled.
 #[inline]
 fn constant_in_quadrant<P: Probe>(
     dp: &mut Datapath<P>,

@@ -1,4 +1,4 @@
-//! Pushing records: those before the eye whose box has an unfilled quadtree node (image-order paper, 3.5).
+//! Pushes records before the eye whose box has an unfilled quadtree node (image-order paper, 3.5).
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Stage, Word};
@@ -51,7 +51,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 }
 
 impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
-    /// Pushes a record in clip space, unless the search for its quadtree node rejects it. Returns whether it was pushed.
+    /// Pushes a record in clip space, unless it is rejected. Returns whether it was pushed.
     pub(super) fn push_clip<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -66,8 +66,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         self.push_at(dp, job, found, child.cube, || Pose::Clip(clip, planes))
     }
 
-    /// Pushes a record in screen space, where everything is before the eye. `coordinates` selects the vertices' x and y:
-    /// twice, because most children are rejected.
+    /// Pushes a record in screen space. `coordinates` selects x and y: twice, because most children are rejected.
     #[inline(always)]
     pub(super) fn push_screen<P: Probe>(
         &mut self,
@@ -85,7 +84,6 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         })
     }
 
-    /// Pushes a record at its quadtree node, if one was found.
     #[inline(always)]
     fn push_at<P: Probe>(
         &mut self,
@@ -118,8 +116,8 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     }
 }
 
-/// Whether a box whose greatest depth is `w_max` lies behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules
-/// that have one, before the near plane (R7.2). Counts it.
+/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules that have one, before the near plane
+/// (R7.2).
 pub(super) fn is_behind<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -135,7 +133,6 @@ pub(super) fn is_behind<P: Probe>(
     is_behind
 }
 
-/// The least and the greatest of a child's vertices, one coordinate.
 #[inline(always)]
 pub(super) fn child_span<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

@@ -1,8 +1,5 @@
-//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6; image-order paper, 3.5).
-//!
-//! In clip space `x` runs from 0 to `w` across the node, so the sign of `2x - w` is the side of the bisector. Relative to
-//! the far half `x` is `2x - w`, relative to the near one `2x`. Screen-space positions are relative to the picture, and
-//! are compared with the bisector's.
+//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6; image-order paper, 3.5). In clip space `x` runs from
+//! 0 to `w` across the node, and the sign of `2x - w` is the side of the bisector.
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -20,8 +17,7 @@ pub(super) struct Halves {
     pub(super) high: bool,
 }
 
-/// The quadrants (bit `y << 1 | x`) in the given halves along x and y. In hardware four gates on the comparators' outputs,
-/// counted with the 4-bit "and" that follows.
+/// The quadrants (bit `y << 1 | x`) in the given halves. In hardware four gates, counted with the 4-bit "and" that follows.
 #[inline(always)]
 pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
     // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
@@ -52,8 +48,7 @@ pub(super) fn only(quadrants: u8) -> Option<u8> {
         .then(|| quadrants.trailing_zeros() as u8)
 }
 
-/// The quadrants of its node that a clip-space box overlaps, and its x and y relative to the far halves, for
-/// [`clip_in_quadrant`].
+/// Overlapped quadrants, and x and y relative to the far halves for [`clip_in_quadrant`].
 pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -66,7 +61,7 @@ pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
     (quadrants(dp, x, y), [far_x, far_y])
 }
 
-/// Clip-space vertices relative to a quadrant of their node: `far`, from [`of_clip`], in a far half, doubled in a near one.
+/// Relative to a quadrant: `far`, from [`of_clip`], in a far half, doubled in a near one.
 pub(super) fn clip_in_quadrant<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
@@ -87,7 +82,6 @@ pub(super) fn clip_in_quadrant<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// The quadrants of a node that a screen-space box overlaps.
 #[inline(always)]
 pub(super) fn of_screen<P: Probe>(
     dp: &mut Datapath<P>,
@@ -101,7 +95,7 @@ pub(super) fn of_screen<P: Probe>(
     quadrants(dp, x, y)
 }
 
-/// `2x - w` of a clip-space cage, and the halves of the node, `below` levels above the samples, that its box overlaps.
+/// `2x - w`, and the overlapped halves of the node, `below` levels above the samples.
 fn bisect<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -143,7 +137,7 @@ fn bisect<P: Probe, L: CageCoordinate>(
             halves
         }
         Margin::Gap => {
-            // A sample has one sample point, in its middle: the box contains it if it overlaps both closed halves.
+            // A sample has one sample point, in its middle.
             let span = relative.span(dp);
             let halves = closed_halves(dp, span);
             let margin = w.map(|_| Word::ZERO);
@@ -159,8 +153,7 @@ fn bisect<P: Probe, L: CageCoordinate>(
     (relative, halves)
 }
 
-/// Reports the test of a clip-space box against a bisector. `kind`: whether the comparisons are closed, and whether both
-/// halves must contain the sample.
+/// `kind`: whether the comparisons are closed, and whether both halves must contain the sample.
 #[inline(always)]
 fn tap_bisector<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

@@ -6,7 +6,7 @@ use super::blocks::{ADDRESS_BITS, LEVEL_BITS, NODE_BITS};
 use super::cage::CageCoordinate;
 use crate::frame::QuadNode;
 
-/// An entry of the stack: a cube of object space, the place of its box in the image, and its projected vertices.
+/// A cube of object space, the place of its box in the image, and its projected vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<L> {
     pub(super) cube: Cube,
@@ -19,28 +19,24 @@ pub(super) struct Record<L> {
 pub(super) struct Cube {
     /// Lowest vertex in object space, units of `2^-sub_levels` finest voxels.
     pub(super) min: [Word; 3],
-    /// Highest vertex, same units.
     pub(super) max: [Word; 3],
     /// Octree node; a part of a solid keeps the solid's.
     pub(super) node: u32,
-    /// Octree level, 0 = root.
     pub(super) level: u32,
-    /// Level of the voxel of which this is a part: less than `level` inside a solid, otherwise equal.
+    /// Level of the voxel of which this is a part.
     pub(super) voxel_level: u32,
     /// Whether this is a solid voxel or a part of one.
     pub(super) solid: bool,
 }
 
-/// A position in the image: the smallest quadtree node found for a box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImagePlace {
     pub(super) quad: QuadNode,
-    /// Whether the box lies inside the node. If not, it leaves the picture's root where it leaves the node.
+    /// Whether the box lies inside the node. If not, it leaves the picture where it leaves the node.
     pub(super) inside: bool,
 }
 
 impl ImagePlace {
-    /// The whole image, of a box that may leave it.
     pub(super) const ROOT: Self = Self {
         quad: QuadNode::ROOT,
         inside: false,
@@ -55,28 +51,24 @@ pub(super) struct Child {
     pub(super) from: ImagePlace,
 }
 
-/// A cube's projected vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pose<L> {
-    /// In clip space, exact. Only the rules that draw outlines use the planes.
+    /// Exact. Only the rules that draw outlines use the planes.
     Clip(Clip<L>, Planes),
-    /// In screen space, an approximation, under the rules that draw single samples (`any`, `center`).
+    /// An approximation, under the rules that draw single samples (`any`, `center`).
     Screen(Screen<L>),
 }
 
-/// Vertices in clip space. `x` and `y` are relative to the record's quadtree node: 0 is its left (upper) edge, `w` its
-/// right (lower) one.
+/// Relative to the quadtree node: 0 is its left (upper) edge, `w` its right (lower) one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clip<L> {
     pub(super) x: L,
     pub(super) y: L,
     pub(super) w: L,
-    /// Least depth of the eight vertices.
     pub(super) w_min: Word,
 }
 
-/// Vertices in screen space, and the box around them: samples from the picture's top left, with the format's fraction
-/// bits.
+/// Samples from the picture's top left, with the format's fraction bits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Screen<L> {
     pub(super) x: L,
@@ -84,21 +76,20 @@ pub(super) struct Screen<L> {
     pub(super) spans: Spans,
 }
 
-/// Least and greatest x, least and greatest y, in screen space.
+/// Least and greatest x, least and greatest y.
 pub(super) type Spans = [(Word, Word); 2];
 
-/// Silhouette planes of a cube in clip space (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with
-/// `x` and `y` from 0 to 1 across the node.
+/// Silhouette planes of a cube (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with `x` and `y`
+/// from 0 to 1 across the node.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Planes {
     /// By edge direction j: the plane through the eye and the edge that leaves the lowest corner along j.
     pub(super) edge: [[WideWord; 3]; 3],
-    /// By axis l: the constant `c` of the plane through the eye perpendicular to axis l. `a` and `b` are the same for all
-    /// records.
+    /// By axis: the constant `c` of the plane through the eye perpendicular to it; `a` and `b` are the frame's.
     pub(super) axis_c: [WideWord; 3],
 }
 
-/// The fields one after the other; zeros where the record's pose has none.
+/// Zeros where the pose has no such field.
 impl<L: CageCoordinate> Wires for Record<L> {
     fn show(&self, to: &mut Vec<Signal>) {
         let (cube, quad) = (&self.cube, &self.place.quad);

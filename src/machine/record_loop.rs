@@ -1,4 +1,4 @@
-//! The record loop (image-order paper, 3.1 to 3.6): see the machine's page.
+//! The record loop (image-order paper, 3.1 to 3.6).
 
 use hwmodel::{Datapath, Memory, Probe, Stage};
 
@@ -11,8 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack, in at most `most_records` turns. Returns whether that
-    /// was enough. Fails when a word overflows under the trap policy.
+    /// Draws the object in a tile, with children on the stack. Returns whether at most `most_records` turns were enough.
+    /// Fails when a word overflows under the trap policy.
     pub(super) fn draw_object(
         &mut self,
         tile: QuadNode,
@@ -69,7 +69,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// Fails when a word overflowed under the trap policy.
 pub(super) fn check_trap<P: Probe>(dp: &Datapath<P>) -> Result<(), EngineError> {
     dp.trap().map_or(Ok(()), |trap| Err(trap.into()))
 }

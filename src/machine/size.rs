@@ -10,11 +10,9 @@ use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
 use crate::project::options::ShiftSum;
 
-/// Whether a clip-space cage is at most `limit` samples wide and high, in a node `below` levels above the samples.
-///
-/// An edge `E` moves a vertex at `x` (0 to 1 across the node) by `(E_X - x E_W) / W`. So the size is bounded by the sum
-/// over the edges of the greater of `|E_X|` and `|E_X - E_W|`, divided by the least `W`. Conservative: a few cages just
-/// within the limit are rejected.
+/// Whether a clip-space cage is at most `limit` samples wide and high, in a node `below` levels above the samples. An edge
+/// `E` moves a vertex at `x` (0 to 1 across the node) by `(E_X - x E_W) / W`, so the size is bounded by the sum over the
+/// edges of the greater of `|E_X|` and `|E_X - E_W|`, divided by the least `W`. A few cages just within are rejected.
 pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
@@ -56,13 +54,12 @@ pub(super) fn edges_at_most<P: Probe>(
     fits
 }
 
-/// `|a|`.
 fn magnitude<P: Probe>(dp: &mut Datapath<P>, a: Word) -> Word {
     let negated = dp.neg(a);
     dp.max(a, negated)
 }
 
-/// Whether a screen-space box is at most `limit` wide and high, in units of screen positions.
+/// Whether a screen-space box is at most `limit` wide and high.
 #[inline]
 pub(super) fn screen_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -78,8 +75,7 @@ pub(super) fn screen_at_most<P: Probe, L: CageCoordinate>(
     fits(screen.spans[0]) && fits(screen.spans[1])
 }
 
-/// The sample that contains the centre of a clip-space cage, whose depth is `w`, by bisection from its quadtree node;
-/// `None` outside the picture's root.
+/// The sample of the centre of a clip-space cage, whose depth is `w`, by bisection; `None` outside the picture.
 pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -118,7 +114,7 @@ pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     Some(quad)
 }
 
-/// The sample that contains the centre of a screen-space cage: its integer bits. `None` outside the picture's root.
+/// The sample of the centre of a screen-space cage: its integer bits. `None` outside the picture.
 pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,4 +1,5 @@
-//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5).
+//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5). Its search does not depend
+//! on drawn samples; only the rejection does.
 //!
 //! ```text
 //! from the parent's node on:
@@ -7,8 +8,6 @@
 //!     if there is exactly one: continue with that quadrant
 //!     else: this is the node
 //! ```
-//!
-//! The end of the search does not depend on drawn samples; only the rejection does.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -21,7 +20,7 @@ use super::quadrants::{self, margins, only};
 use super::record::{Clip, ImagePlace, Planes, Spans};
 use crate::frame::QuadNode;
 
-/// Finds the node of a clip-space cage, and makes the cage and its planes relative to it. `None`: rejected.
+/// Finds the node, and makes cage and planes relative to it. `None`: rejected.
 pub(super) fn clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -59,7 +58,6 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
     Some(ImagePlace { quad, inside })
 }
 
-/// Finds the node of a screen-space box. `None`: rejected.
 #[inline(always)]
 pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
@@ -98,8 +96,8 @@ pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L
     near
 }
 
-/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node. `None`: outside. The node's edges are
-/// the picture's wherever the parent's box left the picture.
+/// Whether a box, widened by [`Constants::grow`], lies inside a node. `None`: outside. The node's edges are the picture's
+/// wherever the parent's box left the picture.
 fn is_inside<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -147,7 +145,6 @@ fn is_inside<P: Probe, L: CageCoordinate>(
     Some(inside)
 }
 
-/// The same for a screen-space box.
 fn is_screen_inside<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,4 +1,4 @@
-//! The parts of the record loop's state. Each step takes the parts that it reads or writes.
+//! The record loop's state. Each step takes the parts that it reads or writes.
 
 use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, Overflow, Probe, Stage};
@@ -37,7 +37,6 @@ impl Default for MachineOptions {
     }
 }
 
-/// The inputs of a frame, constant.
 pub(super) struct Job<'a> {
     pub(super) constants: Constants,
     pub(super) graph: &'a GraphView<'a>,
@@ -46,7 +45,6 @@ pub(super) struct Job<'a> {
     pub(super) organisation: Organisation,
 }
 
-/// The waiting records, and the counts.
 pub(super) struct Traversal<L, W> {
     pub(super) stack: Vec<Record<L>>,
     pub(super) counts: Counts,
@@ -98,7 +96,7 @@ impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
         }
     }
 
-    /// The counts of a frame after its last record, its probe and its watch.
+    /// Counts, probe and watch after the last record.
     pub(super) fn finish(mut self) -> (Stats, P, W) {
         self.traversal.counts.overflows = self.dp.overflows();
         let mut stats = self.traversal.counts.stats();

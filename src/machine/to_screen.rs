@@ -1,4 +1,4 @@
-//! The change from clip space to screen space (`SPEC.md`, R5): the only place where the machine divides, bit by bit.
+//! The change from clip to screen space (`SPEC.md`, R5): the only place where the machine divides.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -13,7 +13,7 @@ const INTEGER_BITS: u32 = 4;
 /// `w << OFFSET_SHIFT` is added to a numerator to make it positive.
 const OFFSET_SHIFT: u32 = 2;
 
-/// Whether a record of octree level `level` may change: it is far enough away, and not too far beyond the picture's edges.
+/// Whether a record may change: it is far enough away, and not too far beyond the picture's edges.
 pub(super) fn may_change<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -30,7 +30,6 @@ pub(super) fn may_change<P: Probe, L: CageCoordinate>(
     deep && (place.inside || within_guard(dp, constants, place, clip))
 }
 
-/// The vertices in screen space, of a record that may change.
 pub(super) fn change<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -56,8 +55,7 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether the box leaves the picture by no more than the bound on the deviation allows: an eighth of the picture's side,
-/// or four times its side where the tolerance is infinite.
+/// Whether the box leaves the picture by no more than an eighth of its side, or four sides where the tolerance is infinite.
 fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -90,7 +88,7 @@ fn within_guard<P: Probe, L: CageCoordinate>(
     })
 }
 
-/// A positive multiple of `x + w / 2^places`, exact; only its sign is used.
+/// A positive multiple of `x + w / 2^places`, exact.
 fn beyond<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, places: i32) -> Word {
     let (x, w) = if places >= 0 {
         (dp.shl(x, places as u32), w)

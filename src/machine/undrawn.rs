@@ -10,7 +10,6 @@ use super::record::{Clip, Pose, Record, Spans};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
-/// The first undrawn sample of a record's box.
 #[inline]
 pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
@@ -26,7 +25,6 @@ pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
     found.ok()
 }
 
-/// A box in the image, relative to a quadtree node.
 trait ImageBox: Copy {
     /// Results of the test of a node, reused by its quadrants.
     type Tested: Copy;
@@ -112,7 +110,7 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
         quadrants::clip_in_quadrant(dp, self, quadrant, far)
     }
 
-    /// Hardware moves a box back to its node's parent, one level at a time. Here the boxes above are kept.
+    /// Hardware moves a box back one level at a time. Here the boxes above are kept.
     fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
         dp.next_step(levels + 1);
     }

@@ -1,4 +1,4 @@
-//! The drawing rules (`SPEC.md`, R7, with R10, the end of subdivision): whether a record is drawn, dropped or subdivided.
+//! The drawing rules (`SPEC.md`, R7, and R10, termination).
 
 use hwmodel::{Datapath, Probe, Stage};
 
@@ -14,20 +14,18 @@ use super::state::Job;
 use super::undrawn::first_undrawn;
 use crate::project::options::OutlineRule;
 
-/// The next step of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Draw it at the sample of its centre (`any`, `center`).
+    /// At the sample of its centre (`any`, `center`).
     DrawCentre,
-    /// Draw it at every sample that its box overlaps (`any`).
+    /// At every sample that its box overlaps (`any`).
     DrawBox,
-    /// Draw it at every sample in its silhouette (the rules that draw outlines).
     DrawSolid,
     Drop,
     Subdivide,
 }
 
-/// Applies the frame's drawing rule to a record, and level of detail, which may make it solid.
+/// Applies the frame's drawing rule, and level of detail, which may make the record solid.
 pub(super) fn verdict<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -75,13 +73,13 @@ pub(super) fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn. Tested where occluded nodes are not read, by the rays of
-/// undrawn samples; otherwise for records up to the size of a sample across a bisector, where the search for the
-/// smallest node stops: all parts of a solid along a bisector would be kept until both its sides are full.
+/// Whether all samples that a record may cover are drawn. Tested where occluded nodes are not read; otherwise only for
+/// records up to the size of a sample across a bisector: all parts of a solid along a bisector would be kept until both
+/// its sides are full.
 pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
-    canvas: &Canvas<'_>,
+    canvas: &mut Canvas<'_>,
     record: &Record<L>,
 ) -> bool {
     let c = &job.constants;
@@ -100,7 +98,7 @@ pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
 fn is_seen<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
-    canvas: &Canvas<'_>,
+    canvas: &mut Canvas<'_>,
     record: &Record<L>,
 ) -> bool {
     let Pose::Clip(clip, planes) = &record.pose else {
@@ -109,7 +107,7 @@ fn is_seen<P: Probe, L: CageCoordinate>(
     dp.stage(Stage::Draw);
     let silhouette = Silhouette::new(dp, c, &record.cube, planes, clip.w_min);
     dp.next_step(0);
-    canvas.sees(dp, record.place.quad, silhouette).is_ok()
+    canvas.sees(dp, record.place.quad, silhouette)
 }
 
 /// Near plane (R7.2): whether a record lies across it and spans so little depth that it is dropped.
@@ -129,7 +127,7 @@ fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
     dp.lt(span, c.near_crossing)
 }
 
-/// The image-order paper's rule, `any`: a solid whose box lies in one sample is drawn there.
+/// The image-order paper's rule, `any`: a solid whose box lies in one sample.
 fn is_in_one_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -176,7 +174,7 @@ fn crosses_near<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether a record is at most as large as a sample, less twice the tolerance.
+/// Less twice the tolerance.
 #[inline(always)]
 fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

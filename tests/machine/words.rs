@@ -12,7 +12,7 @@ use std::path::Path;
 const MARKED: usize = 28;
 
 /// The only files that compute with the machine's numbers in another way: for measurements, and for inputs of blocks.
-const MEASURES: [&str; 3] = ["directed_blending.rs", "positions.rs", "widths.rs"];
+const MEASURES: [&str; 3] = ["directed.rs", "positions.rs", "widths.rs"];
 
 const HOST: &str = "to_host,vector::,cross(,dot(,DVec3, * , / , % , *= , /= , %= ,_mul,_div,_rem,mul_,div_,rem_,\
                     .mul(,.div(,.rem(,.pow(,.product(";

@@ -1,25 +1,26 @@
-//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. No result leaves its word:
-//! where a block adds, numbers stay some bits below the ends of the format.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, numbers stay
+//! some bits below the ends of the format, so that no result leaves its word.
 
-use hwmodel::{Probe, Stage, WideWord, Word};
+use hwmodel::{Datapath, Narrow, Probe, Stage, WideWord, Word};
 
-use super::directed_blending::{all_shares, blending};
-use super::inputs::{Inputs, SPARE};
-use crate::frame::{Frame, QuadNode};
-use crate::graph::GraphView;
+use crate::frame::{Blend, Frame, QuadNode};
+use crate::graph::{GraphView, Opacity};
 use crate::machine::MachineOptions;
+use crate::machine::alpha::BlendColor;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::children::{centre_and_order, child_cube, pool};
+use crate::machine::constants::BlendEye;
 use crate::machine::engine::Machine;
 use crate::machine::planes::{self, Silhouette};
 use crate::machine::push::child_span;
 use crate::machine::quadrants::{self, Halves};
-use crate::machine::record::{Cube, ImagePlace, Planes, Pose, Record, Screen};
+use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use crate::machine::state::State;
 use crate::machine::verdict::apply_level_of_detail;
 use crate::machine::{size, smallest_node, to_screen};
-use crate::project::FrameSetup;
 use crate::project::options::SCREEN_GUARD_SHIFT;
+use crate::project::{ALL_LEFT, FrameSetup, OPAQUE_ENOUGH, SHARES};
+use crate::split_mix::SplitMix;
 
 impl Machine {
     /// Gives `rounds` rounds of inputs to the blocks of a frame.
@@ -48,11 +49,11 @@ impl Machine {
         all_vectors(&mut state);
         let blends = setup.options.coverage.blends();
         if blends {
-            all_shares(&mut state, &mut inputs);
+            all_shares(&mut state.dp, &mut inputs);
         }
         for _ in 0..rounds {
             if blends {
-                blending(&mut state, &mut inputs);
+                blending(&mut state.dp, &mut inputs);
             }
             object_space(&mut state, &mut inputs);
             cages(&mut state, &mut inputs);
@@ -69,74 +70,72 @@ impl Machine {
 }
 
 fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
+    let (dp, fill) = (&mut state.dp, &mut state.canvas.fill);
     for bits in 0..16u8 {
         let halves = |at: u8| Halves {
             low: bits >> at & 1 != 0,
             high: bits >> at & 2 != 0,
         };
-        quadrants::quadrants(&mut state.dp, halves(0), halves(2));
+        quadrants::quadrants(dp, halves(0), halves(2));
     }
     let levels = state.job.constants.levels;
     let root = QuadNode::ROOT;
     for vector in 0..16u8 {
-        let kept = state.canvas.fill.replace(root, vector);
-        state.canvas.fill.is_full(&mut state.dp, root);
+        let kept = fill.replace(root, vector);
+        fill.is_full(dp, root);
         for overlapped in 0..16 {
-            state.canvas.fill.rejects(&mut state.dp, root, overlapped);
+            fill.rejects(dp, root, overlapped);
         }
-        let _ = state.canvas.fill.replace(root, kept);
+        let _ = fill.replace(root, kept);
         if levels == 0 {
             continue;
         }
         for quadrant in 0..4 {
             // A sample whose vectors are those of the row, so that its parent's is updated.
-            let mut parent = root;
-            while parent.level + 1 < levels {
-                parent = parent.quadrant(0);
-            }
+            let parent = (1..levels).fold(root, |parent, _| parent.quadrant(0));
             let sample = parent.quadrant(quadrant);
-            let before = state.canvas.fill.replace(sample, vector);
-            let above = state.canvas.fill.replace(parent, vector);
-            state.canvas.fill.mark(&mut state.dp, sample);
-            let _ = state.canvas.fill.replace(sample, before);
-            let _ = state.canvas.fill.replace(parent, above);
+            let before = fill.replace(sample, vector);
+            let above = fill.replace(parent, vector);
+            fill.mark(dp, sample);
+            let _ = fill.replace(sample, before);
+            let _ = fill.replace(parent, above);
         }
     }
 }
 
-/// Cubes of object space: the whole range of words.
 fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let (dp, job) = (&mut state.dp, &mut state.job);
     let mut cube = inputs.cube(0);
     if inputs.flag() {
         // Both ends of the range: their sum has a carry.
         cube.max = cube.min;
     }
     for k in 0..3 {
-        let centre = state.dp.midpoint(cube.min[k], cube.max[k]);
+        let centre = dp.midpoint(cube.min[k], cube.max[k]);
         let any = inputs.word(0);
-        state.job.constants.eye_floor[k] = if inputs.flag() { centre } else { any };
+        job.constants.eye_floor[k] = if inputs.flag() { centre } else { any };
     }
-    let (centre, _) = centre_and_order(&mut state.dp, &state.job, &cube);
+    let (centre, _) = centre_and_order(dp, job, &cube);
     let octant = inputs.level(7) as u8;
     let counts = &mut state.traversal.counts;
-    child_cube(&mut state.dp, &state.job, counts, &cube, octant, &centre);
+    child_cube(dp, job, counts, &cube, octant, &centre);
 }
 
 fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    let cage = inputs.cage(state);
-    state.dp.stage(Stage::VertexPool);
-    pool(&mut state.dp, &cage);
-    state.dp.stage(Stage::ChildBox);
-    child_span(&mut state.dp, &cage);
+    let dp = &mut state.dp;
+    let cage: L = inputs.cage(dp);
+    dp.stage(Stage::VertexPool);
+    pool(dp, &cage);
+    dp.stage(Stage::ChildBox);
+    child_span(dp, &cage);
 }
 
 /// X such that a node's edge, its bisector, or the limit of a box passes through the vertices, or nearly.
 fn beside_an_edge<P: Probe, L: CageCoordinate>(
-    state: &mut State<'_, P, L, ()>,
+    dp: &mut Datapath<P>,
     inputs: &mut Inputs,
     w: &L,
 ) -> L {
-    let dp = &mut state.dp;
     let x = match inputs.dice.below(6) {
         0 => w.map(|_| Word::ZERO),
         1 => *w,
@@ -150,44 +149,43 @@ fn beside_an_edge<P: Probe, L: CageCoordinate>(
         _ => x,
     });
     let step = inputs.step();
-    x.moved(&mut state.dp, step)
+    x.moved(dp, step)
 }
 
-/// Boxes against quadtree nodes.
 fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    let mut clip = inputs.clip(state);
-    [clip.x, clip.y] = [(); 2].map(|()| beside_an_edge(state, inputs, &clip.w));
+    let (dp, c, fill) = (&mut state.dp, &state.job.constants, &state.canvas.fill);
+    let mut clip: Clip<L> = inputs.clip(dp);
+    [clip.x, clip.y] = [(); 2].map(|()| beside_an_edge(dp, inputs, &clip.w));
     // A fit doubles planes once per level.
     let mut planes = Planes::default();
     for plane in planes.edge.as_flattened_mut() {
         *plane = WideWord::from_host(inputs.number(8));
     }
     let place = ImagePlace {
-        quad: inputs.quad(state.job.constants.levels),
+        quad: inputs.quad(c.levels),
         inside: false,
     };
-    state.dp.stage(Stage::QuadtreeFit);
-    quadrants::of_clip(&mut state.dp, &state.job.constants, place.quad, &clip);
-    let (dp, constants, fill) = (&mut state.dp, &state.job.constants, &state.canvas.fill);
+    dp.stage(Stage::QuadtreeFit);
+    quadrants::of_clip(dp, c, place.quad, &clip);
     smallest_node::near_node(dp, &clip.x, &clip.w);
     smallest_node::near_node(dp, &clip.y, &clip.w);
-    smallest_node::clip(dp, constants, fill, place, &mut clip, &mut planes);
+    smallest_node::clip(dp, c, fill, place, &mut clip, &mut planes);
 }
 
 fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     state: &mut State<'_, P, L, ()>,
     inputs: &mut Inputs,
 ) {
-    let mut clip = inputs.clip(state);
-    let level = inputs.level(state.job.constants.depth);
+    let (dp, c) = (&mut state.dp, &mut state.job.constants);
+    let mut clip: Clip<L> = inputs.clip(dp);
+    let level = inputs.level(c.depth);
     let least = inputs.word(1);
     let one = Word::from_host(inputs.number(1));
-    clip.w_min = if inputs.flag() {
-        state.dp.add(least, one)
-    } else {
-        inputs.word(0)
+    clip.w_min = match inputs.flag() {
+        true => dp.add(least, one),
+        false => inputs.word(0),
     };
-    let kept = state.job.constants.lod_depth[level as usize].replace(least);
+    let kept = c.lod_depth[level as usize].replace(least);
     let mut record = Record {
         cube: Cube {
             solid: false,
@@ -196,52 +194,40 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
         place: ImagePlace::ROOT,
         pose: Pose::Clip(clip, Planes::default()),
     };
-    state.dp.stage(Stage::OnePixel);
-    apply_level_of_detail(&mut state.dp, &state.job.constants, &mut record);
-    state.job.constants.lod_depth[level as usize] = kept;
+    dp.stage(Stage::OnePixel);
+    apply_level_of_detail(dp, c, &mut record);
+    c.lod_depth[level as usize] = kept;
 
     clip.w_min = inputs.word(SPARE);
-    let below = inputs.level(state.job.constants.levels);
-    let limit = state.job.constants.size_limit.clone();
-    size::clip_at_most(&mut state.dp, &clip, &limit, below);
+    let below = inputs.level(c.levels);
+    size::clip_at_most(dp, &clip, &c.size_limit, below);
     let (edges_x, edges_w) = (inputs.words(SPARE), inputs.words(SPARE));
     let step = inputs.step();
-    size::edges_at_most(&mut state.dp, edges_x, edges_w, |dp, size| {
-        dp.add(size, step)
-    });
+    size::edges_at_most(dp, edges_x, edges_w, |dp, size| dp.add(size, step));
 }
 
 fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    let depth = state.job.constants.depth;
+    let (dp, c) = (&mut state.dp, &mut state.job.constants);
     let mut planes = inputs.planes();
-    let kept = state.job.constants.axis_ab;
-    let axes = inputs.planes();
-    state.job.constants.axis_ab = axes.edge.map(|[a, b, _]| [a, b]);
-    if depth > 0 {
-        let parent_level = inputs.level(depth - 1);
+    let kept = c.axis_ab;
+    c.axis_ab = inputs.planes().edge.map(|[a, b, _]| [a, b]);
+    if c.depth > 0 {
+        let parent_level = inputs.level(c.depth - 1);
         let octant = inputs.level(7) as u8;
-        state.dp.stage(Stage::VertexPool);
-        planes::of_child(
-            &mut state.dp,
-            &state.job.constants,
-            &planes,
-            parent_level,
-            octant,
-        );
+        dp.stage(Stage::VertexPool);
+        planes::of_child(dp, c, &planes, parent_level, octant);
     }
     let quadrant = inputs.level(3) as u8;
+    dp.stage(Stage::QuadtreeFit);
     let mut moved = planes;
-    state.dp.stage(Stage::QuadtreeFit);
-    planes::move_to_quadrant(&mut state.dp, &state.job.constants, &mut moved, quadrant);
-    let level = inputs.level(depth);
+    planes::move_to_quadrant(dp, c, &mut moved, quadrant);
+    let level = inputs.level(c.depth);
     let mut cube = inputs.cube(level);
     // The eye lies beside the cube along the other axes, beside one of its faces or anywhere along this one.
     let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);
         let step = inputs.step();
-        let c = &mut state.job.constants;
-        let dp = &mut state.dp;
         if k < axis {
             (cube.min[k], cube.max[k]) = (dp.min(any, other), dp.max(any, other));
             (c.eye_floor[k], c.eye_ceil[k]) = (cube.min[k], cube.max[k]);
@@ -253,30 +239,30 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
         c.eye_floor[k] = if inputs.flag() { above } else { any };
         c.eye_ceil[k] = if inputs.flag() { below } else { other };
     }
-    state.job.constants.positive = inputs.flag();
+    c.positive = inputs.flag();
     if inputs.flag() {
         planes.edge = [planes.edge[0]; 3];
     }
     let w_min = inputs.word(0);
-    state.dp.stage(Stage::Draw);
-    let silhouette = Silhouette::new(&mut state.dp, &state.job.constants, &cube, &planes, w_min);
+    dp.stage(Stage::Draw);
+    let silhouette = Silhouette::new(dp, c, &cube, &planes, w_min);
     for below in [0, 1] {
         let mut silhouette = silhouette.clone();
-        silhouette.cover(&mut state.dp, below);
-        silhouette.in_quadrant(&mut state.dp, quadrant);
+        silhouette.cover(dp, below);
+        silhouette.in_quadrant(dp, quadrant);
     }
-    state.job.constants.axis_ab = kept;
+    c.axis_ab = kept;
 }
 
-/// Boxes and centres in screen space, and the way there.
 fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let (dp, c, fill) = (&mut state.dp, &mut state.job.constants, &state.canvas.fill);
     let place = ImagePlace {
-        quad: inputs.quad(state.job.constants.levels),
+        quad: inputs.quad(c.levels),
         inside: inputs.flag(),
     };
-    let [x, y] = [(); 2].map(|()| inputs.cage(state));
-    let below = state.job.constants.levels - place.quad.level;
-    let [left, right] = state.job.constants.half_sample_places;
+    let [x, y]: [L; 2] = [(); 2].map(|()| inputs.cage(dp));
+    let below = c.levels - place.quad.level;
+    let [left, right] = c.half_sample_places;
     // Edges and middles of nodes, in halves of their width, or nearly.
     let mut beside = |column: u32| {
         let near = i64::from(column << 1) + inputs.dice.below(3) as i64;
@@ -284,30 +270,28 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         let step = inputs.step();
         match inputs.dice.below(4) {
             0 => inputs.word(SPARE),
-            _ => state.dp.add(edge, step),
+            _ => dp.add(edge, step),
         }
     };
     let spans = [place.quad.x, place.quad.y].map(|column| (beside(column), beside(column)));
-    state.dp.stage(Stage::QuadtreeFit);
-    let fill = &state.canvas.fill;
-    smallest_node::screen(&mut state.dp, &state.job.constants, fill, place, &spans);
+    dp.stage(Stage::QuadtreeFit);
+    smallest_node::screen(dp, c, fill, place, &spans);
     let screen = Screen { x, y, spans };
-    let limit = if inputs.flag() {
-        state.dp.sub(spans[0].1, spans[0].0)
-    } else {
-        inputs.word(SPARE)
+    let limit = match inputs.flag() {
+        true => dp.sub(spans[0].1, spans[0].0),
+        false => inputs.word(SPARE),
     };
-    state.dp.stage(Stage::OnePixel);
-    size::screen_at_most(&mut state.dp, &screen, limit);
-    state.dp.stage(Stage::Draw);
-    size::screen_sample(&mut state.dp, &state.job.constants, place, &screen);
+    dp.stage(Stage::OnePixel);
+    size::screen_at_most(dp, &screen, limit);
+    dp.stage(Stage::Draw);
+    size::screen_sample(dp, c, place, &screen);
 
-    let mut clip = inputs.clip(state);
-    let centre = clip.x.centre(&mut state.dp);
+    let mut clip: Clip<L> = inputs.clip(dp);
+    let centre = clip.x.centre(dp);
     let step = inputs.step();
-    let doubled = state.dp.shl(centre, 1);
+    let doubled = dp.shl(centre, 1);
     let w = match inputs.flag() {
-        true => state.dp.add(doubled, step),
+        true => dp.add(doubled, step),
         false => inputs.word(SPARE),
     };
     // Centres beyond the node's edges are rejected.
@@ -315,24 +299,219 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         inside: false,
         ..place
     };
-    size::clip_sample(&mut state.dp, &state.job.constants, across, &clip, w);
-    let level = inputs.level(state.job.constants.depth) as usize;
+    size::clip_sample(dp, c, across, &clip, w);
+    let level = inputs.level(c.depth) as usize;
     let least = if inputs.flag() { clip.w_min } else { w };
     if inputs.flag() {
         // The guard's edge passes through the vertices, in the whole picture.
-        let dp = &mut state.dp;
         clip.x = clip.w.map(|w| {
             let part = dp.shr(w, SCREEN_GUARD_SHIFT);
             dp.neg(part)
         });
     }
-    let kept = state.job.constants.screen_depth[level].replace(least);
-    to_screen::may_change(
-        &mut state.dp,
-        &state.job.constants,
-        level as u32,
-        place,
-        &clip,
-    );
-    state.job.constants.screen_depth[level] = kept;
+    let kept = c.screen_depth[level].replace(least);
+    to_screen::may_change(dp, c, level as u32, place, &clip);
+    c.screen_depth[level] = kept;
+}
+
+/// A voxel of random opacities, seen from an eye with these distances from its centre; `shift`: of the eye.
+fn blend_voxel<P: Probe>(
+    dp: &mut Datapath<P>,
+    inputs: &mut Inputs,
+    (ways, shift): ([Word; 3], u32),
+) {
+    let mut cube = inputs.cube(0);
+    for k in 0..3 {
+        if inputs.flag() {
+            // Otherwise the whole range: an odd sum loses its half.
+            cube.max[k] = cube.min[k];
+        }
+    }
+    let centre: [Word; 3] = std::array::from_fn(|k| dp.midpoint(cube.min[k], cube.max[k]));
+    let eye = BlendEye {
+        shift,
+        at: std::array::from_fn(|k| {
+            let centre = dp.shr(centre[k], shift);
+            towards_zero(dp, centre, ways[k])
+        }),
+    };
+    // Any side of each voxel, also with the eye in its centre.
+    let eye_floor = std::array::from_fn(|k| {
+        let step = Word::from_host(inputs.number(1) & 1);
+        towards_zero(dp, centre[k], step)
+    });
+    // Full, almost full, half, or random.
+    let mut side = || match inputs.dice.below(6) {
+        0..=2 => 15,
+        3 => [14, 8, 7][inputs.dice.below(3) as usize],
+        _ => inputs.dice.below(16) as u8,
+    };
+    let opacity = Opacity::new(std::array::from_fn(|_| [side(), side()]));
+    BlendColor::of_voxel(dp, &eye, &eye_floor, &cube, opacity, [0; 3]);
+}
+
+fn towards_zero<P: Probe>(dp: &mut Datapath<P>, from: Word, by: Word) -> Word {
+    match dp.is_negative(from) {
+        true => dp.add(from, by),
+        false => dp.sub(from, by),
+    }
+}
+
+/// Ways whose sum is 16 are shares. Ties of two sides, whose sum is 32.
+fn all_shares<P: Probe>(dp: &mut Datapath<P>, inputs: &mut Inputs) {
+    for x in 0..=SHARES {
+        for y in 0..=SHARES - x {
+            let ways = [x, y, SHARES - x - y].map(Word::from_host);
+            blend_voxel(dp, inputs, (ways, 0));
+        }
+    }
+    for x in 0..=2 * SHARES {
+        let ways = [x, 2 * SHARES - x, 0].map(Word::from_host);
+        blend_voxel(dp, inputs, (ways, 0));
+    }
+}
+
+/// Any ways, and partly transparent samples.
+fn blending<P: Probe>(dp: &mut Datapath<P>, inputs: &mut Inputs) {
+    let bits = if inputs.flag() {
+        6
+    } else {
+        inputs.bits - SPARE
+    };
+    let ways = std::array::from_fn(|_| {
+        let way = Word::from_host(inputs.number(bits));
+        let back = dp.neg(way);
+        dp.max(way, back)
+    });
+    let shift = inputs.level(3);
+    blend_voxel(dp, inputs, (ways, shift));
+
+    let all = u64::from(ALL_LEFT);
+    let left = match inputs.flag() {
+        true => all,
+        false => inputs.dice.below(all + 1),
+    };
+    // Leaves a sample just open or just full; opaque; random.
+    let enough = left.saturating_sub(u64::from(OPAQUE_ENOUGH)) * all / left.max(1);
+    let weight = match inputs.dice.below(4) {
+        0 => inputs.dice.below(all + 1),
+        1 => all,
+        _ => (enough + inputs.dice.below(3)).min(all),
+    };
+    let light = [(); 3].map(|()| match inputs.dice.below(3) {
+        0 => u64::from(u16::MAX),
+        _ => inputs.dice.below(1 << 16),
+    });
+    // A sample's light is at most its share.
+    let most = (all - left) * u64::from(u16::MAX);
+    let sums = [(); 3].map(|()| match inputs.dice.below(3) {
+        0 => most,
+        _ => inputs.dice.below(most + 1),
+    });
+    let color = BlendColor {
+        weight: Narrow::from_host(weight as u32),
+        light: light.map(|channel| Narrow::from_host(channel as u32)),
+    };
+    let mut sample = Blend {
+        left: left as u16,
+        light: sums.map(|sum| sum as u32),
+    };
+    color.add_to(dp, 0, &mut sample);
+}
+
+/// Bits by which words stay below the ends of the format where they are added, doubled or halved a few times.
+const SPARE: u32 = 8;
+
+struct Inputs {
+    dice: SplitMix,
+    bits: u32,
+    wide_bits: u32,
+}
+
+impl Inputs {
+    fn new(setup: &FrameSetup) -> Self {
+        Self {
+            dice: SplitMix::new(0),
+            bits: setup.format.bits(),
+            wide_bits: setup.format.wide().bits(),
+        }
+    }
+
+    /// A number of at most `bits` bits with its sign: an end of the range, near zero, or random.
+    fn number(&mut self, bits: u32) -> i64 {
+        let most = i64::MAX >> (64 - bits);
+        let ends = [-most - 1, -most, most, most - 1, -2, -1, 0, 1, 2];
+        // Every third is one of these.
+        let choice = self.dice.below(27) as usize;
+        if let Some(&end) = ends.get(choice) {
+            return end;
+        }
+        // Every number of bits is equally frequent.
+        let length = 1 + self.dice.below(u64::from(bits)) as u32;
+        (self.dice.bits() as i64) >> (64 - length)
+    }
+
+    fn word(&mut self, spare: u32) -> Word {
+        Word::from_host(self.number(self.bits - spare))
+    }
+
+    fn words<const N: usize>(&mut self, spare: u32) -> [Word; N] {
+        std::array::from_fn(|_| self.word(spare))
+    }
+
+    fn flag(&mut self) -> bool {
+        self.dice.below(2) == 1
+    }
+
+    /// -1, 0 or 1.
+    fn step(&mut self) -> Word {
+        Word::from_host(self.dice.below(3) as i64 - 1)
+    }
+
+    fn level(&mut self, most: u32) -> u32 {
+        self.dice.below(u64::from(most) + 1) as u32
+    }
+
+    /// Of independent numbers.
+    fn cage<P: Probe, L: CageCoordinate>(&mut self, dp: &mut Datapath<P>) -> L {
+        let any = L::from_frame(dp, Word::ZERO, [Word::ZERO; 3]);
+        any.map(|_| self.word(SPARE))
+    }
+
+    fn clip<P: Probe, L: CageCoordinate>(&mut self, dp: &mut Datapath<P>) -> Clip<L> {
+        let [x, y, w]: [L; 3] = [(); 3].map(|()| self.cage(dp));
+        let (w_min, _) = w.span(dp);
+        Clip { x, y, w, w_min }
+    }
+
+    /// Planes of small coefficients, which have ties, or of large ones.
+    fn planes(&mut self) -> Planes {
+        let bits = if self.flag() { 2 } else { self.wide_bits >> 1 };
+        let mut number = || WideWord::from_host(self.number(bits));
+        Planes {
+            edge: std::array::from_fn(|_| std::array::from_fn(|_| number())),
+            axis_c: std::array::from_fn(|_| number()),
+        }
+    }
+
+    fn cube(&mut self, level: u32) -> Cube {
+        Cube {
+            min: self.words(0),
+            max: self.words(0),
+            node: 0,
+            level,
+            voxel_level: level,
+            solid: true,
+        }
+    }
+
+    fn quad(&mut self, levels: u32) -> QuadNode {
+        let level = self.level(levels);
+        let mut place = || self.dice.below(1 << level) as u32;
+        QuadNode {
+            level,
+            x: place(),
+            y: place(),
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Machines with one error each, for tests of the checks that must find it.
+//! Machines with one error each, which checks must find.
 
 use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 
@@ -10,7 +10,6 @@ use crate::machine::engine::Machine;
 use crate::machine::state::MachineOptions;
 use crate::project::{CageKind, EngineError, FrameSetup, Stats};
 
-/// An error built into the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mutation {
     /// One unit of the last place too much in one child, only in cages of a corner and edges.
@@ -137,7 +136,6 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
     }
 }
 
-/// Evaluates an expression with a mutant's type of cage coordinates.
 macro_rules! with_cage {
     ($mutation:expr, $setup:expr, $coordinate:ident => $body:expr) => {{
         macro_rules! with {
@@ -162,7 +160,6 @@ macro_rules! with_cage {
 pub struct Mutant(pub Mutation);
 
 impl Mutant {
-    /// The mutant's version of a set-up.
     fn setup(&self, setup: &FrameSetup) -> FrameSetup {
         let mut setup = setup.clone();
         if self.0 == Mutation::NearSkipped {

@@ -29,7 +29,6 @@ pub struct Simulated {
     pub counts: Stats,
 }
 
-/// Why a simulation ended early.
 pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
@@ -58,8 +57,8 @@ impl Machine {
         Ok(simulated)
     }
 
-    /// Draws a frame and records its turns, which are the same on every hardware of the organisation. `None`: the
-    /// recording would take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
+    /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording would
+    /// take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
     pub fn record_turns(
         &mut self,
         graph: &GraphView<'_>,
@@ -171,7 +170,6 @@ impl<L> Tile<L> {
     }
 }
 
-/// The machine, and the waiting work.
 struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     state: State<'a, P, L, Ranks>,
     /// Work by the scheduler's number, with its tile.
@@ -187,12 +185,11 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     shown: usize,
 }
 
-/// Places of a stored parent and of its child in the occlusion order, of different classes.
+/// Of a stored parent and of its child, of different classes.
 const FIRST_PLACE: u8 = 0;
 const LAST_PLACE: u8 = 7;
 
 impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
-    /// Gives work to the scheduler.
     fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
         let quad = match &work {
             Work::Tiles(quad) => *quad,
@@ -236,7 +233,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// Puts a tile's view of the fill vectors into place.
     fn switch_to(&mut self, tile: usize) {
         if tile != self.shown {
             let fill = &mut self.state.canvas.fill;

@@ -1,12 +1,12 @@
 //! The bits of a record's numbers under the rules that draw outlines: proven from a frame's set-up, and measured.
 //!
-//! The proof. A vertex of any record lies in the object, so its clip vector lies in the hull of the object's eight
-//! corners. This bounds `W`, and `X` and `Y` relative to the whole picture. A box enters a quadrant only if it leaves
-//! that by at most half a sample, or by the quadrant's width (`near_node`). So relative to any other node `-W <= X <=
-//! 2W`, and no vertex lies behind the eye. Edges are differences of two such numbers. Of a plane `a X + b Y + c W = 0`
-//! through an edge, `a` and `b` are products of a point of the object with an edge's direction, greatest at a corner of
-//! the object, and the same relative to every node. The edge's end is on the plane, so `|c| <= 2 (|a| + |b|)`. A plane
-//! across an axis is the difference of two planes through edges of the record, so its `c` is at most twice theirs.
+//! A vertex lies in the object, so its clip vector lies in the hull of the object's corners. This bounds `W`, and `X` and `Y`
+//! relative to the whole picture. A box enters a quadrant only if it leaves that by at most half a sample, or by the
+//! quadrant's width (`near_node`). So relative to any other node `-W <= X <= 2W`, and no vertex lies behind the eye. Edges
+//! are differences of two such numbers. Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are products of a
+//! point of the object with an edge's direction, greatest at a corner, and the same relative to every node. The edge's end
+//! is on the plane, so `|c| <= 2 (|a| + |b|)`. A plane across an axis is the difference of two planes through edges, so its
+//! `c` is at most twice theirs.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,6 @@ hwmodel::named! {
     }
 }
 
-/// Least and greatest value of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NumberSpan {
     pub least: i128,
@@ -56,7 +55,6 @@ impl NumberSpan {
         }
     }
 
-    /// From a value to its opposite.
     fn around(most: i128) -> Self {
         Self {
             least: -most,
@@ -64,12 +62,10 @@ impl NumberSpan {
         }
     }
 
-    /// From 0.
     fn to(greatest: i128) -> Self {
         Self { least: 0, greatest }
     }
 
-    /// The span that contains both.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -102,7 +98,7 @@ pub struct ProvenWidths {
     pub wide_bits: u32,
 }
 
-/// The widths that a frame's set-up proves, for a graph of `nodes`; `None` under the rules that do not draw outlines.
+/// `None` under the rules that do not draw outlines. `nodes`: of the graph.
 pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     if !setup.options.coverage.draws_outlines() {
         return None;
@@ -132,7 +128,6 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
         least: span.least << setup.sub_levels,
         greatest: span.greatest << setup.sub_levels,
     };
-    // In the whole picture; then in any other node.
     let w = scaled(span_of(&mut corners.iter().map(|at| at[2])));
     let far = w.greatest.max(0);
     let xy = scaled(span_of(&mut corners.iter().flat_map(|at| [at[0], at[1]])));
