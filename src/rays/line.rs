@@ -1,22 +1,7 @@
-//! Exact coverage (`SPEC.md`, R8): one sample's ray against axis-aligned cubes.
+//! Exact coverage (`SPEC.md`, R8): one sample's ray against axis-aligned cubes (`spec/rays.md`, "Hit").
 //!
-//! # The line and a cube
-//!
-//! Seen along the line, the cube is a hexagon whose sides are parallel to the three kinds of cube edges. The line passes
-//! through the interior exactly if it is, for each axis, strictly between the outermost two of the four edges of that
-//! axis. The side on which it passes an edge is the sign of `f_j(u) = det(P(u), edge_j, q)` (Plücker coordinates): `u` the
-//! edge's start, `P(u)` its clip vector, `q` the ray's direction. With `g_k = (edge_k+1 x edge_k+2) . q` (indices modulo 3)
-//!
-//! ```text
-//! f_j(u) = f_j(0) - u_j+1 * g_j+2 + u_j+2 * g_j+1
-//! ```
-//!
-//! so the largest and the smallest of the four are at the corners given by the signs of `g`. Only these two are examined.
-//!
-//! # Ties (R8.1)
-//!
-//! The ray is moved by `(e, e^2)` in `(x, y)` for an infinitesimal `e`. A linear function `a x + b y + c w` of the
-//! direction that is 0 then has the sign of `a`, or of `b` if `a` is 0 as well. If both are 0 so is `c`: the function is
+//! Ties (R8.1): the ray is moved by `(e, e^2)` in `(x, y)` for an infinitesimal `e`. A linear function `a x + b y + c w` of
+//! the direction that is 0 then has the sign of `a`, or of `b` if `a` is 0 as well. If both are 0 so is `c`: the function is
 //! zero for every ray (an edge through the eye) and has no sign. `g_k` always has one, as its plane is not zero.
 
 use super::number::Number;
@@ -24,9 +9,9 @@ use super::ray_frame::RayFrame;
 
 pub(super) struct Line<'v, N> {
     view: &'v RayFrame,
-    /// `f_j(0)`.
+    /// `f_j(0)`, for `f_j(u) = det(P(u), edge_j, q)`.
     pub(super) at_origin: [N; 3],
-    /// `g_k`.
+    /// `g_k = (edge_k+1 x edge_k+2) . q`.
     slope: [N; 3],
     /// Whether `g_k` is above 0, ties resolved; otherwise below.
     slope_positive: [bool; 3],
@@ -56,13 +41,12 @@ impl<'v, N: Number> Line<'v, N> {
         }
     }
 
-    /// `slope * 2^levels`: the change of line functions along the side of a cube of `2^levels` voxels.
+    /// The change of line functions along the side of a cube of `2^levels` voxels.
     pub(super) fn along_side(&self, levels: u32) -> [N; 3] {
         self.slope.map(|g| g.times_power(levels))
     }
 
-    /// The cube that lies `octant` (`x << 2 | y << 1 | z`) sides above `cube`; `side` in voxels, `along_side` from
-    /// [`Self::along_side`].
+    /// The cube that lies `octant` (`x << 2 | y << 1 | z`) sides above another; `side` in voxels.
     #[inline]
     pub(super) fn neighbour(
         &self,
@@ -95,8 +79,7 @@ impl<'v, N: Number> Line<'v, N> {
         self.goes_forward_to(cube.lo, side) && self.line_crosses(cube, side, along_side)
     }
 
-    /// Plane of the eye (R8.2), for a cube on the line: whether it lies before the eye. If the eye is outside of a slab, the
-    /// slab, and so the cube, is on one side of it along the line. If it is inside of all three, it is in the cube.
+    /// Plane of the eye (R8.2): whether a cube on the line lies before the eye, which is outside of a slab, or in the cube.
     #[inline]
     fn goes_forward_to(&self, lo: [i64; 3], side: i64) -> bool {
         (0..3).all(|k| {

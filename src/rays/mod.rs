@@ -1,9 +1,5 @@
-//! The exact oracle: for every sample, the nearest solid cell on its ray, of the graph as level of detail cuts it
-//! (`spec/rays.md`).
-//!
-//! It starts from the same integers as every other engine and computes in integers that cannot overflow, so its picture
-//! is the meaning of *exact*. It is simple enough to be checked by reading, and shares no code with the other engines.
-//! Drawing rule, cage and tolerance are ignored: a sample shows the voxel at its centre.
+//! The exact oracle: for every sample, the nearest solid cell on its ray (`spec/rays.md`). It shares no code with the other
+//! engines, and ignores drawing rule, cage and tolerance.
 
 mod line;
 mod number;
@@ -25,7 +21,7 @@ use search::Search;
 pub struct Rays;
 
 impl Engine for Rays {
-    /// Never fails. `frame.records` is the number of nodes whose cube was tested against the sample's ray.
+    /// Never fails. `frame.records` is the number of cubes tested against the sample's ray.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
@@ -46,7 +42,7 @@ impl Engine for Rays {
     }
 }
 
-/// Single rays of a frame, as [`Rays`] draws them, for pictures with too many samples for a frame.
+/// Single rays of a frame, for pictures with too many samples for a frame.
 pub struct Caster<'g> {
     graph: &'g GraphView<'g>,
     view: RayFrame,
@@ -57,9 +53,8 @@ pub struct Caster<'g> {
 pub const MAX_CASTER_LEVELS: u32 = 17;
 
 impl<'g> Caster<'g> {
-    /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`] levels. If `setup.levels` is raised and
-    /// nothing else changed, the samples are those of a finer grid in the same picture. They see the graph as the frame's
-    /// level of detail cuts it; references start from [`FrameSetup::without_detail`].
+    /// The rays of a frame. If `setup.levels` is raised, to at most [`MAX_CASTER_LEVELS`], the samples are those of a finer
+    /// grid in the same picture. They see the graph as the level of detail cuts it ([`FrameSetup::without_detail`]).
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
         let view = RayFrame::new(setup);
@@ -81,7 +76,6 @@ impl<'g> Caster<'g> {
     }
 }
 
-/// Draws every row, on all threads; returns the number of tested cubes.
 fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Frame) -> u64 {
     let width = frame.width as usize;
     if width == 0 {
@@ -91,7 +85,6 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
         Some(records) => records.chunks_mut(width).map(Some).collect(),
         None => (0..frame.height).map(|_| None).collect(),
     };
-    // Without a buffer of voxels, they are not stored.
     let mut unwanted = Vec::new();
     let voxels = if frame.voxel.is_empty() {
         unwanted.resize(frame.node.len(), NO_VOXEL);
@@ -127,27 +120,6 @@ mod tests {
     use crate::graph::Placement;
     use crate::project::{Camera, SetupOptions};
 
-    fn set_up(eye: [f64; 3], depth: u32) -> FrameSetup {
-        let eye = glam::DVec3::from_array(eye);
-        let camera = Camera {
-            eye,
-            target: eye + glam::DVec3::Y,
-            up: glam::DVec3::Z,
-            fov_degrees: 90.0,
-            width: 32,
-            height: 32,
-        };
-        FrameSetup::new(
-            &camera,
-            &Placement::default(),
-            depth,
-            &SetupOptions::default(),
-        )
-        .expect("the camera can see")
-        // Depths in other units: the numbers below are scaled, `lod_depth` is not.
-        .without_detail()
-    }
-
     #[test]
     fn both_widths_of_number_draw_the_same() {
         // Sierpinski's tetrahedron.
@@ -161,7 +133,19 @@ mod tests {
             light: &[],
         };
         for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]] {
-            let setup = set_up(eye, 4);
+            let eye = glam::DVec3::from_array(eye);
+            let camera = Camera {
+                eye,
+                target: eye + glam::DVec3::Y,
+                up: glam::DVec3::Z,
+                fov_degrees: 90.0,
+                width: 32,
+                height: 32,
+            };
+            let setup =
+                FrameSetup::new(&camera, &Placement::default(), 4, &SetupOptions::default());
+            // Without `lod_depth`, which is not scaled.
+            let setup = setup.expect("a frame").without_detail();
             let view = RayFrame::new(&setup);
             assert!(view.fits_i128());
             let mut narrow = Frame::new(32, 32, true);
@@ -179,8 +163,8 @@ mod tests {
             huge.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
             assert!(!RayFrame::new(&huge).fits_i128());
             let mut from_huge = narrow.clone();
-            Rays.render(&graph, &huge, &mut from_huge)
-                .expect("never fails");
+            let drawn = Rays.render(&graph, &huge, &mut from_huge);
+            drawn.expect("never fails");
             assert_eq!(narrow, from_huge);
         }
     }

@@ -1,9 +1,8 @@
-//! The integers of line functions: a plane (three integers of at most 127 bits) times a ray direction (three of at most
-//! 2^18). Only the most extreme views leave `i128`; [`Wide`] holds those.
+//! The integers of line functions: planes of at most 127 bits times ray directions of at most 2^18. Only the most extreme views
+//! need [`Wide`].
 
 use std::ops::{Add, Sub};
 
-/// An integer wide enough for the line functions of a frame.
 pub(super) trait Number:
     Copy + Send + Sync + Add<Output = Self> + Sub<Output = Self>
 {
@@ -11,7 +10,6 @@ pub(super) trait Number:
     fn dot(plane: [i128; 3], ray: [i64; 3]) -> Self;
     /// Times `2^levels`, `levels` at most 30.
     fn times_power(self, levels: u32) -> Self;
-    /// -1, 0 or 1.
     fn sign(self) -> i32;
 }
 
@@ -68,7 +66,7 @@ impl Number for Wide {
         let mut high = 0i128;
         let mut low = 0i128;
         for c in 0..3 {
-            // plane[c] = (plane[c] >> 64) * 2^64 + its lowest 64 bits, also below zero.
+            // Also below zero, a number is `(number >> 64) * 2^64` plus its lowest 64 bits.
             high += (plane[c] >> 64) * i128::from(ray[c]);
             low += i128::from(plane[c] as u64) * i128::from(ray[c]);
         }

@@ -5,22 +5,16 @@ use crate::project::FrameSetup;
 /// Line functions up to this magnitude, times eight, stay within `i128`.
 const I128_BOUND: i128 = 1 << 123;
 
-/// Constants of all samples of a frame.
 #[derive(Debug)]
 pub(super) struct RayFrame {
     /// Clip vector of the object's lowest corner.
     origin: [i128; 3],
-    /// Clip vectors of a finest voxel's edges.
     edge: [[i128; 3]; 3],
-    /// `edge[k + 1] x edge[k + 2]`: its product with a ray direction is that direction's object coordinate `k`, times the
-    /// edges' determinant.
+    /// `edge[k + 1] x edge[k + 2]`: times a ray direction, its object coordinate `k` times the determinant of the edges.
     pub(super) normal: [[i128; 3]; 3],
     pub(super) determinant_sign: i32,
-    /// Levels of the object.
     pub(super) depth: u32,
-    /// Levels of the image quadtree.
     levels: u32,
-    /// Fraction bits of the eye.
     sub_levels: u32,
     /// The eye in units of `2^-sub_levels` voxels, rounded down and up.
     eye_floor: [i64; 3],
@@ -56,7 +50,7 @@ impl RayFrame {
         enough.is_some_and(|enough| self.least_depth(lo, level) >= enough)
     }
 
-    /// The least `W` of a node's eight vertices: `W` is linear, so it is least at one end of each axis.
+    /// The least `W` of a node: `W` is linear, so it is least at one end of each axis.
     fn least_depth(&self, lo: [i64; 3], level: u32) -> i128 {
         let side = 1i128 << (self.depth - level);
         let mut least = self.origin[2];
@@ -74,8 +68,8 @@ impl RayFrame {
         ]
     }
 
-    /// The plane through the eye and the voxel edge that leaves object point `u` along `axis`: the sign of its product
-    /// with a ray direction is the side on which the ray passes the edge. Zero if the edge's line contains the eye.
+    /// The plane through the eye and the voxel edge that leaves object point `u` along `axis`. Zero if the edge's line contains
+    /// the eye.
     pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
         let mut point = self.origin;
         for (step, along) in self.edge.iter().zip(u) {
@@ -86,8 +80,7 @@ impl RayFrame {
         cross(point, self.edge[axis])
     }
 
-    /// Plane of the eye (R8.2): the side of the eye on which the slab `lo..hi` (voxels) of axis `k` lies: 1 if it begins at
-    /// or above the eye, -1 if it ends at or below it, 0 if the eye is inside.
+    /// Plane of the eye (R8.2): the side of the eye on which the slab `lo..hi` (voxels) of axis `k` lies, 0 around the eye.
     #[inline]
     pub(super) fn side_of_eye(&self, k: usize, lo: i64, hi: i64) -> i32 {
         // A whole number is >= the eye exactly if it is >= the eye rounded up.
@@ -100,16 +93,13 @@ impl RayFrame {
         }
     }
 
-    /// Whether every line function of this frame, and every intermediate sum, fits `i128`.
-    ///
-    /// A line function is linear in the object point, so it is largest at a corner of the object. Differences of two are
-    /// at most twice that, and a sum adds two differences to a third value.
+    /// Whether every line function, and every sum of three, fits `i128`. Line functions are linear in the object point, so they
+    /// are largest at a corner of the object.
     pub(super) fn fits_i128(&self) -> bool {
         let side = 1i64 << self.depth;
         (0..8i64).all(|corner| {
             let u = [corner >> 2 & 1, corner >> 1 & 1, corner & 1].map(|bit| bit * side);
             (0..3).all(|axis| {
-                // Components are at most 2^125: their sum fits u128.
                 let reach: u128 = self
                     .edge_plane(axis, u)
                     .iter()

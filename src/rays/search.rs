@@ -1,33 +1,21 @@
 //! The solid cell that a ray meets first, by its own order (for R9 of `SPEC.md`); the graph's depth ends cycles (R10).
 //!
-//! # The first one found is the nearest
-//!
-//! A line crosses each of the three planes between a node's children at most once, in its direction along that axis (which
-//! is never 0, ties resolved). Number the children by `rank = octant XOR start`, where `start` is the octant whose bit is
-//! set for each axis along which the ray runs downwards: crossing a plane changes one bit of the rank from 0 to 1, never
-//! back. Of two children on the line, the nearer one's rank is therefore a strict subset of the other's bits, a smaller
-//! number. So growing ranks are an order from near to far, for every line with these direction signs. Children are
-//! disjoint cubes and all cells inside the nearer one lie before those in the other. So, depth first in this order, the
-//! first solid cell is the nearest.
-//!
-//! # Level of detail
-//!
-//! A node with children is a solid cell if its least depth is at least the level's: then it is no larger than the level of
-//! detail allows, anywhere in the picture. Both are whole numbers, so nothing is rounded here.
+//! A line crosses each of the three planes between children at most once, in its direction along that axis. Number the
+//! children by `octant XOR start`, where `start` is the octant whose bit is set for each axis along which the ray runs
+//! downwards: crossing a plane changes one bit from 0 to 1, never back. So growing numbers go from near to far, and the
+//! first solid cell found is the nearest.
 
 use super::line::{Cube, Line};
 use super::number::Number;
 use super::ray_frame::RayFrame;
 use crate::graph::GraphView;
 
-/// A node, and its cell as a frame stores it.
 pub(super) type Seen = (u32, [i32; 4]);
 
 pub(super) struct Search<'w, N> {
     graph: &'w GraphView<'w>,
     view: &'w RayFrame,
     line: Line<'w, N>,
-    /// The octant in which a line with this direction begins.
     start: u8,
     /// Cubes tested so far.
     pub(super) tested: u64,
@@ -65,7 +53,6 @@ impl<'w, N: Number> Search<'w, N> {
     fn nearest_within(&mut self, node: u32, level: u32, cube: &Cube<N>) -> Option<Seen> {
         let is_leaf = level == self.view.depth || self.graph.mask(node) == 0;
         if is_leaf || self.view.is_solid_by_detail(cube.lo, level) {
-            // Coordinates are at most 2^30 and levels at most 30.
             let [x, y, z] = cube.lo.map(|c| c as i32);
             return Some((node, [x, y, z, level as i32]));
         }

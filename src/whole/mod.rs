@@ -1,10 +1,8 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. Files that belong
-//! together are renamed when all are written. A replaced file keeps its permissions, and a link to a file stays a link.
-//!
-//! A signal handler must call [`remove_unfinished`] before it ends the program. The files of a killed process are removed
-//! by the next one that writes to the folder. It recognises them by name and by lock, which ends with the process.
+//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. A signal handler must
+//! call [`remove_unfinished`] before it ends the program. The files of a killed process are removed by the next one that
+//! writes to the folder. It recognises them by name and by lock, which ends with the process.
 
 mod temporary;
 
@@ -18,19 +16,16 @@ pub use temporary::{FolderLock, TemporaryGuard, remove_unfinished, temporary_fol
 use temporary::{in_progress, temporary, tidy};
 
 /// Checks whether a file may be written, before long work. Errors: [`WholeError::Exists`] if it exists and may not be
-/// overwritten, [`WholeError::NoFolder`] without a folder for it, [`WholeError::Io`] if a folder or a device has its
-/// name, its name is too long or its folder is not writable.
+/// overwritten, [`WholeError::NoFolder`] without a folder for it, otherwise [`WholeError::Io`].
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     let path = &check_place(path, overwrite)?;
     let folder = folder_of(path);
     if folder.is_dir() {
-        // One without a name, where the system has such.
         tempfile::tempfile_in(folder).map_err(|e| failed(path, e))?;
     }
     Ok(())
 }
 
-/// The file that will be written, if possible.
 fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     if !overwrite && fs::symlink_metadata(path).is_ok() {
         return Err(WholeError::Exists(path.to_owned()));
@@ -47,7 +42,7 @@ fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     Ok(path)
 }
 
-/// Checks whether a folder exists, or can be created in the one above it. Errors: as [`check_free`].
+/// Checks whether a folder exists, or can be created in the one above it.
 pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
     if folder.is_dir() {
         return Ok(());
@@ -106,7 +101,7 @@ pub struct Prepared {
     guard: TemporaryGuard,
 }
 
-/// Writes a file under a temporary name beside its place. Its folder is created if the folder above exists.
+/// Writes a file under its temporary name. Its folder is created if the folder above exists.
 pub fn prepare(
     path: &Path,
     overwrite: bool,
@@ -132,7 +127,6 @@ pub fn prepare(
 
 /// Renames files: all of them, or, if one fails, none that is new.
 pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
-    // Not while the program is ending.
     let mut list = in_progress();
     let mut kept: Vec<PathBuf> = Vec::new();
     let mut result = Ok(());
@@ -166,16 +160,13 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
             }
         }
     }
-    // The others remove themselves from the list.
     drop(list);
     drop(files);
     result
 }
 
-/// Writes a file under a temporary name beside its place and renames it.
-///
-/// With `overwrite` an older file is replaced in one step; without, an existing file is an error, also if it appears during
-/// the writing.
+/// Writes a file. A replaced file keeps its permissions, and a link to a file stays a link. Without `overwrite` an existing
+/// file is an error, also if it appears during the writing.
 pub fn write_with(
     path: &Path,
     overwrite: bool,
@@ -215,90 +206,68 @@ pub(super) fn failed(path: &Path, source: io::Error) -> WholeError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use WholeError::{Exists, Io, NoFolder};
 
-    /// Names of what is in a folder, in order.
+    /// A folder, and paths in it.
+    fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_owned();
+        (folder, move |name| path.join(name))
+    }
+
     fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
+        let entries = fs::read_dir(folder).unwrap();
+        let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> = entries.map(|e| name(e).into_string().unwrap()).collect();
         names.sort();
         names
     }
 
     #[test]
     fn whole_or_not_at_all() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("new/a.txt");
+        let (folder, at) = folder();
+        let path = at("new/a.txt");
         write(&path, b"one", false).unwrap();
-        assert!(matches!(
-            write(&path, b"two", false),
-            Err(WholeError::Exists(_))
-        ));
+        assert!(matches!(write(&path, b"two", false), Err(Exists(_))));
         assert_eq!(fs::read(&path).unwrap(), b"one");
         write(&path, b"three", true).unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"three");
         let broken = write_with(&path, true, |file| {
             file.write_all(b"half")?;
-            let within = names(&folder.path().join("new"));
+            let within = names(&at("new"));
             assert!(within[0].starts_with(".shiftvox-a.txt-") && within[0].ends_with(".tmp"));
             Err(io::Error::other("power cut"))
         });
         assert!(broken.is_err());
         assert_eq!(fs::read(&path).unwrap(), b"three");
-        assert_eq!(names(&folder.path().join("new")), ["a.txt"]);
+        assert_eq!(names(&at("new")), ["a.txt"]);
         // Something appears while the file is written.
-        let late = folder.path().join("late");
+        let late = at("late");
         let raced = write_with(&late, false, |_| fs::write(&late, b"other"));
-        assert!(matches!(raced, Err(WholeError::Exists(_))));
+        assert!(matches!(raced, Err(Exists(_))));
         assert_eq!(fs::read(&late).unwrap(), b"other");
         assert_eq!(names(folder.path()), ["late", "new"]);
+        // One missing folder is made, not several.
+        let deep = at("no/such/a");
+        assert!(matches!(check_free(&deep, false), Err(NoFolder(_))));
+        assert!(matches!(write(&deep, b"x", true), Err(NoFolder(_))));
+        for other in [at("late/a"), at("new"), PathBuf::from("/dev/null")] {
+            assert!(matches!(check_free(&other, true), Err(Io { .. })));
+        }
     }
 
     #[test]
     fn files_that_belong_together_appear_together() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let fill = |file: &mut File| file.write_all(b"x");
-        let first = prepare(&at("a"), false, fill).unwrap();
-        assert!(!at("a").exists());
-        drop(first);
-        assert!(names(folder.path()).is_empty());
-        let both = ["a", "b"].map(|name| prepare(&at(name), false, fill).unwrap());
-        fs::write(at("b"), b"other").unwrap();
-        assert!(matches!(keep(both.into()), Err(WholeError::Exists(_))));
-        assert_eq!(names(folder.path()), ["b"]);
-        assert_eq!(fs::read(at("b")).unwrap(), b"other");
-        // The first of several is in the way.
-        let three = ["c", "d", "e"].map(|name| prepare(&at(name), false, fill).unwrap());
-        fs::write(at("c"), b"other").unwrap();
-        assert!(matches!(keep(three.into()), Err(WholeError::Exists(_))));
-        assert_eq!(names(folder.path()), ["b", "c"]);
-    }
-
-    #[test]
-    fn only_the_last_folder_is_made() {
-        let folder = tempfile::tempdir().unwrap();
-        let deep = folder.path().join("no/such/a");
-        assert!(matches!(
-            check_free(&deep, false),
-            Err(WholeError::NoFolder(_))
-        ));
-        assert!(matches!(
-            write(&deep, b"x", true),
-            Err(WholeError::NoFolder(_))
-        ));
-        assert!(names(folder.path()).is_empty());
-        write(&folder.path().join("file"), b"x", false).unwrap();
-        let below = folder.path().join("file/a");
-        assert!(matches!(
-            check_free(&below, false),
-            Err(WholeError::Io { .. })
-        ));
-        assert!(matches!(
-            check_free(folder.path(), true),
-            Err(WholeError::Io { .. })
-        ));
+        for taken in ["a", "b"] {
+            let (folder, at) = folder();
+            let fill = |file: &mut File| file.write_all(b"x");
+            drop(prepare(&at("c"), false, fill).unwrap());
+            let all = ["a", "b", "c"].map(|name| prepare(&at(name), false, fill).unwrap());
+            assert!(!at("c").exists());
+            fs::write(at(taken), b"other").unwrap();
+            assert!(matches!(keep(all.into()), Err(Exists(_))));
+            assert_eq!(names(folder.path()), [taken]);
+            assert_eq!(fs::read(at(taken)).unwrap(), b"other");
+        }
     }
 
     #[test]
@@ -306,58 +275,38 @@ mod tests {
     fn links_and_permissions_stay() {
         use std::os::unix::fs::{PermissionsExt, symlink};
 
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
-        fs::create_dir(at("deep")).unwrap();
+        let (_folder, at) = folder();
         write(&at("deep/real"), b"one", false).unwrap();
         fs::set_permissions(at("deep/real"), fs::Permissions::from_mode(0o600)).unwrap();
         symlink("deep/real", at("link")).unwrap();
-        assert!(matches!(
-            write(&at("link"), b"two", false),
-            Err(WholeError::Exists(_))
-        ));
-        write(&at("link"), b"two", true).unwrap();
-        assert!(fs::symlink_metadata(at("link")).unwrap().is_symlink());
-        assert_eq!(fs::read(at("deep/real")).unwrap(), b"two");
-        assert_eq!(mode("deep/real"), 0o600);
-        // A link to what is not there yet.
         symlink("deep/new", at("early")).unwrap();
-        write(&at("early"), b"three", true).unwrap();
-        assert_eq!(fs::read(at("deep/new")).unwrap(), b"three");
+        assert!(matches!(write(&at("link"), b"two", false), Err(Exists(_))));
+        for (link, file) in [("link", "deep/real"), ("early", "deep/new")] {
+            write(&at(link), b"two", true).unwrap();
+            assert!(fs::symlink_metadata(at(link)).unwrap().is_symlink());
+            assert_eq!(fs::read(at(file)).unwrap(), b"two");
+        }
+        let mode = fs::metadata(at("deep/real")).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
         assert_eq!(names(&at("deep")), ["new", "real"]);
-        // What is no file is not replaced.
-        let device = check_free(Path::new("/dev/null"), true);
-        assert!(matches!(device, Err(WholeError::Io { .. })));
-    }
-
-    #[test]
-    fn folders_that_were_left_are_removed_and_those_in_use_are_not() {
-        let folder = tempfile::tempdir().unwrap();
-        let (used, _in_use) = temporary_folder(folder.path()).unwrap();
-        let left = folder.path().join(".shiftvox-left.tmp");
-        fs::create_dir(&left).unwrap();
-        fs::write(left.join("rows.hex"), b"0").unwrap();
-        // As another process would: this one has looked here already.
-        in_progress().tidied.retain(|known| known != folder.path());
-        write(&folder.path().join("a"), b"x", false).unwrap();
-        assert!(used.path().exists() && !left.exists());
     }
 
     #[test]
     fn names_of_any_length_do() {
-        let folder = tempfile::tempdir().unwrap();
+        let (folder, at) = folder();
         for name in ["a".repeat(255), "\u{20ac}".repeat(85), "-".to_owned()] {
-            write(&folder.path().join(&name), b"x", false).unwrap();
+            write(&at(&name), b"x", false).unwrap();
         }
         assert_eq!(names(folder.path()).len(), 3);
     }
 
     #[test]
-    fn what_others_left_is_removed_and_what_they_write_is_not() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
+    fn abandoned_files_and_folders_are_removed_and_those_in_use_are_not() {
+        let (folder, at) = folder();
+        let (used, _in_use) = temporary_folder(folder.path()).unwrap();
+        fs::create_dir(at(".shiftvox-left.tmp")).unwrap();
         for name in [
+            ".shiftvox-left.tmp/rows.hex",
             ".shiftvox-a.far-123456.tmp",
             ".shiftvox-b.far-123456.tmp",
             ".other.tmp",
@@ -368,13 +317,18 @@ mod tests {
         // Of another process that still writes: a lock is that of an open file.
         let other = File::open(at(".shiftvox-b.far-123456.tmp")).unwrap();
         other.lock().unwrap();
+        // As another process would: this one has looked here already.
+        in_progress().tidied.retain(|known| known != folder.path());
         write(&at("a.far"), b"whole", false).unwrap();
-        let left = [
+        let used = used.path().file_name().unwrap().to_str().unwrap();
+        let mut left = [
             ".other.tmp",
             ".shiftvox-a.far",
             ".shiftvox-b.far-123456.tmp",
+            used,
             "a.far",
         ];
+        left.sort_unstable();
         assert_eq!(names(folder.path()), left);
     }
 }

@@ -1,5 +1,4 @@
-//! Temporary files and folders: listed while they are written, for signal handlers, and locked, so that other processes
-//! recognise abandoned ones.
+//! Temporary files and folders: listed for signal handlers, and locked, so that other processes recognise abandoned ones.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -10,17 +9,13 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::{WholeError, failed};
 
-/// Beginning and end of temporary names.
 const PREFIX: &str = ".shiftvox-";
 const SUFFIX: &str = ".tmp";
 /// Most bytes of a file's name that its temporary name repeats; names have at most 255.
 const MOST_NAME: usize = 100;
-/// Most attempts to remove an unfinished file.
 const MOST_TRIES: u32 = 100;
 
-/// Files in progress of this process.
 pub(super) struct InProgress {
-    /// Temporary files and folders before renaming.
     unfinished: Vec<PathBuf>,
     /// Folders that were searched for abandoned files.
     pub(super) tidied: Vec<PathBuf>,
@@ -32,7 +27,6 @@ static IN_PROGRESS: Mutex<InProgress> = Mutex::new(InProgress {
 });
 
 pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
-    // Lists of names, usable even after a panic.
     IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -73,15 +67,13 @@ impl Drop for TemporaryGuard {
 }
 
 impl InProgress {
-    /// Removes a file from the list.
     pub(super) fn forget(&mut self, guard: TemporaryGuard) {
         self.unfinished.retain(|path| *path != guard.0);
         std::mem::forget(guard);
     }
 }
 
-/// Creates a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
-/// dropped; if the process is killed, by the next one that writes there.
+/// Creates a temporary folder. It is removed when it is dropped; if the process is killed, by the next one that writes there.
 pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();
@@ -164,7 +156,6 @@ fn remove_if_left(path: &Path, is_folder: bool) {
         return;
     };
     match file.try_lock() {
-        // Removed while it is locked: see `temporary`.
         Ok(()) if is_folder => drop(fs::remove_dir_all(path)),
         Ok(()) => drop(fs::remove_file(path)),
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
