@@ -24,27 +24,22 @@ pub(super) struct Paint {
 pub(super) struct Canvas<'f> {
     pub(super) fill: FillStore<'f>,
     pub(super) frame: &'f mut Frame,
+    pub(super) counts: Counts,
 }
 
 impl Canvas<'_> {
     /// Draws one sample, unless it is full.
     #[inline]
-    pub(super) fn draw<P: Probe>(
-        &mut self,
-        dp: &mut Datapath<P>,
-        counts: &mut Counts,
-        sample: QuadNode,
-        paint: &Paint,
-    ) {
+    pub(super) fn draw<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode, paint: &Paint) {
         dp.stage(Stage::Draw);
         let vector = self.fill.read(dp, sample);
         if dp.and_bits(4, vector, FULL) == FULL {
-            counts.samples_already_drawn += 1;
+            self.counts.samples_already_drawn += 1;
             return;
         }
         let at = sample.y as usize * self.frame.width as usize + sample.x as usize; // host: a sample's address
         if let Some(color) = &paint.color {
-            if !self.blend(dp, counts, at, color, paint) {
+            if !self.blend(dp, at, color, paint) {
                 return;
             }
         } else {
@@ -52,20 +47,14 @@ impl Canvas<'_> {
             dp.next_step(0);
             dp.read(Memory::Attribute, node);
             Port::AttributeRead.tap(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
-            self.put(dp, counts, at, paint);
+            self.put(dp, at, paint);
         }
         self.fill.mark(dp, sample);
     }
 
     /// Writes node and voxel to sample number `at`.
     #[inline(always)]
-    fn put<P: Probe>(
-        &mut self,
-        dp: &mut Datapath<P>,
-        counts: &mut Counts,
-        at: usize,
-        paint: &Paint,
-    ) {
+    fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, paint: &Paint) {
         dp.write(Memory::Pixel, at as u64);
         let shown = Short::unsigned(paint.node, ADDRESS_BITS);
         Port::PixelWrite.tap(dp, at as u64, &shown);
@@ -74,14 +63,13 @@ impl Canvas<'_> {
         if let Some(to) = self.frame.voxel.get_mut(at) {
             *to = paint.voxel;
         }
-        counts.samples_drawn += 1;
+        self.counts.samples_drawn += 1;
     }
 
     /// Blends a voxel into sample number `at`, which shows its first voxel. Returns whether the sample is opaque enough.
     fn blend<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
-        counts: &mut Counts,
         at: usize,
         color: &BlendColor,
         paint: &Paint,
@@ -90,10 +78,10 @@ impl Canvas<'_> {
             unreachable!("the engine makes room for blending before the first record");
         };
         let taken = color.add_to(dp, at as u64, &mut blend[at]);
-        counts.samples_blended += 1;
+        self.counts.samples_blended += 1;
         if taken.is_first {
             dp.stage(Stage::Draw);
-            self.put(dp, counts, at, paint);
+            self.put(dp, at, paint);
         }
         taken.is_full
     }
@@ -102,31 +90,24 @@ impl Canvas<'_> {
     pub(super) fn draw_silhouette<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
-        counts: &mut Counts,
         quad: QuadNode,
         silhouette: Silhouette,
         paint: &Paint,
     ) {
         let _ = self.find(dp, quad, silhouette, &mut |canvas, dp, quad| {
-            canvas.draw_all(dp, counts, quad, paint);
+            canvas.draw_all(dp, quad, paint);
             false
         });
     }
 
-    fn draw_all<P: Probe>(
-        &mut self,
-        dp: &mut Datapath<P>,
-        counts: &mut Counts,
-        quad: QuadNode,
-        paint: &Paint,
-    ) {
+    fn draw_all<P: Probe>(&mut self, dp: &mut Datapath<P>, quad: QuadNode, paint: &Paint) {
         if quad.level == self.fill.levels() {
-            self.draw(dp, counts, quad, paint);
+            self.draw(dp, quad, paint);
             return;
         }
         for quadrant in self.open_quadrants(dp, quad) {
             dp.next_step(0);
-            self.draw_all(dp, counts, quad.quadrant(quadrant), paint);
+            self.draw_all(dp, quad.quadrant(quadrant), paint);
         }
     }
 

@@ -1,27 +1,66 @@
-//! Subdivision: a record's children, in the order of R9 (`SPEC.md`), and their vertices (image-order paper, 3.2 and
-//! 3.4).
+//! Children: made in the order of R9 (`SPEC.md`), with their vertices (image-order paper, 3.2 and 3.4), and pushed if they
+//! are before the eye and their box has an unfilled quadtree node (3.5).
 
-use hwmodel::{Datapath, Probe, Short, Stage, Word};
+use hwmodel::cycles::StackHolds;
+use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
 
-use super::blocks::Block;
+use super::blocks::{Block, Port};
 use super::cage::CageCoordinate;
+use super::canvas::Canvas;
+use super::constants::Constants;
 use super::counters::Counts;
-use super::fill::FillStore;
 use super::planes;
-use super::push::{child_span, is_behind};
-use super::record::{Child, Clip, Cube, Planes, Pose, Record};
-use super::state::{Job, Traversal};
+use super::record::{Child, Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
+use super::smallest_node;
+use super::state::{Job, State, Traversal};
 use super::watch::{Event, Watch};
+use crate::frame::QuadNode;
+use crate::project::options::OutlineRule;
+
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
+    /// Begins a tile, or the picture: pushes the record of the whole object.
+    pub(super) fn push_object(&mut self, tile: QuadNode) {
+        let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
+        // A tile begins at level 0, also after another tile.
+        dp.resume(0);
+        canvas.fill.begin_tile(dp, tile);
+        dp.stage(Stage::Push);
+        let c = &job.constants;
+        let [x, y, w] = [0, 1, 2].map(|k| L::from_frame(dp, c.origin[k], c.edges[k]));
+        let (w_min, w_max) = w.span(dp);
+        let side = dp.load(1i64 << (c.depth + c.sub_levels));
+        let object = Child {
+            cube: Cube {
+                min: [Word::ZERO; 3],
+                max: [side; 3],
+                node: job.graph.root,
+                level: 0,
+                voxel_level: 0,
+                solid: false,
+            },
+            from: ImagePlace::ROOT,
+        };
+        let planes = Planes {
+            edge: c.edge_planes,
+            axis_c: c.axis_c,
+        };
+        let clip = Clip { x, y, w, w_min };
+        if !is_behind(dp, c, &mut canvas.counts, w_max) {
+            self.traversal
+                .push_clip(dp, job, canvas, object, clip, planes);
+        }
+    }
+}
 
 impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     pub(super) fn subdivide<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
         job: &Job<'_>,
-        fill: &FillStore<'_>,
+        canvas: &mut Canvas<'_>,
         record: &Record<L>,
     ) {
-        self.counts.subdivided += 1;
+        canvas.counts.subdivided += 1;
         let (centre, order) = centre_and_order(dp, job, &record.cube);
 
         dp.stage(Stage::VertexPool);
@@ -30,18 +69,32 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
                 let x = pool(dp, &clip.x);
                 let y = pool(dp, &clip.y);
                 let w = pool(dp, &clip.w);
-                self.push_children(dp, job, record, (centre, order), |to, dp, octant, child| {
-                    let cage = [&x, &y, &w].map(|pool| L::child(pool, octant as usize));
-                    to.push_clip_child(dp, job, fill, child, cage, (planes, octant))
-                });
+                self.push_children(
+                    dp,
+                    job,
+                    canvas,
+                    record,
+                    (centre, order),
+                    |to, dp, canvas, octant, child| {
+                        let cage = [&x, &y, &w].map(|pool| L::child(pool, octant as usize));
+                        to.push_clip_child(dp, job, canvas, child, cage, (planes, octant))
+                    },
+                );
             }
             Pose::Screen(screen) => {
                 let x = pool(dp, &screen.x);
                 let y = pool(dp, &screen.y);
-                self.push_children(dp, job, record, (centre, order), |to, dp, octant, child| {
-                    let coordinates = || [&x, &y].map(|pool| L::child(pool, octant as usize));
-                    to.push_screen(dp, job, fill, child, coordinates)
-                });
+                self.push_children(
+                    dp,
+                    job,
+                    canvas,
+                    record,
+                    (centre, order),
+                    |to, dp, canvas, octant, child| {
+                        let coordinates = || [&x, &y].map(|pool| L::child(pool, octant as usize));
+                        to.push_screen(dp, job, canvas, child, coordinates)
+                    },
+                );
             }
         }
     }
@@ -52,17 +105,18 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         &mut self,
         dp: &mut Datapath<P>,
         job: &Job<'_>,
+        canvas: &mut Canvas<'_>,
         parent: &Record<L>,
         (centre, order): ([Word; 3], [u8; 8]),
-        mut push: impl FnMut(&mut Self, &mut Datapath<P>, u8, Child) -> bool,
+        mut push: impl FnMut(&mut Self, &mut Datapath<P>, &mut Canvas<'_>, u8, Child) -> bool,
     ) {
         for (rank, octant) in (0..8u8).zip(order).rev() {
-            let counts = &mut self.counts;
+            let counts = &mut canvas.counts;
             let Some(cube) = child_cube(dp, job, counts, &parent.cube, octant, &centre) else {
                 continue;
             };
             let from = parent.place;
-            if push(self, dp, octant, Child { cube, from }) {
+            if push(self, dp, canvas, octant, Child { cube, from }) {
                 self.watch.see(Event::<L>::Pushed(rank));
             }
         }
@@ -73,7 +127,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         &mut self,
         dp: &mut Datapath<P>,
         job: &Job<'_>,
-        fill: &FillStore<'_>,
+        canvas: &mut Canvas<'_>,
         child: Child,
         [x, y, w]: [L; 3],
         (planes, octant): (&Planes, u8),
@@ -89,8 +143,75 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
             *planes
         };
         let clip = Clip { x, y, w, w_min };
-        !is_behind(dp, c, &mut self.counts, w_max)
-            && self.push_clip(dp, job, fill, child, clip, planes)
+        !is_behind(dp, c, &mut canvas.counts, w_max)
+            && self.push_clip(dp, job, canvas, child, clip, planes)
+    }
+
+    /// Pushes a record in clip space, unless it is rejected. Returns whether it was pushed.
+    pub(super) fn push_clip<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        job: &Job<'_>,
+        canvas: &mut Canvas<'_>,
+        child: Child,
+        mut clip: Clip<L>,
+        mut planes: Planes,
+    ) -> bool {
+        let c = &job.constants;
+        let found = smallest_node::clip(dp, c, &canvas.fill, child.from, &mut clip, &mut planes);
+        self.push_at(dp, job, &mut canvas.counts, found, child.cube, || {
+            Pose::Clip(clip, planes)
+        })
+    }
+
+    /// Pushes a record in screen space. `coordinates` selects x and y: twice, because most children are rejected.
+    #[inline(always)]
+    pub(super) fn push_screen<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        job: &Job<'_>,
+        canvas: &mut Canvas<'_>,
+        child: Child,
+        coordinates: impl Fn() -> [L; 2],
+    ) -> bool {
+        let spans = coordinates().map(|coordinate| child_span(dp, &coordinate));
+        let found = smallest_node::screen(dp, &job.constants, &canvas.fill, child.from, &spans);
+        self.push_at(dp, job, &mut canvas.counts, found, child.cube, || {
+            let [x, y] = coordinates();
+            Pose::Screen(Screen { x, y, spans })
+        })
+    }
+
+    #[inline(always)]
+    fn push_at<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        job: &Job<'_>,
+        counts: &mut Counts,
+        found: Option<ImagePlace>,
+        cube: Cube,
+        pose: impl FnOnce() -> Pose<L>,
+    ) -> bool {
+        let Some(place) = found else {
+            counts.rejected_by_quadtree += 1;
+            return false;
+        };
+        dp.stage(Stage::Push);
+        let record = Record {
+            cube,
+            place,
+            pose: pose(),
+        };
+        self.watch.see(Event::Made(&record));
+        // With parents on the stack, a new record is in registers.
+        if job.organisation.stack == StackHolds::Children {
+            let address = self.stack.len() as u64;
+            dp.write(Memory::Stack, address);
+            Port::Push.tap(dp, address, &record);
+            counts.deepest_stack = counts.deepest_stack.max(address + 1);
+        }
+        self.stack.push(record);
+        true
     }
 }
 
@@ -172,4 +293,31 @@ pub(super) fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate
         dp.tap(Block::VertexPool, coordinate, &L::all(&pool));
     }
     pool
+}
+
+/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules that have one, before the near plane
+/// (R7.2).
+pub(super) fn is_behind<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    counts: &mut Counts,
+    w_max: Word,
+) -> bool {
+    dp.stage(Stage::ChildBox);
+    let is_behind = match constants.outline {
+        OutlineRule::Silhouette => !dp.is_positive(w_max),
+        OutlineRule::Box | OutlineRule::Centre => dp.lt(w_max, constants.near),
+    };
+    counts.behind_eye += u64::from(is_behind);
+    is_behind
+}
+
+#[inline(always)]
+pub(super) fn child_span<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    coordinate: &L,
+) -> (Word, Word) {
+    let span = coordinate.span(dp);
+    dp.tap(Block::ChildSpan, coordinate, &span);
+    span
 }

@@ -1,4 +1,5 @@
-//! The work on one record without its children: it is drawn, dropped (`SPEC.md`, R7, R10) or subdivided.
+//! The work on one record without its children: by the drawing rules (`SPEC.md`, R7, and R10, termination) it is drawn,
+//! dropped or subdivided.
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -14,8 +15,8 @@ use super::size;
 use super::state::Job;
 use super::to_screen;
 use super::undrawn::first_undrawn;
-use super::verdict::{Verdict, is_hidden, verdict};
 use crate::frame::QuadNode;
+use crate::project::options::OutlineRule;
 
 pub(super) enum RemainingWork {
     Nothing,
@@ -28,14 +29,13 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
     canvas: &mut Canvas<'_>,
-    counts: &mut Counts,
     record: &mut Record<L>,
 ) -> RemainingWork {
     let (c, place) = (&job.constants, record.place);
     if let Pose::Clip(clip, _) = &record.pose
         && to_screen::may_change(dp, c, record.cube.level, place, clip)
     {
-        counts.changed_to_screen += 1;
+        canvas.counts.changed_to_screen += 1;
         record.pose = Pose::Screen(to_screen::change(dp, c, place, clip));
     }
 
@@ -50,22 +50,22 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
             read_node(dp, job, node, level);
         }
     }
-    match verdict(dp, c, counts, record) {
+    match verdict(dp, c, &mut canvas.counts, record) {
         Verdict::DrawCentre => {
             if let Some(sample) = centre_sample(dp, c, record) {
-                canvas.draw(dp, counts, sample, &paint(c, record, None));
+                canvas.draw(dp, sample, &paint(c, record, None));
             }
         }
         Verdict::DrawBox => {
             let paint = paint(c, record, None);
             while let Some(sample) = first_undrawn(dp, c, &canvas.fill, record) {
-                canvas.draw(dp, counts, sample, &paint);
+                canvas.draw(dp, sample, &paint);
             }
         }
-        Verdict::DrawSolid => draw_solid(dp, job, canvas, counts, record),
+        Verdict::DrawSolid => draw_solid(dp, job, canvas, record),
         Verdict::Drop => {}
         Verdict::Subdivide if is_hidden(dp, job, canvas, record) => {
-            counts.hidden_across_bisectors += 1;
+            canvas.counts.hidden_across_bisectors += 1;
         }
         Verdict::Subdivide => {
             if is_read_late && !record.cube.solid {
@@ -115,13 +115,12 @@ fn draw_solid<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
     canvas: &mut Canvas<'_>,
-    counts: &mut Counts,
     record: &Record<L>,
 ) {
     let Pose::Clip(clip, planes) = &record.pose else {
         unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
     };
-    counts.solids_drawn += 1;
+    canvas.counts.solids_drawn += 1;
     dp.stage(Stage::Draw);
     let (c, cube) = (&job.constants, &record.cube);
     let mut color = None;
@@ -137,7 +136,7 @@ fn draw_solid<P: Probe, L: CageCoordinate>(
     let paint = paint(c, record, color);
     let silhouette = Silhouette::new(dp, c, cube, planes, clip.w_min);
     dp.next_step(0);
-    canvas.draw_silhouette(dp, counts, record.place.quad, silhouette, &paint);
+    canvas.draw_silhouette(dp, record.place.quad, silhouette, &paint);
 }
 
 fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Paint {
@@ -151,5 +150,181 @@ fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Pai
         node: cube.node,
         voxel: [x, y, z, cube.voxel_level as i32],
         color,
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    /// At the sample of its centre (`any`, `center`).
+    DrawCentre,
+    /// At every sample that its box overlaps (`any`).
+    DrawBox,
+    DrawSolid,
+    Drop,
+    Subdivide,
+}
+
+/// Applies the frame's drawing rule, and level of detail, which may make the record solid.
+fn verdict<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    counts: &mut Counts,
+    record: &mut Record<L>,
+) -> Verdict {
+    let has_near_plane = match c.outline {
+        OutlineRule::Silhouette => false,
+        OutlineRule::Box | OutlineRule::Centre => true,
+    };
+    if has_near_plane && is_sliver_at_near(dp, c, record) {
+        return Verdict::Drop;
+    }
+    apply_level_of_detail(dp, c, record);
+    let is_drawn = match c.outline {
+        OutlineRule::Silhouette => record.cube.solid,
+        OutlineRule::Box => is_in_one_sample(dp, c, record),
+        OutlineRule::Centre => {
+            record.cube.solid && !crosses_near(dp, c, record) && is_at_most_a_sample(dp, c, record)
+        }
+    };
+    let is_last = record.cube.level >= c.level_bound;
+    // Rounded screen positions cannot separate the vertices of such a small record.
+    let mut is_least = || match &record.pose {
+        Pose::Clip(..) => false,
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.least_size_screen),
+    };
+    let (draw, is_at_bound) = match c.outline {
+        // A record at the level of the finest voxels is solid.
+        OutlineRule::Silhouette => (Verdict::DrawSolid, false),
+        OutlineRule::Box => (Verdict::DrawBox, is_last || is_least()),
+        OutlineRule::Centre => (Verdict::DrawCentre, is_last),
+    };
+    if is_drawn {
+        return draw;
+    }
+    if !is_at_bound {
+        return Verdict::Subdivide;
+    }
+    counts.at_level_bound += 1;
+    if crosses_near(dp, c, record) {
+        Verdict::DrawCentre
+    } else {
+        draw
+    }
+}
+
+/// Whether all samples that a record may cover are drawn. Tested where occluded nodes are not read; otherwise only for
+/// records up to the size of a sample across a bisector: all parts of a solid along a bisector would be kept until both
+/// its sides are full.
+fn is_hidden<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    job: &Job<'_>,
+    canvas: &mut Canvas<'_>,
+    record: &Record<L>,
+) -> bool {
+    let c = &job.constants;
+    canvas.fill.rejects_full
+        && if job.organisation.hidden_unread {
+            !is_seen(dp, c, canvas, record)
+        } else {
+            record.place.quad.level < c.levels
+                && !crosses_near(dp, c, record)
+                && is_at_most_a_sample(dp, c, record)
+                && first_undrawn(dp, c, &canvas.fill, record).is_none()
+        }
+}
+
+/// Whether the ray of an undrawn sample meets a record.
+fn is_seen<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    canvas: &mut Canvas<'_>,
+    record: &Record<L>,
+) -> bool {
+    let Pose::Clip(clip, planes) = &record.pose else {
+        unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
+    };
+    dp.stage(Stage::Draw);
+    let silhouette = Silhouette::new(dp, c, &record.cube, planes, clip.w_min);
+    dp.next_step(0);
+    canvas.sees(dp, record.place.quad, silhouette)
+}
+
+/// Near plane (R7.2): whether a record lies across it and spans so little depth that it is dropped.
+fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    let Pose::Clip(clip, _) = &record.pose else {
+        return false;
+    };
+    if !dp.lt(clip.w_min, c.near) {
+        return false;
+    }
+    let (w_min, w_max) = clip.w.span(dp);
+    let span = dp.sub(w_max, w_min);
+    dp.lt(span, c.near_crossing)
+}
+
+/// The image-order paper's rule, `any`: a solid whose box lies in one sample.
+fn is_in_one_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    let one = record.place.quad.level == c.levels && record.place.inside;
+    if !one || crosses_near(dp, c, record) {
+        return false;
+    }
+    // A box within one sample fulfils a level of detail of one sample or more.
+    let lod = c.lod_limit.as_ref();
+    let is_coarse = lod.is_some_and(|limit| limit.value() >= c.size_limit.value());
+    record.cube.solid || is_coarse
+}
+
+/// Level of detail (R7.1): makes a node with children solid if it is small enough.
+#[inline(always)]
+pub(super) fn apply_level_of_detail<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &mut Record<L>,
+) {
+    if record.cube.solid {
+        return;
+    }
+    record.cube.solid = match &record.pose {
+        Pose::Clip(clip, _) => c.lod_depth[record.cube.level as usize].is_some_and(|least| {
+            let solid = dp.le(least, clip.w_min);
+            dp.tap(Block::DetailDepth, &(clip.w_min, least), &solid);
+            solid
+        }),
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.lod_limit_screen),
+    };
+}
+
+fn crosses_near<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    match &record.pose {
+        Pose::Clip(clip, _) => dp.lt(clip.w_min, c.near),
+        Pose::Screen(_) => false,
+    }
+}
+
+/// Less twice the tolerance.
+#[inline(always)]
+fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    match &record.pose {
+        Pose::Clip(clip, _) => {
+            let below = c.levels - record.place.quad.level;
+            size::clip_at_most(dp, clip, &c.size_limit, below)
+        }
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.size_limit_screen),
     }
 }

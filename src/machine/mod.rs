@@ -17,7 +17,7 @@
 //! - data: `blocks`, `counters`, `cage`, `record`, `constants`;
 //! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`, `alpha`, `canvas`,
 //!   `undrawn`, `path`;
-//! - steps of the loop: `watch`, `state`, `verdict`, `decide`, `push`, `children`;
+//! - steps of the loop: `watch`, `state`, `decide`, `children`;
 //! - the loop: `record_loop`, and `parents`, the loop with parents on its stack, and tiles;
 //! - `engine`, the machine as an [`Engine`](crate::project::Engine);
 //! - `instruments`, which observe the machine or drive it in another way.
@@ -36,7 +36,6 @@ mod instruments;
 mod parents;
 mod path;
 mod planes;
-mod push;
 mod quadrants;
 mod record;
 mod record_loop;
@@ -46,7 +45,6 @@ mod smallest_node;
 mod state;
 mod to_screen;
 mod undrawn;
-mod verdict;
 mod watch;
 
 pub use crate::project::OCCLUSION_ORDER;

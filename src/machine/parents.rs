@@ -142,7 +142,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                     }
                 }
             };
-            if self.traversal.counts.records >= most_records {
+            if self.canvas.counts.records >= most_records {
                 return Ok(false);
             }
             let child = self.parent_turn(&mut parent, stack.len() as u64);
@@ -168,7 +168,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 
     pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
-        let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
+        let (dp, counts) = (&mut self.dp, &mut self.canvas.counts);
         dp.resume(parent.record.cube.level);
         dp.stage(Stage::Push);
         dp.write(Memory::Stack, address);
@@ -200,7 +200,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, entry);
         if fill.is_full(dp, from.place.quad.ancestor(entry.quad_level)) {
-            self.traversal.counts.already_full += 1;
+            self.canvas.counts.already_full += 1;
             return None;
         }
         dp.stage(Stage::Pop);
@@ -220,9 +220,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         parent: &mut Parent<L>,
         address: u64,
     ) -> Option<Parent<L>> {
-        let (dp, job, fill) = (&mut self.dp, &self.job, &self.canvas.fill);
-        let traversal = &mut self.traversal;
-        fill.begin_turn();
+        let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
+        canvas.fill.begin_turn();
         dp.resume(parent.record.cube.level);
         let expanded = match parent.expanded {
             Some(expanded) => expanded,
@@ -231,13 +230,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                     dp.stage(Stage::Pop);
                     dp.read(Memory::Stack, address);
                     Port::Pop.tap(dp, address, &parent.entry());
-                    if fill.is_full(dp, parent.record.place.quad) {
-                        traversal.counts.already_full += 1;
+                    if canvas.fill.is_full(dp, parent.record.place.quad) {
+                        canvas.counts.already_full += 1;
                         parent.left = 0;
                         return None;
                     }
                 }
-                traversal.counts.subdivided += u64::from(parent.is_new());
+                canvas.counts.subdivided += u64::from(parent.is_new());
                 *parent.expanded.insert(expand(dp, job, &parent.record))
             }
         };
@@ -246,7 +245,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             let place = parent.left.trailing_zeros() as usize & 7;
             parent.left &= parent.left - 1;
             let octant = expanded.order[place];
-            let counts = &mut traversal.counts;
+            let counts = &mut canvas.counts;
             let cube = &record.cube;
             let Some(cube) = child_cube(dp, job, counts, cube, octant, &expanded.centre) else {
                 continue;
@@ -259,12 +258,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             let is_seen = match &record.pose {
                 Pose::Clip(_, planes) => {
                     let cage = expanded.seeds.each_ref().map(grow);
-                    traversal.push_clip_child(dp, job, fill, child, cage, (planes, octant))
+                    self.traversal
+                        .push_clip_child(dp, job, canvas, child, cage, (planes, octant))
                 }
                 Pose::Screen(_) => {
                     let [x, y, _] = &expanded.seeds;
                     let cage = [x, y].map(&mut grow);
-                    traversal.push_screen(dp, job, fill, child, || cage)
+                    self.traversal.push_screen(dp, job, canvas, child, || cage)
                 }
             };
             if is_seen {
@@ -277,14 +277,14 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Draws or drops the new record, unless it must be subdivided.
     fn work_on_new(&mut self) -> Option<Parent<L>> {
         let mut record = self.traversal.stack.pop()?;
-        let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
+        let (dp, counts) = (&mut self.dp, &mut self.canvas.counts);
         dp.begin_record(counts.records, record.cube.level);
         counts.records += 1;
         Port::Made.tap(dp, u64::from(false), &record);
         self.traversal
             .watch
             .see(Event::<L>::Turn(record.place.quad));
-        match decide(dp, &self.job, &mut self.canvas, counts, &mut record) {
+        match decide(dp, &self.job, &mut self.canvas, &mut record) {
             RemainingWork::Nothing => None,
             RemainingWork::Children => Some(Parent::new(record)),
         }

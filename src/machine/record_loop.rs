@@ -20,7 +20,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     ) -> Result<bool, EngineError> {
         self.push_object(tile);
         while !self.traversal.stack.is_empty() {
-            if self.traversal.counts.records >= most_records {
+            if self.canvas.counts.records >= most_records {
                 return Ok(false);
             }
             self.turn();
@@ -33,30 +33,26 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Pops the top record and draws or drops it, or pushes its children.
     pub(super) fn turn(&mut self) {
         let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
-        let Traversal {
-            stack,
-            counts,
-            watch,
-        } = &mut self.traversal;
+        let Traversal { stack, watch } = &mut self.traversal;
         // The record is processed in place: most have no children to push, and only the others are copied.
         let address = stack.len().wrapping_sub(1) as u64;
         let Some(record) = stack.last_mut() else {
             unreachable!("a turn is a record's, and the stack is empty");
         };
         let quad = record.place.quad;
-        dp.begin_record(counts.records, record.cube.level);
+        dp.begin_record(canvas.counts.records, record.cube.level);
         canvas.fill.begin_turn();
-        counts.records += 1;
+        canvas.counts.records += 1;
         watch.see(Event::<L>::Turn(quad));
         dp.stage(Stage::Pop);
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, record);
 
         let work = if canvas.fill.is_full(dp, quad) {
-            counts.already_full += 1;
+            canvas.counts.already_full += 1;
             RemainingWork::Nothing
         } else {
-            decide(dp, job, canvas, counts, record)
+            decide(dp, job, canvas, record)
         };
         let parent = match work {
             RemainingWork::Nothing => None,
@@ -64,7 +60,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         };
         stack.truncate(address as usize);
         if let Some(parent) = parent {
-            self.traversal.subdivide(dp, job, &canvas.fill, &parent);
+            self.traversal.subdivide(dp, job, canvas, &parent);
         }
     }
 }

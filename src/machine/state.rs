@@ -47,7 +47,6 @@ pub(super) struct Job<'a> {
 
 pub(super) struct Traversal<L, W> {
     pub(super) stack: Vec<Record<L>>,
-    pub(super) counts: Counts,
     pub(super) watch: W,
 }
 
@@ -87,10 +86,10 @@ impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
             canvas: Canvas {
                 fill: FillStore::new(fill, organisation, options.reject_filled),
                 frame,
+                counts: Counts::default(),
             },
             traversal: Traversal {
                 stack: Vec::new(),
-                counts: Counts::default(),
                 watch,
             },
         }
@@ -98,8 +97,8 @@ impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
 
     /// Counts, probe and watch after the last record.
     pub(super) fn finish(mut self) -> (Stats, P, W) {
-        self.traversal.counts.overflows = self.dp.overflows();
-        let mut stats = self.traversal.counts.stats();
+        self.canvas.counts.overflows = self.dp.overflows();
+        let mut stats = self.canvas.counts.stats();
         let blends = self.job.constants.blend_eye.is_some();
         stats.retain(|&(name, _)| blends || name != "samples_blended");
         (stats, self.dp.into_probe(), self.traversal.watch)

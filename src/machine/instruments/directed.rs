@@ -8,15 +8,14 @@ use crate::graph::{GraphView, Opacity};
 use crate::machine::MachineOptions;
 use crate::machine::alpha::BlendColor;
 use crate::machine::cage::{CageCoordinate, with_cage};
-use crate::machine::children::{centre_and_order, child_cube, pool};
+use crate::machine::children::{centre_and_order, child_cube, child_span, pool};
 use crate::machine::constants::BlendEye;
+use crate::machine::decide::apply_level_of_detail;
 use crate::machine::engine::Machine;
 use crate::machine::planes::{self, Silhouette};
-use crate::machine::push::child_span;
 use crate::machine::quadrants::{self, Halves};
 use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use crate::machine::state::State;
-use crate::machine::verdict::apply_level_of_detail;
 use crate::machine::{size, smallest_node, to_screen};
 use crate::project::options::SCREEN_GUARD_SHIFT;
 use crate::project::{ALL_LEFT, FrameSetup, OPAQUE_ENOUGH, SHARES};
@@ -117,7 +116,7 @@ fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     }
     let (centre, _) = centre_and_order(dp, job, &cube);
     let octant = inputs.level(7) as u8;
-    let counts = &mut state.traversal.counts;
+    let counts = &mut state.canvas.counts;
     child_cube(dp, job, counts, &cube, octant, &centre);
 }
 
