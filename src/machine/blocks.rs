@@ -131,3 +131,12 @@ pub(super) const LEVEL_BITS: u32 = 6;
 pub(super) const PLACES_BITS: u32 = 8;
 /// Wires of a quadtree node's row or column.
 pub(super) const NODE_BITS: u32 = 20;
+
+/// A quadtree node's column or row, and its level above the samples.
+#[inline(always)]
+pub(super) fn node_wires(column: u32, below: u32) -> (Short, Short) {
+    (
+        Short::unsigned(column, NODE_BITS),
+        Short::unsigned(below, LEVEL_BITS),
+    )
+}

@@ -20,7 +20,15 @@ macro_rules! with_cage {
 }
 pub(super) use with_cage;
 
-pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
+pub(super) trait Linear: Copy + std::fmt::Debug + Wires {
+    /// Applies a linear function to each number.
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
+
+    /// Applies a linear function to each pair of numbers.
+    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
+}
+
+pub(super) trait CageCoordinate: Linear {
     /// The vertices of a parallelepiped with this corner and these edges (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
@@ -55,12 +63,6 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
-    /// Applies a linear function to each number.
-    fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
-
-    /// Applies a linear function to each pair of numbers.
-    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
-
     /// The parent's coordinate: undoes exact halving.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self;
 
@@ -88,13 +90,31 @@ fn parallelepiped<P: Probe>(dp: &mut Datapath<P>, corner: Word, [x, y, z]: [Word
     v
 }
 
-/// Eight corners in Morton order (`x << 2 | y << 1 | z`).
+/// The numbers of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Corners([Word; 8]);
+pub(super) struct Numbers<const N: usize>([Word; N]);
 
-impl Wires for Corners {
+/// Eight corners in Morton order (`x << 2 | y << 1 | z`).
+pub(super) type Corners = Numbers<8>;
+
+/// One corner and the three edges that leave it along x, y, z.
+pub(super) type CornerAndEdges = Numbers<4>;
+
+impl<const N: usize> Wires for Numbers<N> {
     fn show(&self, to: &mut Vec<Signal>) {
         self.0.show(to);
+    }
+}
+
+impl<const N: usize> Linear for Numbers<N> {
+    #[inline]
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline]
+    fn zip(&self, other: &Self, mut f: impl FnMut(Word, Word) -> Word) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 }
 
@@ -181,16 +201,6 @@ impl CageCoordinate for Corners {
         [4, 2, 1].map(|end| dp.sub(self.0[end], self.0[0]))
     }
 
-    #[inline]
-    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
-        Self(self.0.map(f))
-    }
-
-    #[inline]
-    fn zip(&self, other: &Self, mut f: impl FnMut(Word, Word) -> Word) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
-    }
-
     /// The child shares the vertex of its octant; all others are twice as far from it.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
         let shared = self.0[usize::from(octant & 7)];
@@ -217,69 +227,54 @@ impl CageCoordinate for Corners {
     }
 }
 
-/// One corner and the three edges that leave it along x, y, z.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct CornerAndEdges {
-    corner: Word,
-    edges: [Word; 3],
-}
-
-impl Wires for CornerAndEdges {
-    fn show(&self, to: &mut Vec<Signal>) {
-        (self.corner, self.edges).show(to);
-    }
-}
-
 impl CageCoordinate for CornerAndEdges {
     /// The children's lowest corners, and the edges that they share.
     type Pool = ([Word; 8], [Word; 3]);
 
-    fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
-        Self { corner, edges }
+    fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, [x, y, z]: [Word; 3]) -> Self {
+        Self([corner, x, y, z])
     }
 
-    /// Halves edges towards zero, so that children stay within their parent.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
-        let Self { corner, edges } = self.seed(dp);
+        let Self([corner, edges @ ..]) = self.seed(dp);
         (parallelepiped(dp, corner, edges), edges)
     }
 
     type Seed = Self;
 
+    /// Halves edges towards zero, so that children stay within their parent.
     #[inline]
     fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self {
-        let edges = self.edges.map(|edge| {
+        let Self([corner, edges @ ..]) = *self;
+        let [x, y, z] = edges.map(|edge| {
             let sign = Word::from_host(i64::from(dp.bit(edge, 63)));
             dp.midpoint(edge, sign)
         });
-        Self { edges, ..*self }
+        Self([corner, x, y, z])
     }
 
     #[inline]
     fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self, octant: usize) -> Self {
-        let mut child = *seed;
-        for (k, &edge) in seed.edges.iter().enumerate() {
+        let Self([mut corner, x, y, z]) = *seed;
+        for (k, edge) in [x, y, z].into_iter().enumerate() {
             if octant >> (2 - k) & 1 != 0 {
-                child.corner = dp.add(child.corner, edge);
+                corner = dp.add(corner, edge);
             }
         }
-        child
+        Self([corner, x, y, z])
     }
 
     #[inline]
-    fn child(&(corners, edges): &Self::Pool, octant: usize) -> Self {
-        Self {
-            corner: corners[octant & 7],
-            edges,
-        }
+    fn child(&(corners, [x, y, z]): &Self::Pool, octant: usize) -> Self {
+        Self([corners[octant & 7], x, y, z])
     }
 
     #[inline]
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
-        let mut low = self.corner;
-        let mut high = self.corner;
-        for edge in self.edges {
+        let Self([corner, edges @ ..]) = *self;
+        let (mut low, mut high) = (corner, corner);
+        for edge in edges {
             let below = dp.min(edge, Word::ZERO);
             let above = dp.max(edge, Word::ZERO);
             low = dp.add(low, below);
@@ -290,56 +285,38 @@ impl CageCoordinate for CornerAndEdges {
 
     #[inline]
     fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word {
-        let [x, y, z] = self.edges;
+        let Self([corner, x, y, z]) = *self;
         let xy = dp.add(x, y);
         let half = dp.midpoint(xy, z);
-        dp.add(self.corner, half)
+        dp.add(corner, half)
     }
 
     #[inline]
     fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8] {
-        parallelepiped(dp, self.corner, self.edges)
+        let Self([corner, edges @ ..]) = *self;
+        parallelepiped(dp, corner, edges)
     }
 
     #[inline]
     fn edges<P: Probe>(&self, _: &mut Datapath<P>) -> [Word; 3] {
-        self.edges
-    }
-
-    #[inline]
-    fn map(&self, mut f: impl FnMut(Word) -> Word) -> Self {
-        Self {
-            corner: f(self.corner),
-            edges: self.edges.map(f),
-        }
-    }
-
-    #[inline]
-    fn zip(&self, other: &Self, mut f: impl FnMut(Word, Word) -> Word) -> Self {
-        Self {
-            corner: f(self.corner, other.corner),
-            edges: std::array::from_fn(|k| f(self.edges[k], other.edges[k])),
-        }
+        let Self([_, edges @ ..]) = *self;
+        edges
     }
 
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
-        let mut corner = self.corner;
-        for (k, &edge) in self.edges.iter().enumerate() {
+        let Self([mut corner, edges @ ..]) = *self;
+        for (k, edge) in edges.into_iter().enumerate() {
             if octant >> (2 - k) & 1 != 0 {
                 corner = dp.sub(corner, edge);
             }
         }
-        Self {
-            corner,
-            edges: self.edges.map(|edge| dp.shl(edge, 1)),
-        }
+        let [x, y, z] = edges.map(|edge| dp.shl(edge, 1));
+        Self([corner, x, y, z])
     }
 
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
-        Self {
-            corner: dp.add(self.corner, by),
-            edges: self.edges,
-        }
+        let Self([corner, x, y, z]) = *self;
+        Self([dp.add(corner, by), x, y, z])
     }
 
     /// Divides for four of the eight vertices; the edges are differences.
@@ -349,13 +326,13 @@ impl CageCoordinate for CornerAndEdges {
         w: &Self,
         mut divide: impl FnMut(&mut Datapath<P>, Word, Word) -> Word,
     ) -> Self {
-        let corner = divide(dp, x.corner, w.corner);
-        let edges = std::array::from_fn(|k| {
-            let end_x = dp.add(x.corner, x.edges[k]);
-            let end_w = dp.add(w.corner, w.edges[k]);
+        let corner = divide(dp, x.0[0], w.0[0]);
+        let [a, b, c] = [1, 2, 3].map(|k| {
+            let end_x = dp.add(x.0[0], x.0[k]);
+            let end_w = dp.add(w.0[0], w.0[k]);
             let end = divide(dp, end_x, end_w);
             dp.sub(end, corner)
         });
-        Self { corner, edges }
+        Self([corner, a, b, c])
     }
 }

@@ -3,7 +3,7 @@
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
-use super::blocks::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
+use super::blocks::{Block, LEVEL_BITS, PLACES_BITS, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::{Constants, Margin};
 use super::record::{Clip, Spans};
@@ -107,66 +107,47 @@ fn bisect<P: Probe, L: CageCoordinate>(
         let doubled = dp.shl(x, 1);
         dp.sub(doubled, w)
     });
-    let below = below as i32;
-    let halves = match &constants.margin {
+    let mut margin = w.map(|_| Word::ZERO);
+    // Whether the comparisons are closed, and whether both halves must contain the sample.
+    let (halves, kind) = match &constants.margin {
         Margin::Plain => {
             let (low, high) = relative.span(dp);
             let low = dp.is_negative(low);
             let high = dp.is_positive(high) || !low;
-            let halves = Halves { low, high };
-            let none = w.map(|_| Word::ZERO);
-            tap_bisector(dp, (x, w, &none), (false, false), &relative, halves);
-            halves
+            (Halves { low, high }, (false, false))
         }
         &Margin::Grow(grow) => {
-            let margin = margins(dp, w, grow + below - 1);
-            let halves = closed(dp, &relative, &margin);
-            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
-            halves
+            margin = margins(dp, w, grow + below as i32 - 1);
+            (closed(dp, &relative, &margin), (true, false))
         }
         Margin::Gap if below > 0 => {
             // Half a sample, negative: the box is narrowed.
-            let margin = w.map(|w| {
-                let sample = dp.shr(w, below.unsigned_abs());
+            margin = w.map(|w| {
+                let sample = dp.shr(w, below);
                 dp.neg(sample)
             });
-            let node = Short::unsigned(below.unsigned_abs(), LEVEL_BITS);
+            let node = Short::unsigned(below, LEVEL_BITS);
             dp.tap(Block::MarginGap, &(w, node), &margin);
-            let halves = closed(dp, &relative, &margin);
-            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
-            halves
+            (closed(dp, &relative, &margin), (true, false))
         }
         Margin::Gap => {
             // A sample has one sample point, in its middle.
             let span = relative.span(dp);
             let halves = closed_halves(dp, span);
-            let margin = w.map(|_| Word::ZERO);
             let both = halves.low && halves.high;
             let halves = Halves {
                 low: both,
                 high: both,
             };
-            tap_bisector(dp, (x, w, &margin), (true, true), &relative, halves);
-            halves
+            (halves, (true, true))
         }
     };
-    (relative, halves)
-}
-
-/// `kind`: whether the comparisons are closed, and whether both halves must contain the sample.
-#[inline(always)]
-fn tap_bisector<P: Probe, L: CageCoordinate>(
-    dp: &mut Datapath<P>,
-    box_and_margin: (&L, &L, &L),
-    kind: (bool, bool),
-    relative: &L,
-    halves: Halves,
-) {
     dp.tap(
         Block::BisectorClip,
-        &(box_and_margin, kind),
-        &(relative, halves.low, halves.high),
+        &((x, w, &margin), kind),
+        &(&relative, halves.low, halves.high),
     );
+    (relative, halves)
 }
 
 pub(super) fn margins<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
@@ -209,13 +190,9 @@ fn screen_halves<P: Probe>(
         low: in_low,
         high: dp.lt(middle, high) || !in_low,
     };
-    let node = (
-        Short::unsigned(column, NODE_BITS),
-        Short::unsigned(below, LEVEL_BITS),
-    );
     dp.tap(
         Block::BisectorScreen,
-        &(low, high, node),
+        &(low, high, node_wires(column, below)),
         &(halves.low, halves.high),
     );
     halves

@@ -2,7 +2,7 @@
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
-use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
+use super::blocks::{Block, LEVEL_BITS, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::record::{Clip, ImagePlace, Screen};
@@ -134,10 +134,7 @@ pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
         // A box of no size may lie on its node's far edge, and a word that wrapped or saturated may be anywhere.
         let position = dp.min(position, last);
         let position = dp.max(position, first);
-        let node = (
-            Short::unsigned(node, NODE_BITS),
-            Short::unsigned(below, LEVEL_BITS),
-        );
+        let node = node_wires(node, below);
         dp.tap(Block::CentreSample, &(centre, node), &position);
         Some(position.to_host() as u32) // host: a sample's address
     };

@@ -9,9 +9,9 @@
 //!     else: this is the node
 //! ```
 
-use hwmodel::{Datapath, Probe, Short, Stage, Word};
+use hwmodel::{Datapath, Probe, Stage, Word};
 
-use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
+use super::blocks::{Block, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
@@ -162,10 +162,7 @@ fn is_screen_inside<P: Probe>(
         let (left, right) = (edge(column), edge(column + 1));
         let outside = dp.lt(high, left) || dp.lt(right, low);
         let within = !outside && dp.le(left, low) && dp.le(high, right);
-        let node = (
-            Short::unsigned(column, NODE_BITS),
-            Short::unsigned(below, LEVEL_BITS),
-        );
+        let node = node_wires(column, below);
         dp.tap(Block::BorderScreen, &(low, high, node), &(outside, within));
         if outside {
             return None;

@@ -5,7 +5,7 @@ use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 use super::positions::{Cage, cages_as};
 use crate::frame::Frame;
 use crate::graph::GraphView;
-use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners, Linear};
 use crate::machine::engine::Machine;
 use crate::machine::state::MachineOptions;
 use crate::project::{CageKind, EngineError, FrameSetup, Stats};
@@ -16,21 +16,15 @@ pub enum Mutation {
     UlpInFrames,
     /// The same, only in cages of corners.
     UlpInCorners,
-    /// Edges halved down instead of towards zero.
-    HalvesDown,
-    MidpointsUp,
     QuotientsUp,
+    /// Two children in the wrong order.
     OrderSwapped,
-    /// The order array backwards: farthest first.
-    OrderReversed,
     /// No record is too near to be drawn, or to change to screen space.
     NearSkipped,
 }
 
 const ULP: u8 = 0;
-const HALVES_DOWN: u8 = 1;
-const MIDPOINTS_UP: u8 = 2;
-const QUOTIENTS_UP: u8 = 3;
+const QUOTIENTS_UP: u8 = 1;
 
 /// A cage coordinate with a mutation.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +36,16 @@ impl<L: Wires, const MUTATION: u8> Wires for Mutated<L, MUTATION> {
     }
 }
 
+impl<L: CageCoordinate, const MUTATION: u8> Linear for Mutated<L, MUTATION> {
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
+        Self(self.0.map(f))
+    }
+
+    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self {
+        Self(self.0.zip(&other.0, f))
+    }
+}
+
 impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATION> {
     type Pool = [L; 8];
 
@@ -50,24 +54,9 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
     }
 
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
-        let one = Word::from_host(1);
         let mut children = L::all(&self.0.pool(dp));
-        match MUTATION {
-            ULP => children[5] = children[5].moved(dp, one),
-            HALVES_DOWN => {
-                let corner = self.0.vertices(dp)[0];
-                let edges = self.0.edges(dp).map(|edge| dp.shr(edge, 1));
-                let whole = L::from_frame(dp, corner, edges);
-                let corners = whole.vertices(dp);
-                children = corners.map(|corner| L::from_frame(dp, corner, edges));
-            }
-            MIDPOINTS_UP => {
-                // -floor((-a - b) / 2) is the midpoint rounded up.
-                let negative = self.0.map(|a| dp.neg(a));
-                let halved = L::all(&negative.pool(dp));
-                children = halved.map(|child| child.map(|a| dp.neg(a)));
-            }
-            _ => {}
+        if MUTATION == ULP {
+            children[5] = children[5].moved(dp, Word::from_host(1));
         }
         children
     }
@@ -106,14 +95,6 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
         self.0.edges(dp)
     }
 
-    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
-        Self(self.0.map(f))
-    }
-
-    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self {
-        Self(self.0.zip(&other.0, f))
-    }
-
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
         Self(self.0.moved(dp, by))
     }
@@ -147,8 +128,6 @@ macro_rules! with_cage {
         match ($mutation, $setup.options.cage) {
             (Mutation::UlpInFrames, CageKind::Frame) => with!(Mutated<CornerAndEdges, ULP>),
             (Mutation::UlpInCorners, CageKind::Corners) => with!(Mutated<Corners, ULP>),
-            (Mutation::HalvesDown, CageKind::Frame) => with!(Mutated<CornerAndEdges, HALVES_DOWN>),
-            (Mutation::MidpointsUp, CageKind::Corners) => with!(Mutated<Corners, MIDPOINTS_UP>),
             (Mutation::QuotientsUp, CageKind::Frame) => with!(Mutated<CornerAndEdges, QUOTIENTS_UP>),
             (_, CageKind::Corners) => with!(Corners),
             (_, CageKind::Frame) => with!(CornerAndEdges),
@@ -185,10 +164,8 @@ impl Mutant {
         most_records: u64,
     ) -> Result<Option<Stats>, EngineError> {
         let mut options = MachineOptions::default();
-        match self.0 {
-            Mutation::OrderSwapped => options.order.swap(1, 7),
-            Mutation::OrderReversed => options.order.reverse(),
-            _ => {}
+        if self.0 == Mutation::OrderSwapped {
+            options.order.swap(1, 7);
         }
         let mut machine = Machine::new(options);
         let setup = &self.setup(setup);
