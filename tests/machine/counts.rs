@@ -32,84 +32,19 @@ use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
 
-/// Operations by class and width.
-type Ops = BTreeMap<(OpClass, u32), u64>;
+/// Counts from the first record on: before it is the object's own fit.
+#[derive(Default)]
+struct Records(Option<Counter>);
 
-/// The turn of one record.
-#[derive(Debug, Default)]
-struct Turn {
-    level: u32,
-    ops: BTreeMap<Stage, Ops>,
-    /// Without those before the children are made.
-    fit: Ops,
-    fit_tests: u64,
-    node: Option<u32>,
-}
-
-impl Turn {
-    fn ops(&self, stage: Stage) -> Ops {
-        self.ops.get(&stage).cloned().unwrap_or_default()
-    }
-
-    fn is_subdivided(&self) -> bool {
-        self.ops.contains_key(&Stage::Centre)
-    }
-
-    /// Children that exist: all of a solid's, else those of the node's mask.
-    fn children(&self, graph: &Graph) -> u64 {
-        match self.node.map(|node| graph.view().mask(node)) {
-            Some(mask) if mask != 0 && self.level < graph.depth => u64::from(mask.count_ones()),
-            _ => 8,
-        }
-    }
-}
-
-/// Keeps records apart. The first entry is before all records.
-#[derive(Debug)]
-struct ByRecord(Vec<Turn>);
-
-impl Probe for ByRecord {
+impl Probe for Records {
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        let is_first = self.0.len() == 1;
-        let turn = self.0.last_mut().unwrap();
-        assert!(is_first || place.level == turn.level);
-        let mut kinds = vec![turn.ops.entry(place.stage).or_default()];
-        if place.stage == Stage::QuadtreeFit {
-            kinds.push(&mut turn.fit);
-        } else if place.stage == Stage::Centre {
-            turn.fit.clear();
-            turn.fit_tests = 0;
-        }
-        for ops in kinds {
-            *ops.entry((class, bits)).or_default() += u64::from(times);
+        if let Some(counter) = &mut self.0 {
+            counter.op(class, bits, place, times);
         }
     }
-    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
-        let turn = self.0.last_mut().unwrap();
-        match (memory, place.stage) {
-            (Memory::Node, Stage::OnePixel) => turn.node = Some(address as u32),
-            (Memory::FillVector, Stage::QuadtreeFit) => turn.fit_tests += 1,
-            _ => {}
-        }
-    }
-    fn write(&mut self, _: Memory, _: u64, _: StageLevel) {}
     fn record(&mut self, index: u64, level: u32) {
-        assert_eq!(index + 1, self.0.len() as u64);
-        self.0.push(Turn {
-            level,
-            ..Turn::default()
-        });
+        self.0.get_or_insert_default().record(index, level);
     }
-}
-
-/// Expected operations; classes of which there are none are left out.
-fn ops(list: &[(OpClass, u32, u64)]) -> Ops {
-    let mut ops = Ops::new();
-    for &(class, bits, times) in list {
-        *ops.entry((class, bits)).or_default() += times;
-    }
-    ops.retain(|_, times| *times > 0);
-    ops
 }
 
 /// The image-order paper's settings, but for the cage and the tolerance.
@@ -153,79 +88,78 @@ const CAGES: [(CageKind, [u64; 6]); 2] = [
 ];
 
 #[test]
-fn a_subdivided_record_costs_what_the_table_says() {
+fn subdivided_records_cost_what_the_table_says() {
     use OpClass::{Add, Compare, DivideStep, Logic, MinMax, Select, Shift, Sub};
     for (cage, [halvings, pool_adds, numbers, min_max, adds, vertices]) in CAGES {
-        for ((graph, camera), in_clip) in scenes()
-            .into_iter()
-            .flat_map(|scene| [false, true].map(|in_clip| (scene.clone(), in_clip)))
-        {
+        for (at, (graph, camera)) in scenes().into_iter().cycle().take(8).enumerate() {
+            let in_clip = at < 4;
             let tolerance = if in_clip { 0.0 } else { f64::INFINITY };
             let setup = setup(&graph, &camera, &options(cage, tolerance));
+            let Records(counter) = watch(&graph, &setup, Records::default());
+            let counter = counter.expect("records");
+            let (_, stats) = draw(&graph, &setup);
+            let subdivided = stat(&stats, "subdivided");
+            assert!(subdivided >= 10);
+            let children = 8 * subdivided - stat(&stats, "absent_children");
             let bits = setup.format.bits();
-            let ByRecord(turns) = watch(&graph, &setup, ByRecord(vec![Turn::default()]));
+            let coordinates = if in_clip { 3 } else { 2 } * subdivided;
+            let spans = if in_clip { 1 } else { 2 } * children;
+            // Each test of the fit takes four compares.
+            let tests = counter.ops_at(Stage::QuadtreeFit, Compare) / 4;
+            let shifts = counter.ops_at(Stage::QuadtreeFit, Shift);
+            assert!(tests >= children, "each child is tested once at least");
+            let in_fit = if in_clip { tests } else { 0 };
+            // Beyond those of the tests, a cage coordinate's worth for each left half.
+            let doubled = shifts - 2 * numbers * in_fit;
+            assert!(doubled % numbers == 0 && doubled <= 2 * numbers * in_fit);
             // Only the object's record is divided, whose node is the root: 4 integer bits, a bit per level, the fraction.
-            let steps = u64::from(4 + setup.levels + setup.format.frac());
-            for (number, turn) in turns.iter().enumerate() {
-                for (stage, ops) in &turn.ops {
-                    let of_class = ops.iter().filter(|((class, _), _)| *class == DivideStep);
-                    let divides: u64 = of_class.map(|(_, times)| times).sum();
-                    let is_here = !in_clip && number == 1 && *stage == Stage::ToScreen;
-                    assert_eq!(divides, u64::from(is_here) * 2 * vertices * steps);
-                }
-                assert!(in_clip || number == 1 || turn.ops(Stage::ToScreen).is_empty());
+            let steps = 2 * vertices * u64::from(4 + setup.levels + setup.format.frac());
+            let mut expected = BTreeMap::new();
+            for (stage, class, bits, times) in [
+                (Stage::Filled, Logic, 4, stat(&stats, "records")),
+                (Stage::Centre, Add, bits + 1, 3 * subdivided),
+                (Stage::Centre, Shift, bits + 1, 3 * subdivided),
+                (Stage::Order, Compare, bits, 3 * subdivided),
+                (Stage::Order, Logic, 3, 8 * subdivided),
+                (Stage::VertexPool, Add, bits + 1, coordinates * halvings),
+                (Stage::VertexPool, Shift, bits + 1, coordinates * halvings),
+                (Stage::VertexPool, Add, bits, coordinates * pool_adds),
+                (Stage::ChildBox, Select, bits, 6 * children),
+                (Stage::ChildBox, MinMax, bits, spans * min_max),
+                (Stage::ChildBox, Add, bits, spans * adds),
+                (
+                    Stage::ChildBox,
+                    Compare,
+                    bits,
+                    if in_clip { children } else { 0 },
+                ),
+                (Stage::QuadtreeFit, Compare, bits, 4 * tests),
+                (Stage::QuadtreeFit, Logic, 4, tests),
+                (Stage::QuadtreeFit, Shift, bits, shifts),
+                (Stage::QuadtreeFit, Sub, bits, 2 * numbers * in_fit),
+                (Stage::QuadtreeFit, MinMax, bits, 2 * min_max * in_fit),
+                (Stage::QuadtreeFit, Add, bits, 2 * adds * in_fit),
+            ] {
+                *expected.entry((stage, class, bits)).or_default() += times;
             }
-            let subdivided: Vec<_> = turns.iter().filter(|t| t.is_subdivided()).collect();
-            assert!(subdivided.len() >= 10);
-            for turn in subdivided {
-                let (c, tests) = (turn.children(&graph), turn.fit_tests);
-                let coordinates = if in_clip { 3 } else { 2 };
-                let spans = if in_clip { 1 } else { 2 };
-                for (stage, expected) in [
-                    (Stage::Pop, ops(&[])),
-                    (Stage::Filled, ops(&[(Logic, 4, 1)])),
-                    (
-                        Stage::Centre,
-                        ops(&[(Add, bits + 1, 3), (Shift, bits + 1, 3)]),
-                    ),
-                    (Stage::Order, ops(&[(Compare, bits, 3), (Logic, 3, 8)])),
-                    (
-                        Stage::VertexPool,
-                        ops(&[
-                            (Add, bits + 1, coordinates * halvings),
-                            (Shift, bits + 1, coordinates * halvings),
-                            (Add, bits, coordinates * pool_adds),
-                        ]),
-                    ),
-                    (
-                        Stage::ChildBox,
-                        ops(&[
-                            (Select, bits, 6 * c),
-                            (MinMax, bits, spans * min_max * c),
-                            (Add, bits, spans * adds * c),
-                            (Compare, bits, if in_clip { c } else { 0 }),
-                        ]),
-                    ),
-                    (Stage::Push, ops(&[])),
-                ] {
-                    assert_eq!(turn.ops(stage), expected, "{stage:?}, {cage:?}");
-                }
-                assert!(tests >= c, "each child is tested once at least");
-                let mut fit = vec![(Compare, bits, 2 * 2 * tests), (Logic, 4, tests)];
-                if in_clip {
-                    let shifts = turn.fit[&(Shift, bits)];
-                    fit.extend([
-                        (Shift, bits, shifts),
-                        (Sub, bits, 2 * numbers * tests),
-                        (MinMax, bits, 2 * min_max * tests),
-                        (Add, bits, 2 * adds * tests),
-                    ]);
-                    // Beyond those of the tests, a cage coordinate's worth for each left half.
-                    let doubled = shifts - 2 * numbers * tests;
-                    assert!(doubled % numbers == 0 && doubled <= 2 * numbers * tests);
-                }
-                assert_eq!(turn.fit, ops(&fit), "{cage:?}");
+            expected.retain(|_, times| *times > 0);
+            let mut found: BTreeMap<_, u64> = BTreeMap::new();
+            for cell in counter.cells() {
+                *found
+                    .entry((cell.stage, cell.class, cell.bits))
+                    .or_default() += cell.times;
             }
+            let others = [
+                Stage::ToScreen,
+                Stage::OnePixel,
+                Stage::Draw,
+                Stage::FillUpdate,
+            ];
+            found.retain(|(stage, ..), _| !others.contains(stage));
+            assert_eq!(found, expected, "{cage:?}");
+            let divides = counter.ops_at(Stage::ToScreen, DivideStep);
+            assert_eq!(divides, if in_clip { 0 } else { steps });
+            assert_eq!(counter.ops_of(DivideStep), divides);
         }
     }
 }

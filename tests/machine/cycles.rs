@@ -1,12 +1,10 @@
-//! The machine on simulated hardware: its counts, what lanes save, its observers, its errors.
+//! The machine on simulated hardware: its counts, what lanes save, its errors.
 //! (`differential.rs` compares its frames.)
 
 use crate::common::*;
 use crate::scenes;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{
-    Hardware, Independence, NoObserver, Observer, Progress, Recorder, TraceLimit,
-};
+use hwmodel::cycles::{Hardware, Independence, NoObserver};
 use hwmodel::{Memory, OpClass, Stage};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
@@ -16,10 +14,9 @@ use shiftvox::project::{Coverage, Engine, FrameSetup, SetupOptions};
 fn simulated(
     (graph, setup): &(Graph, FrameSetup),
     hardware: &Hardware,
-    observer: &mut dyn Observer,
 ) -> Result<Simulated, SimulateError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Machine::default().simulate(&graph.view(), setup, &mut frame, hardware, observer)
+    Machine::default().simulate(&graph.view(), setup, &mut frame, hardware, &mut NoObserver)
 }
 
 fn terrain(settings: &SetupOptions, size: u32) -> (Graph, FrameSetup) {
@@ -40,7 +37,7 @@ fn cycles_count_what_a_counter_counts() {
             .expect("a frame");
         let mut hardware = Hardware::preset("wide").unwrap();
         hardware.independence = Independence::Image;
-        let report = simulated(&scene, &hardware, &mut NoObserver).unwrap();
+        let report = simulated(&scene, &hardware).unwrap();
         let report = report.cycles;
         for stage in Stage::ALL {
             let counted = OpClass::ALL.map(|class| counter.ops_at(stage, class));
@@ -68,7 +65,7 @@ fn cycles_fall_with_lanes_down_to_the_span() {
     let mut hardware = Hardware::preset("wide").unwrap();
     let mut report = |lanes: u32, independence: Independence| {
         (hardware.lanes, hardware.independence) = (lanes, independence);
-        let report = simulated(&scene, &hardware, &mut NoObserver);
+        let report = simulated(&scene, &hardware);
         report.unwrap().cycles
     };
     let usual = Hardware::preset("wide").unwrap();
@@ -81,22 +78,6 @@ fn cycles_fall_with_lanes_down_to_the_span() {
     // One record at a time: all work is one chain.
     assert_eq!((serial.work, serial.parallelism), (serial.span, 1.0));
     assert!(serial.cycles > cycles[0]);
-}
-
-#[test]
-fn cycles_are_watched_without_being_changed() {
-    let scene = terrain(&SetupOptions::default(), 64);
-    let hardware = Hardware::preset("paper").unwrap();
-    let mut last = (0, 0);
-    let mut observer = (
-        Recorder::new(TraceLimit::default()),
-        Progress(|cycles, records| last = (cycles, records)),
-    );
-    let watched = simulated(&scene, &hardware, &mut observer).unwrap();
-    let expected = simulated(&scene, &hardware, &mut NoObserver).unwrap();
-    assert_eq!(watched, expected);
-    assert!(!observer.0.visits().is_empty());
-    assert!(last.1 <= expected.cycles.records);
 }
 
 /// An overflow ends a simulation as it ends a frame.
@@ -112,7 +93,7 @@ fn cycles_end_with_the_machines_own_error() {
     let right = Machine::default().render(&scene.0.view(), &scene.1, &mut frame);
     let mut hardware = Hardware::preset("tiny").unwrap();
     hardware.independence = Independence::None;
-    let found = simulated(&scene, &hardware, &mut NoObserver);
+    let found = simulated(&scene, &hardware);
     let [found, right] = [
         found.unwrap_err().to_string(),
         right.unwrap_err().to_string(),

@@ -43,59 +43,46 @@ const SIZES: [(u32, u32, u32); 7] = [
     (30, 27, 2),
 ];
 
-/// One way of each kind to draw a frame.
-#[derive(Debug)]
-struct Ways {
-    fast: [FastOptions; 2],
-    pool: usize,
-    organisation: Organisation,
-    hardware: Hardware,
+fn any_fast(dice: &mut Dice, instructions: Instructions, depth: u32) -> FastOptions {
+    let mut is_on = || dice.below(7) > 0;
+    let switches = Switches {
+        hidden: is_on(),
+        full: is_on(),
+        off_screen: is_on(),
+        bricks: is_on(),
+        whole_blocks: is_on(),
+        absent_children: is_on(),
+    };
+    FastOptions {
+        threads: dice.of(&[1, 2, 3]),
+        instructions,
+        // Without skips a fractal of many levels takes hours.
+        switches: match depth > 9 || dice.below(2) == 0 {
+            true => Switches::default(),
+            false => switches,
+        },
+    }
 }
 
-impl Ways {
-    fn any(dice: &mut Dice, depth: u32) -> Self {
-        let is_on = |dice: &mut Dice| dice.below(7) > 0;
-        let switches = match dice.below(2) {
-            // Without skips a fractal of many levels takes hours.
-            0 => Switches::default(),
-            _ if depth > 9 => Switches::default(),
-            _ => Switches {
-                hidden: is_on(dice),
-                full: is_on(dice),
-                off_screen: is_on(dice),
-                bricks: is_on(dice),
-                whole_blocks: is_on(dice),
-                absent_children: is_on(dice),
-            },
-        };
-        let fast = [Instructions::Scalar, Instructions::Avx2].map(|instructions| FastOptions {
-            threads: dice.of(&[1, 2, 3]),
-            instructions,
-            switches,
-        });
-        let leaf_masks = dice.below(3) > 0;
-        let organisation = Organisation {
-            stack: dice.of(&[StackHolds::Children, StackHolds::Parents, StackHolds::Path]),
-            leaf_masks,
-            bricks: leaf_masks && dice.below(2) == 0,
-            tile_levels: dice.of(&[0, 0, 0, 0, 2, 2, 2, MAX_TILE_LEVELS]),
-            hidden_unread: dice.below(2) == 0,
-            joined_fill: dice.below(2) == 0,
-            packed: dice.below(2) == 0,
-        };
-        Self {
-            fast,
-            pool: dice.of(&[1, 2, 5, 7]),
-            organisation,
-            hardware: any_hardware(dice, organisation),
-        }
+fn any_organisation(dice: &mut Dice) -> Organisation {
+    let leaf_masks = dice.below(3) > 0;
+    Organisation {
+        stack: dice.of(&[StackHolds::Children, StackHolds::Parents, StackHolds::Path]),
+        leaf_masks,
+        bricks: leaf_masks && dice.below(2) == 0,
+        tile_levels: dice.of(&[0, 0, 0, 0, 2, 2, 2, MAX_TILE_LEVELS]),
+        hidden_unread: dice.below(2) == 0,
+        joined_fill: dice.below(2) == 0,
+        packed: dice.below(2) == 0,
     }
 }
 
 /// Hardware whose records meet in many ways.
-fn any_hardware(dice: &mut Dice, organisation: Organisation) -> Hardware {
+fn any_hardware(dice: &mut Dice) -> Hardware {
     let mut hardware = Hardware::preset(dice.of(&["tiny", "paper", "wide"])).unwrap();
-    hardware.organisation = dice.of(&[Organisation::default(), organisation, organisation]);
+    if dice.below(3) > 0 {
+        hardware.organisation = any_organisation(dice);
+    }
     (hardware.lanes, hardware.contexts) = (1 + dice.below(19), 1 + dice.below(8));
     hardware.stack.entries = 1 + dice.below(79);
     hardware.fill_vectors.banks = 1 + dice.below(4);
@@ -165,13 +152,10 @@ fn draw_fast(
         let of_node: Vec<[u8; 3]> = (0..nodes as u32).map(|node| bytes_of(node).1).collect();
         let mut colors = Colors::new(setup.width, setup.height);
         colors.words.fill(3);
-        fast.draw_colors(view, &of_node, setup, &mut colors)
-            .expect("drawn before");
-        let expected = frame.node.iter().map(|&node| {
-            of_node
-                .get(node as usize)
-                .map_or(0, |&color| color_word(color))
-        });
+        let drawn = fast.draw_colors(view, &of_node, setup, &mut colors);
+        drawn.expect("drawn before");
+        let color = |&node: &u32| of_node.get(node as usize).copied().map_or(0, color_word);
+        let expected = frame.node.iter().map(color);
         assert!(expected.eq(colors.words), "other colours: {options:?}");
     }
     (drawn.map(|_| frame), declined)
@@ -233,9 +217,8 @@ impl<'g> Scene<'g> {
         let Ok(setup) = FrameSetup::new(camera, &graph.placement, graph.depth, options) else {
             return Ok(None);
         };
-        let ways = Ways::any(dice, graph.depth);
-        let drawn = self.agree_with(graph, camera, &setup, &ways);
-        drawn.map_err(|error| format!("{error}; {options:?}, {camera:?}, {ways:?}"))
+        let drawn = self.agree_with(graph, camera, &setup, dice);
+        drawn.map_err(|error| format!("{error}; {options:?}, {camera:?}"))
     }
 
     fn agree_with(
@@ -243,7 +226,7 @@ impl<'g> Scene<'g> {
         graph: &Graph,
         camera: &Camera,
         setup: &FrameSetup,
-        ways: &Ways,
+        dice: &mut Dice,
     ) -> Result<Option<Frame>, String> {
         let options = &setup.options;
         let view = GraphView {
@@ -265,10 +248,11 @@ impl<'g> Scene<'g> {
             return Ok(None);
         }
         let is_usual = options.bits == 64 && options.frac.is_none();
-        for options in ways.fast {
+        for instructions in [Instructions::Scalar, Instructions::Avx2] {
+            let options = any_fast(dice, instructions, graph.depth);
             let (drawn, declined) = draw_fast(options, &view, setup, graph.len());
             match (&right, &drawn) {
-                (Ok(Some((right, _))), Ok(frame)) => same("the fast engine", frame, right)?,
+                (Ok(Some((right, _))), Ok(frame)) => same(&format!("{options:?}"), frame, right)?,
                 (Err(right), Err(drawn)) if right == drawn => {}
                 (right, drawn) => return Err(format!("machine {right:?}, fast {drawn:?}")),
             }
@@ -281,9 +265,15 @@ impl<'g> Scene<'g> {
             return Ok(None);
         };
         if options.coverage == Coverage::Exact {
-            let pool = ThreadPoolBuilder::new().num_threads(ways.pool).build();
+            let threads = dice.of(&[1, 2, 5, 7]);
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
             let pool = pool.expect("a pool");
-            let oracle = |setup: &FrameSetup| pool.install(|| draw_rays(&view, setup));
+            let oracle = |setup: &FrameSetup| {
+                let mut frame = Frame::new(setup.width, setup.height, false);
+                let drawn = pool.install(|| Rays.render(&view, setup, &mut frame));
+                drawn.expect("the oracle never fails");
+                frame
+            };
             same("the oracle", &oracle(setup), &right)?;
             if options.lod_px > 0.0 {
                 let all = oracle(&setup.without_detail());
@@ -302,12 +292,9 @@ impl<'g> Scene<'g> {
                 CageKind::Frame => CageKind::Corners,
                 CageKind::Corners => CageKind::Frame,
             };
-            let other = SetupOptions { cage, ..*options };
-            let other = FrameSetup::new(camera, &graph.placement, graph.depth, &other)
-                .expect("the other cage");
-            let (frame, counts) = draw(MachineOptions::default(), &other, most)
-                .expect("the other cage")
-                .expect("as many records");
+            let other = crate::common::setup(graph, camera, &SetupOptions { cage, ..*options });
+            let drawn = draw(MachineOptions::default(), &other, most);
+            let (frame, counts) = drawn.expect("no overflow").expect("as many records");
             same("the other cage", &frame, &right)?;
             if counts != stats {
                 return Err(format!("the other cage counts {counts:?}, not {stats:?}"));
@@ -316,7 +303,7 @@ impl<'g> Scene<'g> {
         if stat(&stats, "records") > MOST_SIMULATED {
             return Ok(Some(right));
         }
-        self.agree_in_organisation(&view, setup, ways, &right)?;
+        agree_in_organisation(&view, setup, dice, &right)?;
         if options.coverage != Coverage::Alpha {
             let all = MachineOptions {
                 reject_filled: false,
@@ -332,91 +319,79 @@ impl<'g> Scene<'g> {
         }
         Ok(Some(right))
     }
-
-    /// Draws in another organisation, serially and on simulated hardware.
-    fn agree_in_organisation(
-        &self,
-        view: &GraphView<'_>,
-        setup: &FrameSetup,
-        ways: &Ways,
-        right: &Frame,
-    ) -> Result<(), String> {
-        let coverage = setup.options.coverage;
-        let serial = |organisation: Organisation| -> Result<(FrameSetup, Stats), String> {
-            // A wide word that is too narrow traps.
-            let setup = match organisation.packed {
-                true => narrowed(setup),
-                false => setup.clone(),
-            };
-            let options = MachineOptions {
-                organisation,
-                ..MachineOptions::default()
-            };
-            let mut frame = Frame::new(setup.width, setup.height, false);
-            let stats = Machine::new(options)
-                .render(view, &setup, &mut frame)
-                .expect("no overflow");
-            same("another organisation", &frame, right)?;
-            Ok((setup, stats))
-        };
-        // Where a box or a centre claims a sample, it may be one beside the tile. One walk per sample is slow.
-        let allowed = |organisation: Organisation| Organisation {
-            tile_levels: match coverage.draws_outlines() {
-                true if right.node.len() < 1_500 => organisation.tile_levels,
-                true => organisation.tile_levels.min(2),
-                false => 0,
-            },
-            ..organisation
-        };
-        serial(allowed(ways.organisation))?;
-        let hardware = Hardware {
-            organisation: allowed(ways.hardware.organisation),
-            ..ways.hardware.clone()
-        };
-        let (setup, mut stats) = serial(hardware.organisation)?;
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let simulated = Machine::default()
-            .simulate(view, &setup, &mut frame, &hardware, &mut NoObserver)
-            .expect("what the machine draws");
-        if !is_sound(&simulated.cycles, &hardware) {
-            return Err(format!("{:?}", simulated.cycles));
-        }
-        let mut counts = simulated.counts;
-        // A lane takes up a tile only where no record of another one is ready.
-        let open = counts.pop().expect("the most tiles in progress");
-        if open.1 > hardware.all_contexts() && hardware.lanes == 1 {
-            return Err(format!("{open:?}"));
-        }
-        if matches!(
-            hardware.independence,
-            Independence::None | Independence::Image
-        ) {
-            // Records whose image nodes meet have their turns in the serial order.
-            same("on hardware", &frame, right)?;
-            stats.retain(|(name, _)| *name != "deepest_stack");
-            if counts != stats {
-                return Err(format!("hardware counts {counts:?}, not {stats:?}"));
-            }
-        } else if coverage == Coverage::Exact {
-            // The image-order paper's claim: children of one class never occlude one another.
-            same("on hardware, by classes", &frame, right)?;
-        } else if setup.options.tolerance_px.is_finite() && coverage != Coverage::Alpha {
-            // Under other rules they may claim the same sample, which is drawn by one of them.
-            let is_drawn =
-                |frame: &Frame| frame.node.iter().map(|&n| n != NO_NODE).collect::<Vec<_>>();
-            if is_drawn(&frame) != is_drawn(right) {
-                return Err("hardware draws other samples".to_owned());
-            }
-        }
-        Ok(())
-    }
 }
 
-fn draw_rays(view: &GraphView<'_>, setup: &FrameSetup) -> Frame {
+/// Draws in two organisations, serially and on simulated hardware.
+fn agree_in_organisation(
+    view: &GraphView<'_>,
+    setup: &FrameSetup,
+    dice: &mut Dice,
+    right: &Frame,
+) -> Result<(), String> {
+    let coverage = setup.options.coverage;
+    let serial = |organisation: Organisation| -> Result<(FrameSetup, Stats), String> {
+        // A wide word that is too narrow traps.
+        let setup = match organisation.packed {
+            true => narrowed(setup),
+            false => setup.clone(),
+        };
+        let options = MachineOptions {
+            organisation,
+            ..MachineOptions::default()
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let stats = Machine::new(options).render(view, &setup, &mut frame);
+        same(&format!("{organisation:?}"), &frame, right)?;
+        Ok((setup, stats.expect("no overflow")))
+    };
+    // Where a box or a centre claims a sample, it may be one beside the tile. One walk per sample is slow.
+    let allowed = |mut organisation: Organisation| {
+        organisation.tile_levels = match coverage.draws_outlines() {
+            true if right.node.len() < 1_500 => organisation.tile_levels,
+            true => organisation.tile_levels.min(2),
+            false => 0,
+        };
+        organisation
+    };
+    serial(allowed(any_organisation(dice)))?;
+    let mut hardware = any_hardware(dice);
+    hardware.organisation = allowed(hardware.organisation);
+    let (setup, mut stats) = serial(hardware.organisation)?;
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays.render(view, setup, &mut frame)
-        .expect("the oracle never fails");
-    frame
+    let simulated = Machine::default()
+        .simulate(view, &setup, &mut frame, &hardware, &mut NoObserver)
+        .expect("what the machine draws");
+    let mut counts = simulated.counts;
+    // A lane takes up a tile only where no record of another one is ready.
+    let open = counts.pop().expect("the most tiles in progress");
+    let is_open = open.1 <= hardware.all_contexts() || hardware.lanes != 1;
+    if !is_open || !is_sound(&simulated.cycles, &hardware) {
+        return Err(format!("{open:?}, {:?}, {hardware:?}", simulated.cycles));
+    }
+    let what = format!("on {hardware:?}");
+    match hardware.independence {
+        // Records whose image nodes meet have their turns in the serial order.
+        Independence::None | Independence::Image => {
+            same(&what, &frame, right)?;
+            stats.retain(|(name, _)| *name != "deepest_stack");
+            if counts != stats {
+                return Err(format!("{what}: {counts:?}, not {stats:?}"));
+            }
+        }
+        // The image-order paper's claim: children of one class never occlude one another.
+        _ if coverage == Coverage::Exact => same(&what, &frame, right)?,
+        // Under other rules they may claim the same sample, which is drawn by one of them.
+        _ if setup.options.tolerance_px.is_finite() && coverage != Coverage::Alpha => {
+            let is_drawn = |frame: &Frame| -> Vec<bool> {
+                frame.node.iter().map(|&node| node != NO_NODE).collect()
+            };
+            if is_drawn(&frame) != is_drawn(right) {
+                return Err(format!("{what}: other samples"));
+            }
+        }
+        _ => {}
+    }
+    Ok(())
 }
 
 /// Draws a scene from every place: all leaves, and in turn other settings.

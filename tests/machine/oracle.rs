@@ -226,23 +226,3 @@ fn every_sample_is_that_of_rational_numbers() {
     }
     assert!(drawn > 3000, "only {drawn} samples show anything");
 }
-
-/// The y axis of a 2 x 2 picture runs through the middle of sample (0, 0), along the line between four voxels.
-#[test]
-fn a_tie_by_hand() {
-    let graph = linked(1, &[[Some(1); 8], [None; 8]]);
-    let camera = crate::common::camera([1.0, -1.0, 1.0], [1.0, 0.0, 1.0], 2);
-    let mut setup = crate::common::setup(&graph, &camera, &SetupOptions::default());
-    // Sample (0, 0) is at (1/4, 1/4): X = x + y / 4, Y = -z + y / 4, W = y.
-    setup.edge_clip = [[4, 0, 0], [1, 1, 4], [0, -4, 0]];
-    setup.origin_clip = [-4 + 1, 4 + 1, 4];
-    setup.eye_floor = [1, -1, 1].map(|c: i64| c << setup.sub_levels);
-    setup.eye_ceil = setup.eye_floor;
-    setup.positive = true;
-    assert_exact(&graph, &setup);
-    let mut frame = Frame::new(2, 2, false);
-    let drawn = Rays.render(&graph.view(), &setup, &mut frame);
-    drawn.expect("the oracle never fails");
-    // Moved right and down: greater x, lower z.
-    assert_eq!(frame.voxel[0], [1, 0, 0, 1]);
-}
