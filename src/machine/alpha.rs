@@ -172,14 +172,6 @@ pub(super) struct BlendColor {
     pub(super) light: [Narrow; 3],
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct BlendOutcome {
-    /// The voxel is the first of the sample.
-    pub(super) is_first: bool,
-    /// The sample is opaque enough.
-    pub(super) is_full: bool,
-}
-
 impl BlendColor {
     /// `None`: the weight is zero. `eye_floor`: the eye in the units of `cube`.
     pub(super) fn of_voxel<P: Probe>(
@@ -203,13 +195,14 @@ impl BlendColor {
         is_seen.then_some(Self { weight, light })
     }
 
-    /// Adds the voxel to sample number `at`.
+    /// Adds the voxel to sample number `at`. Returns whether it is the first of the sample, and whether the sample is opaque
+    /// enough.
     pub(super) fn add_to<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         at: u64,
         sample: &mut Blend,
-    ) -> BlendOutcome {
+    ) -> [bool; 2] {
         dp.stage(Stage::Blend);
         dp.read(Memory::Accumulator, at);
         let left = Narrow::from_host(u32::from(sample.left));
@@ -242,6 +235,6 @@ impl BlendColor {
             ),
         );
         dp.write(Memory::Accumulator, at);
-        BlendOutcome { is_first, is_full }
+        [is_first, is_full]
     }
 }

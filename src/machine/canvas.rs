@@ -77,13 +77,13 @@ impl Canvas<'_> {
         let Some(blend) = &mut self.frame.blend else {
             unreachable!("the engine makes room for blending before the first record");
         };
-        let taken = color.add_to(dp, at as u64, &mut blend[at]);
+        let [is_first, is_full] = color.add_to(dp, at as u64, &mut blend[at]);
         self.counts.samples_blended += 1;
-        if taken.is_first {
+        if is_first {
             dp.stage(Stage::Draw);
             self.put(dp, at, paint);
         }
-        taken.is_full
+        is_full
     }
 
     /// Draws all samples of `quad` inside a silhouette that are not full.
@@ -124,8 +124,8 @@ impl Canvas<'_> {
         self.find(dp, quad, silhouette, &mut is_open).is_ok()
     }
 
-    /// Passes the nodes of `quad` inside a silhouette, and not full, to `is_found` until it returns true. `Err`: it never
-    /// does; with the level of the last divided node, or of the parent of `quad` if that was not divided.
+    /// Passes the open nodes of `quad` inside a silhouette to `is_found` until it returns true. Otherwise `Err` is the level
+    /// of the last divided node, or of the parent of `quad`.
     fn find<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,

@@ -1,5 +1,5 @@
-//! Children: made in the order of R9 (`SPEC.md`), with their vertices (image-order paper, 3.2 and 3.4), and pushed if they
-//! are before the eye and their box has an unfilled quadtree node (3.5).
+//! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). They are pushed if they are
+//! before the eye and their box has an unfilled quadtree node (3.5).
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};

@@ -33,16 +33,6 @@ pub(super) struct BlendEye {
     pub(super) at: [Word; 3],
 }
 
-impl BlendEye {
-    fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
-        let eye = setup.opacity_eye();
-        Self {
-            shift: eye.shift,
-            at: eye.at.map(|c| dp.load(c)),
-        }
-    }
-}
-
 #[derive(Debug)]
 pub(super) struct Constants {
     pub(super) outline: OutlineRule,
@@ -140,7 +130,14 @@ impl Constants {
         }
         Self {
             outline,
-            blend_eye: options.coverage.blends().then(|| BlendEye::load(dp, setup)),
+            blend_eye: options.coverage.blends().then(|| {
+                let eye = setup.opacity_eye();
+                let at = eye.at.map(|c| dp.load(c));
+                BlendEye {
+                    shift: eye.shift,
+                    at,
+                }
+            }),
             levels: setup.levels,
             depth: setup.depth,
             sub_levels: setup.sub_levels,

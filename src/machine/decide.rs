@@ -18,19 +18,14 @@ use super::undrawn::first_undrawn;
 use crate::frame::QuadNode;
 use crate::project::options::OutlineRule;
 
-pub(super) enum RemainingWork {
-    Nothing,
-    Children,
-}
-
-/// Draws or drops a record, unless its children are needed.
+/// Draws or drops a record, or returns true: its children are needed.
 #[inline(always)]
 pub(super) fn decide<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
     canvas: &mut Canvas<'_>,
     record: &mut Record<L>,
-) -> RemainingWork {
+) -> bool {
     let (c, place) = (&job.constants, record.place);
     if let Pose::Clip(clip, _) = &record.pose
         && to_screen::may_change(dp, c, record.cube.level, place, clip)
@@ -72,10 +67,10 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
                 dp.stage(Stage::OnePixel);
                 read_node(dp, job, record.cube.node, record.cube.level);
             }
-            return RemainingWork::Children;
+            return true;
         }
     }
-    RemainingWork::Nothing
+    false
 }
 
 /// Reads the words of an octree node, or its part of a brick's.
@@ -212,9 +207,8 @@ fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn. Tested where occluded nodes are not read; otherwise only for
-/// records up to the size of a sample across a bisector: all parts of a solid along a bisector would be kept until both
-/// its sides are full.
+/// Whether all samples that a record may cover are drawn. Where occluded nodes are read, only records up to the size of a
+/// sample across a bisector are tested. Otherwise the parts of a solid there are kept until both sides are full.
 fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,

@@ -22,7 +22,7 @@ use hwmodel::{Datapath, Memory, Probe, Stage, Word};
 use super::blocks::Port;
 use super::cage::CageCoordinate;
 use super::children::{centre_and_order, child_cube};
-use super::decide::{RemainingWork, decide};
+use super::decide::decide;
 use super::fill::FillStore;
 use super::path::{self, PathEntry};
 use super::record::{Child, Pose, Record};
@@ -284,10 +284,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.traversal
             .watch
             .see(Event::<L>::Turn(record.place.quad));
-        match decide(dp, &self.job, &mut self.canvas, &mut record) {
-            RemainingWork::Nothing => None,
-            RemainingWork::Children => Some(Parent::new(record)),
-        }
+        let needs_children = decide(dp, &self.job, &mut self.canvas, &mut record);
+        needs_children.then(|| Parent::new(record))
     }
 }
 

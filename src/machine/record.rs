@@ -85,7 +85,7 @@ pub(super) type Spans = [(Word, Word); 2];
 pub(super) struct Planes {
     /// By edge direction j: the plane through the eye and the edge that leaves the lowest corner along j.
     pub(super) edge: [[WideWord; 3]; 3],
-    /// By axis: the constant `c` of the plane through the eye perpendicular to it; `a` and `b` are the frame's.
+    /// By axis: the constant `c` of the plane through the eye perpendicular to it.
     pub(super) axis_c: [WideWord; 3],
 }
 

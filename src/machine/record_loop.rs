@@ -4,7 +4,7 @@ use hwmodel::{Datapath, Memory, Probe, Stage};
 
 use super::blocks::Port;
 use super::cage::CageCoordinate;
-use super::decide::{RemainingWork, decide};
+use super::decide::decide;
 use super::state::{State, Traversal};
 use super::watch::{Event, Watch};
 use crate::frame::QuadNode;
@@ -48,16 +48,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, record);
 
-        let work = if canvas.fill.is_full(dp, quad) {
+        let needs_children = if canvas.fill.is_full(dp, quad) {
             canvas.counts.already_full += 1;
-            RemainingWork::Nothing
+            false
         } else {
             decide(dp, job, canvas, record)
         };
-        let parent = match work {
-            RemainingWork::Nothing => None,
-            RemainingWork::Children => Some(*record),
-        };
+        let parent = needs_children.then_some(*record);
         stack.truncate(address as usize);
         if let Some(parent) = parent {
             self.traversal.subdivide(dp, job, canvas, &parent);

@@ -69,13 +69,8 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// The file to which a path leads, which need not exist.
 fn target(path: &Path) -> PathBuf {
-    if let Ok(found) = fs::canonicalize(path)
-        && fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
-    {
-        return found;
-    }
     match fs::read_link(path) {
-        Ok(link) => folder_of(path).join(link),
+        Ok(link) => fs::canonicalize(path).unwrap_or_else(|_| folder_of(path).join(link)),
         Err(_) => path.to_owned(),
     }
 }

@@ -50,13 +50,23 @@ pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
 pub struct TemporaryGuard(PathBuf);
 
 impl TemporaryGuard {
-    /// Makes and lists a file or a folder, without an interruption by a signal.
-    fn around<T: AsRef<Path>>(make: impl FnOnce() -> io::Result<T>) -> io::Result<(T, Self)> {
-        let mut list = in_progress();
-        let made = make()?;
-        let path = made.as_ref().to_owned();
-        list.unfinished.push(path.clone());
-        Ok((made, Self(path)))
+    /// Makes, lists and locks a file or a folder, without an interruption by a signal.
+    fn around<T: AsRef<Path>>(
+        make: impl Fn() -> io::Result<T>,
+        lock: impl Fn(&T) -> bool,
+    ) -> io::Result<(T, Self)> {
+        loop {
+            let mut list = in_progress();
+            let made = make()?;
+            let path = made.as_ref().to_owned();
+            list.unfinished.push(path.clone());
+            drop(list);
+            let guard = Self(path);
+            // Otherwise another process removed it before it was locked. Without locks none removes it.
+            if !lock(&made) || guard.0.exists() {
+                return Ok((made, guard));
+            }
+        }
     }
 }
 
@@ -78,19 +88,26 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeErr
     tidy(parent);
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
-    loop {
-        let made = TemporaryGuard::around(|| builder.tempdir_in(parent));
-        let (folder, guard) = made.map_err(|e| failed(parent, e))?;
+    let make = || {
+        let folder = builder.tempdir_in(parent)?;
         let open = File::open(folder.path()).ok();
-        let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
-        if !is_locked || folder.path().exists() {
-            let lock = FolderLock {
-                _guard: guard,
-                _lock: open,
-            };
-            return Ok((folder, lock));
-        }
-        // Another process removed it before it was locked.
+        Ok(Opened(folder, open))
+    };
+    let lock = |made: &Opened| made.1.as_ref().is_some_and(|open| open.lock().is_ok());
+    let made = TemporaryGuard::around(make, lock);
+    let (Opened(folder, lock), guard) = made.map_err(|e| failed(parent, e))?;
+    let lock = FolderLock {
+        _guard: guard,
+        _lock: lock,
+    };
+    Ok((folder, lock))
+}
+
+struct Opened(TempDir, Option<File>);
+
+impl AsRef<Path> for Opened {
+    fn as_ref(&self) -> &Path {
+        self.0.path()
     }
 }
 
@@ -115,15 +132,8 @@ pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile
         // As for any new file; the process's mask applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    loop {
-        let (file, guard) = TemporaryGuard::around(|| builder.tempfile_in(folder))?;
-        // Without locks, no process removes it either.
-        let is_locked = file.as_file().lock().is_ok();
-        if !is_locked || file.path().exists() {
-            return Ok((file, guard));
-        }
-        // Another process removed it before it was locked.
-    }
+    let lock = |file: &NamedTempFile| file.as_file().lock().is_ok();
+    TemporaryGuard::around(|| builder.tempfile_in(folder), lock)
 }
 
 /// Removes the abandoned files of other processes in a folder, when this process first writes to it.
