@@ -1,5 +1,6 @@
 //! Random graphs and cameras, and drawing with the machine.
-#![expect(unreachable_pub, reason = "shared by the tests of the folder")]
+#![expect(unreachable_pub, reason = "a module of several test crates")]
+#![allow(dead_code, reason = "each test uses a part of it")]
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -11,10 +12,14 @@ use shiftvox::split_mix::SplitMix;
 
 pub use crate::scenes::up_of;
 
-/// New cases in every run; `SHIFTVOX_CASES` multiplies their number.
+/// The factor `SHIFTVOX_CASES` of the numbers of cases.
+pub fn times() -> u32 {
+    std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"))
+}
+
+/// New cases in every run.
 pub fn cases(usual: u32) -> ProptestConfig {
-    let times = std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"));
-    ProptestConfig::with_cases(usual * times)
+    ProptestConfig::with_cases(usual * times())
 }
 
 /// A graph from each node's children by octant; a node without any is a leaf.
@@ -154,7 +159,10 @@ pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
     Camera {
         eye,
         target,
-        up: up_of(target - eye),
+        up: match eye.truncate() == target.truncate() {
+            true => DVec3::Y,
+            false => DVec3::Z,
+        },
         fov_degrees: 60.0,
         width: size,
         height: size,
