@@ -48,51 +48,89 @@ pub(super) fn only(quadrants: u8) -> Option<u8> {
         .then(|| quadrants.trailing_zeros() as u8)
 }
 
-/// Overlapped quadrants, and x and y relative to the far halves for [`clip_in_quadrant`].
-pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
-    dp: &mut Datapath<P>,
-    constants: &Constants,
-    quad: QuadNode,
-    clip: &Clip<L>,
-) -> (u8, [L; 2]) {
-    let below = constants.levels - quad.level;
-    let (far_x, x) = bisect(dp, constants, below, &clip.x, &clip.w);
-    let (far_y, y) = bisect(dp, constants, below, &clip.y, &clip.w);
-    (quadrants(dp, x, y), [far_x, far_y])
+/// A box in the image, relative to a quadtree node.
+pub(super) trait ImageBox: Copy {
+    /// Results of the test of a node, reused by its quadrants.
+    type Tested: Copy;
+
+    /// The quadrants of a node that the box overlaps.
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, Self::Tested);
+
+    fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quadrant: u8,
+        tested: Self::Tested,
+    ) -> Self;
+
+    /// A search returns up by some levels, and continues in another quadrant.
+    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32);
 }
 
-/// Relative to a quadrant: `far`, from [`of_clip`], in a far half, doubled in a near one.
-pub(super) fn clip_in_quadrant<P: Probe, L: CageCoordinate>(
-    dp: &mut Datapath<P>,
-    clip: &Clip<L>,
-    quadrant: u8,
-    far: [L; 2],
-) -> Clip<L> {
-    let mut half = |is_far: bool, near: &L, far: L| {
-        if is_far {
-            far
-        } else {
-            near.map(|x| dp.shl(x, 1))
+impl<L: CageCoordinate> ImageBox for Clip<L> {
+    /// X and y relative to the far halves.
+    type Tested = [L; 2];
+
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, [L; 2]) {
+        let below = constants.levels - quad.level;
+        let (far_x, x) = bisect(dp, constants, below, &self.x, &self.w);
+        let (far_y, y) = bisect(dp, constants, below, &self.y, &self.w);
+        (quadrants(dp, x, y), [far_x, far_y])
+    }
+
+    /// Doubled in a near half.
+    fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, far: [L; 2]) -> Self {
+        let mut half = |is_far: bool, near: &L, far: L| match is_far {
+            true => far,
+            false => near.map(|x| dp.shl(x, 1)),
+        };
+        Self {
+            x: half(quadrant & 1 != 0, &self.x, far[0]),
+            y: half(quadrant & 2 != 0, &self.y, far[1]),
+            ..*self
         }
-    };
-    Clip {
-        x: half(quadrant & 1 != 0, &clip.x, far[0]),
-        y: half(quadrant & 2 != 0, &clip.y, far[1]),
-        ..*clip
+    }
+
+    /// Hardware moves a box back one level at a time. Here the boxes above are kept.
+    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
+        dp.next_step(levels + 1);
     }
 }
 
-#[inline(always)]
-pub(super) fn of_screen<P: Probe>(
-    dp: &mut Datapath<P>,
-    constants: &Constants,
-    quad: QuadNode,
-    spans: &Spans,
-) -> u8 {
-    let below = constants.levels - quad.level;
-    let x = screen_halves(dp, constants, below, quad.x, spans[0]);
-    let y = screen_halves(dp, constants, below, quad.y, spans[1]);
-    quadrants(dp, x, y)
+/// Screen positions are relative to the picture, equal for all nodes.
+impl ImageBox for Spans {
+    type Tested = ();
+
+    #[inline(always)]
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, ()) {
+        let below = constants.levels - quad.level;
+        let x = screen_halves(dp, constants, below, quad.x, self[0]);
+        let y = screen_halves(dp, constants, below, quad.y, self[1]);
+        (quadrants(dp, x, y), ())
+    }
+
+    #[inline]
+    fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, (): ()) -> Self {
+        *self
+    }
+
+    #[inline]
+    fn climb<P: Probe>(_: &mut Datapath<P>, _: u32) {}
 }
 
 /// `2x - w`, and the overlapped halves of the node, `below` levels above the samples.

@@ -16,7 +16,7 @@ use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
 use super::planes;
-use super::quadrants::{self, margins, only};
+use super::quadrants::{ImageBox, margins, only};
 use super::record::{Clip, ImagePlace, Planes, Spans};
 use crate::frame::QuadNode;
 
@@ -33,14 +33,14 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
     let mut quad = place.quad;
     let inside = place.inside || is_inside(dp, constants, quad, clip)?;
     loop {
-        let (overlapped, far) = quadrants::of_clip(dp, constants, quad, clip);
+        let (overlapped, far) = clip.quadrants(dp, constants, quad);
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
         let Some(quadrant) = only(overlapped).filter(|_| quad.level < constants.levels) else {
             break;
         };
-        let to = quadrants::clip_in_quadrant(dp, clip, quadrant, far);
+        let to = clip.in_quadrant(dp, quadrant, far);
         let (right, lower) = (quadrant & 1 != 0, quadrant & 2 != 0);
         dp.tap(Block::HalfClip, &(&clip.x, &far[0], right), &to.x);
         dp.tap(Block::HalfClip, &(&clip.y, &far[1], lower), &to.y);
@@ -70,7 +70,7 @@ pub(super) fn screen<P: Probe>(
     let mut quad = place.quad;
     let inside = place.inside || is_screen_inside(dp, constants, quad, spans)?;
     loop {
-        let overlapped = quadrants::of_screen(dp, constants, quad, spans);
+        let (overlapped, ()) = spans.quadrants(dp, constants, quad);
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }

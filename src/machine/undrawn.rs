@@ -5,8 +5,8 @@ use hwmodel::{Datapath, Probe, Stage};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
-use super::quadrants;
-use super::record::{Clip, Pose, Record, Spans};
+use super::quadrants::ImageBox;
+use super::record::{Pose, Record};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
@@ -23,28 +23,6 @@ pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
         Pose::Screen(screen) => first_inlined(dp, constants, fill, quad, screen.spans),
     };
     found.ok()
-}
-
-trait ImageBox: Copy {
-    /// Results of the test of a node, reused by its quadrants.
-    type Tested: Copy;
-
-    fn quadrants<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        constants: &Constants,
-        quad: QuadNode,
-    ) -> (u8, Self::Tested);
-
-    fn in_quadrant<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        quadrant: u8,
-        tested: Self::Tested,
-    ) -> Self;
-
-    /// The search returns up by some levels, and continues in another quadrant.
-    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32);
 }
 
 /// As [`first`], inlined into the caller: faster for small boxes.
@@ -92,49 +70,4 @@ fn first<P: Probe, B: ImageBox>(
     of: B,
 ) -> Result<QuadNode, u32> {
     first_inlined(dp, constants, fill, quad, of)
-}
-
-impl<L: CageCoordinate> ImageBox for Clip<L> {
-    type Tested = [L; 2];
-
-    fn quadrants<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        constants: &Constants,
-        quad: QuadNode,
-    ) -> (u8, [L; 2]) {
-        quadrants::of_clip(dp, constants, quad, self)
-    }
-
-    fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, far: [L; 2]) -> Self {
-        quadrants::clip_in_quadrant(dp, self, quadrant, far)
-    }
-
-    /// Hardware moves a box back one level at a time. Here the boxes above are kept.
-    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
-        dp.next_step(levels + 1);
-    }
-}
-
-/// Screen positions are relative to the picture, equal for all nodes.
-impl ImageBox for Spans {
-    type Tested = ();
-
-    #[inline]
-    fn quadrants<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        constants: &Constants,
-        quad: QuadNode,
-    ) -> (u8, ()) {
-        (quadrants::of_screen(dp, constants, quad, self), ())
-    }
-
-    #[inline]
-    fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, (): ()) -> Self {
-        *self
-    }
-
-    #[inline]
-    fn climb<P: Probe>(_: &mut Datapath<P>, _: u32) {}
 }

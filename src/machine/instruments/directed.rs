@@ -13,12 +13,12 @@ use crate::machine::constants::BlendEye;
 use crate::machine::decide::apply_level_of_detail;
 use crate::machine::engine::Machine;
 use crate::machine::planes::{self, Silhouette};
-use crate::machine::quadrants::{self, Halves};
+use crate::machine::quadrants::{self, Halves, ImageBox};
 use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use crate::machine::state::State;
 use crate::machine::{size, smallest_node, to_screen};
 use crate::project::options::SCREEN_GUARD_SHIFT;
-use crate::project::{ALL_LEFT, FrameSetup, OPAQUE_ENOUGH, SHARES};
+use crate::project::{ALL_LEFT, Coverage, FrameSetup, OPAQUE_ENOUGH, SHARES};
 use crate::split_mix::SplitMix;
 
 impl Machine {
@@ -30,41 +30,39 @@ impl Machine {
         probe: P,
         rounds: u32,
     ) -> P {
-        with_cage!(setup, L => self.directed_as::<P, L>(graph, setup, probe, rounds))
-    }
-
-    fn directed_as<P: Probe, L: CageCoordinate>(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        probe: P,
-        rounds: u32,
-    ) -> P {
         let mut frame = Frame::nodes_only(setup.width, setup.height);
         let canvas = (self.emptied(setup, &mut frame), &mut frame);
         let options = MachineOptions::default();
-        let mut state = State::<P, L, ()>::new(options, graph, setup, canvas, probe, ());
         let mut inputs = Inputs::new(setup);
-        all_vectors(&mut state);
-        let blends = setup.options.coverage.blends();
-        if blends {
-            all_shares(&mut state.dp, &mut inputs);
-        }
-        for _ in 0..rounds {
-            if blends {
-                blending(&mut state.dp, &mut inputs);
+        with_cage!(setup, L => {
+            let mut state = State::<P, L, ()>::new(options, graph, setup, canvas, probe, ());
+            all_vectors(&mut state);
+            if setup.options.coverage.blends() {
+                all_shares(&mut state.dp, &mut inputs);
             }
-            object_space(&mut state, &mut inputs);
-            cages(&mut state, &mut inputs);
-            fit(&mut state, &mut inputs);
-            depths_and_sizes(&mut state, &mut inputs);
-            if setup.options.coverage.draws_outlines() {
-                outlines(&mut state, &mut inputs);
-            } else {
-                screen_space(&mut state, &mut inputs);
+            for _ in 0..rounds {
+                round(&mut state, &mut inputs, &setup.options.coverage);
             }
-        }
-        state.finish().1
+            state.finish().1
+        })
+    }
+}
+
+fn round<P: Probe, L: CageCoordinate>(
+    state: &mut State<'_, P, L, ()>,
+    inputs: &mut Inputs,
+    coverage: &Coverage,
+) {
+    if coverage.blends() {
+        blending(&mut state.dp, inputs);
+    }
+    object_space(state, inputs);
+    cages(state, inputs);
+    fit(state, inputs);
+    depths_and_sizes(state, inputs);
+    match coverage.draws_outlines() {
+        true => outlines(state, inputs),
+        false => screen_space(state, inputs),
     }
 }
 
@@ -165,7 +163,7 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
         inside: false,
     };
     dp.stage(Stage::QuadtreeFit);
-    quadrants::of_clip(dp, c, place.quad, &clip);
+    clip.quadrants(dp, c, place.quad);
     smallest_node::near_node(dp, &clip.x, &clip.w);
     smallest_node::near_node(dp, &clip.y, &clip.w);
     smallest_node::clip(dp, c, fill, place, &mut clip, &mut planes);

@@ -10,6 +10,8 @@
 
 use std::collections::BTreeMap;
 
+use hwmodel::{NoProbe, Wires};
+
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
@@ -196,59 +198,56 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     narrow
 }
 
-fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
-    let Record { cube, place, pose } = record;
-    let mut note = |number, value: i128| {
-        let span = NumberSpan::of(value);
-        let seen = spans.entry(number).or_insert(span);
-        *seen = seen.with(span);
-    };
-    note(RecordNumber::Node, i128::from(cube.node));
-    note(RecordNumber::Level, i128::from(cube.level));
-    note(RecordNumber::QuadLevel, i128::from(place.quad.level));
-    note(RecordNumber::QuadPlace, i128::from(place.quad.x));
-    note(RecordNumber::QuadPlace, i128::from(place.quad.y));
-    let mut note_all = |number, of: &dyn hwmodel::Wires, from: usize, to: usize| {
-        let mut shown = Vec::new();
-        of.show(&mut shown);
-        let part = shown.get(from..to.min(shown.len())).unwrap_or(&[]);
-        for signal in part {
-            note(number, i128::from(signal.value));
-        }
-    };
-    note_all(RecordNumber::Lowest, &cube.min, 0, 3);
-    note_all(RecordNumber::Highest, &cube.max, 0, 3);
-    if let Pose::Clip(clip, planes) = pose {
-        // A corner and three edges, or eight corners.
-        let corners = match cage {
-            CageKind::Corners => 8,
-            CageKind::Frame => 1,
-        };
-        for coordinate in [&clip.x, &clip.y] {
-            note_all(RecordNumber::ClipXy, coordinate, 0, corners);
-            note_all(RecordNumber::EdgeXy, coordinate, corners, 8);
-        }
-        note_all(RecordNumber::ClipW, &clip.w, 0, corners);
-        note_all(RecordNumber::EdgeW, &clip.w, corners, 8);
-        note_all(RecordNumber::LeastW, &clip.w_min, 0, 1);
-        for plane in &planes.edge {
-            note_all(RecordNumber::PlaneAb, plane, 0, 2);
-            note_all(RecordNumber::PlaneC, plane, 2, 3);
-        }
-        note_all(RecordNumber::AxisC, &planes.axis_c, 0, 3);
-    }
-}
-
 /// Spans of all records made so far.
 struct Seen {
     cage: CageKind,
     spans: NumberSpans,
 }
 
+impl Seen {
+    fn note(&mut self, number: RecordNumber, values: impl IntoIterator<Item = i128>) {
+        for span in values.into_iter().map(NumberSpan::of) {
+            let seen = self.spans.entry(number).or_insert(span);
+            *seen = seen.with(span);
+        }
+    }
+
+    /// Notes the first numbers of `of`, and then the others, as one number each.
+    fn note_both(&mut self, [first, rest]: [RecordNumber; 2], of: &impl Wires, at: usize) {
+        let mut shown = Vec::new();
+        of.show(&mut shown);
+        let mut values = shown.iter().map(|signal| i128::from(signal.value));
+        self.note(first, values.by_ref().take(at));
+        self.note(rest, values);
+    }
+}
+
 impl Watch for Seen {
     fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
-        if let Event::Made(record) = event {
-            note_numbers(&mut self.spans, self.cage, record);
+        use RecordNumber::*;
+        let Event::Made(Record { cube, place, pose }) = event else {
+            return;
+        };
+        let quad = place.quad;
+        self.note(Node, [i128::from(cube.node)]);
+        self.note(Level, [i128::from(cube.level)]);
+        self.note(QuadLevel, [i128::from(quad.level)]);
+        self.note(QuadPlace, [quad.x, quad.y].map(i128::from));
+        self.note_both([Lowest, Highest], &(cube.min, cube.max), 3);
+        if let Pose::Clip(clip, planes) = pose {
+            // A corner and three edges, or eight corners.
+            let corners = match self.cage {
+                CageKind::Corners => 8,
+                CageKind::Frame => 1,
+            };
+            self.note_both([ClipXy, EdgeXy], &clip.x, corners);
+            self.note_both([ClipXy, EdgeXy], &clip.y, corners);
+            self.note_both([ClipW, EdgeW], &clip.w, corners);
+            self.note_both([LeastW, LeastW], &clip.w_min, 1);
+            for plane in &planes.edge {
+                self.note_both([PlaneAb, PlaneC], plane, 2);
+            }
+            self.note_both([AxisC, AxisC], &planes.axis_c, 3);
         }
     }
 }
@@ -261,26 +260,17 @@ impl Machine {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<NumberSpans, EngineError> {
-        with_cage!(setup, L => self.seen_as::<L>(graph, setup, frame))
-    }
-
-    fn seen_as<L: CageCoordinate>(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<NumberSpans, EngineError> {
         let watch = Seen {
             cage: setup.options.cage,
             spans: NumberSpans::new(),
         };
         let options = self.options;
         let canvas = (self.emptied(setup, frame), &mut *frame);
-        let mut state =
-            State::<_, L, _>::new(options, graph, setup, canvas, hwmodel::NoProbe, watch);
-        state.draw_by_tiles(u64::MAX)?;
-        let (_, _, watch) = state.finish();
-        Ok(watch.spans)
+        with_cage!(setup, L => {
+            let mut state = State::<_, L, _>::new(options, graph, setup, canvas, NoProbe, watch);
+            state.draw_by_tiles(u64::MAX)?;
+            Ok(state.finish().2.spans)
+        })
     }
 }
 
