@@ -20,75 +20,45 @@ macro_rules! numbered {
 }
 
 numbered! {
-    /// A block without memory: its outputs follow from its inputs and the frame's constants.
+    /// A block without memory; `crates/lab/src/model/vectors/blocks.toml` describes each.
     Block, 38:
-    /// Is the quadtree node full?
     Filled,
-    /// May a record's depth change to screen space?
     ChangeDepth,
-    /// Does a record's box leave the picture by little enough to change?
     ChangeGuard,
-    /// A quotient, bit by bit.
     ToScreenDivide,
-    /// Is a node, by its depth, within the level of detail?
     DetailDepth,
     SizeLimit,
-    /// Is a clip-space record no larger, along one axis?
     SizeClip,
-    /// Is a screen-space box no larger, along one axis?
     SizeScreen,
-    /// The centre of a voxel in object space.
     Centre,
-    /// Octant bits, and the children in order.
     OctantOrder,
-    /// The children's vertices, one coordinate.
     VertexPool,
     ChildPlanes,
     ChildCorners,
-    /// The least and the greatest of a child's vertices, one coordinate.
     ChildSpan,
-    /// The margin that widens boxes in clip space.
     MarginGrow,
-    /// The margin that narrows boxes in clip space.
     MarginGap,
-    /// A clip-space box and the edges of a node, along one axis.
     BorderClip,
     BisectorClip,
-    /// Does a clip-space box leave a node by at most its width, along one axis?
     NearNode,
-    /// One coordinate of a clip-space cage in the left or the right half.
     HalfClip,
     PlaneQuadrant,
-    /// A screen-space box and the edges of a node, along one axis.
     BorderScreen,
     BisectorScreen,
-    /// Two halves along each axis to quadrants.
     Quadrants,
-    /// Overlapped quadrants and fill vector to: rejected, or which one.
     NodeChoice,
-    /// The middle of a cage, one coordinate.
     CageCentre,
     CentreHalf,
-    /// The sample that holds a screen-space centre, along one axis.
     CentreSample,
     CubePlanes,
-    /// From which side rays reach a cube that is not before the eye.
     CubeFront,
-    /// The side of a plane on which a node's samples are.
     PlaneSide,
-    /// Sides of a cube's planes to: covered, outside, mixed.
     PlaneCover,
-    /// Bits set in a fill vector.
     FillUpdate,
-    /// The way from the eye to a voxel along one axis.
     BlendWay,
-    /// A voxel's outline divided among the three visible sides.
     BlendShares,
-    /// The weights of the three sides, from their shares.
     BlendCounts,
-    /// A voxel's weight, of its opacities.
     BlendWeight,
-    /// The light and the opacity that a voxel adds to a sample.
     BlendSample,
 }
 

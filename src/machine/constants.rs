@@ -65,6 +65,7 @@ pub(super) struct Constants {
     pub(super) near_crossing: Word,
     /// By level, least depth of a record that may change to screen space.
     pub(super) screen_depth: Vec<Option<Word>>,
+    /// By level, least depth of a node that level of detail draws as a solid.
     pub(super) lod_depth: Vec<Option<Word>>,
     /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, moved to just beyond the object if it is far away.
     pub(super) eye_floor: [Word; 3],

@@ -2,7 +2,8 @@
 //! here.
 //!
 //! *Joined*, a node two levels above the samples has one word of 16 bits, one per sample, instead of its own and its
-//! descendants' 21 vectors. The last word read stays in a register during a record's turn.
+//! descendants' 21 vectors. The last word read stays in a register during a record's turn. Here all vectors are kept, and
+//! only the accesses are those of words.
 
 use std::cell::Cell;
 
@@ -16,14 +17,12 @@ use crate::frame::{FillVectors, QuadNode};
 
 const LEVELS_BELOW: u32 = 2;
 const WORD_BITS: u32 = 16;
-const ALL_DRAWN: u16 = u16::MAX;
 const NO_WORD: u64 = u64::MAX;
 
 #[derive(Debug)]
 pub(super) struct FillStore<'f> {
     vectors: &'f mut FillVectors,
-    /// Of the nodes two levels above the samples, row by row; empty if not joined.
-    words: Vec<u16>,
+    is_joined: bool,
     latched: Cell<u64>,
     pub(super) rejects_full: bool,
 }
@@ -36,20 +35,9 @@ impl<'f> FillStore<'f> {
         rejects_full: bool,
     ) -> Self {
         let (joined, tile_levels) = (organisation.joined_fill, organisation.tile_levels);
-        let level = vectors.levels().checked_sub(LEVELS_BELOW);
-        let words = match level.filter(|level| joined && *level >= tile_levels) {
-            None => Vec::new(),
-            Some(level) => {
-                let side = 1u32 << level;
-                let nodes = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
-                nodes
-                    .map(|(x, y)| word_of(vectors, QuadNode { level, x, y }))
-                    .collect()
-            }
-        };
         Self {
+            is_joined: joined && vectors.levels() >= tile_levels + LEVELS_BELOW,
             vectors,
-            words,
             latched: Cell::new(NO_WORD),
             rejects_full,
         }
@@ -65,11 +53,7 @@ impl<'f> FillStore<'f> {
             return;
         }
         dp.stage(Stage::FillUpdate);
-        let below_words = if self.words.is_empty() {
-            0
-        } else {
-            LEVELS_BELOW
-        };
+        let below_words = if self.is_joined { LEVELS_BELOW } else { 0 };
         for level in 0..=self.levels() - below_words {
             let (below, above) = (
                 level.saturating_sub(tile.level),
@@ -94,7 +78,7 @@ impl<'f> FillStore<'f> {
 
     #[inline(always)]
     pub(super) fn read<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
-        if self.is_joined(node) {
+        if self.is_in_word(node) {
             self.read_word(dp, node);
         } else {
             self.read_vector(dp, node);
@@ -145,11 +129,7 @@ impl<'f> FillStore<'f> {
 
     #[inline(always)]
     pub(super) fn peek(&self, node: QuadNode) -> u8 {
-        if self.is_joined(node) {
-            self.in_word(node)
-        } else {
-            self.vectors.vector(node)
-        }
+        self.vectors.vector(node)
     }
 
     pub(super) fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
@@ -161,7 +141,7 @@ impl<'f> FillStore<'f> {
     pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
         dp.stage(Stage::FillUpdate);
         let (mut quad, mut bits) = (sample, FULL);
-        if self.is_joined(sample) {
+        if self.is_in_word(sample) {
             match self.mark_in_word(dp, sample) {
                 Some(above) => (quad, bits) = above,
                 None => return,
@@ -196,22 +176,24 @@ impl<'f> FillStore<'f> {
         dp: &mut Datapath<P>,
         sample: QuadNode,
     ) -> Option<(QuadNode, u8)> {
-        let (node, at) = self.word_at(sample);
         self.read_word(dp, sample);
-        let word = &mut self.words[at];
-        let quadrant = sample.ancestor(sample.level - 1).in_parent();
+        let holder = self.word_of(sample);
+        let (mut node, mut bits) = (sample.ancestor(sample.level - 1), 1 << sample.in_parent());
         // Four gates per quadrant, of which one changes.
-        let before = (*word >> (quadrant << 2)) as u8 & FULL;
+        let before = self.peek(node);
         dp.beside(Stage::FillUpdate, |dp| {
-            dp.or_bits(4, before, 1 << sample.in_parent());
+            dp.or_bits(4, before, bits);
             dp.and_bits(4, before, FULL);
         });
-        *word |= 1 << ((quadrant << 2) + sample.in_parent());
-        dp.write(Memory::FillVector, node.address() as u64);
-        let written = Short::unsigned(*word, WORD_BITS);
-        Port::FillWrite.tap(dp, node.address() as u64, &written);
-        let is_full = *word == ALL_DRAWN && node.level > 0;
-        is_full.then(|| (node.ancestor(node.level - 1), 1 << node.in_parent()))
+        self.vectors.set(sample, FULL);
+        while self.vectors.set(node, bits) == FULL && node.level > holder.level {
+            bits = 1 << node.in_parent();
+            node = node.ancestor(node.level - 1);
+        }
+        dp.write(Memory::FillVector, holder.address() as u64);
+        Port::FillWrite.tap(dp, holder.address() as u64, &self.word(holder));
+        let is_full = self.peek(holder) == FULL && holder.level > 0;
+        is_full.then(|| (holder.ancestor(holder.level - 1), 1 << holder.in_parent()))
     }
 
     #[inline(always)]
@@ -223,46 +205,28 @@ impl<'f> FillStore<'f> {
     }
 
     #[inline(always)]
-    fn is_joined(&self, node: QuadNode) -> bool {
-        !self.words.is_empty() && node.level + LEVELS_BELOW >= self.levels()
+    fn is_in_word(&self, node: QuadNode) -> bool {
+        self.is_joined && node.level + LEVELS_BELOW >= self.levels()
     }
 
-    fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
-        let level = self.levels() - LEVELS_BELOW;
-        let holder = node.ancestor(level);
-        let at = ((holder.y as usize) << level) + holder.x as usize;
-        (holder, at)
+    /// The node whose word contains a joined node.
+    fn word_of(&self, node: QuadNode) -> QuadNode {
+        node.ancestor(self.levels() - LEVELS_BELOW)
+    }
+
+    fn word(&self, node: QuadNode) -> Short {
+        let word = (0..4).fold(0, |word, quadrant| {
+            word | u32::from(self.peek(node.quadrant(quadrant))) << (quadrant << 2)
+        });
+        Short::unsigned(word, WORD_BITS)
     }
 
     fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
-        let (of, at) = self.word_at(node);
-        let address = of.address() as u64;
+        let node = self.word_of(node);
+        let address = node.address() as u64;
         if self.latched.replace(address) != address {
             dp.read(Memory::FillVector, address);
-            let word = Short::unsigned(self.words[at], WORD_BITS);
-            Port::FillRead.tap(dp, address, &word);
+            Port::FillRead.tap(dp, address, &self.word(node));
         }
     }
-
-    fn in_word(&self, node: QuadNode) -> u8 {
-        let (of, at) = self.word_at(node);
-        let word = self.words[at];
-        let quarter = |quadrant: u8| (word >> (quadrant << 2)) as u8 & FULL;
-        match node.level - of.level {
-            0 => (0..4).fold(0, |bits, q| bits | u8::from(quarter(q) == FULL) << q),
-            1 => quarter(node.in_parent()),
-            _ => {
-                let drawn =
-                    quarter(node.ancestor(node.level - 1).in_parent()) >> node.in_parent() & 1;
-                if drawn == 0 { 0 } else { FULL }
-            }
-        }
-    }
-}
-
-fn word_of(vectors: &FillVectors, node: QuadNode) -> u16 {
-    (0..4).fold(0, |word, quadrant| {
-        let bits = vectors.vector(node.quadrant(quadrant));
-        word | u16::from(bits) << (quadrant << 2)
-    })
 }

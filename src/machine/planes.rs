@@ -12,6 +12,7 @@ enum Side {
     Both,
     Positive,
     Negative,
+    /// A degenerate edge, whose line contains the eye.
     Nowhere,
 }
 

@@ -65,6 +65,7 @@ pub(super) struct Clip<L> {
     pub(super) x: L,
     pub(super) y: L,
     pub(super) w: L,
+    /// Least depth.
     pub(super) w_min: Word,
 }
 
