@@ -10,7 +10,8 @@ pub(super) struct RayFrame {
     /// Clip vector of the object's lowest corner.
     origin: [i128; 3],
     edge: [[i128; 3]; 3],
-    /// `edge[k + 1] x edge[k + 2]`: times a ray direction, its object coordinate `k` times the determinant of the edges.
+    /// `edge[k + 1] x edge[k + 2]`. Its product with a ray direction has the sign of object coordinate `k` of the
+    /// direction, times [`determinant_sign`](Self::determinant_sign).
     pub(super) normal: [[i128; 3]; 3],
     pub(super) determinant_sign: i32,
     pub(super) depth: u32,

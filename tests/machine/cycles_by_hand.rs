@@ -9,7 +9,7 @@
 //! - 21 where the picture's fill vectors are cleared, 1 + 4 + 16, and 6 for a tile of 2 x 2: root, tile, four samples.
 //!
 //! With parents on the stack only B is stored, and E is hidden when it is made. Leaf masks save the nodes' reads of C, D and
-//! E. Occluded nodes that are not read cost one more look at the fill vectors. With joined fill vectors every pair of reads
+//! E. Tests for occluded nodes read the fill vectors once more. With joined fill vectors every pair of reads
 //! or writes is one. By tiles A is walked four times, and B in one of them.
 //!
 //! On *sequential* hardware a read takes a cycle more. A silhouette takes one for its planes, and one for each quadrant to

@@ -220,7 +220,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     planes::move_to_quadrant(dp, c, &mut moved, quadrant);
     let level = inputs.level(c.depth);
     let mut cube = inputs.cube(level);
-    // The eye lies beside the cube along the other axes, beside one of its faces or anywhere along this one.
+    // Along the axes before this one the eye lies within the cube; along others near its faces, or anywhere.
     let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);
@@ -311,7 +311,7 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     c.screen_depth[level] = kept;
 }
 
-/// A voxel of random opacities, seen from an eye with these distances from its centre; `shift`: of the eye.
+/// A voxel of random opacities, seen from an eye with these distances from its centre, and this shift.
 fn blend_voxel<P: Probe>(
     dp: &mut Datapath<P>,
     inputs: &mut Inputs,
@@ -388,7 +388,7 @@ fn blending<P: Probe>(dp: &mut Datapath<P>, inputs: &mut Inputs) {
         true => all,
         false => inputs.dice.below(all + 1),
     };
-    // Leaves a sample just open or just full; opaque; random.
+    // A sample that is then just open or just full, or any.
     let enough = left.saturating_sub(u64::from(OPAQUE_ENOUGH)) * all / left.max(1);
     let weight = match inputs.dice.below(4) {
         0 => inputs.dice.below(all + 1),

@@ -17,7 +17,7 @@ use crate::machine::record::Record;
 use crate::machine::record_loop::check_trap;
 use crate::machine::state::MachineOptions;
 use crate::machine::state::State;
-use crate::machine::watch::{Event, RecordsBySample, Watch};
+use crate::machine::watch::{Event, Watch};
 use crate::project::{EngineError, FrameSetup, Stats};
 
 /// The results of a simulated frame.
@@ -39,7 +39,7 @@ impl Machine {
     /// `Classes` and `Both` the picture is the same if no two children of one class draw the same sample, as under the exact
     /// rule.
     ///
-    /// Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not
+    /// `frame.records` is not written. Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not
     /// spill is full.
     pub fn simulate(
         &mut self,
@@ -92,13 +92,9 @@ impl Machine {
             organisation: hardware.organisation,
             ..self.options
         };
-        let wants_records = frame.records.is_some();
-        let watch = Ranks {
-            records: wants_records.then(|| RecordsBySample::new(setup.levels)),
-            pushed: Vec::new(),
-        };
         let canvas = (self.emptied(setup, frame), &mut *frame);
-        let state = State::<_, L, _>::new(options, graph, setup, canvas, log, watch);
+        let ranks = Ranks(Vec::new());
+        let state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
             false => Vec::new(),
@@ -116,27 +112,21 @@ impl Machine {
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let most_open = steps.most_open;
-        let (mut counts, log, watch) = steps.state.finish();
+        let (mut counts, log, _) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
         counts.push(("most_open_tiles", most_open));
-        if let (Some(records), Some(shares)) = (watch.records, &mut frame.records) {
-            records.write_shares(frame.width, shares);
-        }
         Ok((Simulated { cycles, counts }, log))
     }
 }
 
-struct Ranks {
-    records: Option<RecordsBySample>,
-    pushed: Vec<u8>,
-}
+/// Places of pushed children in the occlusion order.
+struct Ranks(Vec<u8>);
 
 impl Watch for Ranks {
     fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
         if let Event::Pushed(rank) = event {
-            self.pushed.push(rank);
+            self.0.push(rank);
         }
-        self.records.see(event);
     }
 }
 
@@ -226,7 +216,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     /// Gives the records on the stack to the scheduler, the last pushed (nearest) first.
     fn hand_over_records(&mut self, children: &mut Vec<Child>) {
         while let Some(record) = self.state.traversal.stack.pop() {
-            let Some(place) = self.state.traversal.watch.pushed.pop() else {
+            let Some(place) = self.state.traversal.watch.0.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
             };
             self.hand_over(Work::Record(record), place, children);
@@ -262,7 +252,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
                 self.state.push_object(quad);
                 if !self.state.traversal.stack.is_empty() {
                     // The object has no siblings: any rank is correct.
-                    self.state.traversal.watch.pushed.push(FIRST_PLACE);
+                    self.state.traversal.watch.0.push(FIRST_PLACE);
                 }
                 self.hand_over_records(children);
             }
