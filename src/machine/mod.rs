@@ -54,7 +54,7 @@ pub use engine::Machine;
 #[cfg(feature = "mutants")]
 pub use instruments::mutants;
 pub use instruments::{
-    Cage, NumberSpan, NumberSpans, Positions, ProvenWidths, RecordNumber, SimulateError, Simulated,
-    cages_along, narrowed, proven_widths, visit_positions,
+    Cage, Coordinates, NumberSpan, NumberSpans, Positions, ProvenWidths, RecordNumber,
+    SimulateError, Simulated, cages_along, narrowed, proven_widths, visit_positions,
 };
 pub use state::MachineOptions;

@@ -1,26 +1,5 @@
-//! The cost of a record, by stage. `c` is the number of its children, `t` of quadtree nodes against whose bisectors their
-//! boxes are tested.
-//!
-//! | stage | corners (the image-order paper) | frame |
-//! |---|---|---|
-//! | centre | 3 adds, 3 shifts | the same |
-//! | octant and order | 3 compares, 8 logic of 3 bits | the same |
-//! | vertex pool, a coordinate | 19 adds, 19 shifts | 3 halvings (an add and a shift each), 7 adds |
-//! | child box, a child | 6 selects | the same |
-//! | child box, a child and coordinate | 14 min/max (7 + 7) | 6 min/max (3 + 3), 6 adds |
-//! | quadtree fit, screen space | 4 `t` compares, `t` logic of 4 bits | the same |
-//!
-//! In screen space coordinates are x and y. In clip space they are X, Y, W. The child box finds the span of W alone, and
-//! compares it once with the near plane. Every test of the fit takes per coordinate:
-//!
-//! | | corners | frame |
-//! |---|---|---|
-//! | doubled less the width | 8 shifts, 8 subtractions | 4 shifts, 4 subtractions |
-//! | span | 14 min/max | 6 min/max, 6 adds |
-//! | side | 2 compares | the same |
-//!
-//! If the child lies in the left (upper) half, its coordinates are doubled once more. All of that is under the rule `any`,
-//! for boxes inside the picture.
+//! The cost of subdivided records, by stage: under the rule `any`, for boxes inside the picture. Coordinates are x and y in
+//! screen space, and X, Y, W in clip space, where the child box finds the span of W alone, and the fit the others.
 
 use std::collections::BTreeMap;
 
@@ -88,7 +67,7 @@ const CAGES: [(CageKind, [u64; 6]); 2] = [
 ];
 
 #[test]
-fn subdivided_records_cost_what_the_table_says() {
+fn subdivided_records_cost_what_their_steps_do() {
     use OpClass::{Add, Compare, DivideStep, Logic, MinMax, Select, Shift, Sub};
     for (cage, [halvings, pool_adds, numbers, min_max, adds, vertices]) in CAGES {
         for (at, (graph, camera)) in scenes().into_iter().cycle().take(8).enumerate() {

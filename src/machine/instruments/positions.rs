@@ -10,19 +10,25 @@ use crate::machine::record::{Clip, ImagePlace, Screen};
 use crate::machine::to_screen;
 use crate::project::FrameSetup;
 
-/// The eight vertices of a voxel, in Morton order, relative to the whole picture, in units of the last place.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Cage {
+/// The coordinates of a voxel's vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinates<T> {
     /// X, Y, W.
-    Clip([[i64; 8]; 3]),
+    Clip([T; 3]),
     /// x and y, in screen units.
-    Screen([[i64; 8]; 2]),
+    Screen([T; 2]),
 }
 
-#[derive(Debug, Clone, Copy)]
-enum CageWords<L> {
-    Clip([L; 3]),
-    Screen([L; 2]),
+/// The eight vertices of a voxel, in Morton order, relative to the whole picture, in units of the last place.
+pub type Cage = Coordinates<[i64; 8]>;
+
+impl<T> Coordinates<T> {
+    fn map<U>(self, f: impl FnMut(T) -> U) -> Coordinates<U> {
+        match self {
+            Self::Clip(all) => Coordinates::Clip(all.map(f)),
+            Self::Screen(all) => Coordinates::Screen(all.map(f)),
+        }
+    }
 }
 
 /// A walk down an octree.
@@ -33,19 +39,19 @@ struct Descent {
 
 impl Descent {
     /// A descent, and the root's cage.
-    fn new<L: CageCoordinate>(setup: &FrameSetup) -> (Self, CageWords<L>) {
+    fn new<L: CageCoordinate>(setup: &FrameSetup) -> (Self, Coordinates<L>) {
         let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
         let constants = Constants::load(&mut dp, setup);
         let root =
             [0, 1, 2].map(|c| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]));
         let mut descent = Self { dp, constants };
-        let root = descent.arrive(0, CageWords::Clip(root));
+        let root = descent.arrive(0, Coordinates::Clip(root));
         (descent, root)
     }
 
     /// Changes a cage of a level to screen space where the machine does so.
-    fn arrive<L: CageCoordinate>(&mut self, level: u32, held: CageWords<L>) -> CageWords<L> {
-        let CageWords::Clip([x, y, w]) = held else {
+    fn arrive<L: CageCoordinate>(&mut self, level: u32, held: Coordinates<L>) -> Coordinates<L> {
+        let Coordinates::Clip([x, y, w]) = held else {
             return held;
         };
         let (dp, constants) = (&mut self.dp, &self.constants);
@@ -53,34 +59,20 @@ impl Descent {
         let clip = Clip { x, y, w, w_min };
         if to_screen::may_change(dp, constants, level, ImagePlace::ROOT, &clip) {
             let Screen { x, y, .. } = to_screen::change(dp, constants, ImagePlace::ROOT, &clip);
-            CageWords::Screen([x, y])
+            Coordinates::Screen([x, y])
         } else {
             held
         }
     }
 
-    fn children<L: CageCoordinate>(&mut self, held: CageWords<L>) -> [CageWords<L>; 8] {
-        let mut of = |coordinate: L| L::all(&coordinate.pool(&mut self.dp));
-        match held {
-            CageWords::Clip(coordinates) => {
-                let children = coordinates.map(&mut of);
-                std::array::from_fn(|i| CageWords::Clip(children.map(|of| of[i])))
-            }
-            CageWords::Screen(coordinates) => {
-                let children = coordinates.map(&mut of);
-                std::array::from_fn(|i| CageWords::Screen(children.map(|of| of[i])))
-            }
-        }
+    fn children<L: CageCoordinate>(&mut self, held: Coordinates<L>) -> [Coordinates<L>; 8] {
+        let all = held.map(|coordinate| L::all(&coordinate.pool(&mut self.dp)));
+        std::array::from_fn(|octant| all.map(|children| children[octant]))
     }
 
     /// Fails if a word has overflowed.
-    fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
-        let dp = &mut self.dp;
-        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);
-        let cage = match held {
-            CageWords::Clip(coordinates) => Cage::Clip(coordinates.map(&mut vertices)),
-            CageWords::Screen(coordinates) => Cage::Screen(coordinates.map(&mut vertices)),
-        };
+    fn vertices<L: CageCoordinate>(&mut self, held: Coordinates<L>) -> Result<Cage, Trap> {
+        let cage = held.map(|coordinate| coordinate.vertices(&mut self.dp).map(Word::to_host));
         self.dp.trap().map_or(Ok(cage), Err)
     }
 }
@@ -150,7 +142,7 @@ impl Visitor<'_> {
     fn node<L: CageCoordinate>(
         &mut self,
         (level, corner): Voxel,
-        held: CageWords<L>,
+        held: Coordinates<L>,
     ) -> Result<(), Trap> {
         let cage = self.descent.vertices(held)?;
         let samples = self.samples(&cage);
@@ -181,7 +173,7 @@ impl Visitor<'_> {
 
     fn samples(&self, cage: &Cage) -> [Option<[f64; 2]>; 8] {
         match cage {
-            Cage::Clip([x, y, w]) => {
+            Coordinates::Clip([x, y, w]) => {
                 let root = libm::ldexp(1.0, self.setup.levels as i32);
                 std::array::from_fn(|i| {
                     let depth = w[i] as f64;
@@ -189,7 +181,7 @@ impl Visitor<'_> {
                     (depth > 0.0).then_some(at)
                 })
             }
-            Cage::Screen([x, y]) => {
+            Coordinates::Screen([x, y]) => {
                 let unit = libm::ldexp(1.0, -(self.setup.format.frac() as i32));
                 std::array::from_fn(|i| Some([x[i], y[i]].map(|c| c as f64 * unit)))
             }
