@@ -1,5 +1,5 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, R11). A side counts by the square of its cosine, which is unbiased over all
-//! directions. Products are sums of shifts over the at most nine bits of one factor.
+//! Blending, under the rule `alpha` (`SPEC.md`, R11). A side counts by the square of its cosine, which is unbiased over
+//! all directions. Products are sums of shifts over the at most nine bits of one factor.
 
 use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
@@ -16,7 +16,7 @@ const SHARE_BITS: u32 = 5;
 const WEIGHT_BITS: u32 = 9;
 /// Bits of a weight times a transmittance, plus a half.
 const PRODUCT_BITS: u32 = 17;
-/// Bits of a colour in linear light times a share, and of the sum of those.
+/// Bits of a colour times a share, and of the sum of those.
 const LIGHT_BITS: u32 = 24;
 const COLOR_BITS: u32 = 16;
 const OPACITY_BITS: u32 = 4;
@@ -163,7 +163,6 @@ fn plus_product<P: Probe>(
     sum
 }
 
-/// A voxel as it is blended.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendColor {
     /// 0 to 256.
@@ -195,8 +194,7 @@ impl BlendColor {
         is_seen.then_some(Self { weight, light })
     }
 
-    /// Adds the voxel to sample number `at`. Returns whether it is the first of the sample, and whether the sample is opaque
-    /// enough.
+    /// Adds the voxel to sample number `at`. Returns whether it is the first of the sample, and makes it opaque enough.
     pub(super) fn add_to<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

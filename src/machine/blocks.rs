@@ -69,8 +69,8 @@ impl From<Block> for u32 {
 }
 
 numbered! {
-    /// A port to a memory. For a probe it is a block, numbered after all [`Block`]s: its input is the address, and its output
-    /// the written or read data.
+    /// A port to a memory. For a probe it is a block, numbered after all [`Block`]s: its input is the address, and its
+    /// output the written or read data.
     Port, 8:
     /// A record is taken from the stack.
     Pop,

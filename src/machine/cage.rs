@@ -1,9 +1,10 @@
-//! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, as eight corners (the image-order paper)
-//! or as one corner and three edges. A cage has two coordinates in screen space (x, y), three in clip space (X, Y, W).
+//! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, as eight corners (the image-order
+//! paper) or as one corner and three edges. A cage has two coordinates in screen space (x, y), three in clip space (X,
+//! Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
-/// Evaluates an expression with the type of a set-up's cage coordinates.
+/// With the type of a set-up's cage coordinates.
 macro_rules! with_cage {
     ($setup:expr, $coordinate:ident => $body:expr) => {
         match $setup.options.cage {
@@ -52,7 +53,6 @@ pub(super) trait CageCoordinate: Linear {
         std::array::from_fn(|octant| Self::child(pool, octant))
     }
 
-    /// The least and the greatest vertex.
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word);
 
     /// The middle of the lowest and the highest corner, rounded down.
@@ -90,7 +90,6 @@ fn parallelepiped<P: Probe>(dp: &mut Datapath<P>, corner: Word, [x, y, z]: [Word
     v
 }
 
-/// The numbers of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Numbers<const N: usize>([Word; N]);
 
@@ -125,8 +124,8 @@ impl CageCoordinate for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The image-order paper's 27-vertex pool (3.4): midpoints along x, then y, then z. The order is normative, because they
-    /// are rounded down.
+    /// The image-order paper's 27-vertex pool (3.4): midpoints along x, then y, then z. The order is normative, because
+    /// they are rounded down.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.

@@ -1,5 +1,5 @@
-//! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). They are pushed if they are
-//! before the eye and their box has an unfilled quadtree node (3.5).
+//! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). They are pushed if they
+//! are before the eye and their box has an unfilled quadtree node (3.5).
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
@@ -295,8 +295,8 @@ pub(super) fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate
     pool
 }
 
-/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules that have one, before the near plane
-/// (R7.2).
+/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules that have one, before the near
+/// plane (R7.2).
 pub(super) fn is_behind<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -14,8 +14,8 @@ pub(super) enum Margin {
     Plain,
     /// Closed boxes, widened by `2^-shift` samples on each side.
     Grow(i32),
-    /// Closed boxes, narrowed by half a sample on each side, under the rules that draw outlines: a quadrant counts only if
-    /// the box contains one of its sample points.
+    /// Closed boxes, narrowed by half a sample on each side, under the rules that draw outlines: a quadrant counts only
+    /// if the box contains one of its sample points.
     Gap,
 }
 
@@ -37,7 +37,6 @@ pub(super) struct BlendEye {
 pub(super) struct Constants {
     pub(super) outline: OutlineRule,
     pub(super) blend_eye: Option<BlendEye>,
-    /// Level of the samples in the image quadtree.
     pub(super) levels: u32,
     /// Octree level of the finest voxels.
     pub(super) depth: u32,
@@ -45,7 +44,6 @@ pub(super) struct Constants {
     pub(super) sub_levels: u32,
     /// The deepest level of a record.
     pub(super) level_bound: u32,
-    /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
     /// Places to the left, then to the right, that turn half samples into screen positions.
     pub(super) half_sample_places: [u32; 2],
@@ -67,10 +65,11 @@ pub(super) struct Constants {
     pub(super) screen_depth: Vec<Option<Word>>,
     /// By level, least depth of a node that level of detail draws as a solid.
     pub(super) lod_depth: Vec<Option<Word>>,
-    /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, moved to just beyond the object if it is far away.
+    /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, moved to just beyond the object if it is
+    /// far away.
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
-    /// Whether the edges' clip vectors, as columns, have a positive determinant.
+    /// Whether the edges' clip vectors have a positive determinant.
     pub(super) positive: bool,
     /// `a` and `b` of the planes perpendicular to the three axes.
     pub(super) axis_ab: [[WideWord; 2]; 3],
@@ -176,8 +175,8 @@ impl Constants {
     }
 }
 
-/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, then those of planes
-/// (`rtl/stage_b/plane_constants.v`), each in two registers. A level without a depth has the greatest word.
+/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, then those of
+/// planes (`rtl/stage_b/plane_constants.v`), each in two registers. A level without a depth has the greatest word.
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);

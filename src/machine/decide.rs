@@ -159,7 +159,6 @@ enum Verdict {
     Subdivide,
 }
 
-/// Applies the frame's drawing rule, and level of detail, which may make the record solid.
 fn verdict<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
@@ -207,8 +206,8 @@ fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn. Where occluded nodes are read, only records up to the size of a
-/// sample across a bisector are tested. Otherwise the parts of a solid there are kept until both sides are full.
+/// Whether all samples that a record may cover are drawn. Where occluded nodes are read, only records up to the size of
+/// a sample across a bisector are tested. Otherwise the parts of a solid there are kept until both sides are full.
 fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,

@@ -1,9 +1,8 @@
-//! Fill vectors: four bits per node of the image quadtree. Both decisions of R6 (`SPEC.md`) that follow from one vector are
+//! Fill vectors: four bits per node of the image quadtree. Both decisions of R6 (`SPEC.md`) that follow from one are
 //! here.
 //!
-//! *Joined*, a node two levels above the samples has one word of 16 bits, one per sample, instead of its own and its
-//! descendants' 21 vectors. The last word read stays in a register during a record's turn. Here all vectors are kept, and
-//! only the accesses are those of words.
+//! *Joined*, a node two levels above the samples has one word of 16 bits instead of its own and its descendants' 21
+//! vectors. The last word read stays in a register during a turn. Only accesses differ: all vectors are kept.
 
 use std::cell::Cell;
 
@@ -28,7 +27,6 @@ pub(super) struct FillStore<'f> {
 }
 
 impl<'f> FillStore<'f> {
-    /// Joins the lowest two levels if there are as many below the tiles.
     pub(super) fn new(
         vectors: &'f mut FillVectors,
         organisation: Organisation,
@@ -86,7 +84,6 @@ impl<'f> FillStore<'f> {
         self.peek(node)
     }
 
-    /// Whether a record's node is full at the beginning of its turn.
     #[inline(always)]
     pub(super) fn is_full<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode) -> bool {
         dp.stage(Stage::Filled);
@@ -99,9 +96,8 @@ impl<'f> FillStore<'f> {
         full
     }
 
-    /// Whether the search for a box's node rejects the box, because none of the quadrants that it overlaps is open.
-    ///
-    /// The search never enters a full node, but begins in one if a parent that draws its children one by one filled it.
+    /// Whether all quadrants that a box overlaps are full. The search for its node begins in a full one only if a
+    /// parent that draws its children one by one filled it.
     #[inline]
     pub(super) fn rejects<P: Probe>(
         &self,
@@ -209,7 +205,6 @@ impl<'f> FillStore<'f> {
         self.is_joined && node.level + LEVELS_BELOW >= self.levels()
     }
 
-    /// The node whose word contains a joined node.
     fn word_of(&self, node: QuadNode) -> QuadNode {
         node.ancestor(self.levels() - LEVELS_BELOW)
     }

@@ -1,4 +1,5 @@
-//! The machine: the loop of the image-order paper (`REFERENCES.md`), sections 3.1 to 3.6, in words that cannot multiply.
+//! The machine: the loop of the image-order paper (`REFERENCES.md`), sections 3.1 to 3.6, in words that cannot
+//! multiply.
 //!
 //! ```text
 //! push the object's record

@@ -11,8 +11,8 @@
 //!     when none is left: take the current record from the stack; end when that is empty
 //! ```
 //!
-//! The stack holds subdivided records with remaining children, as a whole or as path entries (`path.rs`), so it is never
-//! deeper than the octree. Children are computed again when their parent returns from the stack.
+//! The stack holds subdivided records with remaining children, as a whole or as path entries (`path.rs`), so it is
+//! never deeper than the octree. Children are computed again when their parent returns from the stack.
 //!
 //! *Tiles*: the object is drawn once per tile of the picture, with everything outside the tile full from the start.
 
@@ -33,7 +33,6 @@ use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 use crate::project::EngineError;
 
-/// A subdivided record with remaining children.
 #[derive(Clone, Copy)]
 pub(super) struct Parent<L: CageCoordinate> {
     pub(super) record: Record<L>,
@@ -92,8 +91,7 @@ impl<L: CageCoordinate> Parent<L> {
 }
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object tile by tile. Returns whether at most `most_records` records were enough. Fails when a word overflows
-    /// under the trap policy.
+    /// As [`State::draw_object`], tile by tile.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);
@@ -111,7 +109,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let level = self.tile_levels();
         let side = 1u32 << level;
         let tiles = (0..side).flat_map(|y| (0..side).map(move |x| QuadNode { level, x, y }));
-        // A tile outside the picture is full.
         tiles
             .filter(|&tile| self.canvas.fill.peek(tile) != FULL)
             .collect()
@@ -252,7 +249,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             };
             let from = record.place;
             let child = Child { cube, from };
-            // A child is made in one step, its vertices beside its box.
             let mut grow =
                 |seed| dp.beside(Stage::VertexPool, |dp| L::grow(dp, seed, octant as usize));
             let is_seen = match &record.pose {
@@ -274,7 +270,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         None
     }
 
-    /// Draws or drops the new record, unless it must be subdivided.
     fn work_on_new(&mut self) -> Option<Parent<L>> {
         let mut record = self.traversal.stack.pop()?;
         let (dp, counts) = (&mut self.dp, &mut self.canvas.counts);
@@ -289,7 +284,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 }
 
-/// Reports a restored parent, without the numbers that its turn does not need: node and least depth.
+/// Without the numbers that its turn does not need: node and least depth.
 fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: Record<L>) {
     record.cube.node = 0;
     if let Pose::Clip(clip, _) = &mut record.pose {

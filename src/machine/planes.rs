@@ -24,7 +24,6 @@ impl Side {
     }
 }
 
-/// The function `a x + b y + c` over a node, `x` and `y` from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     ab: [WideWord; 2],
@@ -77,8 +76,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal, and below it by a
-    /// smaller one.
+    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal, and below it
+    /// by a smaller one.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -106,7 +105,6 @@ impl Plane {
     }
 }
 
-/// The covered samples of a quadtree node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     None,
@@ -126,13 +124,13 @@ impl Cover {
 pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
-    /// Of a cube that is not wholly before the eye: a plane perpendicular to an axis, and the side on which rays reach the
-    /// cube, not its mirror image behind the eye.
+    /// Of a cube that is not wholly before the eye: a plane perpendicular to an axis, and the side on which rays reach
+    /// the cube, not its mirror image behind the eye.
     front: Option<(Plane, Side)>,
 }
 
 impl Silhouette {
-    /// Of a cube at most as deep as the finest voxels. `w_min`: the least depth of its vertices.
+    /// Of a cube at most as deep as the finest voxels, whose least depth is `w_min`.
     pub(super) fn new<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -142,7 +140,7 @@ impl Silhouette {
     ) -> Self {
         let is_before_eye = dp.is_positive(w_min);
         let side_shift = constants.depth - cube.level;
-        // The change of an edge's plane when the edge moves one side along an axis.
+        // By axis: the change of a plane when its edge moves one side.
         let across = [0, 1, 2].map(|l| {
             let axis = axis_plane(constants, planes, l);
             axis.map(|v| dp.shl(v, side_shift))
@@ -168,8 +166,8 @@ impl Silhouette {
         Self { edges, front }
     }
 
-    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those towards it along an axis on which the eye
-    /// is outside. `None`: the cube contains the eye.
+    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those towards it along an axis on which the
+    /// eye is outside. `None`: the cube contains the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -262,7 +260,6 @@ fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord;
     [a, b, planes.axis_c[axis]]
 }
 
-/// The sum or the difference of two planes.
 fn combine<P: Probe>(
     dp: &mut Datapath<P>,
     a: [WideWord; 3],
@@ -278,7 +275,7 @@ fn combine<P: Probe>(
     })
 }
 
-/// The planes of a child: moved by half a side along each axis whose bit the child's octant has.
+/// Moved by half a side along each axis whose bit the octant has.
 pub(super) fn of_child<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -315,7 +312,6 @@ pub(super) fn move_edges<P: Probe>(
     }
 }
 
-/// Makes planes relative to the parent of their quadrant: undoes [`move_to_quadrant`].
 pub(super) fn move_out_of_quadrant<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,5 +1,5 @@
-//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6; image-order paper, 3.5). In clip space `x` runs from
-//! 0 to `w` across the node, and the sign of `2x - w` is the side of the bisector.
+//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6; image-order paper, 3.5). In clip space `x` runs
+//! from 0 to `w` across the node, and the sign of `2x - w` is the side of the bisector.
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -17,10 +17,10 @@ pub(super) struct Halves {
     pub(super) high: bool,
 }
 
-/// The quadrants (bit `y << 1 | x`) in the given halves. In hardware four gates, counted with the 4-bit "and" that follows.
+/// The quadrants (bit `y << 1 | x`) in the given halves. In hardware four gates, counted with the 4-bit "and" that
+/// follows.
 #[inline(always)]
 pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
-    // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
     const QUADRANTS: [u8; 16] = {
         let mut of = [0; 16];
         let mut halves = 0;
@@ -48,9 +48,7 @@ pub(super) fn only(quadrants: u8) -> Option<u8> {
         .then(|| quadrants.trailing_zeros() as u8)
 }
 
-/// A box in the image, relative to a quadtree node.
 pub(super) trait ImageBox: Copy {
-    /// Results of the test of a node, reused by its quadrants.
     type Tested: Copy;
 
     /// The quadrants of a node that the box overlaps.
@@ -203,7 +201,7 @@ fn closed<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, relative: &L, margi
     closed_halves(dp, (low, high))
 }
 
-/// The closed halves that a range overlaps; the bisector is 0.
+/// The bisector is 0.
 fn closed_halves<P: Probe>(dp: &mut Datapath<P>, (low, high): (Word, Word)) -> Halves {
     Halves {
         low: !dp.is_positive(low),
@@ -211,7 +209,7 @@ fn closed_halves<P: Probe>(dp: &mut Datapath<P>, (low, high): (Word, Word)) -> H
     }
 }
 
-/// The half-open halves that a screen-space box overlaps: its positions include its margin.
+/// Half-open: the positions include the margin.
 #[inline(always)]
 fn screen_halves<P: Probe>(
     dp: &mut Datapath<P>,

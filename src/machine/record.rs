@@ -80,8 +80,8 @@ pub(super) struct Screen<L> {
 /// Least and greatest x, least and greatest y.
 pub(super) type Spans = [(Word, Word); 2];
 
-/// Silhouette planes of a cube (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with `x` and `y`
-/// from 0 to 1 across the node.
+/// Silhouette planes of a cube (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with `x` and
+/// `y` from 0 to 1 across the node.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Planes {
     /// By edge direction j: the plane through the eye and the edge that leaves the lowest corner along j.

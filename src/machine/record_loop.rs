@@ -11,8 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack. Returns whether at most `most_records` turns were enough.
-    /// Fails when a word overflows under the trap policy.
+    /// Draws the object in a tile, with children on the stack. Returns whether at most `most_records` turns were
+    /// enough. Fails when a word overflows under the trap policy.
     pub(super) fn draw_object(
         &mut self,
         tile: QuadNode,

@@ -1,5 +1,5 @@
-//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5). Its search does not depend
-//! on drawn samples; only the rejection does.
+//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5). Its search does not
+//! depend on drawn samples; only the rejection does.
 //!
 //! ```text
 //! from the parent's node on:
@@ -96,8 +96,8 @@ pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L
     near
 }
 
-/// Whether a box, widened by [`Constants::grow`], lies inside a node. `None`: outside. The node's edges are the picture's
-/// wherever the parent's box left the picture.
+/// Whether a box, widened by [`Constants::grow`], lies inside a node. `None`: outside. The node's edges are the
+/// picture's wherever the parent's box left the picture.
 fn is_inside<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -55,7 +55,8 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether the box leaves the picture by no more than an eighth of its side, or four sides where the tolerance is infinite.
+/// Whether the box leaves the picture by no more than an eighth of its side, or four sides where the tolerance is
+/// infinite.
 fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,8 +1,9 @@
 //! Exact coverage (`SPEC.md`, R8): one sample's ray against axis-aligned cubes (`spec/rays.md`, "Hit").
 //!
-//! Ties (R8.1): the ray is moved by `(e, e^2)` in `(x, y)` for an infinitesimal `e`. A linear function `a x + b y + c w` of
-//! the direction that is 0 then has the sign of `a`, or of `b` if `a` is 0 as well. If both are 0 so is `c`: the function is
-//! zero for every ray (an edge through the eye) and has no sign. `g_k` always has one, as its plane is not zero.
+//! Ties (R8.1): the ray is moved by `(e, e^2)` in `(x, y)` for an infinitesimal `e`. A linear function `a x + b y + c
+//! w` of the direction that is 0 then has the sign of `a`, or of `b` if `a` is 0 as well. If both are 0 so is `c`: the
+//! function is zero for every ray (an edge through the eye) and has no sign. `g_k` always has one, as its plane is not
+//! zero.
 
 use super::number::Number;
 use super::ray_frame::RayFrame;
@@ -79,7 +80,8 @@ impl<'v, N: Number> Line<'v, N> {
         self.goes_forward_to(cube.lo, side) && self.line_crosses(cube, side, along_side)
     }
 
-    /// Plane of the eye (R8.2): whether a cube on the line lies before the eye, which is outside of a slab, or in the cube.
+    /// Plane of the eye (R8.2): whether a cube on the line lies before the eye, which is outside of a slab, or in the
+    /// cube.
     #[inline]
     fn goes_forward_to(&self, lo: [i64; 3], side: i64) -> bool {
         (0..3).all(|k| {

@@ -1,5 +1,5 @@
-//! The exact oracle: for every sample, the nearest solid cell on its ray (`spec/rays.md`). It shares no code with the other
-//! engines, and ignores drawing rule, cage and tolerance.
+//! The exact oracle: for every sample, the nearest solid cell on its ray (`spec/rays.md`). It shares no code with the
+//! other engines, and ignores drawing rule, cage and tolerance.
 
 mod line;
 mod number;
@@ -53,8 +53,9 @@ pub struct Caster<'g> {
 pub const MAX_CASTER_LEVELS: u32 = 17;
 
 impl<'g> Caster<'g> {
-    /// The rays of a frame. If `setup.levels` is raised, to at most [`MAX_CASTER_LEVELS`], the samples are those of a finer
-    /// grid in the same picture. They see the graph as the level of detail cuts it ([`FrameSetup::without_detail`]).
+    /// The rays of a frame. If `setup.levels` is raised, to at most [`MAX_CASTER_LEVELS`], the samples are those of a
+    /// finer grid in the same picture. They see the graph as the level of detail cuts it
+    /// ([`FrameSetup::without_detail`]).
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
         let view = RayFrame::new(setup);

@@ -1,5 +1,5 @@
-//! The integers of line functions: planes of at most 127 bits times ray directions of at most 2^18. Only the most extreme views
-//! need [`Wide`].
+//! The integers of line functions: planes of at most 127 bits times ray directions of at most 2^18. Only the most
+//! extreme views need [`Wide`].
 
 use std::ops::{Add, Sub};
 

@@ -69,8 +69,8 @@ impl RayFrame {
         ]
     }
 
-    /// The plane through the eye and the voxel edge that leaves object point `u` along `axis`. Zero if the edge's line contains
-    /// the eye.
+    /// The plane through the eye and the voxel edge that leaves object point `u` along `axis`. Zero if the edge's line
+    /// contains the eye.
     pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
         let mut point = self.origin;
         for (step, along) in self.edge.iter().zip(u) {
@@ -81,7 +81,8 @@ impl RayFrame {
         cross(point, self.edge[axis])
     }
 
-    /// Plane of the eye (R8.2): the side of the eye on which the slab `lo..hi` (voxels) of axis `k` lies, 0 around the eye.
+    /// Plane of the eye (R8.2): the side of the eye on which the slab `lo..hi` (voxels) of axis `k` lies, 0 around the
+    /// eye.
     #[inline]
     pub(super) fn side_of_eye(&self, k: usize, lo: i64, hi: i64) -> i32 {
         // A whole number is >= the eye exactly if it is >= the eye rounded up.
@@ -94,8 +95,8 @@ impl RayFrame {
         }
     }
 
-    /// Whether every line function, and every sum of three, fits `i128`. Line functions are linear in the object point, so they
-    /// are largest at a corner of the object.
+    /// Whether every line function, and every sum of three, fits `i128`. Line functions are linear in the object point,
+    /// so they are largest at a corner of the object.
     pub(super) fn fits_i128(&self) -> bool {
         let side = 1i64 << self.depth;
         (0..8i64).all(|corner| {

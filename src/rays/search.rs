@@ -1,8 +1,8 @@
 //! The solid cell that a ray meets first, by its own order (for R9 of `SPEC.md`); the graph's depth ends cycles (R10).
 //!
-//! A line crosses each of the three planes between children at most once, in its direction along that axis. Children are
-//! numbered by `octant XOR start`, where `start` has a bit for each axis along which the ray runs downwards. Crossing a
-//! plane changes one bit from 0 to 1, never back. So growing numbers go from near to far.
+//! A line crosses each of the three planes between children at most once, in its direction along that axis. Children
+//! are numbered by `octant XOR start`, where `start` has a bit for each axis along which the ray runs downwards.
+//! Crossing a plane changes one bit from 0 to 1, never back. So growing numbers go from near to far.
 
 use super::line::{Cube, Line};
 use super::number::Number;

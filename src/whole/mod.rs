@@ -1,8 +1,8 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. A signal handler must
-//! call [`remove_unfinished`] before it ends the program. The files of a killed process are removed by the next one that
-//! writes to the folder. It recognises them by name and by lock, which ends with the process.
+//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. A signal
+//! handler must call [`remove_unfinished`] before it ends the program. The files of a killed process are removed by the
+//! next one that writes to the folder. It recognises them by name and by lock, which ends with the process.
 
 mod temporary;
 
@@ -160,8 +160,8 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
     result
 }
 
-/// Writes a file. A replaced file keeps its permissions, and a link to a file stays a link. Without `overwrite` an existing
-/// file is an error, also if it appears during the writing.
+/// Writes a file. A replaced file keeps its permissions, and a link to a file stays a link. Without `overwrite` an
+/// existing file is an error, also if it appears during the writing.
 pub fn write_with(
     path: &Path,
     overwrite: bool,

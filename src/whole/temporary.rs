@@ -1,4 +1,5 @@
-//! Temporary files and folders: listed for signal handlers, and locked, so that other processes recognise abandoned ones.
+//! Temporary files and folders: listed for signal handlers, and locked, so that other processes recognise abandoned
+//! ones.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -30,7 +31,8 @@ pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
     IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes all unfinished files of this process, then calls `end`, during which no file is renamed: for signal handlers.
+/// Removes all unfinished files of this process, then calls `end`, during which no file is renamed: for signal
+/// handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
@@ -83,7 +85,8 @@ impl InProgress {
     }
 }
 
-/// Creates a temporary folder. It is removed when it is dropped; if the process is killed, by the next one that writes there.
+/// Creates a temporary folder. It is removed when it is dropped; if the process is killed, by the next one that writes
+/// there.
 pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();

@@ -1,5 +1,5 @@
-//! The fast engine equals the oracle at every sample of many frames, from awkward places, and from those where it was once
-//! wrong. `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 4 million.
+//! The fast engine equals the oracle at every sample of many frames, from awkward places, and from those where it was
+//! once wrong. `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 4 million.
 
 use glam::DVec3;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
@@ -32,8 +32,8 @@ fn any_camera(graph: &Graph, dice: &mut Dice) -> Camera {
     camera
 }
 
-/// The numbers of samples that were compared, that show a voxel, and that the exact rule decided. `None`: the camera sees
-/// nothing, or the machine drew the frame.
+/// The numbers of samples that were compared, that show a voxel, and that the exact rule decided. `None`: the camera
+/// sees nothing, or the machine drew the frame.
 fn compare(
     graph: &Graph,
     camera: &Camera,

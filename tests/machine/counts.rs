@@ -1,5 +1,5 @@
-//! The cost of subdivided records, by stage: under the rule `any`, for boxes inside the picture. Coordinates are x and y in
-//! screen space, and X, Y, W in clip space, where the child box finds the span of W alone, and the fit the others.
+//! The cost of subdivided records, by stage: under the rule `any`, for boxes inside the picture. Coordinates are x and
+//! y in screen space, and X, Y, W in clip space, where the child box finds the span of W alone, and the fit the others.
 
 use std::collections::BTreeMap;
 
@@ -91,7 +91,8 @@ fn subdivided_records_cost_what_their_steps_do() {
             // Beyond those of the tests, a cage coordinate's worth for each left half.
             let doubled = shifts - 2 * numbers * in_fit;
             assert!(doubled % numbers == 0 && doubled <= 2 * numbers * in_fit);
-            // Only the object's record is divided, whose node is the root: 4 integer bits, a bit per level, the fraction.
+            // Only the object's record is divided, whose node is the root: 4 integer bits, a bit per level, the
+            // fraction.
             let steps = 2 * vertices * u64::from(4 + setup.levels + setup.format.frac());
             let mut expected = BTreeMap::new();
             for (stage, class, bits, times) in [

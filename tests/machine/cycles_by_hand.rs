@@ -8,12 +8,12 @@
 //! - 11 where a line of nodes (A's, which holds all) or of attributes (C's, which holds all) is missed;
 //! - 21 where the picture's fill vectors are cleared, 1 + 4 + 16, and 6 for a tile of 2 x 2: root, tile, four samples.
 //!
-//! With parents on the stack only B is stored, and E is hidden when it is made. Leaf masks save the nodes' reads of C, D and
-//! E. Tests for occluded nodes read the fill vectors once more. With joined fill vectors every pair of reads
-//! or writes is one. By tiles A is walked four times, and B in one of them.
+//! With parents on the stack only B is stored, and E is hidden when it is made. Leaf masks save the nodes' reads of C,
+//! D and E. Tests for occluded nodes read the fill vectors once more. With joined fill vectors every pair of reads or
+//! writes is one. By tiles A is walked four times, and B in one of them.
 //!
-//! On *sequential* hardware a read takes a cycle more. A silhouette takes one for its planes, and one for each quadrant to
-//! which they are moved. The way back from B to A is out of a quadrant and up a level.
+//! On *sequential* hardware a read takes a cycle more. A silhouette takes one for its planes, and one for each quadrant
+//! to which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
 use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};

@@ -1,5 +1,5 @@
-//! The oracle against a second, slower way to the same truth: every cell cut with every ray in rational numbers, the tie
-//! rule as a tiny real offset.
+//! The oracle against a second, slower way to the same truth: every cell cut with every ray in rational numbers, the
+//! tie rule as a tiny real offset.
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
@@ -180,7 +180,8 @@ fn anywhere(dice: &mut Dice, side: f64) -> Camera {
     }
 }
 
-/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is met.
+/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is
+/// met.
 fn ties(dice: &mut Dice, side: f64) -> Camera {
     let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
     let axis = dice.below(3) as usize;

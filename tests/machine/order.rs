@@ -3,8 +3,8 @@
 use hwmodel::cycles::{Child, ImageNode, Independence};
 use shiftvox::machine::OCCLUSION_ORDER;
 
-/// Whether no ray from the eye meets the inside of `second` before that of `first`: some centre plane parts them with the
-/// eye on it or on `first`'s side.
+/// Whether no ray from the eye meets the inside of `second` before that of `first`: some centre plane parts them with
+/// the eye on it or on `first`'s side.
 fn never_occludes(eye_side: [i32; 3], second: u8, first: u8) -> bool {
     (0..3).any(|axis| {
         let side = |child: u8| if child >> (2 - axis) & 1 != 0 { 1 } else { -1 };

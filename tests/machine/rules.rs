@@ -1,4 +1,5 @@
-//! Properties of the machine's rules: nothing has holes, every input ends, narrow words trap, a tolerance has its rules.
+//! Properties of the machine's rules: nothing has holes, every input ends, narrow words trap, a tolerance has its
+//! rules.
 
 use crate::common::*;
 use crate::differential::any_settings;

@@ -1,9 +1,9 @@
 //! The machine computes with words alone.
 //!
-//! A `Word` has no operators. Its ways to a plain number are `to_host()` and, for a probe, `Wires::show()`. So a line of the
-//! machine that takes a number past the datapath holds `to_host`, a product, a quotient, or host arithmetic by name. Each
-//! such line says why it may, in a comment `// host: reason`. The search cannot see comparisons, sums and shifts of plain
-//! numbers.
+//! A `Word` has no operators. Its ways to a plain number are `to_host()` and, for a probe, `Wires::show()`. So a line
+//! of the machine that takes a number past the datapath holds `to_host`, a product, a quotient, or host arithmetic by
+//! name. Each such line says why it may, in a comment `// host: reason`. The search cannot see comparisons, sums and
+//! shifts of plain numbers.
 
 use std::fs;
 use std::path::Path;

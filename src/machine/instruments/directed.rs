@@ -1,5 +1,5 @@
-//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, numbers stay
-//! some bits below the ends of the format, so that no result leaves its word.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, numbers
+//! stay some bits below the ends of the format, so that no result leaves its word.
 
 use hwmodel::{Datapath, Narrow, Probe, Stage, WideWord, Word};
 

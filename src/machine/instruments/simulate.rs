@@ -20,27 +20,25 @@ use crate::machine::state::State;
 use crate::machine::watch::{Event, Watch};
 use crate::project::{EngineError, FrameSetup, Stats};
 
-/// The results of a simulated frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulated {
     pub cycles: CycleReport,
-    /// The machine's counts, without the stack's depth; at last the most tiles in progress at once, each of which needs
-    /// fill vectors on the chip.
+    /// Without the stack's depth; at last the most tiles in progress at once, each of which needs fill vectors on the
+    /// chip.
     pub counts: Stats,
 }
 
 pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
-    /// Draws a frame on simulated hardware, in its organisation. Each record has its turn in the cycle in which `hardware`
-    /// begins it, and finds the fill vectors of that time.
+    /// Draws a frame on simulated hardware, in its organisation, except `frame.records`.
     ///
     /// Under [`Independence::None`](cycles::Independence) and `Image` the machine does exactly the serial work. Under
-    /// `Classes` and `Both` the picture is the same if no two children of one class draw the same sample, as under the exact
-    /// rule.
+    /// `Classes` and `Both` the picture is the same if no two children of one class draw the same sample, as under the
+    /// exact rule.
     ///
-    /// `frame.records` is not written. Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does not
-    /// spill is full.
+    /// Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does
+    /// not spill is full.
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
@@ -57,8 +55,8 @@ impl Machine {
         Ok(simulated)
     }
 
-    /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording would
-    /// take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
+    /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording
+    /// would take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
     pub fn record_turns(
         &mut self,
         graph: &GraphView<'_>,
@@ -104,7 +102,6 @@ impl Machine {
             handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
-            // The first is the whole picture.
             tiles: vec![Tile::new(QuadNode::ROOT)],
             open: 0,
             most_open: 0,
@@ -135,7 +132,6 @@ enum Work<L: CageCoordinate> {
     Tiles(QuadNode),
     /// A record, where children lie on the stack.
     Record(Record<L>),
-    /// A parent, in registers or on the stack.
     Parent(Parent<L>),
     /// A parent's path entry on the stack, and the parent's quadtree node.
     Path(PathEntry, QuadNode),
@@ -144,7 +140,6 @@ enum Work<L: CageCoordinate> {
 /// A tile, and the walk that draws it.
 struct Tile<L> {
     view: TileView,
-    /// The last record of the walk.
     last: Option<Record<L>>,
     /// Number of waiting work items.
     waiting: u32,
@@ -213,7 +208,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         });
     }
 
-    /// Gives the records on the stack to the scheduler, the last pushed (nearest) first.
+    /// The last pushed (nearest) first.
     fn hand_over_records(&mut self, children: &mut Vec<Child>) {
         while let Some(record) = self.state.traversal.stack.pop() {
             let Some(place) = self.state.traversal.watch.0.pop() else {
@@ -232,7 +227,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    /// Begins the tile of a node of the image quadtree, or its quadrants later.
+    /// Begins a tile, or its quadrants later.
     fn begin_tiles(&mut self, quad: QuadNode, children: &mut Vec<Child>) {
         if self.state.canvas.fill.peek(quad) == FULL && quad.level > 0 {
             // It lies outside the picture.
@@ -240,7 +235,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
         if quad.level < self.state.tile_levels() {
             for quadrant in 0..4 {
-                // Their order does not matter.
                 self.hand_over(Work::Tiles(quad.quadrant(quadrant)), FIRST_PLACE, children);
             }
             return;

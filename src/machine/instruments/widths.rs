@@ -1,12 +1,11 @@
 //! The bits of a record's numbers under the rules that draw outlines: proven from a frame's set-up, and measured.
 //!
-//! A vertex lies in the object, so its clip vector lies in the hull of the object's corners. This bounds `W`, and `X` and `Y`
-//! relative to the whole picture. A box enters a quadrant only if it leaves that by at most half a sample, or by the
-//! quadrant's width (`near_node`). So relative to any other node `-W <= X <= 2W`, and no vertex lies behind the eye. Edges
-//! are differences of two such numbers. Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are products of a
-//! point of the object with an edge's direction, greatest at a corner, and the same relative to every node. The edge's end
-//! is on the plane, so `|c| <= 2 (|a| + |b|)`. A plane across an axis is the difference of two planes through edges, so its
-//! `c` is at most twice theirs.
+//! Clip vectors lie in the hull of the object's corners, which bounds `W`, and `X` and `Y` relative to the whole
+//! picture. A box enters a quadrant only if it leaves that by at most half a sample, or by the quadrant's width
+//! (`near_node`). So relative to any other node `-W <= X <= 2W`, and no vertex lies behind the eye. Edges are
+//! differences of two such numbers. Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are greatest at a
+//! corner of the object, and the same relative to every node. The edge's end is on the plane, so `|c| <= 2 (|a| +
+//! |b|)`. A plane across an axis is the difference of two planes through edges, so its `c` is at most twice theirs.
 
 use std::collections::BTreeMap;
 
@@ -92,11 +91,10 @@ impl NumberSpan {
 
 pub type NumberSpans = BTreeMap<RecordNumber, NumberSpan>;
 
-/// Proven widths of a frame's records, and of the wide words in their computation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProvenWidths {
     pub numbers: NumberSpans,
-    /// Bits of a wide word that holds every plane and every sum of the steps on planes.
+    /// Bits of a wide word that holds every sum of the steps on planes.
     pub wide_bits: u32,
 }
 
@@ -178,8 +176,8 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
         (RecordNumber::PlaneC, around(plane_c)),
         (RecordNumber::AxisC, around(2 * plane_c)),
     ];
-    // The largest sums: of an axis plane's constant, doubled, and its coefficients; of twice the constant of a plane
-    // that crosses a node, which is at most `|a| + |b|`, and its coefficients.
+    // The largest sums: four times an axis plane's constant, or twice that of a plane across a node, which is at most
+    // `|a| + |b|`, with their coefficients.
     let most = (4 * plane_c + axis_ab).max(2 * plane_c + 4 * sums);
     Some(ProvenWidths {
         numbers: numbers.into_iter().collect(),
@@ -198,7 +196,6 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     narrow
 }
 
-/// Spans of all records made so far.
 struct Seen {
     cage: CageKind,
     spans: NumberSpans,
@@ -235,7 +232,6 @@ impl Watch for Seen {
         self.note(QuadPlace, [quad.x, quad.y].map(i128::from));
         self.note_both([Lowest, Highest], &(cube.min, cube.max), 3);
         if let Pose::Clip(clip, planes) = pose {
-            // A corner and three edges, or eight corners.
             let corners = match self.cage {
                 CageKind::Corners => 8,
                 CageKind::Frame => 1,

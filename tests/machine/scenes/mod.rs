@@ -147,8 +147,8 @@ pub const PLACES: [CameraPlace; 6] = [
     CameraPlace::CubeFace,
 ];
 
-/// A camera with its eye at a place, looking at a voxel or, one time in four, from beside one along an axis, so that ties
-/// abound. 5 to 150 degrees.
+/// A camera with its eye at a place, looking at a voxel or, one time in four, from beside one along an axis, so that
+/// ties abound. 5 to 150 degrees.
 pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut Dice) -> Camera {
     let (low, side) = cube(graph);
     let voxel = graph.placement.voxel_size;
