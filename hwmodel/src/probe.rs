@@ -118,7 +118,7 @@ pub enum Operand {
 
 /// Defines [`Probe`] and its forwarding implementations from one list of events.
 macro_rules! probe {
-    ($($(#[$doc:meta])* fn $event:ident($($argument:ident: $type:ty),*);)+) => {
+    ($($(#[$doc:meta])* fn $event:ident($self:ident $(, $argument:ident: $type:ty)*) $default:block)+) => {
         /// Receives every operation and every memory access. All methods do nothing by default.
         pub trait Probe {
             /// Whether the probe does anything; otherwise the datapath leaves the calls out.
@@ -128,32 +128,18 @@ macro_rules! probe {
             /// operations alone costs no more.
             const TAPS: bool = false;
 
-            /// One operation on an operand whose kind is known at compile time. `bits` follows from the kind and the
-            /// format, or is a constant. By default one [`Probe::op`].
-            #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                let _ = operand;
-                self.op(class, bits, place, 1);
-            }
-
             /// Whether [`Probe::tap`] should be called now; used only where `TAPS` is set.
             #[inline]
             fn is_tapping(&self) -> bool {
                 Self::TAPS
             }
 
-            /// A block had `stimulus` on its inputs and gave `expected`. Machine and probe agree on the numbers of
-            /// blocks.
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                let _ = (block, stimulus, expected);
-            }
-
             $(
                 $(#[$doc])*
                 #[inline]
-                fn $event(&mut self, $($argument: $type),*) {
+                fn $event(&mut $self, $($argument: $type),*) {
                     let _ = ($($argument,)*);
+                    $default
                 }
             )+
         }
@@ -163,18 +149,8 @@ macro_rules! probe {
             const TAPS: bool = P::TAPS;
 
             #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                (**self).op_on(operand, class, bits, place);
-            }
-
-            #[inline]
             fn is_tapping(&self) -> bool {
                 (**self).is_tapping()
-            }
-
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                (**self).tap(block, stimulus, expected);
             }
 
             $(
@@ -191,28 +167,8 @@ macro_rules! probe {
             const TAPS: bool = A::TAPS || B::TAPS;
 
             #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                if A::ENABLED {
-                    self.0.op_on(operand, class, bits, place);
-                }
-                if B::ENABLED {
-                    self.1.op_on(operand, class, bits, place);
-                }
-            }
-
-            #[inline]
             fn is_tapping(&self) -> bool {
                 self.0.is_tapping() || self.1.is_tapping()
-            }
-
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                if A::TAPS && self.0.is_tapping() {
-                    self.0.tap(block, stimulus, expected);
-                }
-                if B::TAPS && self.1.is_tapping() {
-                    self.1.tap(block, stimulus, expected);
-                }
             }
 
             $(
@@ -232,30 +188,39 @@ macro_rules! probe {
 
 probe! {
     /// A datapath of this format is built around the probe.
-    fn begin(format: Format);
+    fn begin(self, format: Format) {}
 
     /// `times` operations of one class on words of `bits` bits were executed.
-    fn op(class: OpClass, bits: u32, place: StageLevel, times: u32);
+    fn op(self, class: OpClass, bits: u32, place: StageLevel, times: u32) {}
+
+    /// One operation on an operand whose kind is known at compile time. `bits` follows from the kind and the format, or
+    /// is a constant. By default one [`Probe::op`].
+    fn op_on(self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        self.op(class, bits, place, 1);
+    }
 
     /// A word of `bits` bits was shifted by `places`, on a line of the machine. The same shift is an operation, too.
-    fn shift(bits: u32, places: u32, place: StageLevel, site: &'static Location<'static>);
+    fn shift(self, bits: u32, places: u32, place: StageLevel, site: &'static Location<'static>) {}
 
     /// A memory was read.
-    fn read(memory: Memory, address: u64, place: StageLevel);
+    fn read(self, memory: Memory, address: u64, place: StageLevel) {}
 
     /// A memory was written.
-    fn write(memory: Memory, address: u64, place: StageLevel);
+    fn write(self, memory: Memory, address: u64, place: StageLevel) {}
 
     /// The following operations need the results so far: a state machine does them in another cycle, after `idle`
     /// cycles without operations.
-    fn next_step(idle: u32, place: StageLevel);
+    fn next_step(self, idle: u32, place: StageLevel) {}
 
     /// Begins or ends work of another stage that needs no results of the current one and gives it none: a state machine
     /// does it in the same cycles.
-    fn beside(begins: bool);
+    fn beside(self, begins: bool) {}
 
     /// A record begins its turn; `index` counts the records of a frame.
-    fn record(index: u64, level: u32);
+    fn record(self, index: u64, level: u32) {}
+
+    /// A block had `stimulus` on its inputs and gave `expected`. Machine and probe agree on the numbers of blocks.
+    fn tap(self, block: u32, stimulus: &[Signal], expected: &[Signal]) {}
 }
 
 /// No probe: every call vanishes at compile time.

@@ -3,7 +3,7 @@
 use crate::StageLevel;
 
 named! {
-    /// The operation during which a word overflowed.
+    /// The operation that overflowed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum TrapOp {
         /// A sum.

@@ -5,7 +5,7 @@ use crate::common::*;
 use crate::scenes;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
-    Child, Hardware, ImageNode, Independence, NoObserver, Progress, Recorder, TraceLimit,
+    Child, Hardware, ImageNode, Independence, NoObserver, Progress, Recorder,
 };
 use hwmodel::{Memory, OpClass, Stage};
 use shiftvox::frame::Frame;
@@ -122,7 +122,7 @@ fn cycles_are_watched_without_being_changed() {
     let mut frame = Frame::new(64, 64, false);
     let mut last = (0, 0);
     let mut observer = (
-        Recorder::new(TraceLimit::default()),
+        Recorder::new(u64::MAX),
         Progress(|cycles, records| last = (cycles, records)),
     );
     let watched = Machine::default()

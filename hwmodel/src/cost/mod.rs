@@ -5,14 +5,12 @@
 //! or beyond them; an operation without rows is an error.
 
 mod rows;
-mod span;
 mod sums;
 mod table;
 
 pub use rows::{CostError, Goal, Quantity};
-pub use span::MinMaxUnits;
 pub use sums::{
-    Breakdown, Costing, Line, ORDERED_OCTANTS, ShiftUnits, Store, Stores, Tally, Unit, area_of,
-    energy_of, energy_of_tallies, memory_energy_of, operation_of, tallies,
+    Breakdown, Costing, Line, ShiftUnits, Store, Stores, Tally, energy_of, energy_of_tallies,
+    memory_energy_of, operation_of, tallies,
 };
 pub use table::{Cost, CostTable, Fit};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{CostError, CostRow, Goal, Key, Parsed, Quantity, parse};
+use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Key, Parsed, Quantity, parse};
 
 /// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -39,18 +39,6 @@ pub struct Cost {
     pub source: String,
 }
 
-impl Cost {
-    /// Whether no row has this figure.
-    pub fn is_estimated(&self) -> bool {
-        self.fit != Fit::Row
-    }
-
-    /// Whether it is a range.
-    pub fn is_range(&self) -> bool {
-        self.low < self.high
-    }
-}
-
 /// Cost tables, one over the other.
 ///
 /// ```
@@ -59,26 +47,13 @@ impl Cost {
 /// let table = CostTable::load_shipped()?;
 /// let adder = table.area("add", 32, Goal::Area)?;
 /// assert_eq!((adder.value, adder.fit), (232.9, Fit::Row));
-/// let wider = table.area("add", 40, Goal::Area)?;
-/// assert_eq!(wider.fit, Fit::Interpolated);
-/// assert_eq!(wider.rows, "`add` of 32 and 48 bits, for small area (hwmodel/tables/area.toml)");
-/// // An own table over it.
-/// let mine = r#"
-///     [[row]]
-///     operation = "add"
-///     width = 32
-///     goal = "area"
-///     nand2 = 200
-///     source = "my synthesis"
-/// "#;
+/// assert_eq!(table.area("add", 40, Goal::Area)?.fit, Fit::Interpolated);
+/// let mine = r#"row = [{ operation = "add", width = 32, nand2 = 200, source = "my synthesis" }]"#;
 /// let table = table.with_overrides("mine.toml", mine)?;
 /// assert_eq!(table.area("add", 32, Goal::Area)?.value, 200.0);
-/// // A missing row is an error that names where to add it.
-/// let error = table.energy("cube_root", 32).unwrap_err().to_string();
-/// assert!(error.contains("`cube_root`") && error.contains("energy.toml"));
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct CostTable {
     rows: BTreeMap<Key, Vec<CostRow>>,
     quadratic: BTreeSet<String>,
@@ -90,10 +65,7 @@ const FARTHEST: f64 = 4.0;
 impl CostTable {
     /// A table without rows.
     pub fn empty() -> Self {
-        Self {
-            rows: BTreeMap::new(),
-            quadratic: BTreeSet::new(),
-        }
+        Self::default()
     }
 
     /// The tables that ship with the crate.
@@ -102,14 +74,8 @@ impl CostTable {
     /// None, since a test checks the shipped files.
     pub fn load_shipped() -> Result<Self, CostError> {
         Self::empty()
-            .with_overrides(
-                Quantity::Nand2.file(),
-                include_str!("../../tables/area.toml"),
-            )?
-            .with_overrides(
-                Quantity::EnergyPj.file(),
-                include_str!("../../tables/energy.toml"),
-            )
+            .with_overrides(AREA_FILE, include_str!("../../tables/area.toml"))?
+            .with_overrides(ENERGY_FILE, include_str!("../../tables/energy.toml"))
     }
 
     /// The same table with rows of another over it; errors and reports call it `file`.
@@ -118,20 +84,13 @@ impl CostTable {
     /// that figures of two origins are never mixed by interpolation.
     ///
     /// # Errors
-    /// When the text is not TOML or not a cost table, or has a row without operation, source or figure, a figure that is
-    /// negative or not finite, or two equal rows.
+    /// When the text is not a cost table, or a row is invalid or occurs twice.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
         let Parsed { quadratic, rows } = parse(file, text)?;
-        for (quantity, operation, goal) in rows.keys() {
-            // A row without goal replaces both goals' rows.
-            let goals = match goal {
-                None => vec![None, Some(Goal::Area), Some(Goal::Delay)],
-                goal => vec![*goal],
-            };
-            for goal in goals {
-                self.rows.remove(&(*quantity, operation.clone(), goal));
-            }
-        }
+        self.rows.retain(|(quantity, operation, goal), _| {
+            let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
+            !is_replaced(*goal) && !is_replaced(None)
+        });
         self.rows.extend(rows);
         self.quadratic.extend(quadratic);
         Ok(self)
@@ -161,15 +120,12 @@ impl CostTable {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
 
-    /// Any quantity of an operation at a width in bits.
+    /// A quantity of an operation at a width in bits.
     ///
     /// Between two rows it is interpolated linearly in the width, or in its square for areas and energies of quadratic
     /// operations. Below the narrowest row it is proportional; above the widest it is extrapolated from the last two
-    /// rows, up to four times the widest. [`Cost::fit`] says which.
-    ///
-    /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
-    pub fn cost(
+    /// rows, up to four times the widest.
+    fn cost(
         &self,
         quantity: Quantity,
         operation: &str,
@@ -177,7 +133,7 @@ impl CostTable {
         goal: Option<Goal>,
     ) -> Result<Cost, CostError> {
         let (rows, goal) = self.rows_of(quantity, operation, width, goal)?;
-        if let [row] = rows.as_slice()
+        if let [row] = rows
             && row.width.is_none()
         {
             return Ok(cost(quantity, operation, goal, &[(row, 1.0)], Fit::Row));
@@ -185,19 +141,16 @@ impl CostTable {
         let square = self.quadratic.contains(operation) && quantity != Quantity::DelayPs;
         let measure = |width: u32| f64::from(width).powi(if square { 2 } else { 1 });
         let rows: Vec<(f64, &CostRow)> = rows
-            .into_iter()
+            .iter()
             .filter_map(|row| row.width.map(|width| (measure(width), row)))
             .collect();
         let widest = rows.iter().filter_map(|row| row.1.width).max().unwrap_or(0);
         if f64::from(width) > FARTHEST * f64::from(widest) {
             return Err(CostError::TooWide {
                 quantity,
-                operation: operation.to_owned(),
-                width: u64::from(width),
-                widest: u64::from(widest),
-                unit: "bits",
+                request: request(quantity, operation, &format!("near {width} bits"), goal),
+                largest: u64::from(widest),
                 times: FARTHEST as u64,
-                goal,
             });
         }
         let (weights, fit) = weigh(&rows, measure(width));
@@ -217,7 +170,7 @@ impl CostTable {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
         let rows: Vec<(f64, &CostRow)> = rows
-            .into_iter()
+            .iter()
             .filter_map(|row| row.bytes.map(|bytes| ((bytes as f64).sqrt(), row)))
             .collect();
         let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
@@ -228,12 +181,9 @@ impl CostTable {
         if bytes as f64 > times * largest as f64 {
             return Err(CostError::TooWide {
                 quantity,
-                operation: operation.to_owned(),
-                width: bytes,
-                widest: largest,
-                unit: "bytes",
+                request: request(quantity, operation, &format!("near {bytes} bytes"), None),
+                largest,
                 times: times as u64,
-                goal: None,
             });
         }
         let (mut weights, mut fit) = weigh(&rows, (bytes as f64).sqrt());
@@ -254,10 +204,10 @@ impl CostTable {
         operation: &str,
         width: u32,
         goal: Option<Goal>,
-    ) -> Result<(Vec<&CostRow>, Option<Goal>), CostError> {
+    ) -> Result<(&[CostRow], Option<Goal>), CostError> {
         for goal in [goal, None] {
             if let Some(rows) = self.rows.get(&(quantity, operation.to_owned(), goal)) {
-                return Ok((rows.iter().collect(), goal));
+                return Ok((rows, goal));
             }
         }
         Err(missing(quantity, operation, width, goal))
@@ -272,12 +222,16 @@ impl CostTable {
     }
 }
 
+fn request(quantity: Quantity, operation: &str, size: &str, goal: Option<Goal>) -> String {
+    let [name, ..] = quantity.words();
+    let goal = goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()));
+    format!("{name} of `{operation}` {size}{goal}")
+}
+
 fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) -> CostError {
     CostError::Missing {
         quantity,
-        operation: operation.to_owned(),
-        width,
-        goal,
+        request: request(quantity, operation, &format!("at {width} bits"), goal),
     }
 }
 
@@ -312,22 +266,20 @@ fn cost(
         parts.sum::<f64>().max(0.0)
     };
     let (low, high) = (sum(|row| row.low), sum(|row| row.high));
-    let mut widths: Vec<String> = weights
+    let is_memory = weights.iter().any(|(row, _)| row.bytes.is_some());
+    let size = |row: &CostRow| row.bytes.or(row.width.map(u64::from));
+    let mut sizes: Vec<String> = weights
         .iter()
-        .filter_map(|(row, _)| match (row.bytes, row.width) {
-            (Some(bytes), _) => Some(format!("{bytes}")),
-            (None, width) => width.map(|width| width.to_string()),
-        })
+        .filter_map(|(row, _)| size(row).map(|size| size.to_string()))
         .collect();
-    widths.dedup();
-    let unit = if weights.iter().any(|(row, _)| row.bytes.is_some()) {
-        "bytes"
-    } else {
-        "bits"
-    };
-    let widths = match widths.as_slice() {
+    sizes.dedup();
+    let sizes = match sizes.as_slice() {
         [] => "any width".to_owned(),
-        widths => format!("{} {unit}", widths.join(" and ")),
+        sizes => format!(
+            "{} {}",
+            sizes.join(" and "),
+            if is_memory { "bytes" } else { "bits" }
+        ),
     };
     let goal = goal.map_or_else(String::new, |goal| format!(", {}", goal.name()));
     let file = weights.first().map_or("", |(row, _)| row.file.as_str());
@@ -340,7 +292,7 @@ fn cost(
         high: high.max(low),
         fit,
         derived: weights.iter().any(|(row, _)| row.derived),
-        rows: format!("`{operation}` of {widths}{goal} ({file})"),
+        rows: format!("`{operation}` of {sizes}{goal} ({file})"),
         source: sources.join("; "),
     }
 }

@@ -5,6 +5,8 @@
 //! Only the level is unknown at compile time. There are a few sets of counts, each for one level at a time;
 //! neighbouring levels have different sets. A set's counts are added to the tables when it changes its level.
 
+use std::collections::BTreeMap;
+
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
@@ -31,13 +33,8 @@ pub(super) const SETS: usize = 16;
 
 const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
-/// Counts of operations of a rare width.
-#[derive(Debug, Clone)]
-pub(super) struct Table {
-    pub(super) bits: u32,
-    /// By level, stage and class.
-    pub(super) counts: Vec<[[u64; CLASSES]; STAGES]>,
-}
+/// By level, stage and class.
+type Table = Vec<[[u64; CLASSES]; STAGES]>;
 
 /// Counts of one or more frames.
 ///
@@ -67,14 +64,11 @@ pub struct Counter {
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
     /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],
-    /// The current set, 0..SETS.
     set: usize,
-    /// Widths of the operands of `SIZED`.
     pub(super) widths: [u32; 4],
-    /// By level.
     pub(super) settled: Vec<[CountRow; ROWS]>,
-    /// One per other width, in the order of their first use.
-    pub(super) tables: Vec<Table>,
+    /// By rare width.
+    pub(super) tables: BTreeMap<u32, Table>,
     pub(super) records: [u64; LEVELS],
 }
 
@@ -89,7 +83,7 @@ impl Default for Counter {
             set: 0,
             widths: [0; 4],
             settled: vec![[CountRow::default(); ROWS]; LEVELS],
-            tables: Vec::new(),
+            tables: BTreeMap::new(),
             records: [0; LEVELS],
         }
     }
@@ -105,17 +99,11 @@ impl Counter {
         Self::default()
     }
 
-    /// The place in `tables` of a width; makes a table for a new one.
-    pub(super) fn table_of(&mut self, bits: u32) -> usize {
-        let known = self.tables.iter().position(|table| table.bits == bits);
-        known.unwrap_or_else(|| {
-            let counts = vec![Default::default(); LEVELS];
-            self.tables.push(Table { bits, counts });
-            self.tables.len() - 1
-        })
+    pub(super) fn table(&mut self, bits: u32) -> &mut Table {
+        let empty = || vec![Default::default(); LEVELS];
+        self.tables.entry(bits).or_insert_with(empty)
     }
 
-    /// Adds a set's counts to those of its level.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, set: usize) {
@@ -127,7 +115,6 @@ impl Counter {
         }
     }
 
-    /// Moves counts of a format's operands into tables.
     fn keep_widths(&mut self) {
         for set in 0..SETS {
             self.settle(set);
@@ -137,8 +124,7 @@ impl Counter {
                 for stage in 0..STAGES {
                     let row = std::mem::take(&mut self.settled[level][first + stage]);
                     if row != CountRow::default() {
-                        let table = self.table_of(bits);
-                        add_and_clear(&mut self.tables[table].counts[level][stage], &mut { row });
+                        add_and_clear(&mut self.table(bits)[level][stage], &mut { row });
                     }
                 }
             }
@@ -154,8 +140,7 @@ impl Counter {
     /// Counts operations whose kind of operand is not known at compile time.
     #[inline(never)]
     fn count(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        let table = self.table_of(bits);
-        let counts = &mut self.tables[table].counts[clamped(place.level)];
+        let counts = &mut self.table(bits)[clamped(place.level)];
         counts[place.stage as usize][class as usize] += u64::from(times);
     }
 }

@@ -266,24 +266,17 @@ pub enum HardwareError {
         /// The allowed values.
         range: String,
     },
-    /// A class of operation without units that is not wires. A class of operation that nothing does.
+    /// A class of operation without units that is not wires.
     #[error(
-        "hardware description: nothing does `{class}`; give it a [units.{class}] \
-         or put it into `wires`"
+        "hardware description: nothing does `{0}`; give it a [units.{0}] or put it into `wires`"
     )]
-    NoUnit {
-        /// The class, as in the file.
-        class: String,
-    },
+    NoUnit(String),
     /// A class of operation that is listed both with units and without.
     #[error(
-        "hardware description: `{class}` is among `wires`, which take no units, \
-         and has a [units.{class}]; take out one"
+        "hardware description: `{0}` is among `wires`, which take no units, and has a [units.{0}]; \
+         take out one"
     )]
-    WiresAndUnits {
-        /// The class, as in the file.
-        class: String,
-    },
+    WiresAndUnits(String),
     /// No description of this name ships.
     #[error("no hardware of the name `{0}` ships; there are tiny, paper, light and wide")]
     NoPreset(String),
@@ -355,6 +348,7 @@ impl Hardware {
     /// # Errors
     /// With the first field out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
+        let (stack, organisation) = (&self.stack, &self.organisation);
         if self.name.trim().is_empty() || self.name.contains(char::is_control) {
             let name = format!("{:?}", self.name);
             return Err(out_of_range("name", name, "a line of text"));
@@ -363,28 +357,18 @@ impl Hardware {
             let clock = format!("{:?}", self.clock_mhz);
             return Err(out_of_range("clock_mhz", clock, "0.001 to 1000000"));
         }
-        within("lanes", self.lanes, 1, MAX_LANES)?;
-        let tile_levels = self.organisation.tile_levels;
-        within("organisation.tile_levels", tile_levels, 0, MAX_TILE_LEVELS)?;
-        let Organisation {
-            bricks, leaf_masks, ..
-        } = self.organisation;
-        if bricks && !leaf_masks {
+        if organisation.bricks && !organisation.leaf_masks {
             let range = "false where leaf_masks is";
-            return Err(out_of_range("organisation.bricks", bricks, range));
+            return Err(out_of_range("organisation.bricks", true, range));
         }
-        within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
-        if self.sequential && self.contexts > 1 && tile_levels == 0 {
+        if self.sequential && self.contexts > 1 && organisation.tile_levels == 0 {
             let range = "1 where lanes are sequential and draw no tiles";
             return Err(out_of_range("contexts", self.contexts, range));
         }
-        within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
             match (self.units.contains_key(&class), self.wires.contains(&class)) {
-                (false, false) => return Err(HardwareError::NoUnit { class: key(&class) }),
-                (true, true) => {
-                    return Err(HardwareError::WiresAndUnits { class: key(&class) });
-                }
+                (false, false) => return Err(HardwareError::NoUnit(key(&class))),
+                (true, true) => return Err(HardwareError::WiresAndUnits(key(&class))),
                 _ => {}
             }
         }
@@ -396,41 +380,62 @@ impl Hardware {
                 unit.check(&format!("stages.{}.{}", key(stage), key(class)))?;
             }
         }
-        let stack = &self.stack;
-        within("fill_vectors.banks", self.fill_vectors.banks, 1, MAX_KEPT)?;
-        within("pixels.buffer", self.pixels.buffer, 1, MAX_KEPT)?;
-        for (field, value, least) in [
+        self.node_cache.check("node_cache")?;
+        self.attribute_cache.check("attribute_cache")?;
+        let (fill, pixels, outer) = (&self.fill_vectors, &self.pixels, &self.outer_memory);
+        for (field, value, least, most) in [
+            ("lanes", self.lanes, 1, MAX_LANES),
+            ("contexts", self.contexts, 1, MAX_CONTEXTS),
+            ("steal_cycles", self.steal_cycles, 0, MAX_NUMBER),
+            (
+                "organisation.tile_levels",
+                organisation.tile_levels,
+                0,
+                MAX_TILE_LEVELS,
+            ),
+            ("stack.entries", stack.entries, 1, MAX_NUMBER),
+            ("stack.ports", stack.ports, 1, MAX_NUMBER),
+            ("stack.latency", stack.latency, 0, MAX_NUMBER),
+            ("stack.spill_cycles", stack.spill_cycles, 0, MAX_NUMBER),
+            ("stack.record.clip", stack.record.clip, 0, MAX_NUMBER),
+            ("stack.record.screen", stack.record.screen, 0, MAX_NUMBER),
+            ("stack.record.finest", stack.record.finest, 0, MAX_NUMBER),
+            ("fill_vectors.banks", fill.banks, 1, MAX_KEPT),
+            ("fill_vectors.read_ports", fill.read_ports, 1, MAX_NUMBER),
+            ("fill_vectors.write_ports", fill.write_ports, 1, MAX_NUMBER),
+            ("fill_vectors.latency", fill.latency, 0, MAX_NUMBER),
+            ("pixels.buffer", pixels.buffer, 1, MAX_KEPT),
+            ("pixels.write_ports", pixels.write_ports, 1, MAX_NUMBER),
+            (
+                "pixels.drain_interval",
+                pixels.drain_interval,
+                0,
+                MAX_NUMBER,
+            ),
             (
                 "outer_memory.bytes_per_cycle",
-                self.outer_memory.bytes_per_cycle,
+                outer.bytes_per_cycle,
                 0,
+                MAX_NUMBER,
             ),
-            ("stack.record.clip", stack.record.clip, 0),
-            ("stack.record.screen", stack.record.screen, 0),
-            ("stack.record.finest", stack.record.finest, 0),
-            ("stack.entries", stack.entries, 1),
-            ("stack.ports", stack.ports, 1),
-            ("stack.latency", stack.latency, 0),
-            ("stack.spill_cycles", stack.spill_cycles, 0),
-            ("fill_vectors.read_ports", self.fill_vectors.read_ports, 1),
-            ("fill_vectors.write_ports", self.fill_vectors.write_ports, 1),
-            ("fill_vectors.latency", self.fill_vectors.latency, 0),
-            ("pixels.write_ports", self.pixels.write_ports, 1),
-            ("pixels.drain_interval", self.pixels.drain_interval, 0),
         ] {
-            within(field, value, least, MAX_NUMBER)?;
+            within(field, value, least, most)?;
         }
-        self.node_cache.check("node_cache")?;
-        self.attribute_cache.check("attribute_cache")
+        Ok(())
     }
 }
 
 impl Unit {
     fn check(&self, at: &str) -> Result<(), HardwareError> {
-        within(&format!("{at}.count"), self.count, 1, MAX_NUMBER)?;
-        within(&format!("{at}.latency"), self.latency, 0, MAX_NUMBER)?;
-        within(&format!("{at}.interval"), self.interval, 1, MAX_NUMBER)?;
-        within(&format!("{at}.width"), self.width, 1, MAX_NUMBER)
+        for (field, value, least) in [
+            ("count", self.count, 1),
+            ("latency", self.latency, 0),
+            ("interval", self.interval, 1),
+            ("width", self.width, 1),
+        ] {
+            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+        }
+        Ok(())
     }
 }
 
@@ -441,18 +446,18 @@ impl Cache {
     }
 
     fn check(&self, at: &str) -> Result<(), HardwareError> {
-        for (field, value, least) in [
-            ("bytes", self.bytes, 1),
-            ("ways", self.ways, 1),
-            ("line_bytes", self.line_bytes, MIN_LINE),
-            ("ports", self.ports, 1),
-            ("hit_latency", self.hit_latency, 0),
-            ("miss_latency", self.miss_latency, 0),
+        for (field, value, least, most) in [
+            ("bytes", self.bytes, 1, MAX_NUMBER),
+            ("ways", self.ways, 1, MAX_NUMBER),
+            ("line_bytes", self.line_bytes, MIN_LINE, MAX_NUMBER),
+            ("entry_bytes", self.entry_bytes, 1, MAX_ENTRY),
+            ("ports", self.ports, 1, MAX_NUMBER),
+            ("hit_latency", self.hit_latency, 0, MAX_NUMBER),
+            ("miss_latency", self.miss_latency, 0, MAX_NUMBER),
+            ("misses", self.misses, 1, MAX_KEPT),
         ] {
-            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+            within(&format!("{at}.{field}"), value, least, most)?;
         }
-        within(&format!("{at}.entry_bytes"), self.entry_bytes, 1, MAX_ENTRY)?;
-        within(&format!("{at}.misses"), self.misses, 1, MAX_KEPT)?;
         if !self.line_bytes.is_power_of_two() {
             let field = format!("{at}.line_bytes");
             return Err(out_of_range(&field, self.line_bytes, "a power of two"));

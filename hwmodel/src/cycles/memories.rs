@@ -19,40 +19,6 @@ pub(super) struct Access {
     pub(super) write: bool,
 }
 
-/// Division by a number that is usually a power of two.
-#[derive(Debug, Clone, Copy)]
-struct Divisor {
-    number: u64,
-    /// Its logarithm, if it is one.
-    places: Option<u32>,
-}
-
-impl Divisor {
-    fn new(number: u32) -> Self {
-        Self {
-            number: u64::from(number),
-            places: number.is_power_of_two().then(|| number.trailing_zeros()),
-        }
-    }
-
-    #[inline]
-    fn quotient(self, of: u64) -> u64 {
-        match self.places {
-            Some(places) => of >> places,
-            None => of / self.number,
-        }
-    }
-
-    #[inline]
-    fn remainder(self, of: u64) -> usize {
-        match self.places {
-            Some(_) => (of & (self.number - 1)) as usize,
-            None => (of % self.number) as usize,
-        }
-    }
-}
-
-/// A port with a number of accesses per cycle.
 #[derive(Debug, Clone)]
 pub(super) struct Port {
     cycle: u64,
@@ -95,7 +61,6 @@ impl Port {
         }
     }
 
-    /// Least cycles for its accesses.
     pub(super) fn bound(&self) -> u64 {
         self.accesses.div_ceil(u64::from(self.per_cycle))
     }
@@ -107,7 +72,6 @@ pub(super) struct OuterPort {
     free_at: u64,
     /// Bits of pixels that do not fill a word yet.
     pixel_bits: u64,
-    /// Cycles for which it was taken.
     pub(super) busy: u64,
 }
 
@@ -144,7 +108,6 @@ impl OuterPort {
     }
 }
 
-/// Cycles of issue and completion of an access, and the cause of its wait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Served {
     pub(super) issued: u64,
@@ -158,12 +121,11 @@ struct Line {
     ready: u64,
 }
 
-/// A cache: its lines, most recently used first in each set.
 #[derive(Debug)]
 pub(super) struct CacheState {
     of: Cache,
-    sets: Divisor,
-    line_bytes: Divisor,
+    sets: u64,
+    /// Most recently used first in each set.
     lines: Vec<Line>,
     pub(super) port: Port,
     /// Cycles in which the misses in flight are done, oldest at `misses mod slots`.
@@ -180,8 +142,7 @@ impl CacheState {
         let lines = of.sets() as usize * of.ways as usize;
         Self {
             of,
-            sets: Divisor::new(of.sets()),
-            line_bytes: Divisor::new(of.line_bytes),
+            sets: u64::from(of.sets()),
             lines: vec![
                 Line {
                     number: u64::MAX,
@@ -231,14 +192,13 @@ impl CacheState {
         served
     }
 
-    /// An access that is issued, unless it is a miss that waits.
     #[inline]
     fn look_up(&mut self, address: u64, issued: u64, outer: &mut OuterPort) -> Served {
         let hit = issued + u64::from(self.of.hit_latency);
         let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
-        let number = self.line_bytes.quotient(byte);
+        let number = byte >> self.of.line_bytes.trailing_zeros();
         let ways = self.of.ways as usize;
-        let start = self.sets.remainder(number) * ways;
+        let start = (number % self.sets) as usize * ways;
         let set = &mut self.lines[start..start + ways];
         if let Some(way) = set.iter().position(|line| line.number == number) {
             let line = set[way];
@@ -291,7 +251,6 @@ impl CacheState {
         }
     }
 
-    /// Least cycles for its misses.
     pub(super) fn miss_bound(&self) -> u64 {
         let each = u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
         self.misses * each / self.slots.len() as u64
@@ -300,7 +259,6 @@ impl CacheState {
 
 #[derive(Debug, Clone)]
 pub(super) struct BanksState {
-    banks: Divisor,
     latency: u32,
     reads: Vec<Port>,
     writes: Vec<Port>,
@@ -310,7 +268,6 @@ impl BanksState {
     fn new(of: Banks) -> Self {
         let banks = of.banks as usize;
         Self {
-            banks: Divisor::new(of.banks),
             latency: of.latency,
             reads: vec![Port::new(of.read_ports); banks],
             writes: vec![Port::new(of.write_ports); banks],
@@ -319,7 +276,7 @@ impl BanksState {
 
     #[inline]
     fn access(&mut self, access: Access, at: u64) -> Served {
-        let bank = self.banks.remainder(access.address);
+        let bank = (access.address % self.reads.len() as u64) as usize;
         let (issued, latency) = if access.write {
             (self.writes[bank].book(at), 1)
         } else {
@@ -381,7 +338,6 @@ impl PixelsState {
         }
     }
 
-    /// Cycle in which the last pixel has left.
     pub(super) fn last(&self) -> u64 {
         self.last
     }
@@ -466,7 +422,6 @@ impl Memories {
 /// Cycles of an access without any waiting, and with the longest wait alone on the hardware.
 #[derive(Debug, Clone)]
 pub(super) struct Latencies {
-    /// By memory, then read or write.
     alone: [[u64; 2]; Memory::ALL.len()],
     worst: [u64; Memory::ALL.len()],
 }

@@ -147,7 +147,7 @@ pub struct Bound {
 }
 
 /// The limit of the frame.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Bottleneck {
     /// A bound's `resource`, `latency`, `order` or `records`.
     pub resource: String,
@@ -221,14 +221,12 @@ impl CycleReport {
     /// Sets bounds and bottleneck.
     pub(super) fn conclude(&mut self, bounds: Vec<(String, u64)>) {
         let cycles = self.cycles.max(1) as f64;
-        self.bounds = bounds
-            .into_iter()
-            .map(|(resource, bound)| Bound {
-                resource,
-                cycles: bound,
-                share: bound as f64 / cycles,
-            })
-            .collect();
+        let bound = |(resource, bound)| Bound {
+            resource,
+            cycles: bound,
+            share: bound as f64 / cycles,
+        };
+        self.bounds = bounds.into_iter().map(bound).collect();
         // Stable: equal ones keep their order.
         self.bounds
             .sort_by_key(|bound| std::cmp::Reverse(bound.cycles));
@@ -236,84 +234,62 @@ impl CycleReport {
     }
 
     fn find_bottleneck(&self, cycles: f64) -> Bottleneck {
-        let tightest = self.bounds.first().filter(|bound| bound.share >= LIMITING);
-        if let Some(bound) = tightest {
-            let percent = bound.share * 100.0;
-            let name = &bound.resource;
-            let sentence = if name == SPAN {
-                format!(
-                    "the longest chain of records that wait for each other takes {percent:.0} % \
-                     of the time: more lanes or contexts cannot help, shorter latencies would"
-                )
-            } else {
-                format!("the {name} is busy {percent:.0} % of the time: widen it, or do less there")
-            };
-            return Bottleneck {
-                resource: name.clone(),
-                share: bound.share,
-                sentence,
-            };
-        }
-        let all = cycles * f64::from(self.lanes) * f64::from(self.contexts);
-        let of = |part: u64| part as f64 / all;
+        let contexts = f64::from(self.lanes) * f64::from(self.contexts);
+        let of = |part: u64| part as f64 / (cycles * contexts);
         let ContextReport {
             working,
             stalled,
             order_wait,
             no_record,
         } = self.context_cycles;
-        let (resource, share, sentence) = if of(working + stalled) >= LIMITING {
-            let stall = |cause: Cause| -> u64 {
-                self.stages.iter().map(|stage| stage.stalls.of(cause)).sum()
-            };
-            // Of equal ones the first.
-            let worst = Cause::ALL
-                .into_iter()
-                .rev()
-                .max_by_key(|&cause| stall(cause));
-            let waits = worst
-                .filter(|&cause| stall(cause) > 0)
-                .map_or_else(String::new, |cause| {
-                    let part = of(stall(cause)) * 100.0;
+        let in_progress = of(working + stalled);
+        let tightest = self.bounds.first().filter(|bound| bound.share >= LIMITING);
+        let (resource, share) = match tightest {
+            Some(bound) => (bound.resource.as_str(), bound.share),
+            None if in_progress >= LIMITING => ("latency", in_progress),
+            None if order_wait >= no_record => ("order", of(order_wait)),
+            None => ("records", of(no_record)),
+        };
+        let percent = share * 100.0;
+        let could = format!(
+            "this frame could keep {:.1} contexts busy, the hardware has {contexts}",
+            self.parallelism
+        );
+        let sentence = match resource {
+            SPAN => format!(
+                "the longest chain of records that wait for each other takes {percent:.0} % of the time: more lanes \
+                 or contexts cannot help, shorter latencies would"
+            ),
+            "latency" => {
+                let stall = |cause: Cause| -> u64 {
+                    self.stages.iter().map(|stage| stage.stalls.of(cause)).sum()
+                };
+                // Of equal ones the first.
+                let causes = Cause::ALL.into_iter().rev();
+                let worst = causes.max_by_key(|&cause| stall(cause));
+                let worst = worst.filter(|&cause| stall(cause) > 0);
+                let waits = worst.map_or_else(String::new, |cause| {
                     format!(
-                        "; records wait {part:.0} % of it, most of all for: {}",
+                        "; records wait {:.0} % of it, most of all for: {}",
+                        of(stall(cause)) * 100.0,
                         cause.name()
                     )
                 });
-            (
-                "latency",
-                of(working + stalled),
                 format!(
-                    "no unit is busy enough to limit, but every context has a record {:.0} % of \
-                     the time: latencies limit, more contexts per lane would help{waits}",
-                    of(working + stalled) * 100.0
-                ),
-            )
-        } else if order_wait >= no_record {
-            (
-                "order",
-                of(order_wait),
-                format!(
-                    "contexts are idle {:.0} % of the time because the records left wait for \
-                     earlier ones; this frame could keep {:.1} contexts busy, the hardware has {}",
-                    of(order_wait) * 100.0,
-                    self.parallelism,
-                    u64::from(self.lanes) * u64::from(self.contexts),
-                ),
-            )
-        } else {
-            (
-                "records",
-                of(no_record),
-                format!(
-                    "contexts are idle {:.0} % of the time because there are no records left \
-                     but those under way; this frame could keep {:.1} contexts busy, the \
-                     hardware has {}",
-                    of(no_record) * 100.0,
-                    self.parallelism,
-                    u64::from(self.lanes) * u64::from(self.contexts),
-                ),
-            )
+                    "no unit is busy enough to limit, but every context has a record {percent:.0} % of the time: \
+                     latencies limit, more contexts per lane would help{waits}"
+                )
+            }
+            "order" => format!(
+                "contexts are idle {percent:.0} % of the time because the records left wait for earlier ones; {could}"
+            ),
+            "records" => format!(
+                "contexts are idle {percent:.0} % of the time because there are no records left but those under way; \
+                 {could}"
+            ),
+            unit => {
+                format!("the {unit} is busy {percent:.0} % of the time: widen it, or do less there")
+            }
         };
         Bottleneck {
             resource: resource.to_owned(),

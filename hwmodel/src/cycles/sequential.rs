@@ -23,7 +23,6 @@ enum Of {
     Tile,
 }
 
-/// The requests of the current cycle, and the waiting contexts.
 #[derive(Debug, Default)]
 pub(super) struct Asked {
     now: Vec<(Of, u32)>,
@@ -47,7 +46,6 @@ impl Asked {
     }
 }
 
-/// Progress of a context in its visit.
 #[derive(Debug, Default)]
 pub(super) struct Step {
     pub(super) tile: Option<u32>,
@@ -58,7 +56,6 @@ pub(super) struct Step {
     pub(super) away_from: u64,
     pub(super) away: u64,
     pub(super) wanted: u64,
-    /// Whether its visit is in progress; the next of the turn's accesses.
     is_begun: bool,
     access: usize,
     begun: u64,
@@ -68,13 +65,11 @@ pub(super) struct Step {
 }
 
 impl<W: Workload> Simulation<'_, W> {
-    /// All contexts request tiles.
     pub(super) fn ask_for_tiles(&mut self) {
         let contexts = 0..self.contexts.len() as u32;
         self.asked.now.extend(contexts.map(|of| (Of::Tile, of)));
     }
 
-    /// Whether requests must be served before the next event.
     pub(super) fn must_serve(&self, now: u64) -> bool {
         let is_asked = !self.asked.now.is_empty() || !self.asked.lanes.is_empty();
         is_asked && self.wheel.next_at().is_none_or(|next| next > now)
@@ -102,7 +97,6 @@ impl<W: Workload> Simulation<'_, W> {
         self.give_lanes(now);
     }
 
-    /// A context without records receives the next tile, one per cycle.
     fn hand_out(&mut self, now: u64, context: u32) {
         if self.asked.tile == self.workload.tiles() {
             return;
@@ -256,7 +250,6 @@ impl<W: Workload> Simulation<'_, W> {
     }
 }
 
-/// The holder of a lane, and its requests by other contexts.
 #[derive(Debug)]
 pub(super) struct Sharing {
     holder: u32,
@@ -267,7 +260,6 @@ pub(super) struct Sharing {
 }
 
 impl Sharing {
-    /// Of a lane whose first context `first` has the lane, and waits for a tile.
     pub(super) fn new(first: u32) -> Self {
         Self {
             holder: first,

@@ -42,26 +42,6 @@ pub enum SimulationError<E> {
     },
 }
 
-impl<E> SimulationError<E> {
-    /// Converts the workload's error.
-    pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> SimulationError<F> {
-        match self {
-            Self::Workload(error) => SimulationError::Workload(convert(error)),
-            Self::Hardware(error) => SimulationError::Hardware(error),
-            Self::StackOverflow {
-                record,
-                lane,
-                entries,
-            } => SimulationError::StackOverflow {
-                record,
-                lane,
-                entries,
-            },
-        }
-    }
-}
-
-/// A lane's block of one stage.
 #[derive(Debug, Clone, Copy)]
 struct StageBlock {
     free_at: u64,
@@ -76,28 +56,24 @@ pub(super) struct Context {
     pub(super) number: u32,
     pub(super) plan: TurnVisits,
     pub(super) children: Vec<Child>,
-    /// The current or next visit.
     pub(super) visit: usize,
-    /// On sequential hardware: the progress in it.
     pub(super) step: Step,
     arrived: u64,
     granted: bool,
     pub(super) task: u32,
     record: u64,
-    /// Lane of the record's stack, and additional cycles of taking it.
+    /// Lane of the record's stack.
     pub(super) from: u32,
     steal: u64,
     spill: u64,
     in_screen_space: bool,
-    /// The next context in line at its block.
     behind: u32,
 }
 
 #[derive(Debug, Default)]
 pub(super) struct Lane {
-    /// Ready records, newest last.
+    /// Newest last.
     pub(super) ready: VecDeque<u32>,
-    /// Records on its stack, ready or not.
     stored: u64,
     /// Contexts without a record, one bit each.
     pub(super) idle: u64,
@@ -185,7 +161,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// Runs to the end; returns the last turn's last cycle.
     fn run(&mut self) -> Result<u64, SimulationError<W::Error>> {
         if self.hardware.hands_out_tiles() {
             self.ask_for_tiles();
@@ -241,7 +216,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.plan(now, context);
     }
 
-    /// Begins the visits of an executed turn.
     fn plan(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         self.workload.log().take(&mut of.plan);
@@ -302,7 +276,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// The head of a block's line enters when the block is free.
     fn grant(&mut self, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
@@ -450,7 +423,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Reports the records of a lane that has stack `at`.
     fn tell_queue(&mut self, now: u64, at: usize) {
         let stacks = self.lanes.len() / self.hardware.lanes as usize;
         let lane = at / stacks;

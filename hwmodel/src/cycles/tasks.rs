@@ -13,15 +13,12 @@ const NO_TASK: u32 = u32::MAX;
 struct Task {
     parent: u32,
     item: u32,
-    /// Place among its siblings, nearest first.
     slot: u8,
     /// Earlier siblings that must be finished first, one bit each.
     waits: u8,
-    /// Its unfinished children.
     alive: u8,
     spilled: bool,
     kind: RecordKind,
-    /// Lane of its stack.
     lane: u32,
     children: [u32; 8],
     /// Without contention: the cycles in which its turn can begin, and in which all known parts of it are over.
@@ -42,7 +39,6 @@ pub(super) struct Tasks {
     independence: Independence,
     tasks: Vec<Task>,
     free: Vec<u32>,
-    /// Children that wait for siblings.
     pub(super) waiting: u64,
     /// Records that had their turn and have unfinished descendants.
     pub(super) open: u64,
@@ -73,7 +69,6 @@ impl Tasks {
         }
     }
 
-    /// The task of the workload's start, or of a tile.
     pub(super) fn root(&mut self) -> u32 {
         self.insert(Task {
             parent: NO_TASK,

@@ -121,7 +121,6 @@ const ROUND: [Stage; STAGES] = [
     Stage::FillUpdate,
 ];
 
-/// Operations and the passes that they take.
 #[derive(Debug, Clone, Copy, Default)]
 struct Done {
     operations: u64,
@@ -140,19 +139,15 @@ pub struct TurnLog {
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
-    /// Octree level of pushed records: one below the current record.
     child_level: u32,
-    /// Most passes of a visit, by stage and class.
     most_passes: [[u64; CLASSES]; STAGES],
     sequential: bool,
     /// On sequential hardware: the finished visits, and the current stage.
     over: TurnVisits,
     stage: Stage,
-    /// Whether it does work of another stage beside.
     beside: bool,
 }
 
-/// A unit's numbers; `count` 0: wires.
 #[derive(Debug, Clone, Copy, Default)]
 struct Issue {
     count: u64,
@@ -226,7 +221,6 @@ impl TurnLog {
         });
     }
 
-    /// Most passes of one visit by class of operation, by stage.
     pub(super) fn most_passes(&self) -> &[[u64; CLASSES]; STAGES] {
         &self.most_passes
     }
@@ -249,7 +243,6 @@ impl TurnLog {
         }
     }
 
-    /// The same on sequential hardware. Returns whether there were divides.
     fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
         self.end_step(Stage::Pop);
         std::mem::swap(&mut self.over, plan);
@@ -385,13 +378,11 @@ impl Probe for TurnLog {
     }
 }
 
-/// Work of a turn in one stage.
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
     /// Cycles in which operations are issued, at least 1; 0 on sequential hardware.
     pub(super) occupied: u64,
-    /// Additional cycles until the results are ready.
     pub(super) latency: u64,
     /// Cycles without any waiting.
     pub(super) alone: u64,
@@ -408,7 +399,6 @@ pub(super) struct TurnVisits {
     pub(super) alone: u64,
     /// Cycles with the longest waits, alone on the hardware.
     pub(super) worst: u64,
-    /// Octree level of the children.
     pub(super) child_level: u32,
     pub(super) changed_to_screen: bool,
 }

@@ -128,19 +128,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn events_come_in_order_of_time_then_of_setting() {
-        let times = [5u64, 3, 5, 5000, 0, 1023, 1024, 70_000, 5000, 3];
-        let mut wheel = Wheel::new(times.len());
-        for (context, &at) in times.iter().enumerate() {
-            wheel.set(at, context as u32);
-        }
-        let mut expected: Vec<_> = times.iter().copied().zip(0u32..).collect();
-        expected.sort_by_key(|&(at, _)| at);
-        let taken: Vec<_> = std::iter::from_fn(|| wheel.take()).collect();
-        assert_eq!(taken, expected);
-    }
-
-    #[test]
     fn agrees_with_a_sorted_list() {
         let mut wheel = Wheel::new(50);
         let mut list: Vec<(u64, u64, u32)> = Vec::new();

@@ -1,9 +1,9 @@
 //! The probe of memory traffic.
 
-use super::NumberMap;
 use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
+use crate::hash::NumberMap;
 use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
@@ -44,8 +44,7 @@ impl Widths {
     }
 }
 
-/// A probe of the traffic to the memories. It ignores operations; pair it with a
-/// [`Counter`](crate::count::Counter) for both.
+/// A probe of the traffic to the memories. It ignores operations.
 ///
 /// ```
 /// use hwmodel::memory::{MemoryProbe, Widths};
@@ -60,14 +59,9 @@ impl Widths {
 /// };
 /// let mut probe = MemoryProbe::new(widths).with_curve(Memory::Node, 32);
 /// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
-/// dp.write(Memory::Stack, 0); // a push
-/// dp.read(Memory::Stack, 0); // and its pop
 /// dp.read(Memory::Node, 0);
 /// dp.read(Memory::Node, 3); // the same line: four nodes are 32 bytes
-///
-/// assert_eq!(probe.deepest_stack(), 1);
-/// assert_eq!(probe.read_bits(Memory::Node), 128);
-/// assert_eq!(probe.curves()[0].1.misses(1), 1);
+/// assert_eq!((probe.read_bits(Memory::Node), probe.curves()[0].1.misses(1)), (128, 1));
 /// # Ok::<(), hwmodel::FormatError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -127,7 +121,7 @@ impl MemoryProbe {
 
     /// Number of different addresses of a memory that were read or written.
     pub fn distinct(&self, memory: Memory) -> u64 {
-        self.touched[memory as usize].distinct()
+        self.touched[memory as usize].distinct
     }
 
     /// Miss curves, in the order in which they were requested.
@@ -177,13 +171,13 @@ impl Probe for MemoryProbe {
 
 /// A set of addresses, one bit each in pages of 4096.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Touched {
-    pages: NumberMap<Box<[u64; 64]>>,
+struct Touched {
+    pages: NumberMap<u64, Box<[u64; 64]>>,
     distinct: u64,
 }
 
 impl Touched {
-    pub(super) fn touch(&mut self, address: u64) {
+    fn touch(&mut self, address: u64) {
         let page = self
             .pages
             .entry(address >> 12)
@@ -192,9 +186,5 @@ impl Touched {
         let bit = 1 << (address % 64);
         self.distinct += u64::from(*word & bit == 0);
         *word |= bit;
-    }
-
-    pub(super) fn distinct(&self) -> u64 {
-        self.distinct
     }
 }

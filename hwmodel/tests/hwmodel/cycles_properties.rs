@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use crate::cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{
     Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
-    TraceLimit, Unit, simulate,
+    Unit, simulate,
 };
 use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Stage};
@@ -206,7 +206,7 @@ proptest! {
         let nodes = records(seed, 120);
         let hardware = hardware(hw, independence);
         let mut workload = Listed::new(&nodes, &hardware);
-        let mut recorder = Recorder::new(TraceLimit::default());
+        let mut recorder = Recorder::new(u64::MAX);
         simulate(&hardware, &mut workload, &mut recorder).unwrap();
         // First and last cycle of each record's own turn.
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();

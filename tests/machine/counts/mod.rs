@@ -37,7 +37,6 @@ mod sums;
 use std::collections::BTreeMap;
 
 use crate::common::*;
-use hwmodel::cost::{Costing, MinMaxUnits, Tally, tallies};
 use hwmodel::count::Counter;
 use hwmodel::memory::{MemoryProbe, Widths};
 use hwmodel::{Memory, NoProbe, OpClass, Probe, Stage, StageLevel};

@@ -15,53 +15,6 @@ fn every_record_has_one_turn() {
     }
 }
 
-/// The image-order paper's box of a child takes 7 minima and 7 maxima per coordinate, or 10 compares when the eight
-/// vertices are taken in pairs. The frame cage has no eight vertices to pair.
-#[test]
-fn ten_compares_in_pairs() {
-    let pairs = Costing {
-        min_max: MinMaxUnits::Pairs,
-        ..Costing::default()
-    };
-    let at = |tallies: &[Tally], operation: &str, width| -> u64 {
-        let of = tallies
-            .iter()
-            .filter(|t| t.operation == operation && t.width == width);
-        of.map(|t| t.times).sum()
-    };
-    for tolerance in [0.0, f64::INFINITY] {
-        for scene in scenes() {
-            let setup = setup(
-                &scene.graph,
-                &scene.camera,
-                &options(CageKind::Corners, tolerance),
-            );
-            let bits = setup.format.bits();
-            let (_, counter) = watch(&scene.graph, &setup, Counter::new());
-            let separate = tallies(&counter, Costing::default()).expect("tallies");
-            let paired = tallies(&counter, pairs).expect("spans of eight values");
-            let found = counter.sum(|cell| {
-                let finds_spans = matches!(cell.stage, Stage::ChildBox | Stage::QuadtreeFit);
-                finds_spans && cell.class == OpClass::MinMax
-            });
-            assert_eq!(found % 14, 0);
-            let spans = found / 14;
-            assert!(spans > 20, "{}", scene.name);
-            let fewer = at(&separate, "min", bits) - at(&paired, "min", bits);
-            assert_eq!(fewer, 14 * spans);
-            let more = |operation| at(&paired, operation, bits) - at(&separate, operation, bits);
-            assert_eq!((more("less"), more("select")), (10 * spans, 14 * spans));
-        }
-    }
-    let frame = options(CageKind::Frame, f64::INFINITY);
-    let refused = scenes().into_iter().filter(|scene| {
-        let setup = setup(&scene.graph, &scene.camera, &frame);
-        let (_, counter) = watch(&scene.graph, &setup, Counter::new());
-        tallies(&counter, pairs).is_err()
-    });
-    assert!(refused.count() > 0);
-}
-
 /// At each level seven siblings wait, at most, and one has its turn. Every record is pushed.
 #[test]
 fn the_stack_is_as_deep_as_its_levels() {

@@ -254,7 +254,6 @@ mod tests {
         );
         let all = Costing {
             shifts: ShiftUnits::Variable,
-            ..Costing::default()
         };
         let prices = Prices {
             costing: all,
