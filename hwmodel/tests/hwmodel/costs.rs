@@ -32,159 +32,71 @@ fn cost(table: &CostTable, quantity: &str, operation: &str, size: u32) -> Result
     }
 }
 
-/// Quantity, operation, width or size, the figure, and a part of its rows in words or of the error.
-fn check(table: &CostTable, rows: &[(&str, &str, u32, f64, Fit, &str)]) {
-    for &(quantity, operation, size, expected, fit, words) in rows {
-        let found = cost(table, quantity, operation, size).unwrap();
-        near(found.value, expected);
-        assert_eq!(found.fit, fit, "{quantity} {operation} {size}");
+/// Rows of quantity, operation, width or size, figure, fit, and a part of the rows in words.
+fn check(table: &CostTable, rows: &str) {
+    for row in rows.lines().map(str::trim) {
+        let [quantity, operation, size, expected, fit, words] =
+            row.splitn(6, ' ').collect::<Vec<_>>()[..]
+        else {
+            panic!("{row}");
+        };
+        let found = cost(table, quantity, operation, size.parse().unwrap()).unwrap();
+        near(found.value, expected.parse().unwrap());
+        assert_eq!(format!("{:?}", found.fit), fit, "{row}");
         assert!(found.rows.contains(words), "{}", found.rows);
         assert!(found.low <= found.value && found.value <= found.high);
     }
 }
 
-const ROW: Fit = Fit::Row;
-const BETWEEN: Fit = Fit::Interpolated;
-const BEYOND: Fit = Fit::Extrapolated;
-
 #[test]
 fn figures_at_between_and_beyond_the_rows() {
-    let sram =
-        |bytes: f64| 20.0 + 80.0 * (bytes.sqrt() - 32768f64.sqrt()) / (1024.0 - 32768f64.sqrt());
-    let square = (400.0 - 256.0) / (576.0 - 256.0);
-    check(
-        &shipped(),
-        &[
-            (
-                "area",
-                "add",
-                32,
-                232.9,
-                ROW,
-                "`add` of 32 bits, for small area (hwmodel/tables/area.toml)",
-            ),
-            ("fast", "add", 32, 330.8, ROW, ", for short delay"),
-            ("delay", "add", 32, 4680.73, ROW, "32 bits"),
-            (
-                "energy",
-                "add",
-                32,
-                0.1,
-                ROW,
-                "(hwmodel/tables/energy.toml)",
-            ),
-            (
-                "energy",
-                "shift_wires",
-                77,
-                0.0,
-                ROW,
-                "`shift_wires` of any width",
-            ),
-            ("energy", "dram_read", 64, 1950.0, ROW, "64 bits"),
-            ("sram", "sram_read", 32 << 10, 20.0, ROW, "32768 bytes"),
-            (
-                "area",
-                "add",
-                40,
-                (232.9 + 354.9) / 2.0,
-                BETWEEN,
-                "32 and 48 bits",
-            ),
-            (
-                "area",
-                "multiply",
-                20,
-                2572.1 + (5710.8 - 2572.1) * square,
-                BETWEEN,
-                "16 and 24",
-            ),
-            (
-                "sram",
-                "sram_read",
-                65536,
-                sram(65536.0),
-                BETWEEN,
-                "32768 and 1048576 bytes",
-            ),
-            ("area", "add", 4, 50.5 / 2.0, BEYOND, "8 bits"),
-            ("area", "multiply", 4, 621.5 / 4.0, BEYOND, "8 bits"),
-            (
-                "area",
-                "add",
-                65,
-                505.5 + (505.5 - 354.9) / 16.0,
-                BEYOND,
-                "48 and 64",
-            ),
-            (
-                "area",
-                "add",
-                256,
-                505.5 + (505.5 - 354.9) * 12.0,
-                BEYOND,
-                "48 and 64",
-            ),
-            (
-                "energy",
-                "add",
-                64,
-                0.1 + 0.07 * 32.0 / 24.0,
-                BEYOND,
-                "8 and 32",
-            ),
-            ("sram", "sram_read", 2048, 5.0, BEYOND, "8192 bytes"),
-        ],
-    );
+    // Between rows linear in the width, its square (multiply) or the root of the size; below the first row to zero.
+    let rows = "area add 32 232.9 Row `add` of 32 bits, for small area (hwmodel/tables/area.toml)
+        fast add 32 330.8 Row , for short delay
+        delay add 32 4680.73 Row 32 bits
+        energy add 32 0.1 Row (hwmodel/tables/energy.toml)
+        energy shift_wires 77 0 Row `shift_wires` of any width
+        energy dram_read 64 1950 Row 64 bits
+        sram sram_read 32768 20 Row 32768 bytes
+        area add 40 293.9 Interpolated 32 and 48 bits
+        area multiply 20 3984.5150000000003 Interpolated 16 and 24
+        sram sram_read 65536 27.115765968724425 Interpolated 32768 and 1048576 bytes
+        area add 4 25.25 Extrapolated 8 bits
+        area multiply 4 155.375 Extrapolated 8 bits
+        area add 65 514.9125 Extrapolated 48 and 64
+        area add 256 2312.7 Extrapolated 48 and 64
+        energy add 64 0.19333333333333336 Extrapolated 8 and 32
+        sram sram_read 2048 5 Extrapolated 8192 bytes";
+    check(&shipped(), rows);
     let scaled = shipped().memory_energy("sram_read", 8192, 4).unwrap();
-    assert_eq!((scaled.value, scaled.fit), (10.0 * 4.0 / 64.0, BETWEEN));
+    assert_eq!(
+        (scaled.value, scaled.fit),
+        (10.0 * 4.0 / 64.0, Fit::Interpolated)
+    );
     let dram = shipped().energy("dram_read", 64).unwrap();
     assert_eq!((dram.low, dram.high), (1300.0, 2600.0));
 }
 
 #[test]
 fn what_is_missing_or_too_far_is_named() {
-    let table = shipped();
-    let too_large = table.memory_energy("sram_read", 1 << 40, 64);
-    let add_area =
-        "add a row with `nand2` to a cost table of your own, or to hwmodel/tables/area.toml";
-    let add_energy =
-        "add a row with `energy_pj` to a cost table of your own, or to hwmodel/tables/energy.toml";
-    for (found, what, then) in [
-        (
-            cost(&table, "fast", "cube_root", 24),
-            "area in NAND2 equivalents of `cube_root` at 24 bits (for short delay)",
-            add_area,
-        ),
-        (
-            cost(&table, "energy", "cube_root", 24),
-            "energy of `cube_root` at 24 bits: ",
-            add_energy,
-        ),
-        (
-            cost(&table, "sram", "add", 8192),
-            "energy of `add` at 64 bits",
-            add_energy,
-        ),
-        (
-            cost(&table, "area", "add", 257),
-            "near 257 bits (for small area): the largest row has 64, and nothing is extrapolated beyond 4",
-            add_area,
-        ),
-        (
-            too_large,
-            "near 1099511627776 bytes: the largest row has 1048576, and nothing is extrapolated beyond 16",
-            add_energy,
-        ),
-        (
-            cost(&CostTable::empty(), "energy", "add", 32),
-            "`add`",
-            add_energy,
-        ),
-    ] {
+    let rows = "fast cube_root 24 nand2 area in NAND2 equivalents of `cube_root` at 24 bits (for short delay)
+        energy cube_root 24 energy_pj energy of `cube_root` at 24 bits
+        sram add 8192 energy_pj energy of `add` at 64 bits
+        area add 257 nand2 near 257 bits (for small area): the largest row has 64, and nothing is extrapolated beyond 4
+        sram sram_read 16777217 energy_pj near 16777217 bytes: the largest row has 1048576, and nothing is extrapolated beyond 16";
+    for row in rows.lines().map(str::trim) {
+        let [quantity, operation, size, key, words] = row.splitn(5, ' ').collect::<Vec<_>>()[..]
+        else {
+            panic!("{row}");
+        };
+        let found = cost(&shipped(), quantity, operation, size.parse().unwrap());
         let error = found.unwrap_err().to_string();
-        assert!(error.contains(what) && error.ends_with(then), "{error}");
+        let add =
+            format!("add a row with `{key}` to a cost table of your own, or to hwmodel/tables/");
+        assert!(error.contains(words) && error.contains(&add), "{error}");
     }
+    assert!(shipped().memory_energy("sram_read", 1 << 24, 64).is_ok());
+    assert!(CostTable::empty().energy("add", 32).is_err());
 }
 
 /// Rows that follow from others follow from them.
@@ -267,50 +179,21 @@ fn a_table_of_one_s_own() {
     "#;
     let table = shipped().with_overrides("mine.toml", mine).unwrap();
     let shipped_add = cost(&shipped(), "fast", "float_add", 32).unwrap().value;
+    // Never mixed with shipped rows of the same kind; others stay. Without goal for both goals; with a goal before rows
+    // without, which stay for the other.
+    let rows = "area add 32 210 Row `add` of 32 bits, for small area (mine.toml)
+        area add 64 420 Extrapolated (mine.toml)
+        fast add 32 330.8 Row (hwmodel/tables/area.toml)
+        delay add 32 4680.73 Row (hwmodel/tables/area.toml)
+        energy add 32 0.1 Row (hwmodel/tables/energy.toml)
+        area less 32 1 Row (mine.toml)
+        fast less 32 1 Row (mine.toml)
+        area float_add 32 6000 Row (mine.toml)
+        area square_root 20 400 Extrapolated (mine.toml)";
+    check(&table, rows);
     check(
         &table,
-        &[
-            (
-                "area",
-                "add",
-                32,
-                210.0,
-                ROW,
-                "`add` of 32 bits, for small area (mine.toml)",
-            ),
-            // Never mixed with shipped rows of the same kind; others stay.
-            ("area", "add", 64, 420.0, BEYOND, "(mine.toml)"),
-            ("fast", "add", 32, 330.8, ROW, "(hwmodel/tables/area.toml)"),
-            (
-                "delay",
-                "add",
-                32,
-                4680.73,
-                ROW,
-                "(hwmodel/tables/area.toml)",
-            ),
-            (
-                "energy",
-                "add",
-                32,
-                0.1,
-                ROW,
-                "(hwmodel/tables/energy.toml)",
-            ),
-            // Without goal for both goals; with a goal before rows without, which stay for the other.
-            ("area", "less", 32, 1.0, ROW, "(mine.toml)"),
-            ("fast", "less", 32, 1.0, ROW, "(mine.toml)"),
-            ("area", "float_add", 32, 6000.0, ROW, "(mine.toml)"),
-            (
-                "fast",
-                "float_add",
-                32,
-                shipped_add,
-                ROW,
-                "(hwmodel/tables/area.toml)",
-            ),
-            ("area", "square_root", 20, 400.0, BEYOND, "(mine.toml)"),
-        ],
+        &format!("fast float_add 32 {shipped_add} Row (hwmodel/tables/area.toml)"),
     );
     let add = cost(&table, "area", "add", 32).unwrap();
     assert_eq!(

@@ -1,6 +1,8 @@
 //! Every operation of the datapath against 128-bit integers: result, overflow, trap and events, for all widths, both
 //! types of number and all policies.
 
+use std::fmt::Debug;
+
 use crate::common::*;
 use hwmodel::{
     Datapath, Format, FormatError, Memory, NoProbe, Number, OpClass, Overflow, Probe, Stage,
@@ -42,6 +44,7 @@ trait Host: Number {
     fn value(self) -> i64;
     /// Width, from the rule itself (wide words have twice the bits, 64 at most) and not from `Format`.
     fn bits(word: u32) -> u32;
+    const IS_WIDE: bool;
 }
 
 impl Host for Word {
@@ -51,6 +54,7 @@ impl Host for Word {
     fn value(self) -> i64 {
         self.to_host()
     }
+    const IS_WIDE: bool = false;
     fn bits(word: u32) -> u32 {
         word
     }
@@ -63,165 +67,80 @@ impl Host for WideWord {
     fn value(self) -> i64 {
         self.to_host()
     }
+    const IS_WIDE: bool = true;
     fn bits(word: u32) -> u32 {
         (2 * word).min(64)
     }
 }
 
 /// Operands: two numbers, and places of a shift or a bit.
-#[derive(Debug, Clone, Copy)]
-struct Given {
-    a: i64,
-    b: i64,
-    places: u32,
+type Given = (i64, i64, u32);
+
+/// Events of an operation, as class and bits beyond the number's, and the operation that a trap names.
+type Kind = (&'static [(OpClass, u32)], TrapOp);
+
+const ADD: Kind = (&[(OpClass::Add, 0)], TrapOp::Add);
+const SUB: Kind = (&[(OpClass::Sub, 0)], TrapOp::Sub);
+const SHIFT: Kind = (&[(OpClass::Shift, 0)], TrapOp::ShiftLeft);
+const WIRE: Kind = (&[], TrapOp::ShiftLeft);
+const LOAD: Kind = (&[], TrapOp::Load);
+// These never trap.
+const MIDPOINT: Kind = (&[(OpClass::Add, 1), (OpClass::Shift, 1)], TrapOp::Load);
+const MIN_MAX: Kind = (&[(OpClass::MinMax, 0)], TrapOp::Load);
+const SELECT: Kind = (&[(OpClass::Select, 0)], TrapOp::Load);
+const COMPARE: Kind = (&[(OpClass::Compare, 0)], TrapOp::Load);
+
+/// A call on a fresh datapath; a result that is a bit is 0 or 1.
+struct Ran<P: Probe> {
+    kind: Kind,
+    exact: i128,
+    found: i64,
+    dp: Datapath<P>,
 }
 
-impl Given {
-    fn exact(self) -> (i128, i128) {
-        (i128::from(self.a), i128::from(self.b))
+/// Runs every operation that both types of number have.
+fn run_all<P: Probe + Default, T: Host>(
+    word: u32,
+    policy: Overflow,
+    (a, b, places): Given,
+    mut see: impl FnMut(Ran<P>),
+) {
+    let mut run = |kind: Kind, exact, call: &dyn Fn(&mut Datapath<P>) -> i64| {
+        let mut dp = datapath(word, policy, P::default());
+        let found = call(&mut dp);
+        see(Ran {
+            kind,
+            exact,
+            found,
+            dp,
+        });
+    };
+    let (x, y) = (T::of(a), T::of(b));
+    let (w, a, b) = (Word::of(a), i128::from(a), i128::from(b));
+    let half = a.div_euclid(1 << places.min(64));
+    let double = a << places.min(64);
+    let mean = (a + b).div_euclid(2);
+    run(ADD, a + b, &|dp| dp.add(x, y).value());
+    run(SUB, a - b, &|dp| dp.sub(x, y).value());
+    run(SUB, -a, &|dp| dp.neg(x).value());
+    run(MIDPOINT, mean, &|dp| dp.midpoint(x, y).value());
+    run(SHIFT, half, &|dp| dp.shr(x, places).value());
+    run(SHIFT, double, &|dp| dp.shl(x, places).value());
+    run(MIN_MAX, a.min(b), &|dp| dp.min(x, y).value());
+    run(MIN_MAX, a.max(b), &|dp| dp.max(x, y).value());
+    run(SELECT, a, &|dp| dp.select(true, x, y).value());
+    run(SELECT, b, &|dp| dp.select(false, x, y).value());
+    run(COMPARE, (a < b).into(), &|dp| dp.lt(x, y).into());
+    run(COMPARE, (a <= b).into(), &|dp| dp.le(x, y).into());
+    run(COMPARE, (a == b).into(), &|dp| dp.equal(x, y).into());
+    run(COMPARE, (a < 0).into(), &|dp| dp.is_negative(x).into());
+    run(COMPARE, (a > 0).into(), &|dp| dp.is_positive(x).into());
+    run(COMPARE, (a == 0).into(), &|dp| dp.is_zero(x).into());
+    run(WIRE, half & 1, &|dp| dp.bit(x, places).into());
+    if !T::IS_WIDE {
+        run(WIRE, 2 * a, &|dp| dp.shift_in(w, false).value());
+        run(WIRE, 2 * a + 1, &|dp| dp.shift_in(w, true).value());
     }
-
-    /// `a / 2^places`, rounded down.
-    fn halved(self) -> i128 {
-        i128::from(self.a).div_euclid(1 << self.places.min(64))
-    }
-}
-
-/// A call, its exact result (a bit is 0 or 1), its events as class and bits beyond the number's, and the operation that
-/// a trap names.
-type Row<P> = (
-    fn(&mut Datapath<P>, Given) -> i64,
-    fn(Given) -> i128,
-    &'static [(OpClass, u32)],
-    TrapOp,
-);
-
-fn rows<P: Probe, T: Host>() -> Vec<Row<P>> {
-    use OpClass::{Add, Compare, MinMax, Select, Shift, Sub};
-    use TrapOp::{Load, ShiftLeft};
-    let none = Load;
-    vec![
-        (
-            |dp, g| dp.add(T::of(g.a), T::of(g.b)).value(),
-            |g| g.exact().0 + g.exact().1,
-            &[(Add, 0)],
-            TrapOp::Add,
-        ),
-        (
-            |dp, g| dp.sub(T::of(g.a), T::of(g.b)).value(),
-            |g| g.exact().0 - g.exact().1,
-            &[(Sub, 0)],
-            TrapOp::Sub,
-        ),
-        (
-            |dp, g| dp.neg(T::of(g.a)).value(),
-            |g| -g.exact().0,
-            &[(Sub, 0)],
-            TrapOp::Sub,
-        ),
-        (
-            |dp, g| dp.midpoint(T::of(g.a), T::of(g.b)).value(),
-            |g| (g.exact().0 + g.exact().1).div_euclid(2),
-            &[(Add, 1), (Shift, 1)],
-            none,
-        ),
-        (
-            |dp, g| dp.shr(T::of(g.a), g.places).value(),
-            Given::halved,
-            &[(Shift, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.shl(T::of(g.a), g.places).value(),
-            |g| g.exact().0 << g.places.min(64),
-            &[(Shift, 0)],
-            ShiftLeft,
-        ),
-        (
-            |dp, g| dp.min(T::of(g.a), T::of(g.b)).value(),
-            |g| g.a.min(g.b).into(),
-            &[(MinMax, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.max(T::of(g.a), T::of(g.b)).value(),
-            |g| g.a.max(g.b).into(),
-            &[(MinMax, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.select(true, T::of(g.a), T::of(g.b)).value(),
-            |g| g.a.into(),
-            &[(Select, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.select(false, T::of(g.a), T::of(g.b)).value(),
-            |g| g.b.into(),
-            &[(Select, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.lt(T::of(g.a), T::of(g.b)).into(),
-            |g| (g.a < g.b).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.le(T::of(g.a), T::of(g.b)).into(),
-            |g| (g.a <= g.b).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.equal(T::of(g.a), T::of(g.b)).into(),
-            |g| (g.a == g.b).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.is_negative(T::of(g.a)).into(),
-            |g| (g.a < 0).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.is_positive(T::of(g.a)).into(),
-            |g| (g.a > 0).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.is_zero(T::of(g.a)).into(),
-            |g| (g.a == 0).into(),
-            &[(Compare, 0)],
-            none,
-        ),
-        (
-            |dp, g| dp.bit(T::of(g.a), g.places).into(),
-            |g| g.halved().rem_euclid(2),
-            &[],
-            none,
-        ),
-    ]
-}
-
-fn rows_of_words<P: Probe>() -> Vec<Row<P>> {
-    use TrapOp::ShiftLeft;
-    vec![
-        (
-            |dp, g| dp.shift_in(Word::of(g.a), false).value(),
-            |g| 2 * g.exact().0,
-            &[],
-            ShiftLeft,
-        ),
-        (
-            |dp, g| dp.shift_in(Word::of(g.a), true).value(),
-            |g| 2 * g.exact().0 + 1,
-            &[],
-            ShiftLeft,
-        ),
-    ]
 }
 
 /// An exact result in a word of `bits` bits, and whether it overflowed. After a trap the word is the wrapped one.
@@ -240,6 +159,10 @@ fn fit(exact: i128, bits: u32, policy: Overflow) -> (i64, bool) {
 
 const PLACE: StageLevel = at(Stage::VertexPool, 5);
 
+fn op_event(class: OpClass, bits: u32) -> Event {
+    Event::Op(class, bits, PLACE, 1)
+}
+
 /// A datapath at [`PLACE`], in record 41.
 fn datapath<P: Probe>(bits: u32, policy: Overflow, probe: P) -> Datapath<P> {
     let mut dp = Datapath::new(format(bits), policy, probe);
@@ -248,45 +171,42 @@ fn datapath<P: Probe>(bits: u32, policy: Overflow, probe: P) -> Datapath<P> {
     dp
 }
 
-fn check<T: Host>(word: u32, given: Given, row: &Row<Log<true>>, silent: &Row<Log<false>>) {
-    let (run, exact, events, op) = row;
-    let bits = T::bits(word);
-    for policy in [Overflow::Trap, Overflow::Wrap, Overflow::Saturate] {
-        let mut dp = datapath(word, policy, Log::<true>::default());
-        let found = run(&mut dp, given);
-        let (expected, overflowed) = fit(exact(given), bits, policy);
-        let context = format!("{given:?}, {word}-bit words, {policy:?}, {op:?} {events:?}");
-        assert_eq!(
-            (found, dp.overflows()),
-            (expected, overflowed.into()),
-            "{context}"
-        );
-        let is_trap = overflowed && policy == Overflow::Trap;
-        let trap = is_trap.then_some(Trap {
-            op: *op,
-            place: PLACE,
-            record: 41,
-            bits,
-        });
-        assert_eq!(dp.trap(), trap, "{context}");
-        let event = |&(class, more)| Event::Op(class, bits + more, PLACE, 1);
-        let expected: Vec<Event> = events.iter().map(event).collect();
-        assert_eq!(dp.into_probe().0[1..], expected, "{context}");
-        let mut dp = datapath(word, policy, Log::<false>::default());
-        assert_eq!(silent.0(&mut dp, given), found, "{context}");
-        assert!(dp.into_probe().0.is_empty());
-    }
+fn check<T: Host>(word: u32, policy: Overflow, context: impl Debug, ran: Ran<Log<true>>) {
+    let (bits, dp) = (T::bits(word), ran.dp);
+    let (events, op) = ran.kind;
+    let (expected, overflowed) = fit(ran.exact, bits, policy);
+    let context = format!("{context:?}, {word}-bit words, {policy:?}, {op:?} {events:?}");
+    let found = (ran.found, dp.overflows());
+    assert_eq!(found, (expected, overflowed.into()), "{context}");
+    let trap = Trap {
+        op,
+        place: PLACE,
+        record: 41,
+        bits,
+    };
+    let is_trap = overflowed && policy == Overflow::Trap;
+    assert_eq!(dp.trap(), is_trap.then_some(trap), "{context}");
+    let events = events.iter();
+    let events = events.map(|&(class, more)| op_event(class, bits + more));
+    assert!(
+        events.eq(dp.into_probe().0.into_iter().skip(1)),
+        "{context}"
+    );
 }
 
-fn check_all(word: u32, given: Given, is_wide: bool) {
-    if is_wide {
-        let both = rows::<_, WideWord>().into_iter().zip(rows::<_, WideWord>());
-        both.for_each(|(row, silent)| check::<WideWord>(word, given, &row, &silent));
-    } else {
-        let both = rows::<_, Word>().into_iter().zip(rows::<_, Word>());
-        let both = both.chain(rows_of_words().into_iter().zip(rows_of_words()));
-        both.for_each(|(row, silent)| check::<Word>(word, given, &row, &silent));
+const POLICIES: [Overflow; 3] = [Overflow::Trap, Overflow::Wrap, Overflow::Saturate];
+
+fn check_all<T: Host>(word: u32, given: Given) {
+    for policy in POLICIES {
+        run_all::<_, T>(word, policy, given, |ran| {
+            check::<T>(word, policy, given, ran)
+        });
     }
+    run_all::<Log<false>, T>(word, Overflow::Wrap, given, |ran| {
+        let expected = fit(ran.exact, T::bits(word), Overflow::Wrap).0;
+        assert_eq!(ran.found, expected);
+        assert!(ran.dp.into_probe().0.is_empty());
+    });
 }
 
 const PLACES: [u32; 17] = [
@@ -309,69 +229,73 @@ const PLACES: [u32; 17] = [
     u32::MAX,
 ];
 
-#[test]
-fn edge_cases_of_all_operations() {
+fn edge_cases_of<T: Host>() {
     for word in widths() {
-        for is_wide in [false, true] {
-            let values = edge_cases(if is_wide { WideWord::bits(word) } else { word });
-            assert_eq!(values.len(), PLACES.len(), "each number meets all places");
-            for (i, &a) in values.iter().enumerate() {
-                for (j, &b) in values.iter().enumerate() {
-                    let places = PLACES[(i + j) % PLACES.len()];
-                    check_all(word, Given { a, b, places }, is_wide);
-                }
+        let values = edge_cases(T::bits(word));
+        assert_eq!(values.len(), PLACES.len(), "each number meets all places");
+        for (i, &a) in values.iter().enumerate() {
+            for (j, &b) in values.iter().enumerate() {
+                check_all::<T>(word, (a, b, PLACES[(i + j) % PLACES.len()]));
             }
         }
     }
 }
 
-/// A width, whether words are wide, and two numbers of that width.
-fn any_pair() -> impl Strategy<Value = (u32, bool, i64, i64)> {
-    (widths(), any::<bool>()).prop_flat_map(|(word, is_wide)| {
-        let bits = if is_wide { WideWord::bits(word) } else { word };
-        (Just(word), Just(is_wide), any_value(bits), any_value(bits))
+#[test]
+fn edge_cases_of_all_operations() {
+    edge_cases_of::<Word>();
+    edge_cases_of::<WideWord>();
+}
+
+/// A width, and two words or wide words of that width.
+fn any_pair<T: Host>() -> impl Strategy<Value = (u32, i64, i64)> {
+    widths().prop_flat_map(|word| {
+        let bits = T::bits(word);
+        (Just(word), any_value(bits), any_value(bits))
     })
 }
 
+fn check_load<T: Host>(word: u32, value: i64, load: fn(&mut Datapath<Log<true>>, i64) -> T) {
+    for policy in POLICIES {
+        let mut dp = datapath(word, policy, Log::default());
+        let ran = Ran {
+            kind: LOAD,
+            exact: value.into(),
+            found: load(&mut dp, value).value(),
+            dp,
+        };
+        check::<T>(word, policy, value, ran);
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn all_operations((word, is_wide, a, b) in any_pair(), places in 0..70u32) {
-        check_all(word, Given { a, b, places }, is_wide);
+    fn words((word, a, b) in any_pair::<Word>(), places in 0..70u32) {
+        check_all::<Word>(word, (a, b, places));
+    }
+
+    #[test]
+    fn wide_words((word, a, b) in any_pair::<WideWord>(), places in 0..70u32) {
+        check_all::<WideWord>(word, (a, b, places));
     }
 
     /// The host may load any 64-bit number. One that does not fit overflows.
     #[test]
-    fn loads(word in widths(), value: i64, less in 0..64u32, end in 0..5i128, is_low: bool) {
-        for bits in [word, WideWord::bits(word)] {
-            let end = if is_low { least(bits) } else { greatest(bits) } + end - 2;
-            let values = [value >> less, i64::try_from(end).unwrap_or(0)];
-            for a in values {
-                let given = Given { a, b: 0, places: 0 };
-                let exact = |g: Given| g.exact().0;
-                let load = (exact as fn(Given) -> i128, &[] as &[_], TrapOp::Load);
-                let (exact, events, op) = load;
-                check::<Word>(
-                    word,
-                    given,
-                    &(|dp, g| dp.load(g.a).value(), exact, events, op),
-                    &(|dp, g| dp.load(g.a).value(), exact, events, op),
-                );
-                check::<WideWord>(
-                    word,
-                    given,
-                    &(|dp, g| dp.load_wide(g.a).value(), exact, events, op),
-                    &(|dp, g| dp.load_wide(g.a).value(), exact, events, op),
-                );
-            }
+    fn loads(word in widths(), value: i64, less in 0..64u32, from_end in -2..=2i128) {
+        let ends = [word, 64.min(2 * word)].map(|bits| [least(bits), greatest(bits)]);
+        let ends = ends.concat().into_iter().filter_map(|end| i64::try_from(end + from_end).ok());
+        for value in ends.chain([value >> less]) {
+            check_load(word, value, |dp, value| dp.load(value));
+            check_load(word, value, |dp, value| dp.load_wide(value));
         }
     }
 
     /// `2 a + bit` by `b`, and `a` by `b << place`.
     #[test]
     fn steps_of_divides(
-        (word, _, a, b) in any_pair(), bit: bool, place in prop_oneof![0..70u32, Just(u32::MAX - 64)],
+        (word, a, b) in any_pair::<Word>(), bit: bool, place in prop_oneof![0..70u32, Just(u32::MAX - 64)],
     ) {
         let greatest = i64::try_from(greatest(word)).unwrap();
         let divisor = (b & greatest).max(1);
@@ -380,7 +304,7 @@ proptest! {
             let (rest, bit) = run(&mut dp, Word::of(remainder), Word::of(divisor));
             (rest.value().into(), bit, dp.into_probe().0[1..].to_vec())
         };
-        let event = |more| vec![Event::Op(OpClass::DivideStep, word + more, PLACE, 1)];
+        let event = |more| vec![op_event(OpClass::DivideStep, word + more)];
         let remainder = (a & greatest) % divisor;
         let doubled = 2 * i128::from(remainder) + i128::from(bit);
         let (over, divisor) = (doubled - i128::from(divisor), i128::from(divisor));
@@ -402,7 +326,7 @@ proptest! {
         let mut dp = datapath(32, Overflow::Trap, Log::<true>::default());
         let found = [dp.and_bits(width, a, b), dp.or_bits(width, a, b), dp.xor_bits(width, a, b)];
         prop_assert_eq!(found, [a & b, a | b, a ^ b]);
-        prop_assert_eq!(&dp.into_probe().0[1..], &[Event::Op(OpClass::Logic, width, PLACE, 1); 3]);
+        prop_assert_eq!(&dp.into_probe().0[1..], &[op_event(OpClass::Logic, width); 3]);
     }
 }
 
