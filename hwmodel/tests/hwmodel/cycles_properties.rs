@@ -162,12 +162,25 @@ fn depth_first(nodes: &[Node]) -> Vec<u32> {
 }
 
 fn any_independence() -> impl Strategy<Value = Independence> {
-    prop_oneof![
-        Just(Independence::None),
-        Just(Independence::Classes),
-        Just(Independence::Image),
-        Just(Independence::Both),
-    ]
+    use Independence::{Both, Classes, Image, None};
+    prop::sample::select(vec![None, Classes, Image, Both])
+}
+
+type Child = (u32, u8, ImageNode);
+
+fn is_independent(rule: Independence, earlier: &Child, later: &Child) -> bool {
+    let class = |place: u8| [0, 1, 1, 1, 2, 2, 2, 3][place as usize];
+    let same_class = class(earlier.1) == class(later.1);
+    let (a, b) = (earlier.2, later.2);
+    let level = a.level.min(b.level);
+    let ancestor = |of: ImageNode| [of.x, of.y].map(|at| at >> (of.level - level));
+    let disjoint = ancestor(a) != ancestor(b);
+    match rule {
+        Independence::None => false,
+        Independence::Classes => same_class,
+        Independence::Image => disjoint,
+        Independence::Both => same_class || disjoint,
+    }
 }
 
 proptest! {
@@ -226,22 +239,10 @@ proptest! {
                 of.1 = of.1.max(ends);
             }
         }
-        let class = |place: u8| [0, 1, 1, 1, 2, 2, 2, 3][place as usize];
         for node in &nodes {
             for (i, later) in node.children.iter().enumerate() {
                 for earlier in &node.children[..i] {
-                    let same_class = class(earlier.1) == class(later.1);
-                    let shift = |a: ImageNode, b: ImageNode| a.level.saturating_sub(b.level);
-                    let (a, b) = (earlier.2, later.2);
-                    let disjoint = a.x >> shift(a, b) != b.x >> shift(b, a)
-                        || a.y >> shift(a, b) != b.y >> shift(b, a);
-                    let free = match independence {
-                        Independence::None => false,
-                        Independence::Classes => same_class,
-                        Independence::Image => disjoint,
-                        Independence::Both => same_class || disjoint,
-                    };
-                    if !free {
+                    if !is_independent(independence, earlier, later) {
                         prop_assert!(whole[&later.0].0 >= whole[&earlier.0].1);
                     }
                 }
@@ -304,33 +305,32 @@ fn improve(hardware: &mut Hardware, which: usize) {
 /// of list scheduling). The test fixes how often, and by how much, on these records.
 #[test]
 fn anomalies_with_several_contexts_are_rare_and_small() {
-    let (mut slower, mut worst, mut runs) = (0, 1.0f64, 0);
+    let (mut slower, mut worst) = (0, 1.0f64);
     for seed in 0..2000 {
         let nodes = records(seed, 100);
         let mut hardware = hardware(seed, Independence::Both);
         let before = run(&nodes, &hardware).0.cycles;
         improve(&mut hardware, seed as usize % 20);
         let after = run(&nodes, &hardware).0.cycles;
-        runs += 1;
         if after > before {
             slower += 1;
             worst = worst.max(after as f64 / before as f64);
         }
     }
-    eprintln!("{slower} of {runs} improvements made a frame slower, at worst {worst:.3} times");
-    assert_eq!((slower, runs), (117, 2000));
+    assert_eq!(slower, 117);
     assert!((1.18..1.19).contains(&worst), "{worst}");
 }
 
 #[test]
-fn a_stack_that_does_not_spill_says_where_it_overflows() {
+fn a_stack_that_does_not_spill_overflows() {
     let nodes = records(3, 200);
     let mut hardware = hardware(3, Independence::None);
     hardware.stack.entries = 2;
     hardware.stack.overflow = StackOverflow::Error;
     let mut workload = Listed::new(&nodes, &hardware);
     let error = simulate(&hardware, &mut workload, &mut NoObserver).unwrap_err();
-    let text = error.to_string();
-    assert!(text.contains("the 2 entries of lane"), "{text}");
-    assert!(text.contains("set overflow = \"spill\""), "{text}");
+    assert!(
+        error.to_string().contains("the 2 entries of lane"),
+        "{error}"
+    );
 }
