@@ -1,4 +1,4 @@
-//! Word formats: bits, bits of fraction, and the overflow policy.
+//! Word formats.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,6 @@ pub struct Format {
     wide_bits: u32,
 }
 
-/// A format in a file, unchecked.
 #[derive(Deserialize)]
 struct Fields {
     bits: u32,
@@ -81,8 +80,7 @@ impl Format {
         self.frac
     }
 
-    /// The format of wide words: twice the bits, at most 64, or the number set by
-    /// [`with_wide_bits`](Self::with_wide_bits).
+    /// The format of wide words: twice the bits, at most 64, unless set by [`with_wide_bits`](Self::with_wide_bits).
     #[must_use]
     pub const fn wide(self) -> Self {
         Self {
@@ -92,7 +90,7 @@ impl Format {
         }
     }
 
-    /// The same words with wide words of `bits`, clamped to at least a word's bits and at most twice as many (or 64).
+    /// Sets the bits of wide words, clamped between a word's bits and twice as many (or 64).
     #[must_use]
     pub const fn with_wide_bits(self, bits: u32) -> Self {
         let most = widest(self.bits);
@@ -121,7 +119,6 @@ impl Format {
     }
 }
 
-/// Bits that hold products of two words of `bits`.
 const fn widest(bits: u32) -> u32 {
     if bits > 32 { 64 } else { bits * 2 }
 }
@@ -131,7 +128,7 @@ const fn widest(bits: u32) -> u32 {
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Overflow {
-    /// The machine stops with an error that gives operation, stage and record.
+    /// The machine stops with an error.
     #[default]
     Trap,
     /// The bits above the word are dropped.

@@ -42,7 +42,7 @@ pub struct ShiftSite {
     pub most: u32,
     /// How far they vary.
     pub kind: ShiftKind,
-    /// Number of shifts in the steps of each stage, which may be [beside](Probe::beside) another one.
+    /// Number of shifts by the stage in whose steps they are done.
     #[serde(skip)]
     pub in_steps: BTreeMap<Stage, u64>,
 }
@@ -94,7 +94,6 @@ pub struct ShiftProbe {
     seen: NumberMap<SiteKey, (Site, Seen)>,
     /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
-    /// The stage of the last operation, and whether work of another one is done beside it.
     in_turn: Option<Stage>,
     beside: bool,
 }

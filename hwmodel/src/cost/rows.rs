@@ -161,47 +161,28 @@ const MAX_WIDTH: u32 = 1 << 16;
 const MAX_BYTES: u64 = 1 << 50;
 
 impl FileRow {
-    /// The first problem of the row alone.
     fn problem(&self) -> Option<&'static str> {
-        let is_memory = self.bytes.is_some();
-        let problems = [
-            (
-                self.operation.trim().is_empty(),
-                "the operation has no name",
-            ),
-            (
-                self.source.trim().is_empty(),
-                "the source is empty; every row must name one",
-            ),
-            (
-                self.width == Some(0),
-                "a width is at least 1 bit; leave it out for any",
-            ),
-            (
-                self.width.is_some_and(|width| width > MAX_WIDTH),
-                "a width is at most 65536 bits",
-            ),
-            (
-                self.bytes.is_some_and(|bytes| bytes > MAX_BYTES),
-                "a memory has at most 2^50 bytes",
-            ),
-            (
-                is_memory && (self.bytes == Some(0) || self.width.is_none()),
-                "a memory has at least 1 byte, and a width: the bits of an access",
-            ),
-            (
-                self.figures().next().is_none(),
-                "there is no figure: nand2, delay_ps or energy_pj",
-            ),
-            (
-                !self
-                    .figures()
-                    .all(|(_, low, high)| low >= 0.0 && low <= high && high <= MAX_FIGURE),
-                "a figure is a number from 0 to 1e12, or a range [low, high] of two",
-            ),
-        ];
-        let found = problems.into_iter().find(|(is_wrong, _)| *is_wrong);
-        found.map(|(_, problem)| problem)
+        let is_sound =
+            |(_, low, high): (_, f64, f64)| low >= 0.0 && low <= high && high <= MAX_FIGURE;
+        Some(if self.operation.trim().is_empty() {
+            "the operation has no name"
+        } else if self.source.trim().is_empty() {
+            "the source is empty; every row must name one"
+        } else if self.width == Some(0) {
+            "a width is at least 1 bit; leave it out for any"
+        } else if self.width.is_some_and(|width| width > MAX_WIDTH) {
+            "a width is at most 65536 bits"
+        } else if self.bytes.is_some_and(|bytes| bytes > MAX_BYTES) {
+            "a memory has at most 2^50 bytes"
+        } else if self.bytes == Some(0) || self.bytes.is_some() && self.width.is_none() {
+            "a memory has at least 1 byte, and a width: the bits of an access"
+        } else if self.figures().next().is_none() {
+            "there is no figure: nand2, delay_ps or energy_pj"
+        } else if !self.figures().all(is_sound) {
+            "a figure is a number from 0 to 1e12, or a range [low, high] of two"
+        } else {
+            return None;
+        })
     }
 
     fn figures(&self) -> impl Iterator<Item = (Quantity, f64, f64)> {

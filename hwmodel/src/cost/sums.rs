@@ -13,10 +13,10 @@ use crate::{Memory, OpClass, Stage};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShiftUnits {
-    /// Wires, by the row `shift_wires`: one shift after another.
+    /// Wires, by the row `shift_wires`.
     #[default]
     Wires,
-    /// Shifters for any number of places, by the rows of `shift_var`.
+    /// Shifters, by the rows of `shift_var`.
     Variable,
 }
 
@@ -27,7 +27,7 @@ pub struct Costing {
     pub shifts: ShiftUnits,
 }
 
-/// The operation of a table for a class. Logic is priced as `xor`, its most expensive operation.
+/// The operation of a table for a class. Logic is priced as `xor`.
 pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     match class {
         OpClass::Add => "add",
@@ -44,8 +44,7 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     }
 }
 
-/// Exclusive ors of the stage *order* per octant, each with a constant. All eight together are one inversion of the
-/// octant and wires.
+/// Exclusive ors of the stage *order* with constants, which are one inversion of the octant and wires.
 const ORDERED_OCTANTS: u64 = 8;
 
 /// A number of operations of one kind.
@@ -107,8 +106,7 @@ impl Breakdown {
     }
 }
 
-/// Counted operations as operations of a cost table, by operation and width. The exclusive ors of the stage *order* are
-/// wires and one inversion per octant.
+/// Counted operations as operations of a cost table, by operation and width.
 pub fn tallies(counter: &Counter, costing: Costing) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
     let cells = counter.sum_by(|cell| (cell.stage, cell.class, cell.bits));
@@ -180,36 +178,6 @@ pub enum Store {
     Dram,
 }
 
-/// The technology of each memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Stores {
-    /// The record stack.
-    pub stack: Store,
-    /// Graph nodes.
-    pub node: Store,
-    /// Colours and normals.
-    pub attribute: Store,
-    /// Fill vectors.
-    pub fill_vector: Store,
-    /// Pixels.
-    pub pixel: Store,
-    /// Partial sums of pixels where voxels are blended.
-    pub accumulator: Store,
-}
-
-impl Stores {
-    const fn of(&self, memory: Memory) -> Store {
-        match memory {
-            Memory::Stack => self.stack,
-            Memory::Node => self.node,
-            Memory::Attribute => self.attribute,
-            Memory::FillVector => self.fill_vector,
-            Memory::Pixel => self.pixel,
-            Memory::Accumulator => self.accumulator,
-        }
-    }
-}
-
 /// Energy of accesses, in picojoules.
 ///
 /// # Errors
@@ -217,7 +185,7 @@ impl Stores {
 pub fn memory_energy_of(
     accesses: &BTreeMap<Memory, Accesses>,
     widths: &Widths,
-    stores: &Stores,
+    store: impl Fn(Memory) -> Store,
     table: &CostTable,
 ) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
@@ -227,7 +195,7 @@ pub fn memory_energy_of(
             if times == 0 {
                 continue;
             }
-            let (operation, each) = match stores.of(memory) {
+            let (operation, each) = match store(memory) {
                 Store::Sram { bytes } => {
                     let operation = format!("sram_{way}");
                     let each = table.memory_energy(&operation, bytes, width);

@@ -80,8 +80,7 @@ impl CostTable {
 
     /// The same table with rows of another over it; errors and reports call it `file`.
     ///
-    /// They replace all rows of the same operation, quantity and goal (rows without goal replace those of both goals), so
-    /// that figures of two origins are never mixed by interpolation.
+    /// They replace all rows of the same operation, quantity and goal; rows without goal replace those of both goals.
     ///
     /// # Errors
     /// When the text is not a cost table, or a row is invalid or occurs twice.
@@ -120,11 +119,8 @@ impl CostTable {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
 
-    /// A quantity of an operation at a width in bits.
-    ///
-    /// Between two rows it is interpolated linearly in the width, or in its square for areas and energies of quadratic
-    /// operations. Below the narrowest row it is proportional; above the widest it is extrapolated from the last two
-    /// rows, up to four times the widest.
+    /// Between rows linear in the width, or in its square for areas and energies of quadratic operations. Below the first
+    /// row proportional. Above the last extrapolated from two rows, up to four times the widest.
     fn cost(
         &self,
         quantity: Quantity,
@@ -160,8 +156,7 @@ impl CostTable {
     /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in picojoules; `operation` is `sram_read` or
     /// `sram_write`.
     ///
-    /// It is proportional to the bits, and interpolated linearly in the square root of the size, as the length of wires;
-    /// below the smallest row it is proportional to that root.
+    /// It is proportional to the bits, and linear in the square root of the size, as the length of wires.
     ///
     /// # Errors
     /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more than four times as long and wide as that of

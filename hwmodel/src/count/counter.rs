@@ -1,9 +1,6 @@
-//! A probe that counts operations by class, width, stage and octree level, accesses by memory, stage and level, and
-//! records by level.
-//!
 //! An operation is counted by one addition at a nearly constant address, so the compiler combines neighbouring counts.
-//! Only the level is unknown at compile time. There are a few sets of counts, each for one level at a time;
-//! neighbouring levels have different sets. A set's counts are added to the tables when it changes its level.
+//! Only the level is unknown at compile time. Each of a few sets has the counts of one level, and is added to the tables
+//! when it changes to another.
 
 use std::collections::BTreeMap;
 
@@ -38,9 +35,6 @@ type Table = Vec<[[u64; CLASSES]; STAGES]>;
 
 /// Counts of one or more frames.
 ///
-/// The operations of a [`Datapath`](crate::Datapath) are counted at the level of the current record (0 before the
-/// first), operations passed to [`Probe::op`] directly at their own level.
-///
 /// ```
 /// use hwmodel::count::Counter;
 /// use hwmodel::{Datapath, Format, Overflow, Stage};
@@ -60,7 +54,7 @@ type Table = Vec<[[u64; CLASSES]; STAGES]>;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// Counts of each set since it changed to its level; on the heap, because 94 KB would fill small stacks.
+    /// By set, since it changed to its level. 94 KB would fill small stacks.
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
     /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],

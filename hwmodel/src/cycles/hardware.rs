@@ -1,5 +1,4 @@
-//! The description of a hardware design, read from TOML. `hwmodel/machines/` has four: `tiny`, `paper`, `light` and
-//! `wide`.
+//! The description of a hardware design, in TOML.
 
 use std::collections::BTreeMap;
 
@@ -12,15 +11,12 @@ use crate::{OpClass, Stage};
 pub const MAX_LANES: u32 = 256;
 /// Most contexts of a lane.
 pub const MAX_CONTEXTS: u32 = 64;
-/// Range of clocks, MHz.
 const CLOCKS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
-/// Largest of all other numbers, so that sums of a turn's times fit 64 bits.
+/// Of all other numbers, so that sums of a turn's times fit 64 bits.
 const MAX_NUMBER: u32 = 1 << 24;
-/// Most things that the simulation keeps one by one.
+/// Of things that the simulation keeps one by one.
 const MAX_KEPT: u32 = 1 << 16;
-/// Largest entry of a cache, bytes.
 const MAX_ENTRY: u32 = 4096;
-/// Shortest line of a cache, bytes.
 const MIN_LINE: u32 = 8;
 
 /// A hardware design.
@@ -31,7 +27,7 @@ pub struct Hardware {
     pub name: String,
     /// Clock, MHz; 0.001 to 1,000,000.
     pub clock_mhz: f64,
-    /// Copies of the record loop's blocks and stack, 1 to [`MAX_LANES`].
+    /// Copies of blocks and stack, 1 to [`MAX_LANES`].
     pub lanes: u32,
     /// Records in progress per lane, 1 to [`MAX_CONTEXTS`].
     pub contexts: u32,
@@ -39,7 +35,7 @@ pub struct Hardware {
     pub independence: Independence,
     /// Additional cycles to take a record from another lane's stack.
     pub steal_cycles: u32,
-    /// Whether a turn's steps follow each other as in the record loop: rule 12 of [this module's parent](super).
+    /// Rule 12 of [the parent module](super).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub sequential: bool,
     /// Classes of operation that take no unit and no time.
@@ -47,10 +43,10 @@ pub struct Hardware {
     pub wires: Vec<OpClass>,
     /// Units of every stage's block, by class of operation.
     pub units: BTreeMap<OpClass, Unit>,
-    /// Units of single stages' blocks where they differ.
+    /// Units of single stages where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
-    /// Organisation of the record loop's data; by default that of the image-order paper.
+    /// By default that of the image-order paper.
     #[serde(default)]
     pub organisation: Organisation,
     /// The record stack of a lane.
@@ -68,7 +64,7 @@ pub struct Hardware {
     pub outer_memory: OuterMemory,
 }
 
-/// The port to outer memory, which cache misses, spilled records and pixels share.
+/// The port that cache misses, spilled records and pixels share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OuterMemory {
@@ -92,18 +88,18 @@ impl OuterMemory {
 pub struct Organisation {
     /// Contents of the stack.
     pub stack: StackHolds,
-    /// Whether a node marks which of its children are leaves, so that leaves need not be read to be drawn.
+    /// Nodes mark which children are leaves, so that leaves need not be read to be drawn.
     pub leaf_masks: bool,
-    /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk; 0: one walk per picture.
+    /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk, 0 to [`MAX_TILE_LEVELS`].
     pub tile_levels: u32,
-    /// Whether a node two levels above the finest voxels holds them as a mask of 64 bits, so that nodes between are not
-    /// read. For trees stored level by level; needs `leaf_masks`.
+    /// A node two levels above the finest voxels holds them as a mask of 64 bits, so that nodes between are not read. For
+    /// trees stored level by level, with `leaf_masks`.
     pub bricks: bool,
-    /// Whether a record is tested for occlusion before its node is read. Only under the rules that draw outlines.
+    /// Records are tested for occlusion before their nodes are read. Only under the rules that draw outlines.
     pub hidden_unread: bool,
-    /// Whether the lowest two levels of fill vectors are one word of 16 bits, one per sample.
+    /// The lowest two levels of fill vectors are one word of 16 bits.
     pub joined_fill: bool,
-    /// Whether fields of a record and wide words have only the bits that the frame's set-up proves sufficient.
+    /// Fields of a record and wide words have only the bits that the set-up proves sufficient.
     pub packed: bool,
 }
 
@@ -127,13 +123,12 @@ impl Organisation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackHolds {
-    /// A subdivided record pushes all visible children, each with its vertices.
+    /// All visible children, each with its vertices.
     #[default]
     Children,
-    /// A subdivided record stays, with a mask of the remaining children, which are made one by one.
+    /// Subdivided records, with masks of the remaining children, which are made one by one.
     Parents,
-    /// The path to a record: of each parent its node and the remaining children. The rest is computed back from a
-    /// descendant.
+    /// Node and remaining children of each parent. The rest is computed back from a descendant.
     Path,
 }
 
@@ -144,13 +139,12 @@ pub const MAX_TILE_LEVELS: u32 = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {
-    /// None: one after the other, depth first.
+    /// None.
     None,
-    /// Those of one class of the occlusion order, as in the image-order paper: the nearest; the next three; the next
-    /// three; the farthest. They never occlude each other. Under rules that are not exact, two may claim the same
-    /// sample, and the first keeps it.
+    /// Those of one class of the occlusion order, as in the image-order paper: the nearest, the next three, the next
+    /// three or the farthest. Under rules that are not exact, two may cover the same sample, and the first keeps it.
     Classes,
-    /// Those whose image nodes are disjoint. Others keep the serial order, so all results are the serial ones.
+    /// Those whose image nodes are disjoint: all results are the serial ones.
     Image,
     /// Those allowed by either rule.
     Both,
@@ -162,11 +156,11 @@ pub enum Independence {
 pub struct Unit {
     /// Number, at least 1.
     pub count: u32,
-    /// Cycles from the last operation's last issue cycle to its result.
+    /// Cycles from issue to result.
     pub latency: u32,
     /// Cycles until a unit takes its next operation; at least 1.
     pub interval: u32,
-    /// Bits; a wider operation takes `ceil(bits / width)` passes.
+    /// Bits per pass.
     pub width: u32,
 }
 
@@ -184,7 +178,7 @@ pub struct Stack {
     pub overflow: StackOverflow,
     /// Additional cycles until the first bits of a spilled record are read back.
     pub spill_cycles: u32,
-    /// Bits of the frame's records, for spilling; set by the simulation of a frame.
+    /// Bits of the frame's records, for spilling.
     #[serde(default)]
     pub record: RecordBits,
 }
@@ -193,7 +187,7 @@ pub struct Stack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackOverflow {
-    /// It is written to outer memory in the background, and read back for its turn.
+    /// It is written to outer memory, and read back for its turn.
     Spill,
     /// The frame ends with an error.
     Error,
@@ -235,7 +229,7 @@ pub struct Banks {
     pub latency: u32,
 }
 
-/// The output of pixels: ports into a buffer that drains, at a limited rate, by the port to outer memory.
+/// The output of pixels: a buffer that drains by the port to outer memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pixels {
@@ -294,7 +288,7 @@ impl Hardware {
     /// Reads and checks a description.
     ///
     /// # Errors
-    /// With the line of a syntax error, or with the field, its value and its range.
+    /// With the line or the field.
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let hardware: Self =
             toml::from_str(text).map_err(|error| HardwareError::Syntax(error.to_string()))?;
@@ -302,7 +296,7 @@ impl Hardware {
         Ok(hardware)
     }
 
-    /// A shipped description: `tiny`, `paper`, `light`, `wide`.
+    /// A shipped description.
     ///
     /// # Errors
     /// When there is none of that name.
@@ -314,7 +308,7 @@ impl Hardware {
         Self::from_toml(text)
     }
 
-    /// The units of a class in a stage's block; `None`: wires.
+    /// The units of a class in a stage's block, if it is not wires.
     pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
         if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
             return Some(*unit);
@@ -325,7 +319,7 @@ impl Hardware {
         self.units.get(&class).copied()
     }
 
-    /// Whether lanes draw tiles: rule 13 of [this module's parent](super).
+    /// Rule 13 of [the parent module](super).
     pub fn hands_out_tiles(&self) -> bool {
         self.sequential && self.organisation.tile_levels > 0
     }
@@ -471,7 +465,7 @@ impl Cache {
     }
 }
 
-/// A name in the file's spelling: `MinMax` is `min_max`.
+/// `MinMax` as `min_max`.
 fn key(of: &impl std::fmt::Debug) -> String {
     let mut name = String::new();
     for letter in format!("{of:?}").chars() {

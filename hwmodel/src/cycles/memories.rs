@@ -1,5 +1,4 @@
-//! Memories under contention: ports, banks, caches, the output of pixels. Accesses are booked, and served at each port,
-//! in the order in which their visits start.
+//! Memories under contention. Accesses are served at each port in the order in which their visits start.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -9,7 +8,7 @@ use super::report::{CacheReport, Cause};
 use crate::Memory;
 use crate::memory::PIXEL_BITS;
 
-/// Cycles for which an access takes the port of a sequential hardware's cache: lookup, and inspection of the result.
+/// Cycles of lookup and inspection on sequential hardware.
 const LOOK_UP: u64 = 2;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +84,7 @@ impl OuterPort {
         }
     }
 
-    /// Takes a pixel that is written at `at`; neighbours share words. Returns the cycle when it has left.
+    /// Returns the cycle when a pixel has left; neighbours share words.
     fn book_pixel(&mut self, at: u64) -> u64 {
         let word = 8 * u64::from(self.of.bytes_per_cycle.max(1));
         let bits = self.pixel_bits + u64::from(PIXEL_BITS);
@@ -94,7 +93,7 @@ impl OuterPort {
         begun + cycles
     }
 
-    /// Takes the free port for so many bits, from `at` at the earliest. Returns the first cycle and the number of cycles.
+    /// Takes the port for so many bits. Returns the first cycle and the number of cycles.
     #[inline]
     pub(super) fn book(&mut self, at: u64, bits: u64) -> (u64, u64) {
         let cycles = self.of.cycles(bits);
@@ -132,7 +131,7 @@ pub(super) struct CacheState {
     slots: Vec<u64>,
     misses: u64,
     delayed: u64,
-    /// On sequential hardware: the cycle from which the port is free, and the cycles in which incoming lines take it.
+    /// On sequential hardware.
     free_at: u64,
     coming_in: VecDeque<Range<u64>>,
 }
@@ -388,7 +387,7 @@ impl Memories {
         self.fill.iter().map(BanksState::bound).max().unwrap_or(0)
     }
 
-    /// Serves an access from cycle `at`; `lane`: index of its stack, and of its fill vectors where each has its own.
+    /// Serves an access from cycle `at`; `lane` is the index of its stack.
     #[inline]
     pub(super) fn serve(&mut self, access: Access, at: u64, lane: usize) -> Served {
         match access.memory {
@@ -419,7 +418,7 @@ impl Memories {
     }
 }
 
-/// Cycles of an access without any waiting, and with the longest wait alone on the hardware.
+/// Cycles of an access without waiting, and with the longest wait.
 #[derive(Debug, Clone)]
 pub(super) struct Latencies {
     alone: [[u64; 2]; Memory::ALL.len()],

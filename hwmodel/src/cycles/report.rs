@@ -73,28 +73,28 @@ pub struct StageReport {
     pub visits: u64,
     /// Operations, including wires.
     pub operations: u64,
-    /// Passes through units: several for an operation wider than a unit, none for wires.
+    /// Passes through units; none for wires.
     pub passes: u64,
-    /// Most passes of one visit, by class in the order of [`OpClass::ALL`]: the most units that can be used.
+    /// Most passes of one visit by class: the most units that can be used.
     pub most_passes: [u64; OpClass::ALL.len()],
-    /// Cycles in which its blocks issued operations.
+    /// Cycles in which blocks issued operations.
     pub busy: u64,
-    /// Additional cycles in which its blocks waited to issue accesses.
+    /// Additional cycles in which blocks waited to issue accesses.
     pub held: u64,
     /// `busy + held` divided by cycles and lanes, 0 to 1.
     pub utilisation: f64,
-    /// Cycles of the records in it without any waiting.
+    /// Cycles of its records without waiting.
     pub alone: u64,
-    /// Additional cycles of the records in it, by cause.
+    /// Additional cycles of its records, by cause.
     pub stalls: Stalls,
 }
 
-/// Cycles of the contexts; the four sum to `cycles * lanes * contexts`.
+/// Cycles of the contexts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContextReport {
-    /// Cycles with a record in progress that waited for at most its own latencies.
+    /// Cycles with a record that did not wait.
     pub working: u64,
-    /// Cycles in which a record waited in a stage.
+    /// Cycles with a record that waited in a stage.
     pub stalled: u64,
     /// Cycles without a record, while all remaining records had to wait for others.
     pub order_wait: u64,
@@ -117,19 +117,18 @@ pub struct CacheReport {
     pub bytes_in: u64,
 }
 
-/// Stacks, and the table that keeps the order.
+/// Stacks, and the order's table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StackReport {
     /// Most records on one lane's stack.
     pub deepest: u64,
     /// Most records on all stacks and in all contexts.
     pub most_live: u64,
-    /// Most records at once that had their turn and have unfinished descendants: entries of the table that keeps the
-    /// order.
+    /// Most records at once that had their turn and have unfinished descendants: entries of the order's table.
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,
-    /// Their bits, written to outer memory once and read once.
+    /// Their bits, written once and read once.
     pub spilled_bits: u64,
     /// Records taken from another lane.
     pub stolen: u64,
@@ -142,7 +141,7 @@ pub struct Bound {
     pub resource: String,
     /// Cycles.
     pub cycles: u64,
-    /// `cycles` divided by the frame's, 0 to 1: utilisation of the resource.
+    /// `cycles` divided by the frame's, 0 to 1.
     pub share: f64,
 }
 
@@ -157,7 +156,7 @@ pub struct Bottleneck {
     pub sentence: String,
 }
 
-/// The result of a simulation. Cycles are of the hardware's clock.
+/// The result of a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CycleReport {
     /// [`REPORT_VERSION`].
@@ -172,7 +171,7 @@ pub struct CycleReport {
     pub independence: Independence,
     /// Clock, MHz.
     pub clock_mhz: f64,
-    /// From the first record's first to the last pixel's last cycle.
+    /// Until the last pixel has left.
     pub cycles: u64,
     /// Records that had their turn.
     pub records: u64,
@@ -184,15 +183,15 @@ pub struct CycleReport {
     pub cycles_per_pixel: f64,
     /// Frames per second at the clock.
     pub frames_per_second: f64,
-    /// Cycles of all turns without any waiting.
+    /// Cycles of all turns without waiting.
     pub work: u64,
-    /// Cycles of the longest chain of dependent turns without any other waiting: a bound for any number of lanes.
+    /// Cycles of the longest chain of dependent turns without other waiting.
     pub span: u64,
-    /// `work / span`: the average number of contexts that could be busy.
+    /// `work / span`.
     pub parallelism: f64,
-    /// Cycles of all turns one after the other with their longest waits: an upper bound.
+    /// Upper bound: cycles of all turns one after the other with their longest waits.
     pub serial: u64,
-    /// By stage, in the order of the record loop.
+    /// By stage.
     pub stages: Vec<StageReport>,
     /// Cycles of the contexts.
     pub context_cycles: ContextReport,
@@ -204,7 +203,7 @@ pub struct CycleReport {
     pub fill_reads: u64,
     /// Fill vectors written.
     pub fill_writes: u64,
-    /// Cycles in which lines of the caches and spilled records took the port to outer memory.
+    /// Cycles in which the port to outer memory was taken.
     pub outer_busy: u64,
     /// Stacks.
     pub stack: StackReport,

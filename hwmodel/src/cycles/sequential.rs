@@ -1,7 +1,4 @@
-//! Sequential hardware (rules 12 to 14): one access per cycle and visit, and tiles.
-//!
-//! Requests of a cycle are served when all its other events are over: the earliest first; of one cycle, nodes before
-//! attributes, and the lowest lane first.
+//! Sequential hardware (rules 12 to 14). Requests of a cycle are served after all its other events.
 
 use std::collections::VecDeque;
 
@@ -26,13 +23,14 @@ enum Of {
 #[derive(Debug, Default)]
 pub(super) struct Asked {
     now: Vec<(Of, u32)>,
-    /// Contexts that wait for the node cache and the attribute cache; the first has its event set.
+    /// For the node cache and the attribute cache; the first has its event set.
     waiting: [VecDeque<u32>; 2],
     /// The next tile, and the first cycle in which one is handed out.
     tile: u32,
     tile_from: u64,
-    /// Per lane; and contexts of lanes whose holder may change at the end of this cycle.
+    /// By lane.
     pub(super) sharing: Vec<Sharing>,
+    /// Contexts of lanes whose holder may change at the end of this cycle.
     pub(super) lanes: Vec<u32>,
 }
 
@@ -49,17 +47,14 @@ impl Asked {
 #[derive(Debug, Default)]
 pub(super) struct Step {
     pub(super) tile: Option<u32>,
-    /// Whether its event is the cycle of the answer that it waits for.
     waits: bool,
-    /// First cycle in which another has the lane; cycles of the visit in which others had it; those of them in which it
-    /// wanted the lane.
+    /// First cycle in which another has the lane, cycles in which others had it, and those in which it was wanted.
     pub(super) away_from: u64,
     pub(super) away: u64,
     pub(super) wanted: u64,
     is_begun: bool,
     access: usize,
     begun: u64,
-    /// Whether its next access was requested: it waits, or is served in its event's cycle.
     has_asked: bool,
     cause: Option<Cause>,
 }
@@ -156,7 +151,7 @@ impl<W: Workload> Simulation<'_, W> {
         step.cause = Some(cause);
     }
 
-    /// Handles a context's event, unless it arrives at a block or is at the end of its turn.
+    /// Handles a context's event, except an arrival at a block or the end of a turn.
     pub(super) fn step_on(
         &mut self,
         now: u64,
@@ -199,7 +194,6 @@ impl<W: Workload> Simulation<'_, W> {
         Ok(())
     }
 
-    /// Begins a visit: its accesses are requested one after the other.
     pub(super) fn begin_steps(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.step.is_begun = true;
@@ -234,7 +228,6 @@ impl<W: Workload> Simulation<'_, W> {
         self.end_visit(context, begun, (ends, ends), (cause, stalled));
     }
 
-    /// Gives a context at the end of its turn its own next record, or requests a tile.
     pub(super) fn go_on(
         &mut self,
         now: u64,
@@ -253,7 +246,6 @@ impl<W: Workload> Simulation<'_, W> {
 #[derive(Debug)]
 pub(super) struct Sharing {
     holder: u32,
-    /// Whether the holder waits for a cache or a tile, so that another may have the lane.
     waits: bool,
     /// First cycle and context of each request, in order.
     wanted_by: Vec<(u64, u32)>,
@@ -295,7 +287,7 @@ impl<W: Workload> Simulation<'_, W> {
         self.asked.lanes.push(context);
     }
 
-    /// Changes holders that wait while others want the lane, at the end of the cycle `now`.
+    /// At the end of the cycle `now`.
     pub(super) fn give_lanes(&mut self, now: u64) {
         while let Some(context) = self.asked.lanes.pop() {
             let sharing = self.sharing(context);

@@ -1,4 +1,4 @@
-//! The simulation: contexts, blocks, and the choice of the next record.
+//! Contexts, blocks, and the choice of the next record.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,6 @@ use crate::Stage;
 use crate::memory::RecordKind;
 
 const NONE: u32 = u32::MAX;
-/// Records between two reports of progress.
 const PROGRESS: u64 = 1 << 14;
 
 /// Why a simulation ended early.
@@ -79,7 +78,7 @@ pub(super) struct Lane {
     pub(super) idle: u64,
 }
 
-/// Runs a workload on a hardware.
+/// Simulates a workload.
 ///
 /// # Errors
 /// When [`Hardware::check`] fails, the workload fails, or a stack overflows that does not spill.
@@ -193,7 +192,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(now)
     }
 
-    /// The workload's start is a turn of lane 0's context 0.
     fn start(&mut self) -> Result<(), SimulationError<W::Error>> {
         let task = self.tasks.root();
         self.lanes[0].idle &= !1;
@@ -207,7 +205,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Begins the turn of the workload's start, or of a tile's, which was executed.
     pub(super) fn begin_turn_of_start(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.record = START;
@@ -236,7 +233,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(now, context);
     }
 
-    /// Adds idle cycles up to `now`; to be called before the numbers of idle contexts or waiting records change.
+    /// Adds idle cycles, before the numbers of idle contexts or waiting records change.
     #[inline]
     pub(super) fn account(&mut self, now: u64) {
         let idle = (now - self.accounted) * self.idle;
@@ -284,7 +281,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(free_at, context);
     }
 
-    /// Begins a visit: issues its operations, books its accesses.
     #[inline]
     fn begin(&mut self, now: u64, context: u32) {
         if self.hardware.sequential {
@@ -311,7 +307,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.end_visit(context, now, (frees, ends), (cause, stalled));
     }
 
-    /// Ends a visit that began in the cycle `begun`, with the cycles in which it frees its block and ends, and its stall.
     #[inline]
     pub(super) fn end_visit(
         &mut self,
@@ -434,7 +429,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.observer.queue(now, lane as u32, stored, ready);
     }
 
-    /// Gives ready records to idle contexts: each lane's own first.
     fn wake(&mut self, now: u64) -> Result<(), SimulationError<W::Error>> {
         for own in [true, false] {
             if self.ready == 0 || self.idle == 0 {
@@ -453,7 +447,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Gives an idle context its next record: its own lane's newest, or the oldest of the next lane that has one.
+    /// Gives an idle context its next record (rule 10).
     pub(super) fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         let lanes = self.lanes.len();
         let lane = self.contexts[context as usize].lane as usize;

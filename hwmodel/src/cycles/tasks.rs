@@ -1,7 +1,4 @@
-//! Unfinished records, their dependences, and the longest chain.
-//!
-//! A record is *finished* when its turn and those of all its descendants are over. A child waits for the earlier
-//! siblings that it depends on. The same times without contention give the span.
+//! Unfinished records, their dependences, and the span.
 
 use super::hardware::Independence;
 use super::turn::Child;

@@ -9,34 +9,29 @@ pub(super) const CLASSES: usize = OpClass::ALL.len();
 /// Widths that are counted separately; wider ones count as this less one.
 pub(super) const WIDTHS: usize = 128;
 
-/// The simulated work: records, one turn each. The cost of a turn is known only after its execution.
-///
-/// The simulator calls [`Workload::turn`] in the order of simulated time, so that a record finds the state at the
-/// beginning of its turn.
+/// The simulated work: records, one turn each, called in the order of simulated time.
 pub trait Workload {
     /// Failure of a turn.
     type Error;
 
-    /// Makes the first records. Counts as a turn of a record that was on no stack.
+    /// Makes the first records.
     ///
     /// # Errors
     /// Those of the workload.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Executes a record's turn, which writes to the log. The new records go into `children` (empty before), nearest
-    /// first, at most eight.
+    /// Executes a record's turn. New records go into the empty `children`, nearest first, at most eight.
     ///
     /// # Errors
     /// Those of the workload.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Number of tiles of the picture, which replace [`Self::start`] on hardware that
-    /// [hands them out](Hardware::hands_out_tiles).
+    /// Number of tiles, which replace [`Self::start`] on hardware that [hands them out](Hardware::hands_out_tiles).
     fn tiles(&self) -> u32 {
         0
     }
 
-    /// Begins a tile and makes its first records, at most eight. A turn, as [`Self::start`].
+    /// Begins a tile and makes its first records, at most eight.
     ///
     /// # Errors
     /// Those of the workload.
@@ -82,7 +77,7 @@ impl ImageNode {
     }
 }
 
-/// Classes of the occlusion order by place: `{7} {6, 5, 3} {4, 2, 1} {0}` in the image-order paper's octants.
+/// `{7} {6, 5, 3} {4, 2, 1} {0}` in the image-order paper's octants.
 const CLASS_OF_PLACE: [u8; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
 
 impl Independence {
@@ -127,8 +122,7 @@ struct Done {
     passes: u64,
 }
 
-/// The probe of a turn: operations as passes through units, and accesses, by stage. All work of a turn in one stage is
-/// one *visit*.
+/// The probe of a turn: operations as passes through units, and accesses, by stage.
 #[derive(Debug)]
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
@@ -156,7 +150,7 @@ struct Issue {
 }
 
 impl TurnLog {
-    /// A log for turns on a hardware that [`Hardware::check`] finds sound.
+    /// A log for turns on sound hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
         let mut units = [[Issue::default(); CLASSES]; STAGES];
@@ -193,7 +187,7 @@ impl TurnLog {
         }
     }
 
-    /// Enters a stage: on sequential hardware this ends the visit of another stage.
+    /// On sequential hardware this ends the visit of another stage.
     #[inline(always)]
     fn enter(&mut self, stage: Stage) {
         if self.sequential && self.stage != stage {
@@ -381,7 +375,7 @@ impl Probe for TurnLog {
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
-    /// Cycles in which operations are issued, at least 1; 0 on sequential hardware.
+    /// Cycles in which operations are issued.
     pub(super) occupied: u64,
     pub(super) latency: u64,
     /// Cycles without any waiting.

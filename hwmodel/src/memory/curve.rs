@@ -1,6 +1,5 @@
-//! The miss curve of a memory, by stack distances (Mattson et al., "Evaluation techniques for storage hierarchies", IBM
-//! Systems Journal 1970): a fully associative cache of `c` lines with LRU replacement has a line exactly if fewer than
-//! `c` other lines were used since its last use.
+//! Miss curves by stack distances (Mattson et al., "Evaluation techniques for storage hierarchies", IBM Systems Journal
+//! 1970). A fully associative LRU cache of `c` lines has a line exactly if fewer than `c` others were used since.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +18,7 @@ pub struct MissPoint {
     pub miss_rate: f64,
 }
 
-/// Misses of caches of all sizes, from one pass over the accesses. Memory grows with the lines touched.
+/// Misses of caches of all sizes, from one pass over the accesses.
 ///
 /// ```
 /// use hwmodel::memory::MissCurve;
@@ -124,7 +123,7 @@ impl MissCurve {
         sum
     }
 
-    /// Numbers the last accesses from 0 again, in their order, and leaves room for at least as many as there are lines.
+    /// Numbers the last accesses from 0 again.
     fn renumber(&mut self) {
         let mut times: Vec<&mut u32> = self.last.values_mut().collect();
         times.sort_unstable();

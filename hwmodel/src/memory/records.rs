@@ -13,7 +13,7 @@ named! {
     pub enum RecordKind {
         /// Its vertices are in clip space.
         Clip = "in clip space",
-        /// Its vertices are in screen space, as those of all its descendants.
+        /// Its vertices are in screen space.
         Screen = "in screen space",
         /// A finest voxel, which needs no vertices.
         Finest = "finest voxel",
@@ -30,7 +30,7 @@ pub struct RecordBits {
     pub screen: u32,
     /// Of [`RecordKind::Finest`].
     pub finest: u32,
-    /// First octree level of finest voxels; `None`: unknown.
+    /// First octree level of finest voxels, if known.
     pub finest_level: Option<u32>,
 }
 
@@ -69,8 +69,8 @@ impl RecordBits {
     }
 }
 
-/// A probe of the kinds of records on the stack, derived from the machine's work: a record that divides has changed to
-/// screen space with all that it pushes, and pushed records lie one octree level below it.
+/// A probe of the kinds of records on the stack. A record that divides has changed to screen space with all that it
+/// pushes.
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};

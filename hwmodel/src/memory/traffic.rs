@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
+use crate::count::Accesses;
 use crate::hash::NumberMap;
 use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
 
-/// Bits of a pixel's accumulator where voxels are blended: nine of transmittance, 24 of each colour (fixed by the drawing
-/// rule).
+/// Bits of a blended pixel's accumulator: nine of transmittance, 24 of each colour.
 pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
 
 /// Bits of a pixel: red, green and blue.
@@ -67,8 +67,7 @@ impl Widths {
 #[derive(Debug, Clone)]
 pub struct MemoryProbe {
     widths: Widths,
-    reads: [u64; MEMORIES],
-    writes: [u64; MEMORIES],
+    accesses: [Accesses; MEMORIES],
     touched: [Touched; MEMORIES],
     curves: Vec<(Memory, MissCurve)>,
     deepest: u64,
@@ -79,15 +78,14 @@ impl MemoryProbe {
     pub fn new(widths: Widths) -> Self {
         Self {
             widths,
-            reads: [0; MEMORIES],
-            writes: [0; MEMORIES],
+            accesses: Default::default(),
             touched: Default::default(),
             curves: Vec::new(),
             deepest: 0,
         }
     }
 
-    /// Adds a memory's miss curve for lines of `line_bytes`; may be called several times.
+    /// Adds a memory's miss curve for lines of `line_bytes`.
     #[must_use]
     pub fn with_curve(mut self, memory: Memory, line_bytes: u32) -> Self {
         self.curves.push((memory, MissCurve::new(line_bytes)));
@@ -101,12 +99,12 @@ impl MemoryProbe {
 
     /// Reads of a memory.
     pub fn reads(&self, memory: Memory) -> u64 {
-        self.reads[memory as usize]
+        self.accesses[memory as usize].reads
     }
 
     /// Writes of a memory.
     pub fn writes(&self, memory: Memory) -> u64 {
-        self.writes[memory as usize]
+        self.accesses[memory as usize].writes
     }
 
     /// Bits read from a memory.
@@ -119,7 +117,7 @@ impl MemoryProbe {
         self.writes(memory) * u64::from(self.widths.of(memory))
     }
 
-    /// Number of different addresses of a memory that were read or written.
+    /// Number of different addresses that were accessed.
     pub fn distinct(&self, memory: Memory) -> u64 {
         self.touched[memory as usize].distinct
     }
@@ -156,12 +154,12 @@ impl Probe for MemoryProbe {
     fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: StageLevel) {}
 
     fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
-        self.reads[memory as usize] += 1;
+        self.accesses[memory as usize].reads += 1;
         self.access(memory, address);
     }
 
     fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
-        self.writes[memory as usize] += 1;
+        self.accesses[memory as usize].writes += 1;
         if memory == Memory::Stack {
             self.deepest = self.deepest.max(address.saturating_add(1));
         }

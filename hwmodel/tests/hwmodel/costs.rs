@@ -2,8 +2,8 @@
 
 use crate::common::at;
 use hwmodel::cost::{
-    Cost, CostError, CostTable, Costing, Fit, Goal, ShiftUnits, Store, Stores, energy_of,
-    memory_energy_of, operation_of,
+    Cost, CostError, CostTable, Costing, Fit, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
+    operation_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
@@ -306,17 +306,12 @@ fn energy_of_accesses() {
         fill_vector_bits: 4,
         pixel_bits: 24,
     };
-    let sram = Store::Sram { bytes: 8192 };
-    let stores = Stores {
-        stack: sram,
-        node: Store::Dram,
-        attribute: Store::Dram,
-        fill_vector: sram,
-        pixel: Store::Dram,
-        accumulator: sram,
+    let store = |memory| match memory {
+        Memory::Node => Store::Dram,
+        _ => Store::Sram { bytes: 8192 },
     };
     let accesses = counter.accesses_by(|cell| cell.memory);
-    let sum = memory_energy_of(&accesses, &widths, &stores, &shipped()).unwrap();
+    let sum = memory_energy_of(&accesses, &widths, store, &shipped()).unwrap();
     let lines = sum.lines.iter();
     let lines: Vec<_> = lines.map(|line| line.operation.as_str()).collect();
     assert_eq!(lines, ["dram_read", "sram_write"]);
