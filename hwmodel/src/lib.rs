@@ -25,13 +25,13 @@
 //! ```
 
 #![forbid(unsafe_code)]
-/// Defines an enum whose variants have names in words.
+/// Defines an enum whose variants have names in words, which are also their documentation.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! named {
     ($(#[$meta:meta])* pub enum $type:ident { $($(#[$doc:meta])* $variant:ident = $name:literal,)+ }) => {
         $(#[$meta])*
-        pub enum $type { $($(#[$doc])* $variant,)+ }
+        pub enum $type { $(#[doc = $name] $(#[$doc])* $variant,)+ }
 
         impl $type {
             /// All values, in the order of their discriminants.

@@ -12,19 +12,14 @@ named! {
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum OpClass {
-        /// A sum.
         Add = "add",
-        /// A difference or a negation.
         Sub = "subtract",
-        /// A comparison, or a test of a sign.
         Compare = "compare",
         /// One comparison, one select.
         MinMax = "min/max",
-        /// One of two words chosen by a bit.
         Select = "select",
         /// A shift: wires or a small shifter.
         Shift = "shift",
-        /// And, or, exclusive or, not.
         Logic = "logic",
         /// A trial subtraction and a select.
         DivideStep = "divide step",
@@ -39,30 +34,23 @@ named! {
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum Stage {
-        /// A record is taken from the stack.
         #[default]
         Pop = "pop",
         /// Is the record's quadtree node full?
         Filled = "filled?",
         /// Does the voxel map to one pixel?
         OnePixel = "one pixel?",
-        /// The centre of the voxel in object space.
         Centre = "centre",
-        /// Octant bits and the order of the children.
         Order = "octant and order",
         /// The vertices that the children share.
         VertexPool = "vertex pool",
-        /// A child's box in the image.
         ChildBox = "child box",
         /// The smallest unfilled quadtree node that holds the box.
         QuadtreeFit = "quadtree fit",
-        /// A record is put on the stack.
         Push = "push",
-        /// Pixels are drawn.
         Draw = "draw",
         /// Fill vectors are updated towards the root.
         FillUpdate = "fill update",
-        /// From clip space to screen space.
         ToScreen = "to screen",
         /// A translucent voxel is added to a pixel's accumulator.
         Blend = "blend",

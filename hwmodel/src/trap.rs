@@ -6,13 +6,9 @@ named! {
     /// The operation that overflowed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum TrapOp {
-        /// A sum.
         Add = "add",
-        /// A difference or a negation.
         Sub = "subtract",
-        /// A left shift.
         ShiftLeft = "shift left",
-        /// A constant of the frame.
         Load = "load of a frame constant",
     }
 }

@@ -56,47 +56,15 @@ impl Goal {
 /// Why a table cannot be read, or has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CostError {
-    /// A file is not TOML, or not a cost table: the file, the problem and its place.
+    /// A file is not a cost table: the file and the problem.
     #[error("{0} is no cost table: {1}")]
     Syntax(String, String),
-    /// A row makes no sense.
-    #[error("{file}, row {row}: {problem}")]
-    Row {
-        /// File name.
-        file: String,
-        /// Operation and width.
-        row: String,
-        /// Problem.
-        problem: &'static str,
-    },
-    /// No row has the requested figure.
-    #[error("no {request}: {}", add_a_row(*quantity))]
-    Missing {
-        /// Requested quantity.
-        quantity: Quantity,
-        /// The request in words.
-        request: String,
-    },
-    /// No row is near enough.
-    #[error(
-        "no {request}: the largest row has {largest}, and nothing is extrapolated beyond {times} times that; {}",
-        add_a_row(*quantity)
-    )]
-    TooWide {
-        /// Requested quantity.
-        quantity: Quantity,
-        /// The request in words.
-        request: String,
-        /// Bits or bytes of the largest row.
-        largest: u64,
-        /// Largest accepted multiple of it.
-        times: u64,
-    },
-}
-
-fn add_a_row(quantity: Quantity) -> String {
-    let [_, key, file] = quantity.words();
-    format!("add a row with `{key}` to a cost table of your own, or to {file}")
+    /// A row makes no sense: the file, the row and the problem.
+    #[error("{0}, row {1}: {2}")]
+    Row(String, String, &'static str),
+    /// No row has the requested figure, or none is near enough: the request and how to add one.
+    #[error("no {0}; {1}")]
+    NoFigure(String, String),
 }
 
 /// A number, or a range.
@@ -208,11 +176,8 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     for row in &parsed.row {
         let wrong = |problem| {
             let width = row.width.map(|width| format!(" of {width} bits"));
-            Err(CostError::Row {
-                file: file.to_owned(),
-                row: format!("`{}`{}", row.operation, width.unwrap_or_default()),
-                problem,
-            })
+            let row = format!("`{}`{}", row.operation, width.unwrap_or_default());
+            Err(CostError::Row(file.to_owned(), row, problem))
         };
         if let Some(problem) = row.problem() {
             return wrong(problem);

@@ -98,7 +98,7 @@ impl CostTable {
     /// Area of a unit, in NAND2 equivalents.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn area(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::Nand2, operation, width, Some(goal))
     }
@@ -106,7 +106,7 @@ impl CostTable {
     /// Delay of a unit, in picoseconds, in the process of the source.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn delay(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::DelayPs, operation, width, Some(goal))
     }
@@ -114,7 +114,7 @@ impl CostTable {
     /// Energy of an operation, in picojoules.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn energy(&self, operation: &str, width: u32) -> Result<Cost, CostError> {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
@@ -142,12 +142,11 @@ impl CostTable {
             .collect();
         let widest = rows.iter().filter_map(|row| row.1.width).max().unwrap_or(0);
         if f64::from(width) > FARTHEST * f64::from(widest) {
-            return Err(CostError::TooWide {
-                quantity,
-                request: request(quantity, operation, &format!("near {width} bits"), goal),
-                largest: u64::from(widest),
-                times: FARTHEST as u64,
-            });
+            let (size, why) = (
+                format!("near {width} bits"),
+                too_far(widest.into(), FARTHEST),
+            );
+            return Err(no_figure(quantity, operation, &size, goal, &why));
         }
         let (weights, fit) = weigh(&rows, measure(width));
         Ok(cost(quantity, operation, goal, &weights, fit))
@@ -159,8 +158,7 @@ impl CostTable {
     /// It is proportional to the bits, and linear in the square root of the size, as the length of wires.
     ///
     /// # Errors
-    /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more than four times as long and wide as that of
-    /// the largest row.
+    /// [`CostError::NoFigure`], also for a memory more than four times as long and wide as that of the largest row.
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
@@ -169,17 +167,14 @@ impl CostTable {
             .filter_map(|row| row.bytes.map(|bytes| ((bytes as f64).sqrt(), row)))
             .collect();
         let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
-            return Err(missing(quantity, operation, bits, None));
+            let size = format!("at {bits} bits");
+            return Err(no_figure(quantity, operation, &size, None, ""));
         };
         // In either direction.
         let times = FARTHEST * FARTHEST;
         if bytes as f64 > times * largest as f64 {
-            return Err(CostError::TooWide {
-                quantity,
-                request: request(quantity, operation, &format!("near {bytes} bytes"), None),
-                largest,
-                times: times as u64,
-            });
+            let (size, why) = (format!("near {bytes} bytes"), too_far(largest, times));
+            return Err(no_figure(quantity, operation, &size, None, &why));
         }
         let (mut weights, mut fit) = weigh(&rows, (bytes as f64).sqrt());
         for (row, weight) in &mut weights {
@@ -205,7 +200,8 @@ impl CostTable {
                 return Ok((rows, goal));
             }
         }
-        Err(missing(quantity, operation, width, goal))
+        let size = format!("at {width} bits");
+        Err(no_figure(quantity, operation, &size, goal, ""))
     }
 
     /// All operations that have rows or are listed as quadratic, in order.
@@ -217,17 +213,26 @@ impl CostTable {
     }
 }
 
-fn request(quantity: Quantity, operation: &str, size: &str, goal: Option<Goal>) -> String {
-    let [name, ..] = quantity.words();
+/// The error for a figure at a size in words; `why` follows the request.
+fn no_figure(
+    quantity: Quantity,
+    operation: &str,
+    size: &str,
+    goal: Option<Goal>,
+    why: &str,
+) -> CostError {
+    let [name, key, file] = quantity.words();
     let goal = goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()));
-    format!("{name} of `{operation}` {size}{goal}")
+    CostError::NoFigure(
+        format!("{name} of `{operation}` {size}{goal}{why}"),
+        format!("add a row with `{key}` to a cost table of your own, or to {file}"),
+    )
 }
 
-fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) -> CostError {
-    CostError::Missing {
-        quantity,
-        request: request(quantity, operation, &format!("at {width} bits"), goal),
-    }
+fn too_far(largest: u64, times: f64) -> String {
+    format!(
+        ": the largest row has {largest}, and nothing is extrapolated beyond {times} times that"
+    )
 }
 
 /// The rows next to a place with their weights. Rows are in order of place.

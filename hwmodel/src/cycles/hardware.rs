@@ -1,4 +1,4 @@
-//! The description of a hardware design, in TOML.
+//! The description of a hardware design, in TOML. `machines/light.toml` explains each setting.
 
 use std::collections::BTreeMap;
 
@@ -22,18 +22,13 @@ const MIN_LINE: u32 = 8;
 /// A hardware design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Hardware {
-    /// Name in reports; one line of text.
     pub name: String,
-    /// Clock, MHz; 0.001 to 1,000,000.
     pub clock_mhz: f64,
-    /// Copies of blocks and stack, 1 to [`MAX_LANES`].
     pub lanes: u32,
-    /// Records in progress per lane, 1 to [`MAX_CONTEXTS`].
     pub contexts: u32,
-    /// Records that may be in progress at the same time.
     pub independence: Independence,
-    /// Additional cycles to take a record from another lane's stack.
     pub steal_cycles: u32,
     /// Rule 12 of [the parent module](super).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -41,25 +36,17 @@ pub struct Hardware {
     /// Classes of operation that take no unit and no time.
     #[serde(default)]
     pub wires: Vec<OpClass>,
-    /// Units of every stage's block, by class of operation.
     pub units: BTreeMap<OpClass, Unit>,
     /// Units of single stages where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
-    /// By default that of the image-order paper.
     #[serde(default)]
     pub organisation: Organisation,
-    /// The record stack of a lane.
     pub stack: Stack,
-    /// Graph nodes, shared by all lanes.
     pub node_cache: Cache,
-    /// Colours and normals, shared.
     pub attribute_cache: Cache,
-    /// Fill vectors, shared.
     pub fill_vectors: Banks,
-    /// Pixels, shared.
     pub pixels: Pixels,
-    /// The port to outer memory, shared.
     #[serde(default)]
     pub outer_memory: OuterMemory,
 }
@@ -67,8 +54,8 @@ pub struct Hardware {
 /// The port that cache misses, spilled records and pixels share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct OuterMemory {
-    /// Bytes per cycle. 0: no limit.
     pub bytes_per_cycle: u32,
 }
 
@@ -85,21 +72,14 @@ impl OuterMemory {
 /// Organisation of the record loop's data. Pictures under rules of exact coverage do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Organisation {
-    /// Contents of the stack.
     pub stack: StackHolds,
-    /// Nodes mark which children are leaves, so that leaves need not be read to be drawn.
     pub leaf_masks: bool,
-    /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk, 0 to [`MAX_TILE_LEVELS`].
     pub tile_levels: u32,
-    /// A node two levels above the finest voxels holds them as a mask of 64 bits, so that nodes between are not read. For
-    /// trees stored level by level, with `leaf_masks`.
     pub bricks: bool,
-    /// Records are tested for occlusion before their nodes are read. Only under the rules that draw outlines.
     pub hidden_unread: bool,
-    /// The lowest two levels of fill vectors are one word of 16 bits.
     pub joined_fill: bool,
-    /// Fields of a record and wide words have only the bits that the set-up proves sufficient.
     pub packed: bool,
 }
 
@@ -153,30 +133,23 @@ pub enum Independence {
 /// Units of one class of operation in one block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Unit {
-    /// Number, at least 1.
     pub count: u32,
-    /// Cycles from issue to result.
     pub latency: u32,
-    /// Cycles until a unit takes its next operation; at least 1.
     pub interval: u32,
-    /// Bits per pass.
     pub width: u32,
 }
 
 /// A lane's record stack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Stack {
-    /// Capacity, records.
     pub entries: u32,
-    /// Accesses per cycle.
     pub ports: u32,
-    /// Cycles of a read.
     pub latency: u32,
-    /// Treatment of a record beyond the last entry.
     pub overflow: StackOverflow,
-    /// Additional cycles until the first bits of a spilled record are read back.
     pub spill_cycles: u32,
     /// Bits of the frame's records, for spilling.
     #[serde(default)]
@@ -196,48 +169,36 @@ pub enum StackOverflow {
 /// A set-associative cache with least-recently-used replacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Cache {
-    /// Size; a multiple of `ways * line_bytes`.
     pub bytes: u32,
-    /// Lines per set.
     pub ways: u32,
-    /// Bytes per line; a power of two.
     pub line_bytes: u32,
-    /// Bytes per entry (a node, an attribute).
     pub entry_bytes: u32,
-    /// Accesses per cycle.
     pub ports: u32,
-    /// Cycles of a hit.
     pub hit_latency: u32,
-    /// Additional cycles of a miss.
     pub miss_latency: u32,
-    /// Most misses in flight (MSHRs).
     pub misses: u32,
 }
 
 /// A banked memory; an address lies in bank `address mod banks`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Banks {
-    /// Number of banks.
     pub banks: u32,
-    /// Reads per bank and cycle.
     pub read_ports: u32,
-    /// Writes per bank and cycle.
     pub write_ports: u32,
-    /// Cycles of a read; a write takes one.
     pub latency: u32,
 }
 
 /// The output of pixels: a buffer that drains by the port to outer memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Pixels {
-    /// Writes per cycle into the buffer.
     pub write_ports: u32,
-    /// Capacity, pixels.
     pub buffer: u32,
-    /// Least cycles between two pixels that leave.
     pub drain_interval: u32,
     /// Whether pixels leave by their own port.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -250,16 +211,9 @@ pub enum HardwareError {
     /// Not TOML, or not of these fields.
     #[error("hardware description: {0}")]
     Syntax(String),
-    /// A number out of its range.
-    #[error("hardware description: {field} is {value}; it must be {range}")]
-    Range {
-        /// Its path in the file.
-        field: String,
-        /// The value.
-        value: String,
-        /// The allowed values.
-        range: String,
-    },
+    /// A number out of its range: its path in the file, its value, and the allowed ones.
+    #[error("hardware description: {0} is {1}; it must be {2}")]
+    Range(String, String, String),
     /// A class of operation without units that is not wires.
     #[error(
         "hardware description: nothing does `{0}`; give it a [units.{0}] or put it into `wires`"
@@ -486,9 +440,5 @@ fn within(field: &str, value: u32, least: u32, most: u32) -> Result<(), Hardware
 }
 
 fn out_of_range(field: &str, value: impl ToString, range: &str) -> HardwareError {
-    HardwareError::Range {
-        field: field.to_owned(),
-        value: value.to_string(),
-        range: range.to_owned(),
-    }
+    HardwareError::Range(field.to_owned(), value.to_string(), range.to_owned())
 }

@@ -37,41 +37,34 @@
 //! 9. **Children** are on the stack of the lane, nearest on top, when the turn ends. A child is *ready* when all earlier
 //!    siblings that it depends on ([`Independence::allows`]) are finished with all their descendants. Other records need
 //!    not be examined: descendants stay in their ancestor's image node and place in the order.
-//! 10. **Next record.** A ready record goes on top of its lane's list, below its own earlier siblings. A context whose
-//!     turn has ended takes, in the same cycle, the topmost record of its lane; if there is none, the lowest one of the
-//!     next lane (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle
-//!     contexts steal, lowest numbers first. With one context this is depth first, nearest first.
+//! 10. **Next record.** Ready records are listed by lane, the newest on top, below its own earlier siblings. A context
+//!     whose turn has ended takes, in the same cycle, the topmost record of its lane, or the lowest one of the next lane
+//!     (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle contexts
+//!     steal, lowest numbers first.
 //! 11. **Start.** The work before the first record is a turn of lane 0, context 0, in cycle 0.
 //! 12. **Sequential hardware** ([`Hardware::sequential`]) does one thing at a time, in the order of the record loop.
 //!     Wherever the loop enters another stage, or reports a dependence
 //!     ([`Probe::next_step`](crate::Probe::next_step)), a visit ends and the next begins. Work *beside* a stage
 //!     ([`Probe::beside`](crate::Probe::beside)) belongs to that stage's visit. An access is issued when the previous
 //!     one is done; a read takes one more cycle, in which its result is inspected. These cycles issue operations; the
-//!     rest of the visit's occupancy, and its latency, come after the last access. A visit takes at least a cycle, and
-//!     its block is free when it ends. `rtl/` is such a state machine. Requests of several lanes are served in order,
-//!     each in its own cycle (unlike rule 4); of one cycle, nodes before attributes, and the lowest lane and context
-//!     first. An access takes the port of its cache for two cycles: lookup and inspection, longer for a miss that waits
-//!     for outer memory. An incoming line also takes it for the cycles of its transfer.
-//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A context without
-//!     records requests a tile, from cycle 0 on. In each cycle the earliest request receives the next tile, row by row,
-//!     and its context begins it in the next cycle and draws it to its end. Nothing is stolen; stack and fill vectors
-//!     belong to the context.
-//! 14. **Contexts of a sequential lane**, which need tiles, share it: one has the lane. From its request to a cache, or
-//!     for a tile, until the cycle before the answer, another may have it. In each such cycle the context that has
-//!     wanted it longest, of one cycle the lowest number, receives the lane and continues in the next cycle. A context
-//!     without the lane wants it from the cycle of the answer; one with the lane still inspects its result in that
-//!     cycle. Cycles in which a context wants the lane are *block busy*.
+//!     rest of the visit's occupancy, and its latency, come after the last access. A visit takes at least a cycle.
+//!     Requests of several lanes are served in order, each in its own cycle; of one cycle, nodes before attributes, and
+//!     the lowest lane and context first. An access takes the port of its cache for lookup and inspection, longer for a
+//!     miss that waits for outer memory. An incoming line also takes it for the cycles of its transfer.
+//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]). A context without records requests a tile, from
+//!     cycle 0 on. In each cycle the earliest request receives the next tile, row by row, and its context begins it in
+//!     the next cycle and draws it to its end, with its own stack and fill vectors.
+//! 14. **Contexts of a sequential lane** share it: one has the lane. From its request to a cache, or for a tile, until
+//!     the cycle before the answer, another may have it. In each such cycle the context that was answered first, of one
+//!     cycle the lowest number, receives the lane and continues in the next cycle; the cycles of its wait are *block
+//!     busy*. A context with the lane inspects its result in the cycle of the answer.
 //!
 //! A turn *alone* takes the sum over its visits of the larger of occupancy + latency and the longest latency of an
 //! access that hits. **Work** is the sum over all turns. **Span** is the longest chain of turns alone that had to follow
-//! each other, parent to child and sibling to sibling: no number of lanes, contexts or ports makes the frame shorter.
+//! each other. Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context,
+//! no faster or wider part makes a frame slower.
 //!
-//! Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context, no faster
-//! or wider part makes a frame slower; with several it can, because records meet in another order (the anomalies of list
-//! scheduling, Graham 1969).
-//!
-//! Simplified: dependent operations of one visit are charged with one latency, as in a pipeline, which is optimistic for
-//! few contexts. Passing results between stages and finding ready records take no time.
+//! docs/hardware-model.md lists what the model leaves out.
 
 mod hardware;
 mod memories;

@@ -23,7 +23,7 @@ macro_rules! causes {
         /// Cycles by cause, summed over records.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
         pub struct Stalls {
-            $($(#[$doc])* pub $field: u64,)+
+            $(#[doc = $name] $(#[$doc])* pub $field: u64,)+
         }
 
         impl Stalls {
@@ -49,7 +49,6 @@ causes! {
     BankConflict bank_conflict = "bank conflict",
     /// A cache miss, its own or one in flight.
     CacheMiss cache_miss = "cache miss",
-    /// The output of pixels.
     PixelPort pixel_port = "pixel port",
     /// Being read back from outer memory.
     StackSpill stack_spill = "stack spill",

@@ -11,9 +11,7 @@ named! {
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum RecordKind {
-        /// Its vertices are in clip space.
         Clip = "in clip space",
-        /// Its vertices are in screen space.
         Screen = "in screen space",
         /// A finest voxel, which needs no vertices.
         Finest = "finest voxel",
