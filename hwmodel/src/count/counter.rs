@@ -34,24 +34,6 @@ const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 type Table = Vec<[[u64; CLASSES]; STAGES]>;
 
 /// Counts of one or more frames.
-///
-/// ```
-/// use hwmodel::count::Counter;
-/// use hwmodel::{Datapath, Format, Overflow, Stage};
-///
-/// let mut counter = Counter::new();
-/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut counter);
-/// dp.begin_record(0, 3);
-/// dp.stage(Stage::Centre);
-/// let (left, right) = (dp.load(5), dp.load(7));
-/// let middle = dp.midpoint(left, right);
-/// let _ = dp.lt(middle, right);
-///
-/// let by_width = counter.sum_by(|cell| cell.bits);
-/// assert_eq!(by_width.into_iter().collect::<Vec<_>>(), [(24, 1), (25, 2)]);
-/// assert!(counter.cells().all(|cell| cell.level == 3));
-/// # Ok::<(), hwmodel::FormatError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
     /// By set, since it changed to its level. 94 KB would fill small stacks.

@@ -76,7 +76,7 @@ impl Counter {
         cells.map(|cell| cell.times).sum()
     }
 
-    /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`; keys without operations are absent.
+    /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`.
     pub fn sum_by<K: Ord>(&self, key: impl Fn(&OpCount) -> K) -> BTreeMap<K, u64> {
         let mut sums = BTreeMap::new();
         for cell in self.cells() {
@@ -85,7 +85,7 @@ impl Counter {
         sums
     }
 
-    /// Accesses added up by any key; keys without accesses are absent.
+    /// Accesses added up by any key.
     pub fn accesses_by<K: Ord>(&self, key: impl Fn(&AccessCount) -> K) -> BTreeMap<K, Accesses> {
         let mut sums = BTreeMap::<K, Accesses>::new();
         for cell in self.accesses() {
@@ -114,7 +114,7 @@ impl Counter {
         self.records.iter().sum()
     }
 
-    /// Records that had their turn, by octree level; levels without records are absent.
+    /// Records that had their turn, by octree level.
     pub fn records_by_level(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
         let levels = (0u32..).zip(self.records);
         levels.filter(|(_, records)| *records > 0)

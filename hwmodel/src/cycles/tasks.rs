@@ -18,7 +18,7 @@ struct Task {
     kind: RecordKind,
     lane: u32,
     children: [u32; 8],
-    /// Without contention: the cycles in which its turn can begin, and in which all known parts of it are over.
+    /// Without contention.
     begins: u64,
     over: u64,
 }

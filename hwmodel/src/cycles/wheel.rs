@@ -1,4 +1,4 @@
-//! A timing wheel: the next event of each context. A context has at most one, so its lists are links between contexts.
+//! A timing wheel. A context has at most one event, so its lists are links between contexts.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -16,17 +16,6 @@ pub struct CacheError {
 }
 
 /// A cache of `size_bytes / (ways * line_bytes)` sets. A line's set is its number modulo the number of sets.
-///
-/// ```
-/// use hwmodel::memory::Cache;
-///
-/// let mut cache = Cache::new(128, 1, 64)?; // two sets of one line each
-/// assert!(!cache.access(0)); // a miss: line 0 is brought in
-/// assert!(cache.access(63)); // the same line
-/// assert!(!cache.access(128)); // line 2 takes its place
-/// assert_eq!((cache.hits(), cache.misses()), (1, 2));
-/// # Ok::<(), hwmodel::memory::CacheError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Cache {
     line_bytes: u64,

@@ -1,4 +1,4 @@
-//! Traffic to the machine's memories: bits by kind, distinct addresses, depth of the stack, and miss curves.
+//! Traffic to the machine's memories, and miss curves.
 
 mod cache;
 mod curve;

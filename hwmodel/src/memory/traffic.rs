@@ -45,25 +45,6 @@ impl Widths {
 }
 
 /// A probe of the traffic to the memories. It ignores operations.
-///
-/// ```
-/// use hwmodel::memory::{MemoryProbe, Widths};
-/// use hwmodel::{Datapath, Format, Memory, Overflow};
-///
-/// let widths = Widths {
-///     stack_bits: 700,
-///     node_bits: 64,
-///     attribute_bits: 56,
-///     fill_vector_bits: 4,
-///     pixel_bits: 24,
-/// };
-/// let mut probe = MemoryProbe::new(widths).with_curve(Memory::Node, 32);
-/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
-/// dp.read(Memory::Node, 0);
-/// dp.read(Memory::Node, 3); // the same line: four nodes are 32 bytes
-/// assert_eq!((probe.read_bits(Memory::Node), probe.curves()[0].1.misses(1)), (128, 1));
-/// # Ok::<(), hwmodel::FormatError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct MemoryProbe {
     widths: Widths,

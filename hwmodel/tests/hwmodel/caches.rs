@@ -5,7 +5,6 @@ use hwmodel::memory::{Cache, MemoryProbe, MissCurve, Widths};
 use hwmodel::{Memory, Probe, Stage};
 use proptest::prelude::*;
 
-/// Addresses with some locality: jumps, steps and repeats.
 fn addresses() -> impl Strategy<Value = Vec<u64>> {
     let one = prop_oneof![
         0u64..100,
@@ -17,7 +16,6 @@ fn addresses() -> impl Strategy<Value = Vec<u64>> {
     prop::collection::vec(one, 0..400)
 }
 
-/// Compares a curve with fully associative caches of these numbers of lines.
 fn check_curve(addresses: &[u64], line: u32, sizes: impl IntoIterator<Item = u32>) {
     let mut curve = MissCurve::new(line);
     for &address in addresses {

@@ -27,7 +27,6 @@ fn cost(table: &CostTable, quantity: &str, operation: &str, size: u32) -> Result
         "fast" => table.area(operation, size, Goal::Delay),
         "delay" => table.delay(operation, size, Goal::Area),
         "energy" => table.energy(operation, size),
-        // Of 64 bits in a memory of `size` bytes.
         _ => table.memory_energy(operation, u64::from(size), 64),
     }
 }
@@ -99,7 +98,6 @@ fn what_is_missing_or_too_far_is_named() {
     assert!(CostTable::empty().energy("add", 32).is_err());
 }
 
-/// Rows that follow from others follow from them.
 #[test]
 fn derived_rows_are_what_they_say() {
     let table = shipped();
@@ -132,7 +130,6 @@ fn derived_rows_are_what_they_say() {
     }
 }
 
-/// The synthesis figures are all there.
 #[test]
 #[ignore = "needs the folder SHIFTVOX_DATA"]
 fn the_synthesis_is_shipped_whole() {
@@ -201,7 +198,6 @@ fn a_table_of_one_s_own() {
         (200.0, 220.0, "our own 7 nm library")
     );
     assert_eq!(cost(&table, "area", "less", 32).unwrap().source, "both");
-    // A name that only `quadratic` has is listed, too.
     let listed = table.operations();
     assert!(listed.contains(&"square_root") && listed.contains(&"cube_root"));
 }

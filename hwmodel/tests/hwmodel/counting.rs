@@ -9,7 +9,6 @@ use proptest::prelude::*;
 
 type Cells = BTreeMap<(u32, u32, Stage, OpClass), u64>;
 
-/// Keeps a map of all events, one call at a time.
 #[derive(Debug, Default)]
 struct Plain {
     ops: Cells,
@@ -63,7 +62,6 @@ fn compare(counter: &Counter, plain: &Plain) {
     assert_eq!(counter.writes(Memory::Node), node(|of| of.writes));
 }
 
-/// A call of a datapath.
 #[derive(Debug, Clone, Copy)]
 enum Act {
     Record(u32),
@@ -72,7 +70,6 @@ enum Act {
     Read(usize),
     Write(usize),
     Integer(u32),
-    /// A datapath of other words takes over.
     Format(u32),
 }
 
@@ -166,7 +163,6 @@ proptest! {
         let mut other = b.clone();
         a.merge(&b);
         compare(&a, &plain);
-        // The other way about it is the same, but for the order.
         let mut one = Counter::new();
         play(&first, &mut one);
         other.merge(&one);

@@ -29,7 +29,6 @@ fn hardware() -> Table {
     format!("{HARDWARE}{caches}").parse().unwrap()
 }
 
-/// Sets what a table has in another one.
 fn overlay(onto: &mut Table, table: Table) {
     for (key, value) in table {
         match (onto.get_mut(&key), value) {

@@ -10,7 +10,6 @@ use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 
-/// Numbers from a seed (SplitMix64).
 struct Dice(u64);
 
 impl Dice {
@@ -53,7 +52,6 @@ fn does(dice: &mut Dice) -> Vec<Does> {
     does
 }
 
-/// A part of a region, or all of it.
 fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
     let mut part = image_node;
     while part.level < 6 && dice.one_in(2) {
@@ -66,7 +64,6 @@ fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
     part
 }
 
-/// A tree of up to `most` records.
 fn records(seed: u64, most: u64) -> Vec<Node> {
     let mut dice = Dice(seed);
     let mut nodes = vec![Node::default(), Node::default()];
@@ -149,7 +146,6 @@ fn run(nodes: &[Node], hardware: &Hardware) -> (CycleReport, Vec<u32>) {
     (report, workload.turns)
 }
 
-/// Records in the serial machine's order: depth first, nearest first.
 fn depth_first(nodes: &[Node]) -> Vec<u32> {
     let mut stack = vec![1];
     let mut order = Vec::new();
@@ -198,17 +194,14 @@ proptest! {
         }
         prop_assert!(report.span <= report.work);
         prop_assert!(report.cycles <= report.serial, "{} > {}", report.cycles, report.serial);
-        // Every context's every cycle is accounted for.
         let sum = report.context_cycles;
         prop_assert_eq!(
             sum.working + sum.stalled + sum.order_wait + sum.no_record,
             report.cycles * hardware.all_contexts()
         );
         prop_assert_eq!(report.stages.iter().map(|stage| stage.alone).sum::<u64>(), report.work);
-        // Every record has one turn.
         turns.sort_unstable();
         prop_assert_eq!(turns, (1..nodes.len() as u32).collect::<Vec<_>>());
-        // And it comes out the same again.
         prop_assert_eq!(run(&nodes, &hardware).0, report);
     }
 
@@ -221,7 +214,6 @@ proptest! {
         let mut workload = Listed::new(&nodes, &hardware);
         let mut recorder = Recorder::new(u64::MAX);
         simulate(&hardware, &mut workload, &mut recorder).unwrap();
-        // First and last cycle of each record's own turn.
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();
         for visit in recorder.visits() {
             if let Some(&item) = workload.turns.get(visit.record as usize) {
@@ -268,10 +260,8 @@ proptest! {
     }
 }
 
-/// Makes one part of a hardware better.
 fn improve(hardware: &mut Hardware, which: usize) {
     let class = OpClass::ALL[which % 8];
-    // Wires have none to improve.
     let mut none = unit(&mut Dice(0));
     let unit = hardware.units.get_mut(&class).unwrap_or(&mut none);
     match which {

@@ -38,12 +38,17 @@ impl<const ON: bool> Probe for Log<ON> {
     }
 }
 
-/// A type of number, as the host sees it.
 trait Host: Number {
     fn of(value: i64) -> Self;
     fn value(self) -> i64;
-    /// Width, from the rule itself (wide words have twice the bits, 64 at most) and not from `Format`.
-    fn bits(word: u32) -> u32;
+    /// From the rule itself and not from `Format`.
+    fn bits(word: u32) -> u32 {
+        if Self::IS_WIDE {
+            64.min(2 * word)
+        } else {
+            word
+        }
+    }
     const IS_WIDE: bool;
 }
 
@@ -55,9 +60,6 @@ impl Host for Word {
         self.to_host()
     }
     const IS_WIDE: bool = false;
-    fn bits(word: u32) -> u32 {
-        word
-    }
 }
 
 impl Host for WideWord {
@@ -68,9 +70,6 @@ impl Host for WideWord {
         self.to_host()
     }
     const IS_WIDE: bool = true;
-    fn bits(word: u32) -> u32 {
-        (2 * word).min(64)
-    }
 }
 
 /// Operands: two numbers, and places of a shift or a bit.
@@ -98,7 +97,6 @@ struct Ran<P: Probe> {
     dp: Datapath<P>,
 }
 
-/// Runs every operation that both types of number have.
 fn run_all<P: Probe + Default, T: Host>(
     word: u32,
     policy: Overflow,
@@ -163,7 +161,6 @@ fn op_event(class: OpClass, bits: u32) -> Event {
     Event::Op(class, bits, PLACE, 1)
 }
 
-/// A datapath at [`PLACE`], in record 41.
 fn datapath<P: Probe>(bits: u32, policy: Overflow, probe: P) -> Datapath<P> {
     let mut dp = Datapath::new(format(bits), policy, probe);
     dp.begin_record(41, PLACE.level);
@@ -247,7 +244,6 @@ fn edge_cases_of_all_operations() {
     edge_cases_of::<WideWord>();
 }
 
-/// A width, and two words or wide words of that width.
 fn any_pair<T: Host>() -> impl Strategy<Value = (u32, i64, i64)> {
     widths().prop_flat_map(|word| {
         let bits = T::bits(word);
@@ -255,7 +251,9 @@ fn any_pair<T: Host>() -> impl Strategy<Value = (u32, i64, i64)> {
     })
 }
 
-fn check_load<T: Host>(word: u32, value: i64, load: fn(&mut Datapath<Log<true>>, i64) -> T) {
+type Logged = Datapath<Log<true>>;
+
+fn check_load<T: Host>(word: u32, value: i64, load: fn(&mut Logged, i64) -> T) {
     for policy in POLICIES {
         let mut dp = datapath(word, policy, Log::default());
         let ran = Ran {
@@ -299,7 +297,7 @@ proptest! {
     ) {
         let greatest = i64::try_from(greatest(word)).unwrap();
         let divisor = (b & greatest).max(1);
-        let step = |remainder: i64, run: &dyn Fn(&mut Datapath<Log<true>>, Word, Word) -> (Word, bool)| {
+        let step = |remainder: i64, run: &dyn Fn(&mut Logged, Word, Word) -> (Word, bool)| {
             let mut dp = datapath(word, Overflow::Trap, Log::<true>::default());
             let (rest, bit) = run(&mut dp, Word::of(remainder), Word::of(divisor));
             (rest.value().into(), bit, dp.into_probe().0[1..].to_vec())
