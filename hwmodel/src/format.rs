@@ -15,7 +15,6 @@ pub const MAX_BITS: u32 = 64;
 pub struct Format {
     bits: u32,
     frac: u32,
-    /// Bits of a wide word.
     #[serde(skip)]
     wide_bits: u32,
 }

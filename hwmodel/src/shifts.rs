@@ -92,14 +92,12 @@ impl Seen {
 #[derive(Debug, Clone, Default)]
 pub struct ShiftProbe {
     seen: NumberMap<SiteKey, (Site, Seen)>,
-    /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
     in_turn: Option<Stage>,
     beside: bool,
 }
 
 type Site = &'static Location<'static>;
-/// The site's address, its stage and that of its step, width and level.
 type SiteKey = (usize, Stage, Stage, u32, u32);
 
 impl ShiftProbe {

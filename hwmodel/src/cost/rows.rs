@@ -67,7 +67,6 @@ pub enum CostError {
     NoFigure(String, String),
 }
 
-/// A number, or a range.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum Figure {
@@ -112,7 +111,6 @@ pub(super) struct CostRow {
     pub(super) file: String,
 }
 
-/// Key of the rows between which figures are interpolated.
 pub(super) type Key = (Quantity, String, Option<Goal>);
 
 #[derive(Debug, Default)]
@@ -121,11 +119,8 @@ pub(super) struct Parsed {
     pub(super) rows: BTreeMap<Key, Vec<CostRow>>,
 }
 
-/// Largest figure, so that sums over a frame stay finite.
 const MAX_FIGURE: f64 = 1e12;
-/// Widest row, bits.
 const MAX_WIDTH: u32 = 1 << 16;
-/// Largest memory, bytes.
 const MAX_BYTES: u64 = 1 << 50;
 
 impl FileRow {

@@ -59,7 +59,6 @@ pub struct CostTable {
     quadratic: BTreeSet<String>,
 }
 
-/// Largest accepted multiple of the widest row's width.
 const FARTHEST: f64 = 4.0;
 
 impl CostTable {

@@ -30,7 +30,6 @@ pub(super) const SETS: usize = 16;
 
 const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
-/// By level, stage and class.
 type Table = Vec<[[u64; CLASSES]; STAGES]>;
 
 /// Counts of one or more frames.
@@ -38,12 +37,10 @@ type Table = Vec<[[u64; CLASSES]; STAGES]>;
 pub struct Counter {
     /// By set, since it changed to its level. 94 KB would fill small stacks.
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
-    /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],
     set: usize,
     pub(super) widths: [u32; 4],
     pub(super) settled: Vec<[CountRow; ROWS]>,
-    /// By rare width.
     pub(super) tables: BTreeMap<u32, Table>,
     pub(super) records: [u64; LEVELS],
 }

@@ -209,7 +209,6 @@ fn add(sums: &mut CountRow, row: &CountRow) {
     }
 }
 
-/// Equal counts; the order in which they were made does not matter.
 impl PartialEq for Counter {
     fn eq(&self, other: &Self) -> bool {
         self.records == other.records

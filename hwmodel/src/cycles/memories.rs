@@ -36,7 +36,6 @@ impl Port {
         }
     }
 
-    /// Books one access in the first free cycle from `at`, and returns that cycle.
     #[inline]
     pub(super) fn book(&mut self, at: u64) -> u64 {
         self.accesses += 1;
@@ -69,7 +68,6 @@ impl Port {
 pub(super) struct OuterPort {
     of: OuterMemory,
     free_at: u64,
-    /// Bits of pixels that do not fill a word yet.
     pixel_bits: u64,
     pub(super) busy: u64,
 }
@@ -303,7 +301,6 @@ impl BanksState {
 pub(super) struct PixelsState {
     of: Pixels,
     pub(super) port: Port,
-    /// Cycles in which the buffered pixels leave, oldest at `writes mod buffer`.
     leaving: Vec<u64>,
     last: u64,
 }
@@ -348,12 +345,10 @@ impl PixelsState {
 
 #[derive(Debug)]
 pub(super) struct Memories {
-    /// Per lane, or per context.
     pub(super) stacks: Vec<Port>,
     stack_latency: u64,
     pub(super) nodes: CacheState,
     pub(super) attributes: CacheState,
-    /// One for all, or one per stack.
     fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
     pub(super) outer: OuterPort,

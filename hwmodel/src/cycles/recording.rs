@@ -111,13 +111,11 @@ impl Recording {
 /// A probe that records turns.
 #[derive(Debug)]
 pub struct Tape {
-    /// Number of operations in this turn; by stage, class and width.
     times: Box<[[[u32; WIDTHS]; CLASSES]; STAGES]>,
     met: Vec<Tally>,
     known: HashMap<Box<[Tally]>, u32>,
     begun: u32,
     level: u32,
-    /// Turn of each of the workload's items.
     numbers: Vec<u32>,
     recording: Recording,
     most_bytes: usize,
@@ -228,7 +226,6 @@ impl Tape {
 impl Probe for Tape {
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        // As in `TurnLog`.
         let bits = (bits as usize).min(WIDTHS - 1);
         let sum = &mut self.times[place.stage as usize][class as usize][bits];
         if *sum == 0 {
@@ -255,7 +252,6 @@ impl Probe for Tape {
     }
 }
 
-/// Recorded turns as a workload that never fails.
 struct Replay<'a, E> {
     recording: &'a Recording,
     log: TurnLog,

@@ -157,58 +157,40 @@ pub struct Bottleneck {
 
 /// The result of a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct CycleReport {
-    /// [`REPORT_VERSION`].
     pub version: u32,
-    /// The hardware's name.
     pub hardware: String,
-    /// Number of lanes.
     pub lanes: u32,
-    /// Contexts per lane.
     pub contexts: u32,
-    /// The rule of independence.
     pub independence: Independence,
-    /// Clock, MHz.
     pub clock_mhz: f64,
     /// Until the last pixel has left.
     pub cycles: u64,
-    /// Records that had their turn.
     pub records: u64,
-    /// Pixels written.
     pub pixels: u64,
-    /// `cycles / records`.
     pub cycles_per_record: f64,
     /// `cycles / pixels`; 0 without pixels.
     pub cycles_per_pixel: f64,
-    /// Frames per second at the clock.
     pub frames_per_second: f64,
     /// Cycles of all turns without waiting.
     pub work: u64,
     /// Cycles of the longest chain of dependent turns without other waiting.
     pub span: u64,
-    /// `work / span`.
     pub parallelism: f64,
     /// Upper bound: cycles of all turns one after the other with their longest waits.
     pub serial: u64,
-    /// By stage.
     pub stages: Vec<StageReport>,
-    /// Cycles of the contexts.
     pub context_cycles: ContextReport,
-    /// The node cache.
     pub node_cache: CacheReport,
-    /// The attribute cache.
     pub attribute_cache: CacheReport,
-    /// Fill vectors read.
     pub fill_reads: u64,
-    /// Fill vectors written.
     pub fill_writes: u64,
     /// Cycles in which the port to outer memory was taken.
     pub outer_busy: u64,
-    /// Stacks.
     pub stack: StackReport,
     /// By resource, tightest first.
     pub bounds: Vec<Bound>,
-    /// The limit of the frame.
     pub bottleneck: Bottleneck,
 }
 
@@ -216,7 +198,6 @@ pub struct CycleReport {
 const LIMITING: f64 = 0.75;
 
 impl CycleReport {
-    /// Sets bounds and bottleneck.
     pub(super) fn conclude(&mut self, bounds: Vec<(String, u64)>) {
         let cycles = self.cycles.max(1) as f64;
         let bound = |(resource, bound)| Bound {
@@ -297,6 +278,5 @@ impl CycleReport {
     }
 }
 
-/// Names among the bounds.
 pub(super) const OUTER_PORT: &str = "outer memory port";
 pub(super) const SPAN: &str = "longest chain";

@@ -8,7 +8,6 @@ use super::simulate::{Simulation, SimulationError};
 use super::turn::Workload;
 use crate::Memory;
 
-/// Cycles from an uncontended request of a tile until it begins.
 const HAND_OUT: u64 = 1;
 
 /// Kinds of request, in the order in which they are served within a cycle.
@@ -28,7 +27,6 @@ pub(super) struct Asked {
     /// The next tile, and the first cycle in which one is handed out.
     tile: u32,
     tile_from: u64,
-    /// By lane.
     pub(super) sharing: Vec<Sharing>,
     /// Contexts of lanes whose holder may change at the end of this cycle.
     pub(super) lanes: Vec<u32>,
@@ -140,7 +138,6 @@ impl<W: Workload> Simulation<'_, W> {
             self.wheel.set(free, next);
         }
         self.is_served(context, served.cause);
-        // The result is inspected in that cycle.
         self.waits_until(now, served.done, context);
     }
 
@@ -247,7 +244,6 @@ impl<W: Workload> Simulation<'_, W> {
 pub(super) struct Sharing {
     holder: u32,
     waits: bool,
-    /// First cycle and context of each request, in order.
     wanted_by: Vec<(u64, u32)>,
 }
 

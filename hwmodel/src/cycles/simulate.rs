@@ -61,7 +61,6 @@ pub(super) struct Context {
     granted: bool,
     pub(super) task: u32,
     record: u64,
-    /// Lane of the record's stack.
     pub(super) from: u32,
     steal: u64,
     spill: u64,
@@ -71,10 +70,8 @@ pub(super) struct Context {
 
 #[derive(Debug, Default)]
 pub(super) struct Lane {
-    /// Newest last.
     pub(super) ready: VecDeque<u32>,
     stored: u64,
-    /// Contexts without a record, one bit each.
     pub(super) idle: u64,
 }
 

@@ -37,7 +37,6 @@ pub(super) struct Tasks {
     tasks: Vec<Task>,
     free: Vec<u32>,
     pub(super) waiting: u64,
-    /// Records that had their turn and have unfinished descendants.
     pub(super) open: u64,
     pub(super) most_open: u64,
     pub(super) span: u64,
@@ -125,7 +124,6 @@ impl Tasks {
             self.finish(task, ready);
             return;
         }
-        // The workload's start is not a record.
         self.open += u64::from(self.tasks[task as usize].parent != NO_TASK);
         self.most_open = self.most_open.max(self.open);
         for (slot, child) in children.iter().enumerate().rev() {

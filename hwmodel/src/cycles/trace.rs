@@ -19,7 +19,6 @@ pub struct Recorder {
     records: u64,
     visits: Vec<VisitSpan>,
     queues: Vec<Queue>,
-    /// Last cycle of any visit kept.
     end: u64,
 }
 
@@ -118,7 +117,6 @@ impl Observer for Recorder {
     }
 
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
-        // Those after the last visit are not shown.
         if self.queues.len() <= 4 * self.visits.len() {
             self.queues.push(Queue {
                 cycle,

@@ -127,16 +127,13 @@ struct Done {
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
     accesses: [Vec<Access>; STAGES],
-    /// By stage, a bit per class of operation, and [`ACCESSED`].
     met: [u16; STAGES],
-    /// Passes of one operation: by stage, class, width.
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
     child_level: u32,
     most_passes: [[u64; CLASSES]; STAGES],
     sequential: bool,
-    /// On sequential hardware: the finished visits, and the current stage.
     over: TurnVisits,
     stage: Stage,
     beside: bool,
@@ -227,7 +224,6 @@ impl TurnLog {
         plan.worst = 0;
         let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
-        // As in `memory::RecordProbe`.
         let divides = 1 << OpClass::DivideStep as u16;
         plan.changed_to_screen = changed || self.met[Stage::ToScreen as usize] & divides != 0;
         for stage in ROUND {
@@ -375,7 +371,6 @@ impl Probe for TurnLog {
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
-    /// Cycles in which operations are issued.
     pub(super) occupied: u64,
     pub(super) latency: u64,
     /// Cycles without any waiting.

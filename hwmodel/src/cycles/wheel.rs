@@ -8,7 +8,6 @@ const SLOTS: usize = 1024;
 const WORDS: usize = SLOTS / 64;
 const NONE: u32 = u32::MAX;
 
-/// Events in the order of their cycles, then of setting.
 #[derive(Debug)]
 pub(super) struct Wheel {
     now: u64,
@@ -98,7 +97,6 @@ impl Wheel {
         let from = self.now as usize % SLOTS;
         let mut word = from / 64;
         let mut bits = self.used[word] & (u64::MAX << (from % 64));
-        // Once around, and the part of the first word before `from`.
         for _ in 0..=WORDS {
             if bits != 0 {
                 return Some(word * 64 + bits.trailing_zeros() as usize);

@@ -35,13 +35,10 @@ pub struct MissPoint {
 #[derive(Debug, Clone)]
 pub struct MissCurve {
     line_bytes: u32,
-    /// Time of each line's last access.
     last: NumberMap<u64, u32>,
     /// Binary indexed tree over times: 1 where a line was last accessed then.
     tree: Vec<u32>,
-    /// Next time, less than the tree's length.
     now: u32,
-    /// Accesses by stack distance, without first accesses.
     distances: Vec<u64>,
     newest: Option<u64>,
     accesses: u64,

@@ -94,7 +94,6 @@ impl RecordBits {
 pub struct RecordProbe {
     bits: RecordBits,
     accesses: [Accesses; RecordKind::ALL.len()],
-    /// Kinds by address.
     stack: Vec<RecordKind>,
     child_level: u32,
     in_screen_space: bool,

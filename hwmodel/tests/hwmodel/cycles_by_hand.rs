@@ -59,12 +59,8 @@ fn does(word: &str) -> Does {
         "beside" => Does::Beside(Stage::Order, OpClass::Add, 16, 1),
         "add" => {
             let (bits, times) = number.split_once('x').unwrap();
-            Does::Ops(
-                Stage::Centre,
-                OpClass::Add,
-                bits.parse().unwrap(),
-                times.parse().unwrap(),
-            )
+            let [bits, times] = [bits, times].map(|number| number.parse().unwrap());
+            Does::Ops(Stage::Centre, OpClass::Add, bits, times)
         }
         _ => panic!("{word}"),
     }
@@ -72,10 +68,8 @@ fn does(word: &str) -> Does {
 
 /// Records with their names, from lines `name: what it does -> child and place ...`.
 fn records<'t>(lines: &[&'t str]) -> (Vec<&'t str>, Vec<Node>) {
-    let parts: Vec<_> = lines
-        .iter()
-        .map(|line| line.split_once(": ").unwrap())
-        .collect();
+    let parts = lines.iter().map(|line| line.split_once(": ").unwrap());
+    let parts: Vec<_> = parts.collect();
     let names: Vec<&str> = parts.iter().map(|(name, _)| *name).collect();
     let node = |(_, rest): &(&str, &str)| {
         let (work, children) = rest.split_once(" -> ").unwrap_or((rest, ""));
@@ -132,35 +126,28 @@ fn check(name: &str, hardware: Table, sections: &BTreeMap<&str, Vec<&str>>) {
             Some(&item) => names[item as usize],
             None => "tile",
         };
-        let VisitSpan {
-            lane,
-            context,
-            stage,
-            arrives,
-            begins,
-            frees,
-            ends,
-            ..
-        } = visit;
-        let row = format!("{record} {lane}.{context} {stage:?} {arrives} {begins} {frees} {ends}");
+        let times = [visit.arrives, visit.begins, visit.frees, visit.ends];
+        let mut words = vec![
+            record.to_owned(),
+            format!("{}.{}", visit.lane, visit.context),
+        ];
+        words.push(format!("{:?}", visit.stage));
+        words.extend(times.map(|time| time.to_string()));
         let stall = visit
             .stall
-            .map(|(cause, cycles)| format!(" {cause:?} {cycles}"));
-        row + &stall.unwrap_or_default()
+            .map(|(cause, cycles)| format!("{cause:?} {cycles}"));
+        words.extend(stall);
+        words.join(" ")
     };
     let found: Vec<String> = recorder.visits().iter().map(row).collect();
     let mut left: Vec<&str> = found.iter().map(String::as_str).collect();
     let exact = sections.get("visits");
     for expected in exact.or(sections.get("some visits")).into_iter().flatten() {
+        // With `_`, a stall may be left out.
         let is_like = |found: &str| {
-            let expected: Vec<&str> = expected.split(' ').collect();
-            let found: Vec<&str> = found.split(' ').collect();
-            let any = expected.contains(&"_");
-            let same = expected
-                .iter()
-                .zip(&found)
-                .all(|(e, f)| *e == "_" || e == f);
-            same && (any || expected.len() == found.len())
+            let mut pairs = expected.split(' ').zip(found.split(' '));
+            pairs.all(|(e, f)| e == "_" || e == f)
+                && (expected.contains('_') || expected.len() == found.len())
         };
         let at = left.iter().position(|found| is_like(found));
         left.remove(at.unwrap_or_else(|| panic!("{name}: no visit {expected}: {found:#?}")));
@@ -181,9 +168,8 @@ fn runs_worked_by_hand() {
     let text = include_str!("cycles_by_hand.txt");
     let mut known: BTreeMap<&str, (Table, BTreeMap<&str, Vec<&str>>)> = BTreeMap::new();
     for case in text.split("\n=== ").skip(1) {
-        let lines = case.lines();
-        let lines = lines.filter(|line| !line.starts_with('#') && !line.is_empty());
-        let lines: Vec<&str> = lines.collect();
+        let is_kept = |line: &&str| !line.starts_with('#') && !line.is_empty();
+        let lines: Vec<&str> = case.lines().filter(is_kept).collect();
         let mut parts = lines[1..].split(|line| line.starts_with("--- "));
         let titles = lines.iter().filter_map(|line| line.strip_prefix("--- "));
         let settings = parts.next().unwrap();
