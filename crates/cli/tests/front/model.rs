@@ -245,7 +245,6 @@ fn hardware_and_costs_of_one_s_own() {
 fn wrong_command_lines() {
     for (flags, code, expected) in [
         ("--hw none-such", 4, "none-such"),
-        ("--trace x.txt", 2, "x.txt"),
         ("--bits 16 --frac 12", 5, "a word of"),
         // The machine is modelled, so flags that choose another engine are rejected.
         ("--engine fast", 2, "--engine"),
