@@ -4,9 +4,7 @@
 use crate::common::*;
 use crate::scenes;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{
-    Child, Hardware, ImageNode, Independence, NoObserver, Progress, Recorder,
-};
+use hwmodel::cycles::{Child, Hardware, ImageNode, Independence, NoObserver, Progress, Recorder};
 use hwmodel::{Memory, OpClass, Stage};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;

@@ -163,7 +163,10 @@ fn files_are_written_once() {
         ("--export-svg", "r.svg", "Roofline"),
         ("--export-json", "r.json", "shiftvox.model"),
     ];
-    let mut flags: Vec<&str> = files.iter().flat_map(|(flag, name, _)| [*flag, *name]).collect();
+    let mut flags: Vec<&str> = files
+        .iter()
+        .flat_map(|(flag, name, _)| [*flag, *name])
+        .collect();
     flags.drain(..2);
     run(folder.path(), &[&SCENE[..], &flags].concat()).success();
     for (_, name, part) in files {

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, energy_of,
-    memory_energy_of,
+    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
