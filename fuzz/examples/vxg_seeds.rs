@@ -1,6 +1,4 @@
 //! Writes small seed files for the target `vxg` into corpus/vxg; run in fuzz/.
-//!
-//! Each is a file of the current format, stored by the program and checked.
 
 use std::error::Error;
 use std::fs;
@@ -43,7 +41,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         vxg::write_to(&graph, &mut bytes)?;
         vxg::from_bytes(&bytes)?;
         println!("{name}: {} bytes", bytes.len());
-        // As it is, with checksums set, and the former without a file.
         for choice in [0, 1, 4] {
             let seed = [&[choice], &bytes[..]].concat();
             fs::write(format!("corpus/vxg/{name}_{choice}"), seed)?;

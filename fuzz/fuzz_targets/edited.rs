@@ -1,6 +1,5 @@
 //! Reads bytes as `.far` and `.tvx` files. Then edits fields of sound `.vxg`, `.far` and `.tvx` files, repairs lengths and
-//! checksums, and draws what is accepted. Eight bytes choose the file, and eight more each edit:
-//! `crates/mesh/tests/sealed/`.
+//! checksums, and draws what is accepted.
 #![no_main]
 #![allow(clippy::unwrap_used)]
 

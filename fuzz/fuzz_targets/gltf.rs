@@ -1,4 +1,4 @@
-//! Any bytes as `.glb` or `.gltf`: a mesh or an error, without panics or unjustified memory.
+//! Any bytes as `.glb` or `.gltf`: a mesh or an error.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

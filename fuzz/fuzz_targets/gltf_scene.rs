@@ -1,4 +1,4 @@
-//! A glTF document composed from bytes is read correctly. If it was damaged afterwards, it is read or rejected.
+//! A glTF document composed from bytes is read correctly or, if it was damaged afterwards, rejected.
 #![no_main]
 
 #[path = "../../crates/mesh/tests/mesh/gltf_bytes.rs"]

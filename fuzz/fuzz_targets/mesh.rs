@@ -1,5 +1,4 @@
-//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and voxels of a small mesh. No panic, and no
-//! memory that the file does not justify.
+//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and voxels of a small mesh.
 #![no_main]
 
 use std::io;

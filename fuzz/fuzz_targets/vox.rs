@@ -1,11 +1,10 @@
-//! Any bytes as `.vox`: a scene or an error, without panics or unjustified memory.
+//! Any bytes as `.vox`: a scene or an error.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OutOfBounds, ReadOptions, read_voxels_from};
 
-/// Limit of voxels.
 const MOST: u64 = 1 << 20;
 
 fuzz_target!(|data: (u8, &[u8])| {

@@ -1,14 +1,11 @@
-//! A `.vox` whose scene graph shares nodes: a few bytes can place a model without end, which bytes at random never do.
-//! It is read or rejected, within the limit of voxels.
+//! A `.vox` whose scene graph shares nodes, composed from bytes, is read or rejected within the limit of voxels.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{ReadOptions, read_voxels_from};
 
-/// Most voxels that are wanted.
 const MOST: u64 = 1 << 16;
-/// Most nodes, shapes included.
 const NODES: usize = 64;
 
 /// Bytes, then zeros.

@@ -1,4 +1,4 @@
-//! Any bytes as a voxel file of any format: voxels or an error, without panics or unjustified memory.
+//! Any bytes as a voxel file of any format: voxels or an error.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,5 @@
-//! Reads bytes as a `.vxg` file and walks the result: a graph or an error, never a panic.
-//!
-//! The first byte chooses: the file itself, or the file with a layout and checksums that fit, because nothing behind a
-//! checksum would be reached by chance.
+//! Reads bytes as a `.vxg` file and walks the result. The first byte chooses: the file itself, or with a layout and
+//! checksums that fit.
 #![no_main]
 
 #[allow(dead_code)]
@@ -19,7 +17,7 @@ use shiftvox::graph::{Graph, MergeBy, Silent, merge, vxg};
 /// Cells that are looked at; a cyclic graph may have more than anyone can wait for.
 const CELLS: usize = 200;
 
-/// Looks at a graph as a picture does, be it sound or not, and merges it.
+/// Looks at a graph, sound or not, and merges it.
 fn exercise(graph: &Graph) -> Graph {
     for cell in graph.voxels().take(CELLS) {
         let attributes = (graph.color_of(cell.node), graph.normal_of(cell.node));
@@ -83,7 +81,6 @@ fuzz_target!(|data: &[u8]| {
     }
 });
 
-/// A file of this process in the folder for temporary files.
 fn temporary_file() -> std::io::Result<(PathBuf, File)> {
     let name = format!("shiftvox-fuzz-{}.vxg", std::process::id());
     let path = std::env::temp_dir().join(name);

@@ -1,5 +1,4 @@
-//! The datapath: each call does one operation on words, reports it to the probe, and applies the overflow policy. There
-//! is no multiplication and no division; users build a restoring divide from [`Datapath::divide_step`].
+//! The datapath: each call does one operation on words, reports it to the probe, and applies the overflow policy.
 
 use std::panic::Location;
 
@@ -14,7 +13,7 @@ use crate::{
 pub struct Datapath<P: Probe> {
     format: Format,
     policy: Overflow,
-    /// 64 less the width of words and wide words: shifting left and right by it sign-extends.
+    /// 64 less the widths of words and wide words.
     spare: [u32; 2],
     place: StageLevel,
     record: u64,
@@ -79,19 +78,19 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Continues a record of this level, whose turn began before.
+    /// Continues a record of this level.
     #[inline(always)]
     pub fn resume(&mut self, level: u32) {
         self.place.level = level;
     }
 
-    /// Sets the stage of the following operations.
+    /// Enters a stage.
     #[inline(always)]
     pub fn stage(&mut self, stage: Stage) {
         self.place.stage = stage;
     }
 
-    /// Marks that the following operations need the results so far ([`Probe::next_step`]).
+    /// Begins a dependent step ([`Probe::next_step`]).
     #[inline(always)]
     pub fn next_step(&mut self, idle: u32) {
         if P::ENABLED {
@@ -99,7 +98,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Does work of another stage, which hardware does in the same cycles ([`Probe::beside`]).
+    /// Does work of another stage in the same cycles ([`Probe::beside`]).
     #[inline(always)]
     pub fn beside<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.place.stage, stage);
@@ -130,7 +129,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Shows a probe the inputs and outputs of a block. Compiles to nothing where no probe taps.
+    /// Shows a probe that taps the inputs and outputs of a block.
     #[inline(always)]
     pub fn tap(&mut self, block: impl Into<u32>, stimulus: &impl Wires, expected: &impl Wires) {
         if P::TAPS && self.probe.is_tapping() {
@@ -159,7 +158,6 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Reports by how many places the caller's line shifts.
     #[inline(always)]
     #[track_caller]
     fn note_shift<T: Number>(&mut self, places: u32) {
@@ -206,13 +204,13 @@ impl<P: Probe> Datapath<P> {
         T::from_raw(wrapped)
     }
 
-    /// Loads a constant of the frame; one that does not fit overflows.
+    /// Loads a constant of the frame.
     #[inline]
     pub fn load(&mut self, value: i64) -> Word {
         self.fit(TrapOp::Load, value, false)
     }
 
-    /// Loads a wide constant of the frame; one that does not fit overflows.
+    /// Loads a wide constant of the frame.
     #[inline]
     pub fn load_wide(&mut self, value: i64) -> WideWord {
         self.fit(TrapOp::Load, value, false)
@@ -361,21 +359,21 @@ impl<P: Probe> Datapath<P> {
         Word(a.0 & !(1 << place.min(63)))
     }
 
-    /// Bitwise and of two short vectors of `bits` bits.
+    /// And of `bits` bits.
     #[inline(always)]
     pub fn and_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
         self.note_short(OpClass::Logic, bits);
         a & b
     }
 
-    /// Bitwise or of two short vectors of `bits` bits.
+    /// Or of `bits` bits.
     #[inline(always)]
     pub fn or_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
         self.note_short(OpClass::Logic, bits);
         a | b
     }
 
-    /// Bitwise exclusive or of two short vectors of `bits` bits.
+    /// Exclusive or of `bits` bits.
     #[inline(always)]
     pub fn xor_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
         self.note_short(OpClass::Logic, bits);
@@ -389,8 +387,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// A word shifted left by one with `bit` as its last: the quotient register of a divide. Wires, not counted;
-    /// overflows like a shift.
+    /// A word shifted left by one with `bit` as its last: a quotient register. Wires.
     #[inline(always)]
     pub fn shift_in(&mut self, a: Word, bit: bool) -> Word {
         let raw = a.0;
@@ -401,7 +398,7 @@ impl<P: Probe> Datapath<P> {
     /// One step of a restoring divide: the remainder is doubled, `bit` comes in from the right, and the divisor is
     /// subtracted if it fits. Returns the new remainder and the quotient's next bit.
     ///
-    /// `0 <= remainder < divisor` must hold before and holds after. The doubled remainder has one bit more than the word.
+    /// `0 <= remainder < divisor` must hold before and holds after.
     #[inline(always)]
     pub fn divide_step(&mut self, remainder: Word, divisor: Word, bit: bool) -> (Word, bool) {
         if P::ENABLED {
@@ -422,8 +419,7 @@ impl<P: Probe> Datapath<P> {
     /// One step of a restoring divide for a quotient bit of weight `2^place`: `divisor << place` is subtracted if it
     /// fits. Returns the new remainder and the quotient's bit.
     ///
-    /// `0 <= remainder` and `0 < divisor` must hold. The shifted divisor is wires into a subtractor of `place` bits more
-    /// than the word. A divisor shifted by 63 or more is larger than any remainder.
+    /// `0 <= remainder` and `0 < divisor` must hold. A divisor shifted by 63 or more is larger than any remainder.
     #[inline(always)]
     pub fn divide_integer_step(
         &mut self,

@@ -1,4 +1,4 @@
-//! Word formats: bits, bits of fraction, and the overflow policy.
+//! Word formats.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,12 +15,10 @@ pub const MAX_BITS: u32 = 64;
 pub struct Format {
     bits: u32,
     frac: u32,
-    /// Bits of a wide word.
     #[serde(skip)]
     wide_bits: u32,
 }
 
-/// A format in a file, unchecked.
 #[derive(Deserialize)]
 struct Fields {
     bits: u32,
@@ -81,8 +79,7 @@ impl Format {
         self.frac
     }
 
-    /// The format of wide words: twice the bits, at most 64, or the number set by
-    /// [`with_wide_bits`](Self::with_wide_bits).
+    /// The format of wide words: twice the bits, at most 64, unless set by [`with_wide_bits`](Self::with_wide_bits).
     #[must_use]
     pub const fn wide(self) -> Self {
         Self {
@@ -92,7 +89,7 @@ impl Format {
         }
     }
 
-    /// The same words with wide words of `bits`, clamped to at least a word's bits and at most twice as many (or 64).
+    /// Sets the bits of wide words, clamped between a word's bits and twice as many (or 64).
     #[must_use]
     pub const fn with_wide_bits(self, bits: u32) -> Self {
         let most = widest(self.bits);
@@ -121,7 +118,6 @@ impl Format {
     }
 }
 
-/// Bits that hold products of two words of `bits`.
 const fn widest(bits: u32) -> u32 {
     if bits > 32 { 64 } else { bits * 2 }
 }
@@ -131,7 +127,7 @@ const fn widest(bits: u32) -> u32 {
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Overflow {
-    /// The machine stops with an error that gives operation, stage and record.
+    /// The machine stops with an error.
     #[default]
     Trap,
     /// The bits above the word are dropped.

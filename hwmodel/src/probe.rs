@@ -7,26 +7,21 @@ use serde::{Deserialize, Serialize};
 use crate::{Format, Signal};
 
 named! {
-    /// The kinds of operation that the datapath has.
+    /// Operations of the datapath.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum OpClass {
-        /// Two words added.
         Add = "add",
-        /// One word subtracted from another, or negated.
         Sub = "subtract",
-        /// Two words compared, or one word's sign tested.
         Compare = "compare",
-        /// The smaller or the larger of two words (one comparison, one select).
+        /// One comparison, one select.
         MinMax = "min/max",
-        /// One of two words chosen by a bit.
         Select = "select",
-        /// A shift by a constant or by a level's number: wires or a small shifter.
+        /// A shift: wires or a small shifter.
         Shift = "shift",
-        /// And, or, exclusive or, not.
         Logic = "logic",
-        /// One step of the restoring divide: a trial subtraction and a select.
+        /// A trial subtraction and a select.
         DivideStep = "divide step",
     }
 }
@@ -39,38 +34,31 @@ named! {
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum Stage {
-        /// A record is taken from the stack.
         #[default]
         Pop = "pop",
-        /// The record's quadtree node is tested for being full.
+        /// Is the record's quadtree node full?
         Filled = "filled?",
-        /// The voxel is tested for mapping to one pixel.
+        /// Does the voxel map to one pixel?
         OnePixel = "one pixel?",
-        /// The centre of the voxel in object space.
         Centre = "centre",
-        /// Octant bits and the order of the children.
         Order = "octant and order",
         /// The vertices that the children share.
         VertexPool = "vertex pool",
-        /// A child's box in the image.
         ChildBox = "child box",
         /// The smallest unfilled quadtree node that holds the box.
         QuadtreeFit = "quadtree fit",
-        /// A record is put on the stack.
         Push = "push",
-        /// A pixel is drawn, or a leaf's pixels are.
         Draw = "draw",
         /// Fill vectors are updated towards the root.
         FillUpdate = "fill update",
-        /// A cage changes from clip space to screen space.
         ToScreen = "to screen",
-        /// A voxel that is not opaque is added to a pixel's accumulator.
+        /// A translucent voxel is added to a pixel's accumulator.
         Blend = "blend",
     }
 }
 
 named! {
-    /// The memories that the machine reads and writes.
+    /// Memories of the machine.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
@@ -85,7 +73,7 @@ named! {
         FillVector = "fill vector",
         /// Pixels; the address is `y * width + x`.
         Pixel = "pixel",
-        /// Partial sums of pixels where voxels are blended; addresses as of pixels.
+        /// Partial sums of blended pixels; addresses as of pixels.
         Accumulator = "accumulator",
     }
 }
@@ -99,18 +87,18 @@ pub struct StageLevel {
     pub level: u32,
 }
 
-/// The kind of an operand, as far as the calling line determines it.
+/// The kind of an operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operand {
     /// A word.
     Word,
-    /// A word with the carry, one bit more.
+    /// A word and a carry bit.
     Carry,
     /// A wide word.
     Wide,
-    /// A wide word with the carry.
+    /// A wide word and a carry bit.
     WideCarry,
-    /// A short vector of a constant number of bits.
+    /// A constant number of bits.
     Short,
     /// Anything else.
     Other,
@@ -118,23 +106,14 @@ pub enum Operand {
 
 /// Defines [`Probe`] and its forwarding implementations from one list of events.
 macro_rules! probe {
-    ($($(#[$doc:meta])* fn $event:ident($($argument:ident: $type:ty),*);)+) => {
-        /// Receives every operation and every memory access. All methods do nothing by default.
+    ($($(#[$doc:meta])* fn $event:ident($self:ident $(, $argument:ident: $type:ty)*) $default:block)+) => {
+        /// Receives the machine's events. Methods do nothing by default.
         pub trait Probe {
             /// Whether the probe does anything; otherwise the datapath leaves the calls out.
             const ENABLED: bool = true;
 
-            /// Whether the probe takes the borders of blocks. Separate from [`Probe::ENABLED`], so that counting
-            /// operations alone costs no more.
+            /// Whether the probe takes the borders of blocks.
             const TAPS: bool = false;
-
-            /// One operation on an operand whose kind is known at compile time. `bits` follows from the kind and the
-            /// format, or is a constant. By default one [`Probe::op`].
-            #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                let _ = operand;
-                self.op(class, bits, place, 1);
-            }
 
             /// Whether [`Probe::tap`] should be called now; used only where `TAPS` is set.
             #[inline]
@@ -142,18 +121,12 @@ macro_rules! probe {
                 Self::TAPS
             }
 
-            /// A block had `stimulus` on its inputs and gave `expected`. Machine and probe agree on the numbers of
-            /// blocks.
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                let _ = (block, stimulus, expected);
-            }
-
             $(
                 $(#[$doc])*
                 #[inline]
-                fn $event(&mut self, $($argument: $type),*) {
+                fn $event(&mut $self, $($argument: $type),*) {
                     let _ = ($($argument,)*);
+                    $default
                 }
             )+
         }
@@ -163,18 +136,8 @@ macro_rules! probe {
             const TAPS: bool = P::TAPS;
 
             #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                (**self).op_on(operand, class, bits, place);
-            }
-
-            #[inline]
             fn is_tapping(&self) -> bool {
                 (**self).is_tapping()
-            }
-
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                (**self).tap(block, stimulus, expected);
             }
 
             $(
@@ -191,28 +154,8 @@ macro_rules! probe {
             const TAPS: bool = A::TAPS || B::TAPS;
 
             #[inline]
-            fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-                if A::ENABLED {
-                    self.0.op_on(operand, class, bits, place);
-                }
-                if B::ENABLED {
-                    self.1.op_on(operand, class, bits, place);
-                }
-            }
-
-            #[inline]
             fn is_tapping(&self) -> bool {
                 self.0.is_tapping() || self.1.is_tapping()
-            }
-
-            #[inline]
-            fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
-                if A::TAPS && self.0.is_tapping() {
-                    self.0.tap(block, stimulus, expected);
-                }
-                if B::TAPS && self.1.is_tapping() {
-                    self.1.tap(block, stimulus, expected);
-                }
             }
 
             $(
@@ -232,30 +175,37 @@ macro_rules! probe {
 
 probe! {
     /// A datapath of this format is built around the probe.
-    fn begin(format: Format);
+    fn begin(self, format: Format) {}
 
     /// `times` operations of one class on words of `bits` bits were executed.
-    fn op(class: OpClass, bits: u32, place: StageLevel, times: u32);
+    fn op(self, class: OpClass, bits: u32, place: StageLevel, times: u32) {}
 
-    /// A word of `bits` bits was shifted by `places`, on a line of the machine. The same shift is an operation, too.
-    fn shift(bits: u32, places: u32, place: StageLevel, site: &'static Location<'static>);
+    /// One operation on an operand whose kind is known at compile time. `bits` follows from the kind and the format, or
+    /// is a constant. By default one [`Probe::op`].
+    fn op_on(self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        self.op(class, bits, place, 1);
+    }
+
+    /// A word of `bits` bits was shifted by `places` on a line of the machine, beside the event of the operation.
+    fn shift(self, bits: u32, places: u32, place: StageLevel, site: &'static Location<'static>) {}
 
     /// A memory was read.
-    fn read(memory: Memory, address: u64, place: StageLevel);
+    fn read(self, memory: Memory, address: u64, place: StageLevel) {}
 
     /// A memory was written.
-    fn write(memory: Memory, address: u64, place: StageLevel);
+    fn write(self, memory: Memory, address: u64, place: StageLevel) {}
 
-    /// The following operations need the results so far: a state machine does them in another cycle, after `idle`
-    /// cycles without operations.
-    fn next_step(idle: u32, place: StageLevel);
+    /// The following operations need the results so far, after `idle` cycles without operations.
+    fn next_step(self, idle: u32, place: StageLevel) {}
 
-    /// Begins or ends work of another stage that needs no results of the current one and gives it none: a state machine
-    /// does it in the same cycles.
-    fn beside(begins: bool);
+    /// Begins or ends independent work of another stage, which a state machine does in the same cycles.
+    fn beside(self, begins: bool) {}
 
     /// A record begins its turn; `index` counts the records of a frame.
-    fn record(index: u64, level: u32);
+    fn record(self, index: u64, level: u32) {}
+
+    /// A block had `stimulus` on its inputs and gave `expected`.
+    fn tap(self, block: u32, stimulus: &[Signal], expected: &[Signal]) {}
 }
 
 /// No probe: every call vanishes at compile time.

@@ -1,13 +1,12 @@
-//! Shifts by how far their places vary. A shift that is always by one place is wires; others need a shifter, by a
-//! number of the frame, of the octree level, or of each operation. The probe finds the kind from the places of every
-//! line that shifts.
+//! Shifts by how far their places vary, from the places of every line that shifts. A shift that is always by one place
+//! is wires; others need a shifter.
 
-use std::collections::{BTreeMap, HashMap};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::BTreeMap;
 use std::panic::Location;
 
 use serde::{Deserialize, Serialize};
 
+use crate::hash::NumberMap;
 use crate::{OpClass, Operand, Probe, Stage, StageLevel};
 
 named! {
@@ -43,12 +42,11 @@ pub struct ShiftSite {
     pub most: u32,
     /// How far they vary.
     pub kind: ShiftKind,
-    /// Number of shifts in the steps of each stage, which may be [beside](Probe::beside) another one.
+    /// Number of shifts by the stage in whose steps they are done.
     #[serde(skip)]
     pub in_steps: BTreeMap<Stage, u64>,
 }
 
-/// Shifts of one line, stage, width and level.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     times: u64,
@@ -88,51 +86,19 @@ impl Seen {
 /// use ShiftKind::{Frame, Level, Operation, Wires};
 /// assert_eq!(kinds, [Wires, Frame, Level, Operation, Wires]);
 /// // Three kinds need a shifter, six times each.
-/// assert_eq!(probe.variable().into_iter().collect::<Vec<_>>(), [((Stage::Draw, 24), 18)]);
+/// assert_eq!(probe.variable(), [((Stage::Draw, 24), 18)].into());
 /// # Ok::<(), hwmodel::FormatError>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ShiftProbe {
-    seen: HashMap<SiteKey, (Place, Seen), BuildHasherDefault<SiteHasher>>,
-    /// Shifts of sums, by stage and width: wires.
+    seen: NumberMap<SiteKey, (Site, Seen)>,
     halvings: BTreeMap<(Stage, u32), u64>,
-    /// The stage of the last operation, and whether work of another one is done beside it.
     in_turn: Option<Stage>,
     beside: bool,
 }
 
-type Place = &'static Location<'static>;
-/// The place's address, its stage and that of its step, width and level.
-type SiteKey = (usize, [u8; 2], u32, u32);
-
-/// A fast hash of a few numbers.
-#[derive(Debug, Clone, Copy, Default)]
-struct SiteHasher(u64);
-
-impl Hasher for SiteHasher {
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u8(byte);
-        }
-    }
-
-    fn write_u8(&mut self, number: u8) {
-        self.write_u32(u32::from(number));
-    }
-
-    fn write_u32(&mut self, number: u32) {
-        self.write_usize(number as usize);
-    }
-
-    fn write_usize(&mut self, number: usize) {
-        // An odd factor whose bits look random: 2^64 over the golden ratio.
-        self.0 = (self.0.rotate_left(5) ^ number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    }
-
-    fn finish(&self) -> u64 {
-        self.0.rotate_left(26)
-    }
-}
+type Site = &'static Location<'static>;
+type SiteKey = (usize, Stage, Stage, u32, u32);
 
 impl ShiftProbe {
     /// A probe without records.
@@ -147,10 +113,8 @@ impl ShiftProbe {
             in_steps: BTreeMap<Stage, u64>,
             of_level: BTreeMap<u32, Seen>,
         }
-        // By place, stage and width.
         let mut by_site = BTreeMap::<(&str, u32, u32, Stage, u32), Levels>::new();
-        for (&(_, stages, bits, level), &(at, seen)) in &self.seen {
-            let [stage, step] = stages.map(|stage| Stage::ALL[usize::from(stage)]);
+        for (&(_, stage, step, bits, level), &(at, seen)) in &self.seen {
             let key = (at.file(), at.line(), at.column(), stage, bits);
             let site = by_site.entry(key).or_default();
             *site.in_steps.entry(step).or_default() += seen.times;
@@ -184,9 +148,7 @@ impl ShiftProbe {
                 in_steps: site.in_steps,
             }
         };
-        let mut sites: Vec<ShiftSite> = by_site.into_iter().map(site).collect();
-        let halvings = self.halvings.iter();
-        sites.extend(halvings.map(|(&(stage, bits), &times)| ShiftSite {
+        let halving = |(&(stage, bits), &times): (&(Stage, u32), &u64)| ShiftSite {
             site: "midpoint".to_owned(),
             stage,
             bits,
@@ -195,39 +157,31 @@ impl ShiftProbe {
             most: 1,
             kind: ShiftKind::Wires,
             in_steps: BTreeMap::new(),
-        }));
-        sites
+        };
+        let sites = by_site.into_iter().map(site);
+        sites.chain(self.halvings.iter().map(halving)).collect()
     }
 
     /// Shifts that need a shifter, by stage and width.
     pub fn variable(&self) -> BTreeMap<(Stage, u32), u64> {
-        let mut sums = BTreeMap::new();
-        for site in self.sites() {
-            if site.kind != ShiftKind::Wires {
-                *sums.entry((site.stage, site.bits)).or_default() += site.times;
-            }
-        }
-        sums
+        self.sums(|site| BTreeMap::from([(site.stage, site.times)]))
     }
 
     /// As [`variable`](Self::variable), by the stage in whose steps hardware does it.
     pub fn variable_in_steps(&self) -> BTreeMap<(Stage, u32), u64> {
-        let mut sums = BTreeMap::new();
-        for site in self.sites() {
-            if site.kind != ShiftKind::Wires {
-                for (stage, times) in site.in_steps {
-                    *sums.entry((stage, site.bits)).or_default() += times;
-                }
-            }
-        }
-        sums
+        self.sums(|site| site.in_steps.clone())
     }
 
-    /// Shifts by kind.
-    pub fn by_kind(&self) -> BTreeMap<ShiftKind, u64> {
+    fn sums(
+        &self,
+        stages: impl Fn(&ShiftSite) -> BTreeMap<Stage, u64>,
+    ) -> BTreeMap<(Stage, u32), u64> {
         let mut sums = BTreeMap::new();
-        for site in self.sites() {
-            *sums.entry(site.kind).or_default() += site.times;
+        let sites = self.sites().into_iter();
+        for site in sites.filter(|site| site.kind != ShiftKind::Wires) {
+            for (stage, times) in stages(&site) {
+                *sums.entry((stage, site.bits)).or_default() += times;
+            }
         }
         sums
     }
@@ -255,24 +209,19 @@ impl Probe for ShiftProbe {
         }
     }
 
-    fn shift(&mut self, bits: u32, places: u32, place: StageLevel, site: Place) {
+    fn shift(&mut self, bits: u32, places: u32, place: StageLevel, site: Site) {
         let step = match self.in_turn {
             Some(stage) if self.beside => stage,
             _ => place.stage,
         };
-        let key = (
-            std::ptr::from_ref(site) as usize,
-            [place.stage as u8, step as u8],
-            bits,
-            place.level,
-        );
+        let address = std::ptr::from_ref(site) as usize;
         let now = Seen {
             times: 1,
             least: places,
             most: places,
         };
         self.seen
-            .entry(key)
+            .entry((address, place.stage, step, bits, place.level))
             .and_modify(|(_, seen)| seen.add(now))
             .or_insert((site, now));
     }

@@ -1,5 +1,4 @@
-//! Values on the wires of a block, for test benches: [`Datapath::tap`](crate::Datapath::tap) passes rows of [`Signal`]s
-//! to a [`Probe`](crate::Probe) whose `TAPS` is set, and compiles to nothing without one.
+//! Values on the wires of a block, for test benches.
 
 use crate::{Format, Narrow, WideWord, Word};
 
@@ -17,7 +16,7 @@ pub enum SignalKind {
 }
 
 impl SignalKind {
-    /// Width in bits, for a datapath of words of `format`.
+    /// Width in bits.
     pub const fn bits(self, format: Format) -> u32 {
         match self {
             Self::Word => format.bits(),
@@ -32,7 +31,7 @@ impl SignalKind {
     }
 }
 
-/// A value on the wires of a block's border.
+/// A value on the wires of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Signal {
     /// Width and sign.
@@ -41,7 +40,7 @@ pub struct Signal {
     pub value: i64,
 }
 
-/// A short number that is not a word: a level, a quadrant, a vector of bits.
+/// A short number that is not a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Short(Signal);
 
@@ -71,7 +70,7 @@ impl Short {
     }
 }
 
-/// A value that can be shown at a block's border.
+/// A value as signals.
 pub trait Wires {
     /// Adds the signals, the most significant first.
     fn show(&self, to: &mut Vec<Signal>);
@@ -137,33 +136,3 @@ macro_rules! wires_of_tuples {
 }
 
 wires_of_tuples! { (A B) (A B C) (A B C D) (A B C D E) }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn signals_in_order() {
-        let mut row = Vec::new();
-        let word = Word::from_host(-5);
-        (
-            word,
-            [true, false],
-            &(Short::unsigned(3u8, 4), WideWord::ZERO),
-        )
-            .show(&mut row);
-        let format = Format::new(24, 8).unwrap();
-        let seen: Vec<_> = row
-            .iter()
-            .map(|s| (s.value, s.kind.bits(format), s.kind.is_signed()))
-            .collect();
-        let expected = [
-            (-5, 24, true),
-            (1, 1, false),
-            (0, 1, false),
-            (3, 4, false),
-            (0, 48, true),
-        ];
-        assert_eq!(seen, expected);
-    }
-}

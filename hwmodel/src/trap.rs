@@ -3,16 +3,12 @@
 use crate::StageLevel;
 
 named! {
-    /// The operation during which a word overflowed.
+    /// The operation that overflowed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum TrapOp {
-        /// A sum.
         Add = "add",
-        /// A difference or a negation.
         Sub = "subtract",
-        /// A left shift.
         ShiftLeft = "shift left",
-        /// A constant of the frame.
         Load = "load of a frame constant",
     }
 }

@@ -15,26 +15,13 @@
 /// ```
 /// ```compile_fail,E0369
 /// let a = hwmodel::Word::from_host(6);
-/// let _ = a % a; // nor reduced
-/// ```
-/// ```compile_fail,E0369
-/// let a = hwmodel::Word::from_host(6);
 /// let _ = a < a; // nor compared where no probe sees it
-/// ```
-/// ```compile_fail,E0599
-/// let mut dp = hwmodel::Datapath::new(
-///     hwmodel::Format::new(32, 8).unwrap(),
-///     hwmodel::Overflow::Trap,
-///     hwmodel::NoProbe,
-/// );
-/// let a = hwmodel::Word::from_host(6);
-/// let _ = dp.mul(a, a); // the datapath has no multiplier either
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(transparent)]
 pub struct Word(pub(crate) i64);
 
-/// A word of the wide format, which holds products of two positions. It cannot be mixed with a [`Word`].
+/// A word of the wide format, which cannot be mixed with a [`Word`].
 ///
 /// ```compile_fail,E0308
 /// let mut dp = hwmodel::Datapath::new(
@@ -51,7 +38,6 @@ pub struct Word(pub(crate) i64);
 pub struct WideWord(pub(crate) i64);
 
 mod sealed {
-    /// Raw access that only the datapath has.
     #[expect(unnameable_types, reason = "a sealed trait")]
     pub trait Raw: Copy {
         const WIDE: bool;
@@ -61,8 +47,8 @@ mod sealed {
 }
 pub(crate) use sealed::Raw;
 
-/// A number of few bits, 0 or more: a weight or a colour. It has no operators: operations are calls on a
-/// [`Datapath`](crate::Datapath) that give the number of bits.
+/// A number of few bits, 0 or more: a weight or a colour. Operations are calls on a [`Datapath`](crate::Datapath) that
+/// give the number of bits.
 ///
 /// ```compile_fail,E0369
 /// let a = hwmodel::Narrow::from_host(6);

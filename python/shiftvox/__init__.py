@@ -18,7 +18,7 @@ __all__ = ["Camera", "Error", "Picture", "Scene", "explore", "hardware", "model"
 
 
 def _words(options):
-    """Keywords as flags: `size=(32, 24)` is `--size 32x24`, `bits=[24, 32]` `--bits 24,32`, `shifters=True` `--shifters`."""
+    """`size=(32, 24)` as `--size 32x24`, `bits=[24, 32]` as `--bits 24,32`, `shifters=True` as `--shifters`."""
     words = []
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")

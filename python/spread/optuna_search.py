@@ -3,8 +3,8 @@
     pip install ./python optuna
     python optuna_search.py bundled --size 64 --trials 60
 
-It minimises time, area and energy of a frame, and its wrong samples. Several processes on one computer share a study with
-`--study sqlite:///study.db`. Several computers need a database server.
+It minimises time, area and energy of a frame, and its wrong samples. Processes share a study with
+`--study sqlite:///study.db`; several computers need a database server.
 """
 
 import argparse

@@ -3,8 +3,7 @@
     pip install ./python ray
     python ray_explore.py bundled --size 64 --results out/      # on the cluster's head, or alone on one machine
 
-Each task measures some points and appends each to its own file at once. Ray restarts the tasks of a worker that died;
-they resume at the end of their file. All workers must see the folder.
+Each task appends points to its own file; if its worker dies, it resumes there. All workers must see the folder.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-//! Arguments: words, and numbers and arrays of any type that holds the values. Errors name the argument.
+//! Arguments. Errors name the argument.
 
 use numpy::{Element, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyOverflowError;
@@ -41,7 +41,7 @@ pub(crate) fn up(word: &str) -> PyResult<Up> {
     one_of("up", word, &AXES)
 }
 
-/// Reads a whole number. One beyond 64 bits becomes the largest, which is out of every range, too.
+/// A whole number. One beyond 64 bits becomes the largest, which is out of every range, too.
 pub(crate) fn whole(number: &Bound<'_, PyAny>) -> PyResult<i64> {
     number.extract().or_else(|error: PyErr| {
         let is_too_large = error.is_instance_of::<PyOverflowError>(number.py());
@@ -49,7 +49,6 @@ pub(crate) fn whole(number: &Bound<'_, PyAny>) -> PyResult<i64> {
     })
 }
 
-/// A number that is 0 or more.
 pub(crate) fn count(what: &str, number: i64) -> PyResult<u32> {
     u32::try_from(number)
         .map_err(|_| Error::new_err(format!("{what}: a number from 0 to {}", u32::MAX)))
@@ -63,7 +62,6 @@ pub(crate) fn size(size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
         .map_err(|_| Error::new_err("size: one number, or (width, height), in pixels"))
 }
 
-/// Red, green and blue.
 pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
     let refuse = || Error::new_err(format!("{what}: three numbers, 0 to 255"));
     let [red, green, blue] = color.extract::<[i64; 3]>().map_err(|_| refuse())?;
@@ -71,9 +69,7 @@ pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
     Ok([byte(red)?, byte(green)?, byte(blue)?])
 }
 
-/// A type of numbers in rows.
 pub(crate) trait Entry: Element + Copy {
-    /// Name in NumPy.
     const NAME: &'static str;
     /// Kinds of NumPy types that are converted.
     const KINDS: &'static str;
@@ -105,7 +101,7 @@ impl Entry for u8 {
     const RANGE: Option<[i128; 2]> = Some([0, 255]);
 }
 
-/// Rows of an array, or of a value that NumPy converts to one. It must have three columns.
+/// Rows of an array of three columns, or of a value that NumPy converts to one.
 pub(crate) fn rows_of_three<T: Entry>(
     what: &str,
     array: &Bound<'_, PyAny>,

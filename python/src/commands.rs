@@ -1,4 +1,4 @@
-//! The program's commands, run in this process.
+//! The program's commands.
 
 use std::ffi::OsString;
 

@@ -1,5 +1,4 @@
-//! The Python package. Comments of Python's objects become their docstrings, and the stubs (`shiftvox/_core.pyi`) repeat
-//! them for editors.
+//! The Python package. Comments of Python's objects become their docstrings.
 
 mod arguments;
 mod camera;

@@ -40,7 +40,6 @@ pub(crate) struct Picture {
     height: u32,
 }
 
-/// Buffers by the names of a picture's attributes.
 const BUFFERS: [(&str, Buffer); 4] = [
     ("depth", Buffer::Depth),
     ("normals", Buffer::Normal),

@@ -1,4 +1,4 @@
-//! The thread pool.
+//! The thread pool of the process.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,11 +12,10 @@ const STACK: usize = 8 << 20;
 
 /// The pool and its process.
 ///
-/// A child made by `fork` inherits a pool without its threads, as with Rayon's global pool, and would wait for ever. So it
-/// makes its own. Only a thread that holds the GIL locks this, and such a thread calls `fork`, so no child inherits a lock.
+/// A child made by `fork` inherits a pool without its threads, so it makes its own. Only a thread that holds the GIL locks
+/// this, and such a thread calls `fork`, so no child inherits a lock.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// The pool of this process, made on first use.
 fn pool(_holds_the_gil: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();

@@ -28,7 +28,6 @@ fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOpt
     })
 }
 
-/// One colour per row, or grey.
 fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(colors) = colors else {
         return Ok(vec![[200; 3]; rows]);
@@ -43,7 +42,6 @@ fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8
     }
 }
 
-/// Makes a scene on all threads.
 fn made(
     py: Python<'_>,
     make: impl FnOnce() -> Result<shiftvox::Scene, shiftvox::Error> + Send,

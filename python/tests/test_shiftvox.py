@@ -48,14 +48,11 @@ def test_arrays_are_the_buffers():
     assert picture.nodes.shape == (48, 64)
     assert np.shares_memory(picture.depth, picture.depth)
     assert picture.rgba is picture.rgba
-    # Not a copy: a write is visible on the next access.
-    picture.depth[0, 0] = 7
-    assert picture.depth[0, 0] == 7
     # The base is the array that was moved in.
     assert picture.rgba.base is not None and picture.rgba.base.size == picture.rgba.size
     seen = picture.nodes >= 0
     assert seen.any() and not seen.all()
-    assert np.isfinite(picture.depth[1:][seen[1:]]).all()
+    assert np.isfinite(picture.depth[seen]).all()
     assert np.allclose(np.linalg.norm(picture.normals[seen], axis=1), 1, atol=1e-3)
     assert (picture.voxels[~seen] == [0, 0, 0, -1]).all()
 
@@ -112,24 +109,20 @@ def small(**settings):
         (lambda: shiftvox.Scene.from_numpy(np.zeros((3, 2), np.int32)), r"\(N, 3\)"),
         (lambda: shiftvox.Scene.from_numpy(np.zeros((0, 3), np.int32)), "voxel"),
         (lambda: shiftvox.Scene.from_numpy(np.zeros((3, 3), np.int32), np.zeros((2, 3), np.uint8)), "2 rows for 3"),
-        (lambda: shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), engine="gpu"), "none of fast, machine"),
-        (lambda: shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), samples=3), "1, 2 or 4"),
+        (lambda: small(engine="gpu"), "none of fast, machine"),
+        (lambda: small(samples=3), "1, 2 or 4"),
         (lambda: shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), size="big"), "size"),
         (lambda: shiftvox.Scene.open(TREE, up="x"), "none of y, z"),
         (lambda: shiftvox.Scene.open(TREE, depth=-1), "depth: a number from 0"),
         (lambda: small(samples=-1), "samples: a number from 0"),
-        (lambda: small(threads=-1), "threads: a number from 0"),
         (lambda: small(threads=2**70), "threads: a number from 0"),
         (lambda: small(threads=1025), "threads: 0 to 1024, not 1025"),
         (lambda: small(bits=-1), "bits: a number from 0"),
-        (lambda: small(frac=-1), "frac: a number from 0"),
         (lambda: small(paper=True, coverage="exact"), "coverage: paper"),
         (lambda: small(paper=True, cage="frame"), "cage: paper"),
-        (lambda: small(paper=True, tolerance=0.5), "tolerance: paper"),
         (lambda: small(background=(0, 0, 0), transparent=True), "background: transparent"),
         (lambda: small(background=(0, 0, 256)), "background: three numbers"),
         (lambda: shiftvox.run(""), "no command"),
-        (lambda: shiftvox.run("--quiet"), "no command"),
         (lambda: shiftvox.run("man"), "man: it prints no JSON"),
         (lambda: shiftvox.run("model", print_hw=True), "no JSON document"),
         (lambda: shiftvox.Scene.from_numpy([[0, 0, 2**40]]), "indices: numbers from -2147483648"),
@@ -201,24 +194,17 @@ def public():
             yield from ((f"{name}.{m}", getattr(thing, m)) for m in vars(thing) if not m.startswith("_"))
 
 
-def test_everything_public_says_what_it_is_and_the_stubs_repeat_it():
+def test_everything_public_says_what_it_is_and_has_a_stub():
     told = {name: inspect.getdoc(thing) for name, thing in public()}
-    assert {"Scene.from_mesh", "Scene.bounds", "Picture.depth", "Picture.width", "Camera.fit", "render"} <= set(told)
     assert [name for name, text in told.items() if not text] == []
-    stubs = ast.parse((Path(shiftvox.__file__).parent / "_core.pyi").read_text())
-    repeated = {}
-    for node in stubs.body:
-        if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name in told:
-            repeated[node.name] = ast.get_docstring(node)
-            parts = node.body if isinstance(node, ast.ClassDef) and node.name != "Error" else []
-            for part, after in zip(parts, parts[1:] + [None]):
-                if isinstance(part, ast.FunctionDef):
-                    repeated[f"{node.name}.{part.name}"] = ast.get_docstring(part)
-                elif isinstance(part, ast.AnnAssign):
-                    repeated[f"{node.name}.{part.target.id}"] = after.value.value
-    compiled = {name: text for name, text in told.items() if name.split(".")[0] in repeated}
-    plain = lambda texts: {name: " ".join(text.split()) for name, text in texts.items()}
-    assert plain(repeated) == plain(compiled)
+    stubs = {"documents", "Error"}
+    for node in ast.parse((Path(shiftvox.__file__).parent / "_core.pyi").read_text()).body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            stubs.add(node.name)
+        if isinstance(node, ast.ClassDef) and node.name != "Error":
+            stubs |= {f"{node.name}.{getattr(part, 'name', None) or part.target.id}" for part in node.body}
+    classes = ("Scene", "Camera", "Picture", "Error", "render")
+    assert {name for name in told if name.split(".")[0] in classes} | {"documents"} == stubs
 
 
 def test_other_threads_run_while_it_draws():
@@ -255,28 +241,17 @@ def test_the_model_is_the_programs(tmp_path):
 
 def test_exploration_goes_on_where_it_stopped(tmp_path):
     results = tmp_path / "results.jsonl"
-    first = shiftvox.explore("gen:menger,depth=2", size=16, points="0..3", results=results)
-    points = [line for line in first if line["kind"] == "point"]
-    assert [p["point"] for p in points] == [0, 1, 2, 3]
-    written = results.read_text()
-    both = shiftvox.explore("gen:menger,depth=2", size=16, points="0..5", results=results)
-    assert results.read_text().startswith(written)
-    assert [p for p in both if p["kind"] == "point"][:4] == points
-    assert both[-1]["kind"] == "front" and both[-1]["front"]
-
-
-def test_exploration_of_a_scene_in_memory_goes_on(tmp_path):
-    results = tmp_path / "results.jsonl"
-    explored = [
+    first, both = (
         shiftvox.explore(shiftvox.Scene.generate("menger,depth=2"), size=16, points=points, results=results)
         for points in ("0..1", "0..2")
-    ]
-    assert explored[1][:3] == explored[0][:3]
-    assert [line["kind"] for line in map(json.loads, results.read_text().splitlines())] == ["space"] + 3 * ["point"]
+    )
+    assert [line["kind"] for line in both] == ["space", "point", "point", "point", "front"] and both[-1]["front"]
+    assert [line["point"] for line in both[1:4]] == [0, 1, 2] and both[:3] == first[:3]
+    written = results.read_text()
+    assert [line["kind"] for line in map(json.loads, written.splitlines())] == ["space"] + 3 * ["point"]
     # The exploration also resumes with the scene's file.
     (kept,) = tmp_path.glob("scene-*.vxg")
-    written = results.read_text()
-    assert shiftvox.explore(kept, size=16, points="0..2", results=results) == explored[1]
+    assert shiftvox.explore(kept, size=16, points="0..2", results=results) == both
     assert results.read_text() == written
 
 

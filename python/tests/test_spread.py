@@ -59,7 +59,6 @@ def test_a_cluster_of_two_workers_finds_the_same_front(tmp_path, space):
     killed = []
     folder = tmp_path / "results"
     watcher = threading.Thread(target=kill_a_worker_that_has_written, args=(folder, killed))
-    # Workers import the module from its folder.
     path = f"{SPREAD}:{os.environ.get('PYTHONPATH', '')}"
     ray.init(num_cpus=2, include_dashboard=False, runtime_env={"env_vars": {"PYTHONPATH": path}})
     try:
@@ -70,7 +69,6 @@ def test_a_cluster_of_two_workers_finds_the_same_front(tmp_path, space):
         ray.shutdown()
     assert killed, "no worker was killed: the test is void"
     assert spread[1:] == alone[1:]
-    # Each point was measured once and is in one file.
     lines = [json.loads(line) for file in folder.glob("*..*.jsonl") for line in file.read_text().splitlines()]
     points = sorted(line["point"] for line in lines if line["kind"] == "point")
     assert points == list(range(16))
@@ -88,7 +86,6 @@ def test_a_search_finds_designs_of_the_space(space):
     for trial in study.trials:
         point = light[key(trial.params)]
         assert trial.values[0] == point["time_ms"] and trial.values[2] == point["energy_pj"]["value"]
-    # Its best trials are Pareto-optimal among the points that it has seen.
     seen = {key(trial.params) for trial in study.trials}
     figures = lambda p: (p["time_ms"], p["area_nand2"]["value"], p["energy_pj"]["value"], p["wrong_samples"])
     beats = lambda a, b: a != b and all(x <= y for x, y in zip(a, b))
@@ -107,7 +104,7 @@ def test_an_array_of_slurm_is_one_exploration(tmp_path, space, per_task, tasks):
     env.update(SPACE=space, SIZE="32", PER_TASK=str(per_task))
     for task in range(tasks):
         task_env = {**env, "SLURM_ARRAY_TASK_ID": str(task)}
-        # Twice, as after a requeue: the second time all work is done.
+        # Twice, as after a requeue.
         for _ in range(2):
             subprocess.run(["sh", SPREAD / "explore.sbatch", SCENE, folder], check=True, env=task_env)
     files = list(folder.glob("*.jsonl"))

@@ -1,6 +1,5 @@
 `include "widths.vh"
 // A clip-space box, widened by a margin, against its node's edges, on one axis. SPEC.md, 6.
-// A sign test per vertex replaces least and greatest.
 module border_clip #(parameter W = `WORD_BITS) (
   input [8*W-1:0] x, w, margin,
   input           wider,

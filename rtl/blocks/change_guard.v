@@ -1,6 +1,5 @@
 `include "widths.vh"
 // May a box change to screen space: x and w - x at least -w / 2^places at all vertices, on one axis? SPEC.md, 5.
-// Positions or the width shift left, so nothing is rounded.
 module change_guard #(parameter W = `WORD_BITS) (
   input [8*W-1:0]    x, w,
   input signed [7:0] places,

@@ -7,7 +7,7 @@ module child_vertices #(parameter W = `WORD_BITS) (
   genvar v;
   generate
     for (v = 0; v < 8; v = v + 1) begin : vertex
-      // The first of eight pool vertices. Octant bits select along z, y, x.
+      // Octant bits select along z, y, x.
       localparam AT = 9*(v/4) + 3*(v/2%2) + v%2;
       wire [4*W-1:0] z, y;
       genvar i;

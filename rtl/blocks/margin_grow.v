@@ -1,6 +1,6 @@
 `include "widths.vh"
 // A box's margin under a tolerance: w / 2^places per vertex, rounded up. SPEC.md, 6.
-// Not in stage A, whose tolerance is infinite. Its vectors show the margins of border_clip and bisector_clip.
+// Not in stage A, whose tolerance is infinite.
 module margin_grow #(parameter W = `WORD_BITS) (
   input [8*W-1:0]    w,
   input signed [7:0] places,

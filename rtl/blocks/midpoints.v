@@ -17,7 +17,6 @@ module midpoints #(parameter W = `WORD_BITS) (
   genvar i, j, k;
   generate
     for (k = 0; k < 4; k = k + 1) begin : x
-      // Corner 0 is the highest word.
       wire [W-1:0] low  = parent[(7 - k)*W +: W];
       wire [W-1:0] high = parent[(3 - k)*W +: W];
       assign along_x[k*W +: W]       = low;

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// A clip-space box against its node's bisector; `relative` is 2 x - w, in the far half. SPEC.md, 6.
+// As in blocks/.
 module bisector_clip #(parameter W = `WORD_BITS) (
   input [4*W-1:0]  x, w, margin,
   input            closed, sample,

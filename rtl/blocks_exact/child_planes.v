@@ -14,7 +14,6 @@ module child_planes #(parameter V = `WIDE_BITS) (
   moved_planes #(V) of_z (.axis_ab(axis_z), .axis_c(axis_z_c), .places(half), .gain(gain_z));
   wire [3*V-1:0] none = {(3*V){1'b0}};
   wire [3*V-1:0] first_x, first_y, first_z;
-  // Octant bits: x 2, y 1, z 0.
   plane_sum #(V) x_k (.plane(edge_x), .gain(octant[1] ? gain_z : none), .less(1'b1), .sum(first_x));
   plane_sum #(V) x_l (.plane(first_x), .gain(octant[0] ? gain_y : none), .less(1'b0), .sum(child_edge_x));
   plane_sum #(V) y_k (.plane(edge_y), .gain(octant[0] ? gain_x : none), .less(1'b1), .sum(first_y));

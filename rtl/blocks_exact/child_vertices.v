@@ -4,7 +4,6 @@ module child_vertices #(parameter W = `WORD_BITS) (
   input  [11*W-1:0] pool,
   input  [2:0]      octant,
   output [4*W-1:0]  child);
-  // Corners, selected by octant bit z, then y.
   wire [4*W-1:0] z;
   wire [2*W-1:0] y;
   genvar i;

@@ -1,5 +1,5 @@
 `include "widths.vh"
-// One coordinate of a cage relative to a half of its node; `far` is 2 x - w. SPEC.md, 4.
+// As in blocks/.
 module half_clip #(parameter W = `WORD_BITS) (
   input  [4*W-1:0] x, far,
   input            right,

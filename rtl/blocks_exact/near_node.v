@@ -1,5 +1,5 @@
 `include "widths.vh"
-// Does a clip-space box leave a node by at most its width, on one axis? SPEC.md, 6.
+// As in blocks/.
 module near_node #(parameter W = `WORD_BITS) (
   input [4*W-1:0] x, w,
   output          near);

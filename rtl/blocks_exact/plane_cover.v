@@ -6,7 +6,6 @@ module plane_cover (
   input        front,
   input  [1:0] front_side, wanted,
   output [1:0] cover_code);
-  // Bit 0: planes on both sides. Bit 1: all on one side.
   function [1:0] passes(input [7:0] side);
     reg positive, negative, open;
     integer i;

@@ -24,8 +24,7 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   wire [SETS_LOG2-1:0]  set = at[3 +: SETS_LOG2];
   wire [TAG-1:0]        tag = at[ADDRESS-1 -: TAG];
 
-  // Per set, the ways in order of use, the last used lowest, initially 0 to WAYS - 1. Valid bits are registers, because
-  // reset clears all at once.
+  // Per set, the ways in order of use, the last used lowest.
   wire look = request | again;
   reg                   looked;      // in the cycle before
   reg [SETS*WAYS-1:0]   valid;

@@ -6,7 +6,6 @@ assign lod_look_up = state == FILLED, lod_level = r_level;
 assign node_place = r_node;
 
 // ---------------------------------------------------------------- the stack
-// Fields have the width of their greatest values. The stage packs the rest.
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
 localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
 localparam REST = `REST_BITS;

@@ -1,10 +1,9 @@
-// Several contexts take turns; `running` has the blocks. While it waits for a cache or a tile, the context whose answer or
-// tile came first takes over in the next cycle. Ties go to the lowest number. Registers of the others are saved: `KEPT`,
-// and by parts of the stage.
+// While context `running` waits for a cache or a tile, the one whose answer or tile came first takes over in the next
+// cycle. Ties go to the lowest number. Registers of the others are saved: `KEPT`, and by parts of the stage.
 wire [CONTEXTS-1:0] runs = 1 << running;
 reg  [CONTEXTS-1:0] idle, begun;                // others: without a tile; with a tile not begun
 reg  [CONTEXTS-1:0] asks_node, asks_attribute;  // others: not taken yet
-reg  [CONTEXTS-1:0] answered;                   // its answer arrived, and was not read
+reg  [CONTEXTS-1:0] answered;                   // not read yet
 wire                has_no_tile = state == IDLE | state == DONE;
 wire                looks_at_answer = state == LOOK | state == SHOW;
 wire                starts = |(start & runs);
@@ -15,7 +14,6 @@ wire [CONTEXTS-1:0] unused_first, next_runs;
 wire                switches = |next_runs;
 reg  [BITS_OF_CONTEXT-1:0] next_running;
 wire                next_begins = |(next_runs & (begun | start));
-// Its state on return.
 wire [5:0]          state_then = state == NODE ? LOOK : state == ATTRIBUTE ? SHOW : state;
 generate
   // Invalid parameters: an undefined module stops the build.

@@ -39,7 +39,6 @@ module frame_constants #(parameter W = `WORD_BITS) (
       assign edges[(8 - i)*W +: W] = vector[3 + i];
     end
   endgenerate
-  // The greatest word: no node of the level.
   wire [W-1:0] found;
   memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[7:6] == 1),
     .address(look_up ? of_level : address[5:0]), .data_in(data), .data_out(found));

@@ -1,13 +1,10 @@
 `include "widths.vh"
 `include "stage.vh"
-// Lanes: machines side by side with several contexts each, which draw tiles of the picture. They share two caches, the
-// memory port and the pixel port.
+// Machines side by side, with several contexts each in stage C, draw tiles of the picture. They share two caches, the
+// memory port and the pixel port. The context that has waited longest for a tile begins the next one, row by row. Ties go
+// to the lowest lane and context, and to nodes before attributes.
 //
-// The context that has waited longest for a tile begins the next one, row by row. Ties go to the lowest lane and context,
-// and to nodes before attributes.
-//
-// Only stages B and C, whose picture does not depend on the order of records; several contexts only in stage C. The
-// picture has at least 2^TILE_LEVELS samples per side, rounded up to a power of two.
+// Only stages B and C, whose picture does not depend on the order of records.
 module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10,
                STACK_LOG2 = `STACK_LOG2, NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2,
                DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
@@ -20,14 +17,13 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   output                       busy,
   output reg                   done,
   output reg                   failed,
-  // Memory: `fetch` stays until `fetch_ready`. Lines arrive in that order, each as eight words with `fill`.
+  // `fetch` stays until `fetch_ready`. Lines arrive in that order.
   output                       fetch,
   input                        fetch_ready,
   output                       fetch_attribute,
   output [`NODE_BITS-4:0]      fetch_line,
   input                        fill,
   input [63:0]                 fill_word,
-  // Pixels: `pixel` stays until `pixel_ready`.
   output                       pixel,
   input                        pixel_ready,
   output [`PLACE_BITS-1:0]     pixel_x, pixel_y,
@@ -74,7 +70,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
       end
       if (running & ~busy) {running, done} <= 2'b01;
     end
-  // A lane's flag stays until its next tile, perhaps of the next frame, so only its rise counts.
+  // A lane's flag stays until its next tile, so only its rise counts.
   reg [LANES-1:0] failed_before;
   always @(posedge clk) begin
     failed_before <= lane_failed;
@@ -136,7 +132,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
   assign fetch = |next;
   assign fetch_attribute = next[1];
   assign fetch_line = next[1] ? attribute_line : node_line;
-  // Lines in flight, the oldest lowest: 1 for attributes. At most one per context and cache.
+  // Lines in flight, the oldest lowest: 1 for attributes.
   reg [2*ALL:0]       kinds;              // a one above the youngest
   reg [2:0]             filled;
   wire                  last_fill = fill & &filled;

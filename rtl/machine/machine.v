@@ -7,16 +7,12 @@
 //     read its octree node; draw it, drop it, or
 //     make its children, the farthest first; fit each; push the visible ones
 //
-// A stage adds `stage.vh` (widths), `parts.vh` (registers and blocks) and `steps.vh` (states). Stage A changes records to
-// screen space and draws samples; B and C draw outlines of solids. The stack holds children in A and B (`children.vh`),
-// parents in C.
-//
-// Sizes of the memories: samples per side 2^PICTURE_LEVELS, levels of the object DEPTH and of records LEVEL_BOUND, bits of
-// node numbers NODE_WIDTH, bytes off chip 2^OUTER_ADDRESS.
+// A stage adds `stage.vh` (widths), `parts.vh` (registers and blocks) and `steps.vh` (states). The stack holds children in
+// A and B (`children.vh`), parents in C. 2^PICTURE_LEVELS samples per side, DEPTH levels of the object, LEVEL_BOUND of
+// records, 2^OUTER_ADDRESS bytes off chip.
 //
 // SHARED: a lane of lanes.v. It draws tiles, nodes TILE_LEVELS below the picture's root; caches and ports are outside.
 // CONTEXTS (contexts.vh, stage C): a power of two. Stage C needs two picture levels below TILE_LEVELS.
-// BRICKS (bricks.vh, stage C): frames may use bricks.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                  NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0,
@@ -29,21 +25,20 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   input [CONTEXTS-1:0]         start,
   output [CONTEXTS-1:0]        busy,
   output                       done,
-  output reg                   failed,          // full stack: the picture is useless
+  output reg                   failed,          // full stack
   // Memory: lines of eight 64-bit words.
   output                       fetch,
   output                       fetch_attribute,
   output [`NODE_BITS-4:0]      fetch_line,
   input                        fill,
   input [63:0]                 fill_word,
-  // Pixels: sample, node, the voxel's lowest corner and level, attributes.
   output                       pixel,
   output [`PLACE_BITS-1:0]     pixel_x, pixel_y,
   output [`NODE_BITS-1:0]      pixel_node,
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute,
-  // SHARED, per context: the tile, from `start` on; requests, held until taken, and answers.
+  // SHARED, per context: the tile, requests, held until taken, and answers.
   input [CONTEXTS*`PLACE_BITS-1:0] tile_x, tile_y,
   output [CONTEXTS-1:0]        node_request, attribute_request,
   output [CONTEXTS*`NODE_BITS-1:0] wanted_node,
@@ -68,7 +63,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     POPPED = 8, FILLED = 9, OPEN = 10, NODE = 11, VERDICT = 12, WALK = 13, WALKED = 14, BACK = 15, CENTRE = 16,
     ORDER = 17, POOL = 18, CHILD = 19, DRAWN = 20, ATTRIBUTE = 21, SHOW = 22, PIXEL = 23, MARK = 24, ABOVE = 25,
     SET = 26, DONE = 27, ROOT = 28;
-  // Those of the stage begin at 32.
+  // The stage's begin at 32.
   reg [5:0] state;
   assign done = state == DONE;
 
@@ -88,7 +83,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   reg signed [W-1:0] r_w_min;
   reg [MORE-1:0]   r_more;
 
-  // The current child; during a search, the record's box and a picture node.
+  // The current child, or the record's box and a picture node.
   reg              c_solid, c_inside;
   reg [L-1:0]      c_level, c_voxel_level, c_quad_level;
   reg [N-1:0]      c_node;
@@ -98,7 +93,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   reg signed [W-1:0] c_w_min;
   reg [MORE-1:0]   c_more;
 
-  // The one that is drawn or subdivided, and the picture node of the full test, by the stage.
   wire [L-1:0]     t_level, t_voxel_level, t_quad_level, asked_level;
   wire [N-1:0]     t_node;
   wire [P-1:0]     t_quad_x, t_quad_y, asked_x, asked_y;
@@ -111,8 +105,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire stack_full = stacked[STACK_LOG2];
   wire [STACK_LOG2-1:0] top = stacked[STACK_LOG2-1:0] - 1'b1;
 
-  // The tile's fill vectors by level and row, without joined levels, then those of nodes above the tile. Level n starts
-  // at 0101..01 with n ones. A tile of one level joins nothing.
+  // The tile's fill vectors by level and row, then those of nodes above the tile. Level n starts at 0101..01 with n ones.
   localparam VECTOR_LEVELS = PICTURE_LEVELS - TILE_LEVELS - `JOINED_LEVELS,
     LAST_VECTORS = `JOINED_LEVELS != 0 && VECTOR_LEVELS < 1 ? 1 : VECTOR_LEVELS;
   localparam TILE_WORDS = ((1 << (2*LAST_VECTORS + 2)) - 1) / 3;
@@ -226,7 +219,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   filled is_filled (.vector(vector), .full(full));
 
   // ---------------------------------------------------------------- children
-  // Children of the subdivided record, and the first one's number.
   reg [7:0]   mask;
   reg [N-1:0] first;
   wire [3*W-1:0] centre_now;
@@ -236,7 +228,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [23:0] order_now;
   octant_order #(W) order_of (.centre(middle), .eye_floor(eye_floor), .octant(octant_now), .child(order_now));
   reg  [23:0] order;                            // the nearest highest
-  // Children, the farthest lowest: left, existing, and left after the next one, which the stage selects.
+  // Children, the farthest lowest.
   reg  [7:0] left;
   reg  [7:0] there;
   reg  [2:0] octant;
@@ -260,7 +252,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [L-1:0] lod_level;
 
   // ---------------------------------------------------------------- fit: a box down the image quadtree
-  reg  fresh;                                   // the node's edges are not tested yet
+  reg  fresh;                                   // the edges are not tested
   wire box_outside_now, box_enclosed, box_near, rejected, single;
   wire [3:0] overlapped;
   wire [1:0] only;
@@ -272,10 +264,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire inside_now = c_inside | fresh & box_enclosed;
   wire goes_down = single & c_quad_level < levels & (inside_now | c_screen | box_near);
 
-  // A search down the quadtree: quadrants left per level.
+  // Quadrants left per level.
   reg  [4*(PICTURE_LEVELS + 1)-1:0] waiting;
   wire [3:0] open = ~vector;
-  reg  [L-1:0] back_level;                      // the deepest level that has some left
+  reg  [L-1:0] back_level;                      // the deepest with some left
   reg  back_any;
   integer l;
   always @* begin
@@ -335,7 +327,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     end
   endtask
 
-  // The node's vector is known: reject the box, continue in a quadrant, or accept it.
   task choose;
     if (rejected) begin
       left <= left_after;
@@ -459,7 +450,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= ROOT;
           else
             draw_on;
-        // Only for a picture of one sample. Others read the vector above in this cycle.
+        // Only for a picture of one sample.
         ROOT: draw_on;
         ABOVE: state <= SET;
         SET: begin

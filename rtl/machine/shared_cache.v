@@ -1,12 +1,9 @@
 `include "widths.vh"
-// A set-associative LRU cache for several users (contexts of lanes): 64-bit words in lines of eight.
-//
-// Requests are `taken` in order of arrival. After a hit the user is `ready` in the next cycle, and its word stays until its
-// next request. After a miss it is `ready` when the line arrives. Meanwhile others are served, and a request to a line in
-// flight merges with that miss.
+// As cache.v, for several users (contexts of lanes). Requests are `taken` in order of arrival. During a miss others are
+// served, and a request to a line in flight merges with that miss.
 //
 // An access takes two cycles, so that single-port memories suffice: one reads, the other writes the order of use or sends
-// the miss, until `fetch_taken`. No access begins while a line arrives. Lines arrive in order, as eight words (`fill`).
+// the miss, until `fetch_taken`. No access begins while a line arrives.
 module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                     clk, reset,
   input  [USERS-1:0]        request,
@@ -24,7 +21,7 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   // Lines in flight: at most one per user.
   localparam E = USERS > 1 ? $clog2(USERS) : 1, ENTRIES = 1 << E;
 
-  reg                 looking;              // an access is in its second cycle, or later
+  reg                 looking;              // an access is in its second cycle
   wire                look = |taken;
   wire [USERS-1:0]    unused_first;
   arbiter #(USERS) turns (.clk(clk), .reset(reset), .enable(~looking & ~fill & filled == 0), .request(request),

@@ -8,7 +8,7 @@ wire [4*W-1:0]   r_spans = r_more[4*W-1:0], c_spans = c_more[4*W-1:0];
 wire [MORE-1:0]  object_more = {MORE{1'b0}}, inner_more = c_more;
 wire [MORE-1:0]  child_more = r_screen ? {1'b1, x_low, x_high, y_low, y_high} : {MORE{1'b0}};
 
-// The rest of a stack entry. The box shares bits with w and w_min, which are 0 in screen space.
+// The rest of a stack entry. The box shares bits with w and w_min.
 localparam VOXEL_LEVEL = $clog2(DEPTH + 1);
 wire                   p_screen;
 wire [VOXEL_LEVEL-1:0] p_voxel;
@@ -36,7 +36,6 @@ wire [8*W-1:0] screen_x, screen_y;
 to_screen #(W, F) change (.clk(clk), .start(state == CHANGE & changes), .x(r_x), .y(r_y), .w(r_w),
   .below(levels - r_quad_level), .node_x(r_quad_x), .node_y(r_quad_y), .last(divided),
   .screen_x(screen_x), .screen_y(screen_y));
-// Box of the changed record or of a screen-space child.
 wire signed [W-1:0] x_low, x_high, y_low, y_high;
 child_span #(W) span_x (.child(state == MOVE ? screen_x : child_x), .low(x_low), .high(x_high));
 child_span #(W) span_y (.child(state == MOVE ? screen_y : child_y), .low(y_low), .high(y_high));
@@ -73,13 +72,12 @@ centre_half #(W) half_of_x (.value(m_x), .w(m_w), .right(right), .inner(half_x))
 centre_half #(W) half_of_y (.value(m_y), .w(m_w), .right(lower), .inner(half_y));
 
 // ---------------------------------------------------------------- drawing
-reg to_draw;                                    // draw the sample that is found; else it shows that the record is visible
+reg to_draw;                                    // else the sample shows that the record is visible
 wire [5:0] found_sample = to_draw ? DRAW : CENTRE;
 wire draw_read = state == DRAW | state == WALK;
 wire [L-1:0] draw_level = c_quad_level;
 wire [P-1:0] draw_x = c_quad_x, draw_y = c_quad_y;
 
-// After the full test.
 task take_up;
   begin
     to_draw <= r_screen & r_solid & untested;
@@ -90,7 +88,6 @@ task take_up;
   end
 endtask
 
-// After the verdict.
 task judge;
   if (draw_box) begin
     to_draw <= 1;
@@ -103,7 +100,6 @@ task judge;
     state <= subdivide ? CENTRE : next_record;
 endtask
 
-// After a sample.
 task draw_on;
   if (to_draw) look_for_sample;
   else state <= next_record;

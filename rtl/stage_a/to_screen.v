@@ -13,7 +13,6 @@ module to_screen #(parameter W = `WORD_BITS, F = `FRACTION_BITS) (
   wire [1:0] place;
   divide_control control (.clk(clk), .start(start), .fraction_bits(fraction_bits), .step(step),
                           .place(place), .fraction(fraction), .last(last));
-  // The node's edge, less the 4 added by the dividers.
   wire [W-1:0] column = node_x, row = node_y;
   wire [W-1:0] left = (column - 4) << below << F;
   wire [W-1:0] top  = (row - 4) << below << F;

@@ -14,7 +14,6 @@ module verdict #(parameter W = `WORD_BITS) (
   output                   solid,           // with level of detail
   output                   draw_box, draw_centre, subdivide,
   output                   look_hidden);    // subdivided only if an undrawn sample is found
-  // Screen space: sizes of the box.
   wire [W-1:0] x_low = spans[3*W +: W], x_high = spans[2*W +: W], y_low = spans[W +: W], y_high = spans[0 +: W];
   wire [1:0] fits_lod, fits_least, fits_sample, fits_clip;
   size_screen #(W) lod_x (.low(x_low), .high(x_high), .limit(lod_limit), .fits(fits_lod[0]));
@@ -24,7 +23,6 @@ module verdict #(parameter W = `WORD_BITS) (
   size_screen #(W) sample_x (.low(x_low), .high(x_high), .limit(size_limit), .fits(fits_sample[0]));
   size_screen #(W) sample_y (.low(y_low), .high(y_high), .limit(size_limit), .fits(fits_sample[1]));
 
-  // Clip space: depths, and edges against the depth.
   wire signed [W-1:0] w_low, w_high, most;
   child_span #(W) depths (.child(w), .low(w_low), .high(w_high));
   wire signed [W-1:0] spanned = w_high - w_low;

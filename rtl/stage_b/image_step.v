@@ -1,5 +1,5 @@
 `include "widths.vh"
-// A box against a picture node: edges, bisectors, and the box relative to each half. Only sample centres count. SPEC.md, 6.
+// As in stage_a/. Only sample centres count. SPEC.md, 6.
 module image_step #(parameter W = `WORD_BITS) (
   input [4*W-1:0]          x, y, w,
   input [`LEVEL_BITS-1:0]  below,

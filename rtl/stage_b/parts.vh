@@ -2,7 +2,7 @@
 `include "children.vh"
 `include "silhouettes.vh"
 
-// The rest of a stack entry. Solids are not pushed, so the voxel has the record's level.
+// The rest of a stack entry.
 assign pushed_rest = {c_w, c_w_min, c_more};
 assign {p_w, p_w_min, p_more} = popped_rest;
 assign p_voxel_level = p_level;
@@ -18,12 +18,10 @@ task seen;
   state <= NODE;
 endtask
 
-// After the full test.
 task take_up;
   state <= NODE;
 endtask
 
-// After the verdict.
 task judge;
   state <= solid ? SOLID : CENTRE;
 endtask

@@ -2,14 +2,13 @@
 // A cube's silhouette down the image quadtree: planes of its twelve edges, and one through the eye unless the cube is
 // wholly in front of the eye. SPEC.md, 8.
 //
-// There are two sets of constants: `of_divided` of the node divided last, from which its quadrants derive, and `here`. `a`
-// and `b` are the same in all nodes. A plane whose side is known keeps its constant, so that it fits the word; therefore
-// sides are kept per level. On `switch` all this is saved, and that of context `next` restored.
+// Constants `of_divided` are those of the node divided last, from which its quadrants derive. A plane whose side is known
+// keeps its constant, so that it fits the word; therefore sides are kept per level. On `switch` all this is saved, and that
+// of context `next` restored.
 module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10, CONTEXTS = 1, CONTEXT = 1) (
   input                        clk,
   input                        switch,
   input [CONTEXT-1:0]          running, next,
-  // Start with a record's cube and node.
   input                        load,
   input [9*V-1:0]              edge_abc,    // along x, y, z
   input [6*V-1:0]              axis_ab,
@@ -17,7 +16,6 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
   input [`LEVEL_BITS-1:0]      side,        // log2 of the cube's side
   input [3*W-1:0]              min, max, eye_floor, eye_ceil,
   input                        positive, before_eye,
-  // Divide the current node, move to a quadrant, or climb to the node above.
   input                        divide, move, climb,
   input [`LEVEL_BITS-1:0]      level,
   input [1:0]                  quadrant,    // into which, or out of which

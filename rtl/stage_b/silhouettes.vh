@@ -1,6 +1,4 @@
 // Stages B and C: the current record's silhouette down the image quadtree.
-//
-// Per record: planes of its edges along x, y, z, and c of the planes across the axes.
 wire             r_screen = 1'b0, c_screen = 1'b0;
 wire [6*V-1:0]   axis_ab;
 wire [3*V-1:0]   root_axis_c;
@@ -44,7 +42,6 @@ reg [L-1:0] whole_level;                        // on this level
 wire [1:0]  side_coverage;
 wire [1:0]  coverage = whole ? 2'd2 : side_coverage;
 wire        sample = s_level == levels;
-// A node to divide, whose vector is known; no sample to draw.
 wire        looked = state == COVERED | state == COVER & known & coverage != 0 & ~(sample & ~looks);
 wire        divides = looked & coverage == 1;
 wire [L-1:0] divided;
@@ -60,7 +57,6 @@ wire        draw_read = state == COVER & coverage != 0;
 wire [L-1:0] draw_level = s_level;
 wire [P-1:0] draw_x = s_x, draw_y = s_y;
 
-// Continue in a quadrant of the node just read, or of the deepest with some left.
 wire [3:0]  rest = looked ? open : waiting[4*back_level +: 4];
 wire [1:0]  next = rest[0] ? 2'd0 : rest[1] ? 2'd1 : rest[2] ? 2'd2 : 2'd3;
 wire [L-1:0] next_in = looked ? s_level : back_level;
@@ -75,7 +71,6 @@ task next_quadrant;
   end
 endtask
 
-// After an undivided node or a sample.
 task draw_on;
   if (~back_any)
     state <= turn_over;

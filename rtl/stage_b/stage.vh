@@ -7,7 +7,6 @@
 `define JOINED_LEVELS 0
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS)
 `define STACK_LOG2 8
-// Saved registers: there is only one context.
 `define HAS_CONTEXTS 0
 `define KEPT stacked
 `define KEPT_BITS (STACK_LOG2 + 1)

@@ -1,6 +1,5 @@
-// Bricks (BRICKS): a node two levels above the finest voxels has two words, a byte of voxels per child, then its first
-// child and voxel. Its children are not read: the bytes are their masks, and counting earlier voxels gives their first
-// one. The frame sets whether nodes are laid out so, and the first brick. Node numbers are those without bricks.
+// Bricks: a node two levels above the finest voxels has two words, a byte of voxels per child, then its first child and
+// voxel. Its children are not read: the bytes are their masks, and counting earlier voxels gives their first one.
 reg         laid_out;
 reg [N-1:0] first_brick;
 always @(posedge clk)
@@ -11,7 +10,7 @@ always @(posedge clk)
       default: ;
     endcase
 wire has_bricks = BRICKS != 0 & laid_out;
-// The current child is a brick, or the child of a brick, which is then the subdivided record.
+// The current child is a brick, or the child of one.
 wire is_brick = has_bricks & c_level + 2'd2 == depth;
 wire in_brick = has_bricks & c_level + 1'b1 == depth;
 

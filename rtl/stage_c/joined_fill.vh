@@ -8,7 +8,6 @@ wire of_drawn = state == COVER | state == COVERED;
 assign elsewhere = joined & fill_level >= word_level;
 wire [L-1:0] below_word = fill_level - word_level;
 wire [P-1:0] word_x = fill_x >> below_word, word_y = fill_y >> below_word;
-// Row by row in the tile.
 localparam WORD_ADDRESS = 2*(PICTURE_LEVELS - TILE_LEVELS - 2) + CONTEXT_LOG2, WORDS = 32'd1 << WORD_ADDRESS;
 wire [L-1:0] columns_log2 = word_level - TILE_LEVELS;
 wire [P-1:0] row_in_tile = word_y & ~({P{1'b1}} << columns_log2);
@@ -20,7 +19,6 @@ memory #(.BITS(16), .WORDS(WORDS), .ADDRESS(WORD_ADDRESS)) fill_words (.clk(clk)
   .read(fill_read & elsewhere & ~known), .write(fill_write & elsewhere), .address(word_address),
   .data_in(state == CLEAR ? outside_word : written), .data_out(word_there));
 
-// The register: a word's place, and its value once written.
 reg          has_word, is_written, marks_word, judged;
 reg  [P-1:0] has_x, has_y;
 reg  [15:0]  written;
@@ -39,7 +37,6 @@ always @(posedge clk)
       has_word <= 1;
       is_written <= 0;
     end
-    // A turn begins, also after a drawn or occluded child.
     if (state == OBJECT | state == POP | state == OPEN | state == CENTRE | state == CHILD & judged) has_word <= 0;
     if (state == SOLID) judged <= 1;
     if (state == CHILD | state == CENTRE) judged <= 0;

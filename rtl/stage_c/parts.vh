@@ -1,21 +1,20 @@
-// Stage C: exact coverage as in stage B, organised as the best exact hardware. The subdivided record stays in registers.
-// Its children are made one at a time, the nearest first. A child with an undrawn sample is read and replaces its parent,
-// which goes to the stack if it has children left. A pop computes the parent back from the last record in registers.
+// Stage C: exact coverage as in stage B. The subdivided record stays in registers. Its children are made one at a time, the
+// nearest first. A child with an undrawn sample replaces its parent, which goes to the stack if it has children left. A
+// pop computes the parent back from the last record.
 `include "silhouettes.vh"
 `include "joined_fill.vh"
 
 // ---------------------------------------------------------------- the current record: a child
 assign t_level = c_level, t_voxel_level = c_level, t_quad_level = c_quad_level, t_node = c_node;
 assign t_quad_x = c_quad_x, t_quad_y = c_quad_y, t_min = c_min, t_max = c_max, t_w_min = c_w_min, t_more = c_more;
-reg  c_leaf;                                    // it has no children
-reg  [7:0] leaves;                              // which of the parent's children have none
+reg  c_leaf;                                    // no children
+reg  [7:0] leaves;                              // of the parent
 always @(posedge clk)
   if (state == OBJECT) c_leaf <= root_leaf | depth == 0;
   else if (state == CHILD) c_leaf <= r_level + 1'b1 >= depth | leaves[octant];
 wire deep;
 assign lod_look_up = state == OBJECT | state == CHILD, lod_level = state == OBJECT ? {L{1'b0}} : r_level + 1'b1;
 detail_depth #(W) detail (.w_min(c_w_min), .least(lod_depth), .solid(deep));
-// Draw its silhouette, or search it for an undrawn sample.
 reg  draws;
 wire looks = ~draws;
 wire [5:0] turn_over = |(left & there) ? CHILD : next_record;
@@ -59,7 +58,6 @@ grown_cage #(W) grown_y (.parent(r_y), .octant(octant), .child(child_y));
 grown_cage #(W) grown_w (.parent(r_w), .octant(octant), .child(child_w));
 
 // ---------------------------------------------------------------- back to the parent
-// From a quadrant to the node above.
 wire [CAGE-1:0] outer_x, outer_y;
 wire [MORE-1:0] outer_more;
 whole_clip #(W) outer_of_x (.x(r_x), .w(r_w), .right(r_quad_x[0]), .outer(outer_x));
@@ -110,7 +108,6 @@ task accept;
   end
 endtask
 
-// After the full test.
 task take_up;
   begin
     {mask, leaves, left} <= {p_mask, p_leaves, p_left};
@@ -134,7 +131,6 @@ task become_parent;
   begin
     {leaves, mask, first} <= c_of_node;
     left <= 8'hff;
-    // Solids are never subdivided.
     r_solid <= 0;
     r_node <= c_node;
     r_voxel_level <= c_level;

@@ -6,7 +6,6 @@
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS + of.fill_words.BITS*of.fill_words.WORDS)
 // One parent per level.
 `define STACK_LOG2 5
-// Saved registers of a waiting context: a parent, its child, and their progress.
 `define HAS_CONTEXTS 1
 `define KEPT stacked, r_inside, r_level, r_quad_level, r_quad_x, r_quad_y, r_min, r_max, r_x, r_y, r_w, r_more, \
   c_inside, c_level, c_quad_level, c_node, c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_more, \

@@ -1,8 +1,8 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame in a folder that `shiftvox model --vectors` wrote under the stage's rules. Reads frame.constants.hex and
-// frame.nodes.hex, writes pixels.txt and, with +events, events.txt, and prints the cycles. +most=N limits them, +states
-// prints cycles per state, +wave (Icarus Verilog) writes frame.vcd.
+// Draws a frame of `shiftvox model --vectors`. Reads frame.constants.hex and frame.nodes.hex, writes pixels.txt and, with
+// +events, events.txt, and prints the cycles. +most=N limits them, +states prints cycles per state, +wave (Icarus Verilog)
+// writes frame.vcd.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
                   NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;

@@ -25,7 +25,6 @@ module lanes_memories_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, P
     $display("attribute cache, tags: %0d",
       dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_tags.BITS*dut.attribute_cache.ways[0].of_tags.WORDS
       + dut.attribute_cache.of_order.BITS*dut.attribute_cache.of_order.WORDS + $bits(dut.attribute_cache.valid));
-    // Not in the model: depths of level of detail, a word per level and lane.
     $display("levels of detail: %0d", LANES*dut.lane[0].walk.constants.lod.BITS*dut.lane[0].walk.constants.lod.WORDS);
   end
 endmodule

@@ -1,7 +1,6 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame with several lanes, like frame_tb.v. The memory takes a request every eight cycles and has several in
-// flight. Each event begins with its tile.
+// As frame_tb.v, with several lanes. The memory takes a request every eight cycles and has several in flight.
 module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
                   DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `lanes` has them
   localparam W = `WORD_BITS;

@@ -1,7 +1,6 @@
-// A module `BENCH that runs `BLOCK through the rows of the file `ROWS, lines of {"in":"..","out":".."} with digits of
-// `INTO and `OUT bits, and prints how many were wrong. `PORTS connects the block to `row` and `result`. A block that is
-// `CLOCKED takes cycles from `start` to `last`; all others are functions. At most `MOST rows are read, of `STEP rows one,
-// with the inputs `STIMULUS; after each, `EACH is done, and at the end `SHOW.
+// A module `BENCH runs `BLOCK through the rows of the file `ROWS, lines of {"in":"..","out":".."} with digits of `INTO and
+// `OUT bits, and prints how many were wrong. A `CLOCKED block takes cycles from `start` to `last`. At most `MOST rows are
+// read, of `STEP rows one, with the inputs `STIMULUS; after each, `EACH is done, and at the end `SHOW.
 `ifndef MOST
 `define MOST 2147483647
 `endif

@@ -16,7 +16,7 @@
 //! to which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
-use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};
+use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds};
 use shiftvox::frame::Frame;
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::SetupOptions;
@@ -140,7 +140,7 @@ fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycle
     let setup = setup(&graph, &camera, &SetupOptions::default());
     hardware.organisation = organisation;
     let mut frame = Frame::new(4, 4, false);
-    let mut recorder = Recorder::new(TraceLimit::default());
+    let mut recorder = Recorder::new(u64::MAX);
     let simulated = Machine::new(MachineOptions::default())
         .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
         .unwrap();

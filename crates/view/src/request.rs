@@ -1,7 +1,4 @@
 //! Requests of a page, in JSON.
-//!
-//! A page names scenes by their place in the list, and settings by a few flags of
-//! `shiftvox render`.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +8,6 @@ use serde::{Deserialize, Serialize};
 pub(crate) const MOST_PIXELS: u64 = 1 << 22;
 /// Most samples of a picture: 16 per pixel at 1024 x 1024.
 pub(crate) const MOST_SAMPLES: u64 = 1 << 24;
-/// Most letters of a flag's value.
 const MOST_LETTERS: usize = 24;
 
 /// Flags of `render` that a page may set, separated by blanks. None of them names a file.
@@ -88,7 +84,6 @@ pub fn check_size([width, height]: [u32; 2], aa: u32) -> Result<(), String> {
 }
 
 impl Request {
-    /// Refuses flags that a page may not set, values that no flag has, and large pictures.
     pub(crate) fn check(&self) -> Result<(), String> {
         for (name, value) in &self.flags {
             if !FLAGS.split(' ').any(|flag| flag == name) {

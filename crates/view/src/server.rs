@@ -1,8 +1,6 @@
-//! The server: connections, the checks of their requests, and the page.
-//!
-//! The page and its sockets are for clients that know the token and name this computer by an
-//! address or as `localhost`. Under any other name a hostile site could reach them (DNS
-//! rebinding). Sockets are for the page itself (Origin). A connection serves one request.
+//! The page and its sockets are for clients that know the token and name this computer by an address or as `localhost`.
+//! Under any other name a hostile site could reach them (DNS rebinding). Sockets are for the page itself (Origin). A
+//! connection serves one request.
 
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -19,7 +17,6 @@ use tungstenite::http::{HeaderName, StatusCode, header};
 
 use crate::{Program, socket};
 
-/// The page with its styles and its script.
 const PAGE: &str = include_str!("page.html");
 /// Most sockets; a page opens two.
 const MOST_SOCKETS: usize = 8;
@@ -37,7 +34,6 @@ const WRITE_TIME: Duration = Duration::from_secs(5);
 pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
-    /// The secret of the page's address.
     token: String,
     /// One more reference for each socket.
     sockets: Arc<()>,
@@ -98,9 +94,7 @@ impl Server {
         })
     }
 
-    /// Answers the request of a connection.
     fn answer(&self, stream: Arc<TcpStream>, program: &impl Program) {
-        // Answers are sent at once. Without these settings a connection works, too.
         let _ = stream.set_nodelay(true);
         let _ = stream.set_write_timeout(Some(WRITE_TIME));
         let request = read_head(&stream);
@@ -142,7 +136,7 @@ impl Server {
         Ok((head, Some(place)))
     }
 
-    /// Checks the name under which the page is requested, and the token. Returns the name.
+    /// Returns the name under which the page is requested.
     fn check<'r>(&self, request: &'r Request) -> Result<&'r str, Refused> {
         let name = only(request, header::HOST)
             .ok_or((StatusCode::BAD_REQUEST, "a request has one Host header"))?;
@@ -162,17 +156,14 @@ impl Server {
     }
 }
 
-/// The reason why a request is refused.
 type Refused = (StatusCode, &'static str);
 
-/// Reads a request, which is a head without a body.
 fn read_head(mut stream: &TcpStream) -> Result<Request, Refused> {
     let late = |_| (StatusCode::REQUEST_TIMEOUT, "the request came too slowly");
     let until = Instant::now() + HEAD_TIME;
     let (mut head, mut part) = (Vec::new(), [0; 4096]);
     while head.len() < MOST_HEAD {
         let left = until.saturating_duration_since(Instant::now());
-        // A time limit of zero is an error, too.
         stream.set_read_timeout(Some(left)).map_err(late)?;
         let count = stream.read(&mut part).map_err(late)?;
         head.extend_from_slice(&part[..count]);
@@ -196,8 +187,7 @@ fn only(request: &Request, name: HeaderName) -> Option<&str> {
     value.to_str().ok()
 }
 
-/// Whether a host names this computer by an address, or as `localhost`. No other site can use
-/// these names. A page for this computer alone is requested by a loopback address.
+/// Whether a host names this computer by an address, or as `localhost`: no other site can use these names.
 fn is_own(host: &str, bind: IpAddr) -> bool {
     let bare = host.strip_prefix('[').and_then(|h| h.strip_suffix(']'));
     match bare.unwrap_or(host).parse::<IpAddr>() {
@@ -213,7 +203,7 @@ fn is_same(one: &str, other: &str) -> bool {
     one.len() == other.len() && difference == 0
 }
 
-/// 128 random bits, as 32 hexadecimal digits.
+/// 128 random bits.
 fn random_word() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes)
@@ -221,7 +211,6 @@ fn random_word() -> io::Result<String> {
     Ok(format!("{:032x}", u128::from_ne_bytes(bytes)))
 }
 
-/// The response with the page, for a client that requested it from this host.
 fn page(host: &str) -> Result<Vec<u8>, Refused> {
     let nonce =
         random_word().map_err(|_| (StatusCode::INTERNAL_SERVER_ERROR, "no random numbers"))?;

@@ -1,8 +1,5 @@
-//! A socket: requests of a page, and the answers to them.
-//!
-//! A message to a page is the length of its head in four bytes (least significant first), the head
-//! as JSON, and the picture if there is one. Requests do not queue: of those that have arrived,
-//! only the newest is answered.
+//! A message to a page is the length of its head in four bytes (least significant first), the head as JSON, and the
+//! picture if there is one. Requests do not queue: of those that have arrived, only the newest is answered.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -18,13 +15,12 @@ use tungstenite::{Error, Message, Utf8Bytes, WebSocket};
 use crate::request::{MOST_PIXELS, MOST_SAMPLES, Request};
 use crate::{Answer, Program};
 
-/// Most bytes of a message from a page.
+/// Of a page.
 const MOST_BYTES: usize = 4096;
-/// Most messages per second.
+/// Per second.
 const MOST_MESSAGES: u32 = 250;
 const SECOND: Duration = Duration::from_secs(1);
-/// The drawer is dropped after this time without a request: its buffers may take hundreds of
-/// megabytes.
+/// The drawer, whose buffers may take hundreds of megabytes, is dropped after this time without a request.
 const IDLE: Duration = Duration::from_secs(10);
 
 /// A stream for slow links. A write fails after two of the stream's time limits without progress.
@@ -38,8 +34,7 @@ impl Read for Patient {
 
 impl Write for Patient {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // The system wakes a writer when a third of its buffer is free. A second attempt needs one
-        // byte.
+        // The system wakes a writer when a third of its buffer is free. A second attempt needs one byte.
         self.0.write(bytes).or_else(|_| self.0.write(bytes))
     }
 
@@ -48,7 +43,6 @@ impl Write for Patient {
     }
 }
 
-/// Serves a socket until the page or this program closes it.
 pub(crate) fn talk(stream: TcpStream, program: &impl Program) {
     let config = WebSocketConfig::default()
         .read_buffer_size(MOST_BYTES)
@@ -128,7 +122,6 @@ fn answer_all(
 
 fn send(socket: &mut WebSocket<Patient>, (head, picture): Answer) -> Result<(), Error> {
     let head = head.to_string();
-    // A head has a few thousand bytes.
     let mut begin = (head.len() as u32).to_le_bytes().to_vec();
     begin.extend_from_slice(head.as_bytes());
     let begin = Frame::message(begin, OpCode::Data(Data::Binary), false);
@@ -137,7 +130,6 @@ fn send(socket: &mut WebSocket<Patient>, (head, picture): Answer) -> Result<(), 
     socket.send(Message::Frame(rest))
 }
 
-/// The answer to a message, or the reason why there is none.
 fn answer(drawer: &mut impl FnMut(&Request) -> Result<Answer, String>, message: &str) -> Answer {
     let request = serde_json::from_str::<Request>(message)
         .map_err(|error| format!("this message is not understood: {error}"));

@@ -1,18 +1,15 @@
 //! Area, delay and energy of operations, from tables in which every row names its source.
 //!
-//! The crate ships `tables/area.toml` (gates, by synthesis with an open standard-cell library) and `tables/energy.toml`
-//! (picojoules, as published). A user's own rows take precedence. A [`Cost`] names its rows and whether it lies between
-//! or beyond them; an operation without rows is an error.
+//! The crate ships `tables/area.toml` and `tables/energy.toml`. A user's own rows take precedence. An operation without
+//! rows is an error.
 
 mod rows;
-mod span;
 mod sums;
 mod table;
 
 pub use rows::{CostError, Goal, Quantity};
-pub use span::MinMaxUnits;
 pub use sums::{
-    Breakdown, Costing, Line, ORDERED_OCTANTS, ShiftUnits, Store, Stores, Tally, Unit, area_of,
-    energy_of, energy_of_tallies, memory_energy_of, operation_of, tallies,
+    Breakdown, Costing, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies,
+    memory_energy_of, operation_of, tallies,
 };
 pub use table::{Cost, CostTable, Fit};

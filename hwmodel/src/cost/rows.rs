@@ -10,10 +10,6 @@ use serde::{Deserialize, Serialize};
 pub enum Quantity {
     /// Area in two-input NAND gates of the same library.
     Nand2,
-    /// Area in the source's process, in square micrometres.
-    Um2,
-    /// Area at 45 nm, in square micrometres.
-    Um2At45Nm,
     /// Delay in the source's process, in picoseconds.
     DelayPs,
     /// Energy of one operation or access, in picojoules.
@@ -21,46 +17,18 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// The quantity in words.
-    pub const fn name(self) -> &'static str {
+    /// The quantity in words, its key in a table, and the shipped file that has it.
+    pub(super) const fn words(self) -> [&'static str; 3] {
         match self {
-            Self::Nand2 => "area in NAND2 equivalents",
-            Self::Um2 => "area",
-            Self::Um2At45Nm => "area at 45 nm",
-            Self::DelayPs => "delay",
-            Self::EnergyPj => "energy",
-        }
-    }
-
-    /// Its unit.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Nand2 => "NAND2",
-            Self::Um2 | Self::Um2At45Nm => "um2",
-            Self::DelayPs => "ps",
-            Self::EnergyPj => "pJ",
-        }
-    }
-
-    /// The key of its figures in a table.
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Nand2 => "nand2",
-            Self::Um2 => "um2",
-            Self::Um2At45Nm => "um2_45nm",
-            Self::DelayPs => "delay_ps",
-            Self::EnergyPj => "energy_pj",
-        }
-    }
-
-    /// The shipped file that holds such figures.
-    pub const fn file(self) -> &'static str {
-        match self {
-            Self::EnergyPj => "hwmodel/tables/energy.toml",
-            _ => "hwmodel/tables/area.toml",
+            Self::Nand2 => ["area in NAND2 equivalents", "nand2", AREA_FILE],
+            Self::DelayPs => ["delay", "delay_ps", AREA_FILE],
+            Self::EnergyPj => ["energy", "energy_pj", ENERGY_FILE],
         }
     }
 }
+
+pub(super) const AREA_FILE: &str = "hwmodel/tables/area.toml";
+pub(super) const ENERGY_FILE: &str = "hwmodel/tables/energy.toml";
 
 /// The goal of a synthesis.
 #[derive(
@@ -77,8 +45,7 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// The goal in words.
-    pub const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Area => "for small area",
             Self::Delay => "for short delay",
@@ -89,85 +56,17 @@ impl Goal {
 /// Why a table cannot be read, or has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CostError {
-    /// A file is not TOML, or not a cost table.
-    #[error("{file} is no cost table: {message}")]
-    Syntax {
-        /// File name.
-        file: String,
-        /// Problem and place.
-        message: String,
-    },
-    /// A row makes no sense.
-    #[error("{file}, row `{operation}`{}: {problem}", of_bits(*width))]
-    Row {
-        /// File name.
-        file: String,
-        /// The row's operation.
-        operation: String,
-        /// The row's width, in bits.
-        width: Option<u32>,
-        /// Problem.
-        problem: &'static str,
-    },
-    /// No row.
-    #[error(
-        "no {} of `{operation}`, asked for at {width} bits{}: add a row with `{}` to a cost table of your own, or to {}",
-        quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
-    )]
-    Missing {
-        /// Requested quantity.
-        quantity: Quantity,
-        /// Requested operation.
-        operation: String,
-        /// Requested width, in bits.
-        width: u32,
-        /// Requested goal, if it matters.
-        goal: Option<Goal>,
-    },
-    /// No row is near enough.
-    #[error(
-        "no {} of `{operation}` near {width} {unit}{}: the largest row has {widest}, and nothing is extrapolated beyond {times} times that; add a row with `{}` to a cost table of your own, or to {}",
-        quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
-    )]
-    TooWide {
-        /// Requested quantity.
-        quantity: Quantity,
-        /// Requested operation.
-        operation: String,
-        /// Requested width or size, in bits or bytes.
-        width: u64,
-        /// Width or size of the widest row.
-        widest: u64,
-        /// `bits` or `bytes`.
-        unit: &'static str,
-        /// Largest accepted multiple of the widest.
-        times: u64,
-        /// Requested goal, if it matters.
-        goal: Option<Goal>,
-    },
-    /// Operations cannot be priced in the requested way. Operations cannot be costed in the requested way.
-    #[error(
-        "{times} min/max operations of {width} bits in stage {stage} are not spans of eight values (7 min and 7 max each): pairs are for the corner cage"
-    )]
-    NoSpans {
-        /// Number of operations.
-        times: u64,
-        /// Their width, in bits.
-        width: u32,
-        /// The stage in words.
-        stage: &'static str,
-    },
+    /// A file is not a cost table: the file and the problem.
+    #[error("{0} is no cost table: {1}")]
+    Syntax(String, String),
+    /// A row makes no sense: the file, the row and the problem.
+    #[error("{0}, row {1}: {2}")]
+    Row(String, String, &'static str),
+    /// No row has the requested figure, or none is near enough: the request and how to add one.
+    #[error("no {0}; {1}")]
+    NoFigure(String, String),
 }
 
-fn of_bits(width: Option<u32>) -> String {
-    width.map_or_else(String::new, |width| format!(" of {width} bits"))
-}
-
-fn in_brackets(goal: Option<Goal>) -> String {
-    goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()))
-}
-
-/// A number, or a range.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum Figure {
@@ -186,8 +85,6 @@ struct FileRow {
     #[serde(default)]
     derived: bool,
     nand2: Option<Figure>,
-    um2: Option<Figure>,
-    um2_45nm: Option<Figure>,
     delay_ps: Option<Figure>,
     energy_pj: Option<Figure>,
 }
@@ -214,97 +111,90 @@ pub(super) struct CostRow {
     pub(super) file: String,
 }
 
-/// Key of the rows between which figures are interpolated.
 pub(super) type Key = (Quantity, String, Option<Goal>);
 
-/// Contents of a file.
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub(super) quadratic: Vec<String>,
     pub(super) rows: BTreeMap<Key, Vec<CostRow>>,
 }
 
-/// Largest figure, so that sums over a frame stay finite.
 const MAX_FIGURE: f64 = 1e12;
-/// Widest row, bits.
 const MAX_WIDTH: u32 = 1 << 16;
-/// Largest memory, bytes.
 const MAX_BYTES: u64 = 1 << 50;
 
+impl FileRow {
+    fn problem(&self) -> Option<&'static str> {
+        let is_sound =
+            |(_, low, high): (_, f64, f64)| low >= 0.0 && low <= high && high <= MAX_FIGURE;
+        Some(if self.operation.trim().is_empty() {
+            "the operation has no name"
+        } else if self.source.trim().is_empty() {
+            "the source is empty; every row must name one"
+        } else if self.width == Some(0) {
+            "a width is at least 1 bit; leave it out for any"
+        } else if self.width.is_some_and(|width| width > MAX_WIDTH) {
+            "a width is at most 65536 bits"
+        } else if self.bytes.is_some_and(|bytes| bytes > MAX_BYTES) {
+            "a memory has at most 2^50 bytes"
+        } else if self.bytes == Some(0) || self.bytes.is_some() && self.width.is_none() {
+            "a memory has at least 1 byte, and a width: the bits of an access"
+        } else if self.figures().next().is_none() {
+            "there is no figure: nand2, delay_ps or energy_pj"
+        } else if !self.figures().all(is_sound) {
+            "a figure is a number from 0 to 1e12, or a range [low, high] of two"
+        } else {
+            return None;
+        })
+    }
+
+    fn figures(&self) -> impl Iterator<Item = (Quantity, f64, f64)> {
+        let figures = [
+            (Quantity::Nand2, self.nand2),
+            (Quantity::DelayPs, self.delay_ps),
+            (Quantity::EnergyPj, self.energy_pj),
+        ];
+        figures.into_iter().filter_map(|(quantity, figure)| {
+            let [low, high] = match figure? {
+                Figure::Number(number) => [number; 2],
+                Figure::Range(range) => range,
+            };
+            Some((quantity, low, high))
+        })
+    }
+}
+
 pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
-    let parsed: File = toml::from_str(text).map_err(|error| CostError::Syntax {
-        file: file.to_owned(),
-        message: error.to_string(),
-    })?;
+    let parsed: File = toml::from_str(text)
+        .map_err(|error| CostError::Syntax(file.to_owned(), error.to_string()))?;
     let mut rows = BTreeMap::<Key, Vec<CostRow>>::new();
     for row in &parsed.row {
-        let wrong = |problem| CostError::Row {
-            file: file.to_owned(),
-            operation: row.operation.clone(),
-            width: row.width,
-            problem,
+        let wrong = |problem| {
+            let width = row.width.map(|width| format!(" of {width} bits"));
+            let row = format!("`{}`{}", row.operation, width.unwrap_or_default());
+            Err(CostError::Row(file.to_owned(), row, problem))
         };
-        if row.operation.trim().is_empty() {
-            return Err(wrong("the operation has no name"));
+        if let Some(problem) = row.problem() {
+            return wrong(problem);
         }
-        if row.source.trim().is_empty() {
-            return Err(wrong("the source is empty; every row must name one"));
-        }
-        if row.width == Some(0) {
-            return Err(wrong("a width is at least 1 bit; leave it out for any"));
-        }
-        if row.width.is_some_and(|width| width > MAX_WIDTH) {
-            return Err(wrong("a width is at most 65536 bits"));
-        }
-        if row.bytes.is_some_and(|bytes| bytes > MAX_BYTES) {
-            return Err(wrong("a memory has at most 2^50 bytes"));
-        }
-        if row.bytes.is_some() && (row.bytes == Some(0) || row.width.is_none()) {
-            return Err(wrong(
-                "a memory has at least 1 byte, and a width: the bits of an access",
-            ));
-        }
-        let figures = [
-            (Quantity::Nand2, row.nand2),
-            (Quantity::Um2, row.um2),
-            (Quantity::Um2At45Nm, row.um2_45nm),
-            (Quantity::DelayPs, row.delay_ps),
-            (Quantity::EnergyPj, row.energy_pj),
-        ];
-        if figures.iter().all(|(_, figure)| figure.is_none()) {
-            return Err(wrong(
-                "there is no figure: nand2, um2, um2_45nm, delay_ps or energy_pj",
-            ));
-        }
-        for (quantity, figure) in figures {
-            let (low, high) = match figure {
-                None => continue,
-                Some(Figure::Number(number)) => (number, number),
-                Some(Figure::Range([low, high])) => (low, high),
-            };
-            if !(low >= 0.0 && low <= high && high <= MAX_FIGURE) {
-                return Err(wrong(
-                    "a figure is a number from 0 to 1e12, or a range [low, high] of two",
-                ));
-            }
+        for (quantity, low, high) in row.figures() {
             let key = (quantity, row.operation.clone(), row.goal);
-            let together = rows.entry(key).or_default();
-            if together
+            let others = rows.entry(key).or_default();
+            let place = (row.width, row.bytes);
+            if others
                 .iter()
-                .any(|other| (other.width, other.bytes) == (row.width, row.bytes))
+                .any(|other| (other.width, other.bytes) == place)
             {
-                return Err(wrong("there are two such rows"));
+                return wrong("there are two such rows");
             }
-            if together
+            if others
                 .iter()
                 .any(|other| other.width.is_none() != row.width.is_none())
             {
-                return Err(wrong(
-                    "one row is for any width and another for one: which counts?",
-                ));
+                return wrong("one row is for any width and another for one: which counts?");
             }
             let source = parsed.sources.get(&row.source).unwrap_or(&row.source);
-            together.push(CostRow {
+            others.push(CostRow {
                 width: row.width,
                 bytes: row.bytes,
                 low,

@@ -1,10 +1,10 @@
-//! Sums over a table, line by line: energy of counted operations, area of a bill of units.
+//! Energy of counted operations and accesses, line by line.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Cost, CostError, CostTable, Goal, MinMaxUnits};
+use super::{Cost, CostError, CostTable};
 use crate::count::{Accesses, Counter};
 use crate::memory::Widths;
 use crate::{Memory, OpClass, Stage};
@@ -13,10 +13,10 @@ use crate::{Memory, OpClass, Stage};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShiftUnits {
-    /// Wires, by the row `shift_wires`: one shift after another.
+    /// Wires, by the row `shift_wires`.
     #[default]
     Wires,
-    /// Shifters for any number of places, by the rows of `shift_var`.
+    /// Shifters, by the rows of `shift_var`.
     Variable,
 }
 
@@ -25,11 +25,9 @@ pub enum ShiftUnits {
 pub struct Costing {
     /// Implementation of shifts.
     pub shifts: ShiftUnits,
-    /// Implementation of spans.
-    pub min_max: MinMaxUnits,
 }
 
-/// The operation of a table for a class. Logic is priced as `xor`, its most expensive operation.
+/// The operation of a table for a class. Logic is priced as `xor`.
 pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     match class {
         OpClass::Add => "add",
@@ -46,9 +44,8 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     }
 }
 
-/// Exclusive ors of the stage *order* per octant, each with a constant. All eight together are one inversion of the
-/// octant and wires.
-pub const ORDERED_OCTANTS: u64 = 8;
+/// Exclusive ors of the stage *order* with constants, which are one inversion of the octant and wires.
+const ORDERED_OCTANTS: u64 = 8;
 
 /// A number of operations of one kind.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -72,7 +69,7 @@ pub struct Line {
     pub width: u32,
     /// Number of operations, accesses or units.
     pub times: u64,
-    /// Cost of one, with its rows and their source.
+    /// Cost of one.
     pub each: Cost,
     /// `times` times its value.
     pub total: f64,
@@ -107,63 +104,25 @@ impl Breakdown {
             each,
         });
     }
-
-    /// The sources of all lines, each once, in order of first use.
-    pub fn sources(&self) -> Vec<&str> {
-        let mut sources = Vec::new();
-        for line in &self.lines {
-            if !sources.contains(&line.each.source.as_str()) {
-                sources.push(line.each.source.as_str());
-            }
-        }
-        sources
-    }
-
-    /// Whether a line's figure is interpolated or extrapolated.
-    pub fn is_estimated(&self) -> bool {
-        self.lines.iter().any(|line| line.each.is_estimated())
-    }
 }
 
 /// Counted operations as operations of a cost table, by operation and width.
-///
-/// The exclusive ors of the stage *order* are wires and one inversion per [`ORDERED_OCTANTS`]. With
-/// [`MinMaxUnits::Pairs`], minima and maxima of the stages that find spans (child box, quadtree fit) become compares and
-/// selects.
-///
-/// # Errors
-/// [`CostError::NoSpans`] when those minima and maxima are not spans of eight values, as with the frame cage.
-pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostError> {
+pub fn tallies(counter: &Counter, costing: Costing) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
-    for ((stage, class, bits), times) in counter.sum_by(|cell| (cell.stage, cell.class, cell.bits))
-    {
-        let spans = matches!(stage, Stage::ChildBox | Stage::QuadtreeFit);
-        if class == OpClass::MinMax && costing.min_max == MinMaxUnits::Pairs && spans {
-            let (of_a_span, _) = MinMaxUnits::Each.compares_and_selects(8);
-            if !times.is_multiple_of(of_a_span) {
-                return Err(CostError::NoSpans {
-                    times,
-                    width: bits,
-                    stage: stage.name(),
-                });
-            }
-            let (compares, selects) = costing.min_max.compares_and_selects(8);
-            *sums.entry(("less", bits)).or_default() += times / of_a_span * compares;
-            *sums.entry(("select", bits)).or_default() += times / of_a_span * selects;
-        } else if (stage, class) == (Stage::Order, OpClass::Logic) {
-            // Wires, and the octant's bits inverted once.
-            *sums.entry(("invert", bits)).or_default() += times.div_ceil(ORDERED_OCTANTS);
-        } else {
-            let operation = operation_of(class, costing.shifts);
-            *sums.entry((operation, bits)).or_default() += times;
-        }
+    let cells = counter.sum_by(|cell| (cell.stage, cell.class, cell.bits));
+    for ((stage, class, bits), times) in cells {
+        let (operation, times) = match (stage, class) {
+            (Stage::Order, OpClass::Logic) => ("invert", times.div_ceil(ORDERED_OCTANTS)),
+            _ => (operation_of(class, costing.shifts), times),
+        };
+        *sums.entry((operation, bits)).or_default() += times;
     }
     let tally = |((operation, width), times): ((&str, u32), u64)| Tally {
         operation: operation.to_owned(),
         width,
         times,
     };
-    Ok(sums.into_iter().map(tally).collect())
+    sums.into_iter().map(tally).collect()
 }
 
 /// Energy of all counted operations, in picojoules.
@@ -179,18 +138,17 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
 /// counter.op(OpClass::Shift, 33, place, 1000); // wires
 /// let energy = energy_of(&counter, &CostTable::load_shipped()?, Costing::default())?;
 /// assert!((energy.total - 100.0).abs() < 1e-9); // pJ
-/// assert!(energy.lines[0].each.source.contains("Horowitz"));
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
 ///
 /// # Errors
-/// When an operation has no row, or there are no spans for pairs.
+/// When an operation has no row.
 pub fn energy_of(
     counter: &Counter,
     table: &CostTable,
     costing: Costing,
 ) -> Result<Breakdown, CostError> {
-    energy_of_tallies(&tallies(counter, costing)?, table)
+    energy_of_tallies(&tallies(counter, costing), table)
 }
 
 /// Energy of operations of any kind, in picojoules.
@@ -200,14 +158,9 @@ pub fn energy_of(
 pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for tally in tallies {
-        let each = table.energy(&tally.operation, tally.width)?;
-        sum.push(
-            &tally.operation,
-            &tally.operation,
-            tally.width,
-            tally.times,
-            each,
-        );
+        let (operation, width) = (&tally.operation, tally.width);
+        let each = table.energy(operation, width)?;
+        sum.push(operation, operation, width, tally.times, each);
     }
     Ok(sum)
 }
@@ -216,7 +169,7 @@ pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdo
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Store {
-    /// SRAM of so many bytes: rows `sram_read` and `sram_write`.
+    /// SRAM: rows `sram_read` and `sram_write`.
     Sram {
         /// Its size, at least 1.
         bytes: u64,
@@ -225,46 +178,14 @@ pub enum Store {
     Dram,
 }
 
-/// The technology of each memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Stores {
-    /// The record stack.
-    pub stack: Store,
-    /// Graph nodes.
-    pub node: Store,
-    /// Colours and normals.
-    pub attribute: Store,
-    /// Fill vectors.
-    pub fill_vector: Store,
-    /// Pixels.
-    pub pixel: Store,
-    /// Partial sums of pixels where voxels are blended.
-    pub accumulator: Store,
-}
-
-impl Stores {
-    /// The technology of a memory.
-    pub const fn of(&self, memory: Memory) -> Store {
-        match memory {
-            Memory::Stack => self.stack,
-            Memory::Node => self.node,
-            Memory::Attribute => self.attribute,
-            Memory::FillVector => self.fill_vector,
-            Memory::Pixel => self.pixel,
-            Memory::Accumulator => self.accumulator,
-        }
-    }
-}
-
-/// Energy of accesses, in picojoules. `accesses` may be a counter's (`counter.accesses_by(|cell| cell.memory)`), or those
-/// that a cache passes on.
+/// Energy of accesses, in picojoules.
 ///
 /// # Errors
 /// When a row is missing, or a memory is far larger than all rows.
 pub fn memory_energy_of(
     accesses: &BTreeMap<Memory, Accesses>,
     widths: &Widths,
-    stores: &Stores,
+    store: impl Fn(Memory) -> Store,
     table: &CostTable,
 ) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
@@ -274,46 +195,20 @@ pub fn memory_energy_of(
             if times == 0 {
                 continue;
             }
-            let (operation, each) = match stores.of(memory) {
+            let (operation, each) = match store(memory) {
                 Store::Sram { bytes } => {
                     let operation = format!("sram_{way}");
-                    let each = table.memory_energy(&operation, bytes, width)?;
+                    let each = table.memory_energy(&operation, bytes, width);
                     (operation, each)
                 }
                 Store::Dram => {
                     let operation = format!("dram_{way}");
-                    let each = table.energy(&operation, width)?;
+                    let each = table.energy(&operation, width);
                     (operation, each)
                 }
             };
-            sum.push(memory.name(), &operation, width, times, each);
+            sum.push(memory.name(), &operation, width, times, each?);
         }
-    }
-    Ok(sum)
-}
-
-/// Units of one kind in a design.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Unit {
-    /// Purpose, such as "vertex pool".
-    pub name: String,
-    /// Operation of the cost table, such as `midpoint` or `register`.
-    pub operation: String,
-    /// Width, in bits.
-    pub width: u32,
-    /// Number of units.
-    pub count: u64,
-}
-
-/// Area of a bill of units, in NAND2 equivalents.
-///
-/// # Errors
-/// When a unit's operation has no row.
-pub fn area_of(bill: &[Unit], table: &CostTable, goal: Goal) -> Result<Breakdown, CostError> {
-    let mut sum = Breakdown::default();
-    for unit in bill {
-        let each = table.area(&unit.operation, unit.width, goal)?;
-        sum.push(&unit.name, &unit.operation, unit.width, unit.count, each);
     }
     Ok(sum)
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{CostError, CostRow, Goal, Key, Parsed, Quantity, parse};
+use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Key, Parsed, Quantity, parse};
 
 /// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -39,18 +39,6 @@ pub struct Cost {
     pub source: String,
 }
 
-impl Cost {
-    /// Whether no row has this figure.
-    pub fn is_estimated(&self) -> bool {
-        self.fit != Fit::Row
-    }
-
-    /// Whether it is a range.
-    pub fn is_range(&self) -> bool {
-        self.low < self.high
-    }
-}
-
 /// Cost tables, one over the other.
 ///
 /// ```
@@ -59,41 +47,24 @@ impl Cost {
 /// let table = CostTable::load_shipped()?;
 /// let adder = table.area("add", 32, Goal::Area)?;
 /// assert_eq!((adder.value, adder.fit), (232.9, Fit::Row));
-/// let wider = table.area("add", 40, Goal::Area)?;
-/// assert_eq!(wider.fit, Fit::Interpolated);
-/// assert_eq!(wider.rows, "`add` of 32 and 48 bits, for small area (hwmodel/tables/area.toml)");
-/// // An own table over it.
-/// let mine = r#"
-///     [[row]]
-///     operation = "add"
-///     width = 32
-///     goal = "area"
-///     nand2 = 200
-///     source = "my synthesis"
-/// "#;
+/// assert_eq!(table.area("add", 40, Goal::Area)?.fit, Fit::Interpolated);
+/// let mine = r#"row = [{ operation = "add", width = 32, nand2 = 200, source = "my synthesis" }]"#;
 /// let table = table.with_overrides("mine.toml", mine)?;
 /// assert_eq!(table.area("add", 32, Goal::Area)?.value, 200.0);
-/// // A missing row is an error that names where to add it.
-/// let error = table.energy("cube_root", 32).unwrap_err().to_string();
-/// assert!(error.contains("`cube_root`") && error.contains("energy.toml"));
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct CostTable {
     rows: BTreeMap<Key, Vec<CostRow>>,
     quadratic: BTreeSet<String>,
 }
 
-/// Largest accepted multiple of the widest row's width.
 const FARTHEST: f64 = 4.0;
 
 impl CostTable {
     /// A table without rows.
     pub fn empty() -> Self {
-        Self {
-            rows: BTreeMap::new(),
-            quadratic: BTreeSet::new(),
-        }
+        Self::default()
     }
 
     /// The tables that ship with the crate.
@@ -102,36 +73,22 @@ impl CostTable {
     /// None, since a test checks the shipped files.
     pub fn load_shipped() -> Result<Self, CostError> {
         Self::empty()
-            .with_overrides(
-                Quantity::Nand2.file(),
-                include_str!("../../tables/area.toml"),
-            )?
-            .with_overrides(
-                Quantity::EnergyPj.file(),
-                include_str!("../../tables/energy.toml"),
-            )
+            .with_overrides(AREA_FILE, include_str!("../../tables/area.toml"))?
+            .with_overrides(ENERGY_FILE, include_str!("../../tables/energy.toml"))
     }
 
     /// The same table with rows of another over it; errors and reports call it `file`.
     ///
-    /// They replace all rows of the same operation, quantity and goal (rows without goal replace those of both goals), so
-    /// that figures of two origins are never mixed by interpolation.
+    /// They replace all rows of the same operation, quantity and goal; rows without goal replace those of both goals.
     ///
     /// # Errors
-    /// When the text is not TOML or not a cost table, or has a row without operation, source or figure, a figure that is
-    /// negative or not finite, or two equal rows.
+    /// When the text is not a cost table, or a row is invalid or occurs twice.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
         let Parsed { quadratic, rows } = parse(file, text)?;
-        for (quantity, operation, goal) in rows.keys() {
-            // A row without goal replaces both goals' rows.
-            let goals = match goal {
-                None => vec![None, Some(Goal::Area), Some(Goal::Delay)],
-                goal => vec![*goal],
-            };
-            for goal in goals {
-                self.rows.remove(&(*quantity, operation.clone(), goal));
-            }
-        }
+        self.rows.retain(|(quantity, operation, goal), _| {
+            let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
+            !is_replaced(*goal) && !is_replaced(None)
+        });
         self.rows.extend(rows);
         self.quadratic.extend(quadratic);
         Ok(self)
@@ -140,7 +97,7 @@ impl CostTable {
     /// Area of a unit, in NAND2 equivalents.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn area(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::Nand2, operation, width, Some(goal))
     }
@@ -148,7 +105,7 @@ impl CostTable {
     /// Delay of a unit, in picoseconds, in the process of the source.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn delay(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::DelayPs, operation, width, Some(goal))
     }
@@ -156,20 +113,14 @@ impl CostTable {
     /// Energy of an operation, in picojoules.
     ///
     /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    /// [`CostError::NoFigure`].
     pub fn energy(&self, operation: &str, width: u32) -> Result<Cost, CostError> {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
 
-    /// Any quantity of an operation at a width in bits.
-    ///
-    /// Between two rows it is interpolated linearly in the width, or in its square for areas and energies of quadratic
-    /// operations. Below the narrowest row it is proportional; above the widest it is extrapolated from the last two
-    /// rows, up to four times the widest. [`Cost::fit`] says which.
-    ///
-    /// # Errors
-    /// [`CostError::Missing`] or [`CostError::TooWide`].
-    pub fn cost(
+    /// Between rows linear in the width, or in its square for areas and energies of quadratic operations. Below the first
+    /// row proportional. Above the last extrapolated from two rows, up to four times the widest.
+    fn cost(
         &self,
         quantity: Quantity,
         operation: &str,
@@ -177,7 +128,7 @@ impl CostTable {
         goal: Option<Goal>,
     ) -> Result<Cost, CostError> {
         let (rows, goal) = self.rows_of(quantity, operation, width, goal)?;
-        if let [row] = rows.as_slice()
+        if let [row] = rows
             && row.width.is_none()
         {
             return Ok(cost(quantity, operation, goal, &[(row, 1.0)], Fit::Row));
@@ -185,20 +136,16 @@ impl CostTable {
         let square = self.quadratic.contains(operation) && quantity != Quantity::DelayPs;
         let measure = |width: u32| f64::from(width).powi(if square { 2 } else { 1 });
         let rows: Vec<(f64, &CostRow)> = rows
-            .into_iter()
+            .iter()
             .filter_map(|row| row.width.map(|width| (measure(width), row)))
             .collect();
         let widest = rows.iter().filter_map(|row| row.1.width).max().unwrap_or(0);
         if f64::from(width) > FARTHEST * f64::from(widest) {
-            return Err(CostError::TooWide {
-                quantity,
-                operation: operation.to_owned(),
-                width: u64::from(width),
-                widest: u64::from(widest),
-                unit: "bits",
-                times: FARTHEST as u64,
-                goal,
-            });
+            let (size, why) = (
+                format!("near {width} bits"),
+                too_far(widest.into(), FARTHEST),
+            );
+            return Err(no_figure(quantity, operation, &size, goal, &why));
         }
         let (weights, fit) = weigh(&rows, measure(width));
         Ok(cost(quantity, operation, goal, &weights, fit))
@@ -207,34 +154,26 @@ impl CostTable {
     /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in picojoules; `operation` is `sram_read` or
     /// `sram_write`.
     ///
-    /// It is proportional to the bits, and interpolated linearly in the square root of the size, as the length of wires;
-    /// below the smallest row it is proportional to that root.
+    /// It is proportional to the bits, and linear in the square root of the size, as the length of wires.
     ///
     /// # Errors
-    /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more than four times as long and wide as that of
-    /// the largest row.
+    /// [`CostError::NoFigure`], also for a memory more than four times as long and wide as that of the largest row.
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
         let rows: Vec<(f64, &CostRow)> = rows
-            .into_iter()
+            .iter()
             .filter_map(|row| row.bytes.map(|bytes| ((bytes as f64).sqrt(), row)))
             .collect();
         let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
-            return Err(missing(quantity, operation, bits, None));
+            let size = format!("at {bits} bits");
+            return Err(no_figure(quantity, operation, &size, None, ""));
         };
         // In either direction.
         let times = FARTHEST * FARTHEST;
         if bytes as f64 > times * largest as f64 {
-            return Err(CostError::TooWide {
-                quantity,
-                operation: operation.to_owned(),
-                width: bytes,
-                widest: largest,
-                unit: "bytes",
-                times: times as u64,
-                goal: None,
-            });
+            let (size, why) = (format!("near {bytes} bytes"), too_far(largest, times));
+            return Err(no_figure(quantity, operation, &size, None, &why));
         }
         let (mut weights, mut fit) = weigh(&rows, (bytes as f64).sqrt());
         for (row, weight) in &mut weights {
@@ -254,13 +193,14 @@ impl CostTable {
         operation: &str,
         width: u32,
         goal: Option<Goal>,
-    ) -> Result<(Vec<&CostRow>, Option<Goal>), CostError> {
+    ) -> Result<(&[CostRow], Option<Goal>), CostError> {
         for goal in [goal, None] {
             if let Some(rows) = self.rows.get(&(quantity, operation.to_owned(), goal)) {
-                return Ok((rows.iter().collect(), goal));
+                return Ok((rows, goal));
             }
         }
-        Err(missing(quantity, operation, width, goal))
+        let size = format!("at {width} bits");
+        Err(no_figure(quantity, operation, &size, goal, ""))
     }
 
     /// All operations that have rows or are listed as quadratic, in order.
@@ -272,13 +212,26 @@ impl CostTable {
     }
 }
 
-fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) -> CostError {
-    CostError::Missing {
-        quantity,
-        operation: operation.to_owned(),
-        width,
-        goal,
-    }
+/// The error for a figure at a size in words; `why` follows the request.
+fn no_figure(
+    quantity: Quantity,
+    operation: &str,
+    size: &str,
+    goal: Option<Goal>,
+    why: &str,
+) -> CostError {
+    let [name, key, file] = quantity.words();
+    let goal = goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()));
+    CostError::NoFigure(
+        format!("{name} of `{operation}` {size}{goal}{why}"),
+        format!("add a row with `{key}` to a cost table of your own, or to {file}"),
+    )
+}
+
+fn too_far(largest: u64, times: f64) -> String {
+    format!(
+        ": the largest row has {largest}, and nothing is extrapolated beyond {times} times that"
+    )
 }
 
 /// The rows next to a place with their weights. Rows are in order of place.
@@ -312,22 +265,20 @@ fn cost(
         parts.sum::<f64>().max(0.0)
     };
     let (low, high) = (sum(|row| row.low), sum(|row| row.high));
-    let mut widths: Vec<String> = weights
+    let is_memory = weights.iter().any(|(row, _)| row.bytes.is_some());
+    let size = |row: &CostRow| row.bytes.or(row.width.map(u64::from));
+    let mut sizes: Vec<String> = weights
         .iter()
-        .filter_map(|(row, _)| match (row.bytes, row.width) {
-            (Some(bytes), _) => Some(format!("{bytes}")),
-            (None, width) => width.map(|width| width.to_string()),
-        })
+        .filter_map(|(row, _)| size(row).map(|size| size.to_string()))
         .collect();
-    widths.dedup();
-    let unit = if weights.iter().any(|(row, _)| row.bytes.is_some()) {
-        "bytes"
-    } else {
-        "bits"
-    };
-    let widths = match widths.as_slice() {
+    sizes.dedup();
+    let sizes = match sizes.as_slice() {
         [] => "any width".to_owned(),
-        widths => format!("{} {unit}", widths.join(" and ")),
+        sizes => format!(
+            "{} {}",
+            sizes.join(" and "),
+            if is_memory { "bytes" } else { "bits" }
+        ),
     };
     let goal = goal.map_or_else(String::new, |goal| format!(", {}", goal.name()));
     let file = weights.first().map_or("", |(row, _)| row.file.as_str());
@@ -340,7 +291,7 @@ fn cost(
         high: high.max(low),
         fit,
         derived: weights.iter().any(|(row, _)| row.derived),
-        rows: format!("`{operation}` of {widths}{goal} ({file})"),
+        rows: format!("`{operation}` of {sizes}{goal} ({file})"),
         source: sources.join("; "),
     }
 }

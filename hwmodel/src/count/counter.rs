@@ -1,9 +1,8 @@
-//! A probe that counts operations by class, width, stage and octree level, accesses by memory, stage and level, and
-//! records by level.
-//!
 //! An operation is counted by one addition at a nearly constant address, so the compiler combines neighbouring counts.
-//! Only the level is unknown at compile time. There are a few sets of counts, each for one level at a time;
-//! neighbouring levels have different sets. A set's counts are added to the tables when it changes its level.
+//! Only the level is unknown at compile time. Each of a few sets has the counts of one level, and is added to the tables
+//! when it changes to another.
+
+use std::collections::BTreeMap;
 
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
@@ -31,50 +30,18 @@ pub(super) const SETS: usize = 16;
 
 const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
-/// Counts of operations of a rare width.
-#[derive(Debug, Clone)]
-pub(super) struct Table {
-    pub(super) bits: u32,
-    /// By level, stage and class.
-    pub(super) counts: Vec<[[u64; CLASSES]; STAGES]>,
-}
+type Table = Vec<[[u64; CLASSES]; STAGES]>;
 
 /// Counts of one or more frames.
-///
-/// The operations of a [`Datapath`](crate::Datapath) are counted at the level of the current record (0 before the
-/// first), operations passed to [`Probe::op`] directly at their own level.
-///
-/// ```
-/// use hwmodel::count::Counter;
-/// use hwmodel::{Datapath, Format, Overflow, Stage};
-///
-/// let mut counter = Counter::new();
-/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut counter);
-/// dp.begin_record(0, 3);
-/// dp.stage(Stage::Centre);
-/// let (left, right) = (dp.load(5), dp.load(7));
-/// let middle = dp.midpoint(left, right);
-/// let _ = dp.lt(middle, right);
-///
-/// let by_width = counter.sum_by(|cell| cell.bits);
-/// assert_eq!(by_width.into_iter().collect::<Vec<_>>(), [(24, 1), (25, 2)]);
-/// assert!(counter.cells().all(|cell| cell.level == 3));
-/// # Ok::<(), hwmodel::FormatError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// Counts of each set since it changed to its level; on the heap, because 94 KB would fill small stacks.
+    /// By set, since it changed to its level. 94 KB would fill small stacks.
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
-    /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],
-    /// The current set, 0..SETS.
     set: usize,
-    /// Widths of the operands of `SIZED`.
     pub(super) widths: [u32; 4],
-    /// By level.
     pub(super) settled: Vec<[CountRow; ROWS]>,
-    /// One per other width, in the order of their first use.
-    pub(super) tables: Vec<Table>,
+    pub(super) tables: BTreeMap<u32, Table>,
     pub(super) records: [u64; LEVELS],
 }
 
@@ -89,7 +56,7 @@ impl Default for Counter {
             set: 0,
             widths: [0; 4],
             settled: vec![[CountRow::default(); ROWS]; LEVELS],
-            tables: Vec::new(),
+            tables: BTreeMap::new(),
             records: [0; LEVELS],
         }
     }
@@ -105,17 +72,11 @@ impl Counter {
         Self::default()
     }
 
-    /// The place in `tables` of a width; makes a table for a new one.
-    pub(super) fn table_of(&mut self, bits: u32) -> usize {
-        let known = self.tables.iter().position(|table| table.bits == bits);
-        known.unwrap_or_else(|| {
-            let counts = vec![Default::default(); LEVELS];
-            self.tables.push(Table { bits, counts });
-            self.tables.len() - 1
-        })
+    pub(super) fn table(&mut self, bits: u32) -> &mut Table {
+        let empty = || vec![Default::default(); LEVELS];
+        self.tables.entry(bits).or_insert_with(empty)
     }
 
-    /// Adds a set's counts to those of its level.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, set: usize) {
@@ -127,7 +88,6 @@ impl Counter {
         }
     }
 
-    /// Moves counts of a format's operands into tables.
     fn keep_widths(&mut self) {
         for set in 0..SETS {
             self.settle(set);
@@ -137,8 +97,7 @@ impl Counter {
                 for stage in 0..STAGES {
                     let row = std::mem::take(&mut self.settled[level][first + stage]);
                     if row != CountRow::default() {
-                        let table = self.table_of(bits);
-                        add_and_clear(&mut self.tables[table].counts[level][stage], &mut { row });
+                        add_and_clear(&mut self.table(bits)[level][stage], &mut { row });
                     }
                 }
             }
@@ -154,8 +113,7 @@ impl Counter {
     /// Counts operations whose kind of operand is not known at compile time.
     #[inline(never)]
     fn count(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        let table = self.table_of(bits);
-        let counts = &mut self.tables[table].counts[clamped(place.level)];
+        let counts = &mut self.table(bits)[clamped(place.level)];
         counts[place.stage as usize][class as usize] += u64::from(times);
     }
 }

@@ -1,4 +1,4 @@
-//! Counts of operations, accesses and records: the probe [`Counter`], and its cells [`OpCount`] and [`AccessCount`].
+//! Counts of operations, accesses and records.
 
 mod counter;
 mod sums;

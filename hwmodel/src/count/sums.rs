@@ -1,6 +1,6 @@
 //! Sums of a [`Counter`]'s counts.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
@@ -76,7 +76,7 @@ impl Counter {
         cells.map(|cell| cell.times).sum()
     }
 
-    /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`; keys without operations are absent.
+    /// Operations added up by any key, such as `|cell| (cell.class, cell.bits)`.
     pub fn sum_by<K: Ord>(&self, key: impl Fn(&OpCount) -> K) -> BTreeMap<K, u64> {
         let mut sums = BTreeMap::new();
         for cell in self.cells() {
@@ -85,7 +85,7 @@ impl Counter {
         sums
     }
 
-    /// Accesses added up by any key; keys without accesses are absent.
+    /// Accesses added up by any key.
     pub fn accesses_by<K: Ord>(&self, key: impl Fn(&AccessCount) -> K) -> BTreeMap<K, Accesses> {
         let mut sums = BTreeMap::<K, Accesses>::new();
         for cell in self.accesses() {
@@ -96,14 +96,17 @@ impl Counter {
 
     /// Reads of one memory.
     pub fn reads(&self, memory: Memory) -> u64 {
-        let accesses = self.accesses().filter(|cell| cell.memory == memory);
-        accesses.map(|cell| cell.accesses.reads).sum()
+        self.accesses_of(memory).reads
     }
 
     /// Writes of one memory.
     pub fn writes(&self, memory: Memory) -> u64 {
-        let accesses = self.accesses().filter(|cell| cell.memory == memory);
-        accesses.map(|cell| cell.accesses.writes).sum()
+        self.accesses_of(memory).writes
+    }
+
+    fn accesses_of(&self, memory: Memory) -> Accesses {
+        let sums = self.accesses_by(|cell| cell.memory);
+        sums.get(&memory).copied().unwrap_or_default()
     }
 
     /// Records that had their turn.
@@ -111,7 +114,7 @@ impl Counter {
         self.records.iter().sum()
     }
 
-    /// Records that had their turn, by octree level; levels without records are absent.
+    /// Records that had their turn, by octree level.
     pub fn records_by_level(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
         let levels = (0u32..).zip(self.records);
         levels.filter(|(_, records)| *records > 0)
@@ -124,21 +127,18 @@ impl Counter {
 
     /// All cells that are not zero, by width, then level, stage and class.
     pub fn cells(&self) -> impl Iterator<Item = OpCount> + '_ {
-        let mut widths: Vec<u32> = self.tables.iter().map(|table| table.bits).collect();
-        widths.extend(self.widths);
-        widths.extend(0..8);
-        widths.sort_unstable();
-        widths.dedup();
+        let widths = self.tables.keys().copied().chain(self.widths);
+        let widths: BTreeSet<u32> = widths.chain(0..8).collect();
         widths.into_iter().flat_map(|bits| self.cells_of(bits))
     }
 
     fn cells_of(&self, bits: u32) -> impl Iterator<Item = OpCount> + '_ {
-        let table = self.tables.iter().find(|table| table.bits == bits);
+        let table = self.tables.get(&bits);
         let sized = SIZED.into_iter().zip(self.widths);
         let sized: Vec<usize> = sized.filter(|row| row.1 == bits).map(|row| row.0).collect();
         let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
         let cells = places.flat_map(move |(level, stage)| {
-            let mut row = table.map_or([0; 8], |table| table.counts[level][stage as usize]);
+            let mut row = table.map_or([0; 8], |table| table[level][stage as usize]);
             for first in &sized {
                 add(&mut row, &self.row(level, first + stage as usize));
             }
@@ -188,8 +188,7 @@ impl Counter {
     /// Adds the counts of another counter to this one's.
     pub fn merge(&mut self, other: &Self) {
         for cell in other.cells() {
-            let table = self.table_of(cell.bits);
-            let counts = &mut self.tables[table].counts[cell.level as usize];
+            let counts = &mut self.table(cell.bits)[cell.level as usize];
             counts[cell.stage as usize][cell.class as usize] += cell.times;
         }
         for cell in other.accesses() {
@@ -210,7 +209,6 @@ fn add(sums: &mut CountRow, row: &CountRow) {
     }
 }
 
-/// Equal counts; the order in which they were made does not matter.
 impl PartialEq for Counter {
     fn eq(&self, other: &Self) -> bool {
         self.records == other.records

@@ -1,5 +1,4 @@
-//! The description of a hardware design, read from TOML. `hwmodel/machines/` has four: `tiny`, `paper`, `light` and
-//! `wide`.
+//! The description of a hardware design, in TOML. `machines/light.toml` explains each setting.
 
 use std::collections::BTreeMap;
 
@@ -12,67 +11,51 @@ use crate::{OpClass, Stage};
 pub const MAX_LANES: u32 = 256;
 /// Most contexts of a lane.
 pub const MAX_CONTEXTS: u32 = 64;
-/// Range of clocks, MHz.
 const CLOCKS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
-/// Largest of all other numbers, so that sums of a turn's times fit 64 bits.
+/// Of all other numbers, so that sums of a turn's times fit 64 bits.
 const MAX_NUMBER: u32 = 1 << 24;
-/// Most things that the simulation keeps one by one.
+/// Of things that the simulation keeps one by one.
 const MAX_KEPT: u32 = 1 << 16;
-/// Largest entry of a cache, bytes.
 const MAX_ENTRY: u32 = 4096;
-/// Shortest line of a cache, bytes.
 const MIN_LINE: u32 = 8;
 
 /// A hardware design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Hardware {
-    /// Name in reports; one line of text.
     pub name: String,
-    /// Clock, MHz; 0.001 to 1,000,000.
     pub clock_mhz: f64,
-    /// Copies of the record loop's blocks and stack, 1 to [`MAX_LANES`].
     pub lanes: u32,
-    /// Records in progress per lane, 1 to [`MAX_CONTEXTS`].
     pub contexts: u32,
-    /// Records that may be in progress at the same time.
     pub independence: Independence,
-    /// Additional cycles to take a record from another lane's stack.
     pub steal_cycles: u32,
-    /// Whether a turn's steps follow each other as in the record loop: rule 12 of [this module's parent](super).
+    /// Rule 12 of [the parent module](super).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub sequential: bool,
     /// Classes of operation that take no unit and no time.
     #[serde(default)]
     pub wires: Vec<OpClass>,
-    /// Units of every stage's block, by class of operation.
     pub units: BTreeMap<OpClass, Unit>,
-    /// Units of single stages' blocks where they differ.
+    /// Units of single stages where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
-    /// Organisation of the record loop's data; by default that of the image-order paper.
     #[serde(default)]
     pub organisation: Organisation,
-    /// The record stack of a lane.
     pub stack: Stack,
-    /// Graph nodes, shared by all lanes.
     pub node_cache: Cache,
-    /// Colours and normals, shared.
     pub attribute_cache: Cache,
-    /// Fill vectors, shared.
     pub fill_vectors: Banks,
-    /// Pixels, shared.
     pub pixels: Pixels,
-    /// The port to outer memory, shared.
     #[serde(default)]
     pub outer_memory: OuterMemory,
 }
 
-/// The port to outer memory, which cache misses, spilled records and pixels share.
+/// The port that cache misses, spilled records and pixels share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct OuterMemory {
-    /// Bytes per cycle. 0: no limit.
     pub bytes_per_cycle: u32,
 }
 
@@ -89,21 +72,14 @@ impl OuterMemory {
 /// Organisation of the record loop's data. Pictures under rules of exact coverage do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Organisation {
-    /// Contents of the stack.
     pub stack: StackHolds,
-    /// Whether a node marks which of its children are leaves, so that leaves need not be read to be drawn.
     pub leaf_masks: bool,
-    /// Levels of the image quadtree above its tiles, each of which is drawn by its own walk; 0: one walk per picture.
     pub tile_levels: u32,
-    /// Whether a node two levels above the finest voxels holds them as a mask of 64 bits, so that nodes between are not
-    /// read. For trees stored level by level; needs `leaf_masks`.
     pub bricks: bool,
-    /// Whether a record is tested for occlusion before its node is read. Only under the rules that draw outlines.
     pub hidden_unread: bool,
-    /// Whether the lowest two levels of fill vectors are one word of 16 bits, one per sample.
     pub joined_fill: bool,
-    /// Whether fields of a record and wide words have only the bits that the frame's set-up proves sufficient.
     pub packed: bool,
 }
 
@@ -127,13 +103,12 @@ impl Organisation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackHolds {
-    /// A subdivided record pushes all visible children, each with its vertices.
+    /// All visible children, each with its vertices.
     #[default]
     Children,
-    /// A subdivided record stays, with a mask of the remaining children, which are made one by one.
+    /// Subdivided records, with masks of the remaining children, which are made one by one.
     Parents,
-    /// The path to a record: of each parent its node and the remaining children. The rest is computed back from a
-    /// descendant.
+    /// Node and remaining children of each parent. The rest is computed back from a descendant.
     Path,
 }
 
@@ -144,13 +119,12 @@ pub const MAX_TILE_LEVELS: u32 = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {
-    /// None: one after the other, depth first.
+    /// None.
     None,
-    /// Those of one class of the occlusion order, as in the image-order paper: the nearest; the next three; the next
-    /// three; the farthest. They never occlude each other. Under rules that are not exact, two may claim the same
-    /// sample, and the first keeps it.
+    /// Those of one class of the occlusion order, as in the image-order paper: the nearest, the next three, the next
+    /// three or the farthest. Under rules that are not exact, two may cover the same sample, and the first keeps it.
     Classes,
-    /// Those whose image nodes are disjoint. Others keep the serial order, so all results are the serial ones.
+    /// Those whose image nodes are disjoint: all results are the serial ones.
     Image,
     /// Those allowed by either rule.
     Both,
@@ -159,32 +133,25 @@ pub enum Independence {
 /// Units of one class of operation in one block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Unit {
-    /// Number, at least 1.
     pub count: u32,
-    /// Cycles from the last operation's last issue cycle to its result.
     pub latency: u32,
-    /// Cycles until a unit takes its next operation; at least 1.
     pub interval: u32,
-    /// Bits; a wider operation takes `ceil(bits / width)` passes.
     pub width: u32,
 }
 
 /// A lane's record stack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Stack {
-    /// Capacity, records.
     pub entries: u32,
-    /// Accesses per cycle.
     pub ports: u32,
-    /// Cycles of a read.
     pub latency: u32,
-    /// Treatment of a record beyond the last entry.
     pub overflow: StackOverflow,
-    /// Additional cycles until the first bits of a spilled record are read back.
     pub spill_cycles: u32,
-    /// Bits of the frame's records, for spilling; set by the simulation of a frame.
+    /// Bits of the frame's records, for spilling.
     #[serde(default)]
     pub record: RecordBits,
 }
@@ -193,7 +160,7 @@ pub struct Stack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackOverflow {
-    /// It is written to outer memory in the background, and read back for its turn.
+    /// It is written to outer memory, and read back for its turn.
     Spill,
     /// The frame ends with an error.
     Error,
@@ -202,48 +169,36 @@ pub enum StackOverflow {
 /// A set-associative cache with least-recently-used replacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Cache {
-    /// Size; a multiple of `ways * line_bytes`.
     pub bytes: u32,
-    /// Lines per set.
     pub ways: u32,
-    /// Bytes per line; a power of two.
     pub line_bytes: u32,
-    /// Bytes per entry (a node, an attribute).
     pub entry_bytes: u32,
-    /// Accesses per cycle.
     pub ports: u32,
-    /// Cycles of a hit.
     pub hit_latency: u32,
-    /// Additional cycles of a miss.
     pub miss_latency: u32,
-    /// Most misses in flight (MSHRs).
     pub misses: u32,
 }
 
 /// A banked memory; an address lies in bank `address mod banks`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Banks {
-    /// Number of banks.
     pub banks: u32,
-    /// Reads per bank and cycle.
     pub read_ports: u32,
-    /// Writes per bank and cycle.
     pub write_ports: u32,
-    /// Cycles of a read; a write takes one.
     pub latency: u32,
 }
 
-/// The output of pixels: ports into a buffer that drains, at a limited rate, by the port to outer memory.
+/// The output of pixels: a buffer that drains by the port to outer memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct Pixels {
-    /// Writes per cycle into the buffer.
     pub write_ports: u32,
-    /// Capacity, pixels.
     pub buffer: u32,
-    /// Least cycles between two pixels that leave.
     pub drain_interval: u32,
     /// Whether pixels leave by their own port.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -256,34 +211,20 @@ pub enum HardwareError {
     /// Not TOML, or not of these fields.
     #[error("hardware description: {0}")]
     Syntax(String),
-    /// A number out of its range.
-    #[error("hardware description: {field} is {value}; it must be {range}")]
-    Range {
-        /// Its path in the file.
-        field: String,
-        /// The value.
-        value: String,
-        /// The allowed values.
-        range: String,
-    },
-    /// A class of operation without units that is not wires. A class of operation that nothing does.
+    /// A number out of its range: its path in the file, its value, and the allowed ones.
+    #[error("hardware description: {0} is {1}; it must be {2}")]
+    Range(String, String, String),
+    /// A class of operation without units that is not wires.
     #[error(
-        "hardware description: nothing does `{class}`; give it a [units.{class}] \
-         or put it into `wires`"
+        "hardware description: nothing does `{0}`; give it a [units.{0}] or put it into `wires`"
     )]
-    NoUnit {
-        /// The class, as in the file.
-        class: String,
-    },
+    NoUnit(String),
     /// A class of operation that is listed both with units and without.
     #[error(
-        "hardware description: `{class}` is among `wires`, which take no units, \
-         and has a [units.{class}]; take out one"
+        "hardware description: `{0}` is among `wires`, which take no units, and has a [units.{0}]; \
+         take out one"
     )]
-    WiresAndUnits {
-        /// The class, as in the file.
-        class: String,
-    },
+    WiresAndUnits(String),
     /// No description of this name ships.
     #[error("no hardware of the name `{0}` ships; there are tiny, paper, light and wide")]
     NoPreset(String),
@@ -301,7 +242,7 @@ impl Hardware {
     /// Reads and checks a description.
     ///
     /// # Errors
-    /// With the line of a syntax error, or with the field, its value and its range.
+    /// With the line or the field.
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let hardware: Self =
             toml::from_str(text).map_err(|error| HardwareError::Syntax(error.to_string()))?;
@@ -309,7 +250,7 @@ impl Hardware {
         Ok(hardware)
     }
 
-    /// A shipped description: `tiny`, `paper`, `light`, `wide`.
+    /// A shipped description.
     ///
     /// # Errors
     /// When there is none of that name.
@@ -321,7 +262,7 @@ impl Hardware {
         Self::from_toml(text)
     }
 
-    /// The units of a class in a stage's block; `None`: wires.
+    /// The units of a class in a stage's block, if it is not wires.
     pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
         if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
             return Some(*unit);
@@ -332,7 +273,7 @@ impl Hardware {
         self.units.get(&class).copied()
     }
 
-    /// Whether lanes draw tiles: rule 13 of [this module's parent](super).
+    /// Rule 13 of [the parent module](super).
     pub fn hands_out_tiles(&self) -> bool {
         self.sequential && self.organisation.tile_levels > 0
     }
@@ -355,6 +296,7 @@ impl Hardware {
     /// # Errors
     /// With the first field out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
+        let (stack, organisation) = (&self.stack, &self.organisation);
         if self.name.trim().is_empty() || self.name.contains(char::is_control) {
             let name = format!("{:?}", self.name);
             return Err(out_of_range("name", name, "a line of text"));
@@ -363,28 +305,18 @@ impl Hardware {
             let clock = format!("{:?}", self.clock_mhz);
             return Err(out_of_range("clock_mhz", clock, "0.001 to 1000000"));
         }
-        within("lanes", self.lanes, 1, MAX_LANES)?;
-        let tile_levels = self.organisation.tile_levels;
-        within("organisation.tile_levels", tile_levels, 0, MAX_TILE_LEVELS)?;
-        let Organisation {
-            bricks, leaf_masks, ..
-        } = self.organisation;
-        if bricks && !leaf_masks {
+        if organisation.bricks && !organisation.leaf_masks {
             let range = "false where leaf_masks is";
-            return Err(out_of_range("organisation.bricks", bricks, range));
+            return Err(out_of_range("organisation.bricks", true, range));
         }
-        within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
-        if self.sequential && self.contexts > 1 && tile_levels == 0 {
+        if self.sequential && self.contexts > 1 && organisation.tile_levels == 0 {
             let range = "1 where lanes are sequential and draw no tiles";
             return Err(out_of_range("contexts", self.contexts, range));
         }
-        within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
             match (self.units.contains_key(&class), self.wires.contains(&class)) {
-                (false, false) => return Err(HardwareError::NoUnit { class: key(&class) }),
-                (true, true) => {
-                    return Err(HardwareError::WiresAndUnits { class: key(&class) });
-                }
+                (false, false) => return Err(HardwareError::NoUnit(key(&class))),
+                (true, true) => return Err(HardwareError::WiresAndUnits(key(&class))),
                 _ => {}
             }
         }
@@ -396,41 +328,62 @@ impl Hardware {
                 unit.check(&format!("stages.{}.{}", key(stage), key(class)))?;
             }
         }
-        let stack = &self.stack;
-        within("fill_vectors.banks", self.fill_vectors.banks, 1, MAX_KEPT)?;
-        within("pixels.buffer", self.pixels.buffer, 1, MAX_KEPT)?;
-        for (field, value, least) in [
+        self.node_cache.check("node_cache")?;
+        self.attribute_cache.check("attribute_cache")?;
+        let (fill, pixels, outer) = (&self.fill_vectors, &self.pixels, &self.outer_memory);
+        for (field, value, least, most) in [
+            ("lanes", self.lanes, 1, MAX_LANES),
+            ("contexts", self.contexts, 1, MAX_CONTEXTS),
+            ("steal_cycles", self.steal_cycles, 0, MAX_NUMBER),
+            (
+                "organisation.tile_levels",
+                organisation.tile_levels,
+                0,
+                MAX_TILE_LEVELS,
+            ),
+            ("stack.entries", stack.entries, 1, MAX_NUMBER),
+            ("stack.ports", stack.ports, 1, MAX_NUMBER),
+            ("stack.latency", stack.latency, 0, MAX_NUMBER),
+            ("stack.spill_cycles", stack.spill_cycles, 0, MAX_NUMBER),
+            ("stack.record.clip", stack.record.clip, 0, MAX_NUMBER),
+            ("stack.record.screen", stack.record.screen, 0, MAX_NUMBER),
+            ("stack.record.finest", stack.record.finest, 0, MAX_NUMBER),
+            ("fill_vectors.banks", fill.banks, 1, MAX_KEPT),
+            ("fill_vectors.read_ports", fill.read_ports, 1, MAX_NUMBER),
+            ("fill_vectors.write_ports", fill.write_ports, 1, MAX_NUMBER),
+            ("fill_vectors.latency", fill.latency, 0, MAX_NUMBER),
+            ("pixels.buffer", pixels.buffer, 1, MAX_KEPT),
+            ("pixels.write_ports", pixels.write_ports, 1, MAX_NUMBER),
+            (
+                "pixels.drain_interval",
+                pixels.drain_interval,
+                0,
+                MAX_NUMBER,
+            ),
             (
                 "outer_memory.bytes_per_cycle",
-                self.outer_memory.bytes_per_cycle,
+                outer.bytes_per_cycle,
                 0,
+                MAX_NUMBER,
             ),
-            ("stack.record.clip", stack.record.clip, 0),
-            ("stack.record.screen", stack.record.screen, 0),
-            ("stack.record.finest", stack.record.finest, 0),
-            ("stack.entries", stack.entries, 1),
-            ("stack.ports", stack.ports, 1),
-            ("stack.latency", stack.latency, 0),
-            ("stack.spill_cycles", stack.spill_cycles, 0),
-            ("fill_vectors.read_ports", self.fill_vectors.read_ports, 1),
-            ("fill_vectors.write_ports", self.fill_vectors.write_ports, 1),
-            ("fill_vectors.latency", self.fill_vectors.latency, 0),
-            ("pixels.write_ports", self.pixels.write_ports, 1),
-            ("pixels.drain_interval", self.pixels.drain_interval, 0),
         ] {
-            within(field, value, least, MAX_NUMBER)?;
+            within(field, value, least, most)?;
         }
-        self.node_cache.check("node_cache")?;
-        self.attribute_cache.check("attribute_cache")
+        Ok(())
     }
 }
 
 impl Unit {
     fn check(&self, at: &str) -> Result<(), HardwareError> {
-        within(&format!("{at}.count"), self.count, 1, MAX_NUMBER)?;
-        within(&format!("{at}.latency"), self.latency, 0, MAX_NUMBER)?;
-        within(&format!("{at}.interval"), self.interval, 1, MAX_NUMBER)?;
-        within(&format!("{at}.width"), self.width, 1, MAX_NUMBER)
+        for (field, value, least) in [
+            ("count", self.count, 1),
+            ("latency", self.latency, 0),
+            ("interval", self.interval, 1),
+            ("width", self.width, 1),
+        ] {
+            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+        }
+        Ok(())
     }
 }
 
@@ -441,18 +394,18 @@ impl Cache {
     }
 
     fn check(&self, at: &str) -> Result<(), HardwareError> {
-        for (field, value, least) in [
-            ("bytes", self.bytes, 1),
-            ("ways", self.ways, 1),
-            ("line_bytes", self.line_bytes, MIN_LINE),
-            ("ports", self.ports, 1),
-            ("hit_latency", self.hit_latency, 0),
-            ("miss_latency", self.miss_latency, 0),
+        for (field, value, least, most) in [
+            ("bytes", self.bytes, 1, MAX_NUMBER),
+            ("ways", self.ways, 1, MAX_NUMBER),
+            ("line_bytes", self.line_bytes, MIN_LINE, MAX_NUMBER),
+            ("entry_bytes", self.entry_bytes, 1, MAX_ENTRY),
+            ("ports", self.ports, 1, MAX_NUMBER),
+            ("hit_latency", self.hit_latency, 0, MAX_NUMBER),
+            ("miss_latency", self.miss_latency, 0, MAX_NUMBER),
+            ("misses", self.misses, 1, MAX_KEPT),
         ] {
-            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+            within(&format!("{at}.{field}"), value, least, most)?;
         }
-        within(&format!("{at}.entry_bytes"), self.entry_bytes, 1, MAX_ENTRY)?;
-        within(&format!("{at}.misses"), self.misses, 1, MAX_KEPT)?;
         if !self.line_bytes.is_power_of_two() {
             let field = format!("{at}.line_bytes");
             return Err(out_of_range(&field, self.line_bytes, "a power of two"));
@@ -466,7 +419,7 @@ impl Cache {
     }
 }
 
-/// A name in the file's spelling: `MinMax` is `min_max`.
+/// `MinMax` as `min_max`.
 fn key(of: &impl std::fmt::Debug) -> String {
     let mut name = String::new();
     for letter in format!("{of:?}").chars() {
@@ -487,9 +440,5 @@ fn within(field: &str, value: u32, least: u32, most: u32) -> Result<(), Hardware
 }
 
 fn out_of_range(field: &str, value: impl ToString, range: &str) -> HardwareError {
-    HardwareError::Range {
-        field: field.to_owned(),
-        value: value.to_string(),
-        range: range.to_owned(),
-    }
+    HardwareError::Range(field.to_owned(), value.to_string(), range.to_owned())
 }

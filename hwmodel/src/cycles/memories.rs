@@ -1,5 +1,4 @@
-//! Memories under contention: ports, banks, caches, the output of pixels. Accesses are booked, and served at each port,
-//! in the order in which their visits start.
+//! Memories under contention. Accesses are served at each port in the order in which their visits start.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -9,7 +8,7 @@ use super::report::{CacheReport, Cause};
 use crate::Memory;
 use crate::memory::PIXEL_BITS;
 
-/// Cycles for which an access takes the port of a sequential hardware's cache: lookup, and inspection of the result.
+/// Cycles of lookup and inspection on sequential hardware.
 const LOOK_UP: u64 = 2;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,40 +18,6 @@ pub(super) struct Access {
     pub(super) write: bool,
 }
 
-/// Division by a number that is usually a power of two.
-#[derive(Debug, Clone, Copy)]
-struct Divisor {
-    number: u64,
-    /// Its logarithm, if it is one.
-    places: Option<u32>,
-}
-
-impl Divisor {
-    fn new(number: u32) -> Self {
-        Self {
-            number: u64::from(number),
-            places: number.is_power_of_two().then(|| number.trailing_zeros()),
-        }
-    }
-
-    #[inline]
-    fn quotient(self, of: u64) -> u64 {
-        match self.places {
-            Some(places) => of >> places,
-            None => of / self.number,
-        }
-    }
-
-    #[inline]
-    fn remainder(self, of: u64) -> usize {
-        match self.places {
-            Some(_) => (of & (self.number - 1)) as usize,
-            None => (of % self.number) as usize,
-        }
-    }
-}
-
-/// A port with a number of accesses per cycle.
 #[derive(Debug, Clone)]
 pub(super) struct Port {
     cycle: u64,
@@ -71,7 +36,6 @@ impl Port {
         }
     }
 
-    /// Books one access in the first free cycle from `at`, and returns that cycle.
     #[inline]
     pub(super) fn book(&mut self, at: u64) -> u64 {
         self.accesses += 1;
@@ -95,7 +59,6 @@ impl Port {
         }
     }
 
-    /// Least cycles for its accesses.
     pub(super) fn bound(&self) -> u64 {
         self.accesses.div_ceil(u64::from(self.per_cycle))
     }
@@ -105,9 +68,7 @@ impl Port {
 pub(super) struct OuterPort {
     of: OuterMemory,
     free_at: u64,
-    /// Bits of pixels that do not fill a word yet.
     pixel_bits: u64,
-    /// Cycles for which it was taken.
     pub(super) busy: u64,
 }
 
@@ -121,7 +82,7 @@ impl OuterPort {
         }
     }
 
-    /// Takes a pixel that is written at `at`; neighbours share words. Returns the cycle when it has left.
+    /// Returns the cycle when a pixel has left; neighbours share words.
     fn book_pixel(&mut self, at: u64) -> u64 {
         let word = 8 * u64::from(self.of.bytes_per_cycle.max(1));
         let bits = self.pixel_bits + u64::from(PIXEL_BITS);
@@ -130,7 +91,7 @@ impl OuterPort {
         begun + cycles
     }
 
-    /// Takes the free port for so many bits, from `at` at the earliest. Returns the first cycle and the number of cycles.
+    /// Takes the port for so many bits. Returns the first cycle and the number of cycles.
     #[inline]
     pub(super) fn book(&mut self, at: u64, bits: u64) -> (u64, u64) {
         let cycles = self.of.cycles(bits);
@@ -144,7 +105,6 @@ impl OuterPort {
     }
 }
 
-/// Cycles of issue and completion of an access, and the cause of its wait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Served {
     pub(super) issued: u64,
@@ -158,19 +118,18 @@ struct Line {
     ready: u64,
 }
 
-/// A cache: its lines, most recently used first in each set.
 #[derive(Debug)]
 pub(super) struct CacheState {
     of: Cache,
-    sets: Divisor,
-    line_bytes: Divisor,
+    sets: u64,
+    /// Most recently used first in each set.
     lines: Vec<Line>,
     pub(super) port: Port,
     /// Cycles in which the misses in flight are done, oldest at `misses mod slots`.
     slots: Vec<u64>,
     misses: u64,
     delayed: u64,
-    /// On sequential hardware: the cycle from which the port is free, and the cycles in which incoming lines take it.
+    /// On sequential hardware.
     free_at: u64,
     coming_in: VecDeque<Range<u64>>,
 }
@@ -180,8 +139,7 @@ impl CacheState {
         let lines = of.sets() as usize * of.ways as usize;
         Self {
             of,
-            sets: Divisor::new(of.sets()),
-            line_bytes: Divisor::new(of.line_bytes),
+            sets: u64::from(of.sets()),
             lines: vec![
                 Line {
                     number: u64::MAX,
@@ -231,14 +189,13 @@ impl CacheState {
         served
     }
 
-    /// An access that is issued, unless it is a miss that waits.
     #[inline]
     fn look_up(&mut self, address: u64, issued: u64, outer: &mut OuterPort) -> Served {
         let hit = issued + u64::from(self.of.hit_latency);
         let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
-        let number = self.line_bytes.quotient(byte);
+        let number = byte >> self.of.line_bytes.trailing_zeros();
         let ways = self.of.ways as usize;
-        let start = self.sets.remainder(number) * ways;
+        let start = (number % self.sets) as usize * ways;
         let set = &mut self.lines[start..start + ways];
         if let Some(way) = set.iter().position(|line| line.number == number) {
             let line = set[way];
@@ -291,7 +248,6 @@ impl CacheState {
         }
     }
 
-    /// Least cycles for its misses.
     pub(super) fn miss_bound(&self) -> u64 {
         let each = u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
         self.misses * each / self.slots.len() as u64
@@ -300,7 +256,6 @@ impl CacheState {
 
 #[derive(Debug, Clone)]
 pub(super) struct BanksState {
-    banks: Divisor,
     latency: u32,
     reads: Vec<Port>,
     writes: Vec<Port>,
@@ -310,7 +265,6 @@ impl BanksState {
     fn new(of: Banks) -> Self {
         let banks = of.banks as usize;
         Self {
-            banks: Divisor::new(of.banks),
             latency: of.latency,
             reads: vec![Port::new(of.read_ports); banks],
             writes: vec![Port::new(of.write_ports); banks],
@@ -319,7 +273,7 @@ impl BanksState {
 
     #[inline]
     fn access(&mut self, access: Access, at: u64) -> Served {
-        let bank = self.banks.remainder(access.address);
+        let bank = (access.address % self.reads.len() as u64) as usize;
         let (issued, latency) = if access.write {
             (self.writes[bank].book(at), 1)
         } else {
@@ -347,7 +301,6 @@ impl BanksState {
 pub(super) struct PixelsState {
     of: Pixels,
     pub(super) port: Port,
-    /// Cycles in which the buffered pixels leave, oldest at `writes mod buffer`.
     leaving: Vec<u64>,
     last: u64,
 }
@@ -381,7 +334,6 @@ impl PixelsState {
         }
     }
 
-    /// Cycle in which the last pixel has left.
     pub(super) fn last(&self) -> u64 {
         self.last
     }
@@ -393,12 +345,10 @@ impl PixelsState {
 
 #[derive(Debug)]
 pub(super) struct Memories {
-    /// Per lane, or per context.
     pub(super) stacks: Vec<Port>,
     stack_latency: u64,
     pub(super) nodes: CacheState,
     pub(super) attributes: CacheState,
-    /// One for all, or one per stack.
     fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
     pub(super) outer: OuterPort,
@@ -432,7 +382,7 @@ impl Memories {
         self.fill.iter().map(BanksState::bound).max().unwrap_or(0)
     }
 
-    /// Serves an access from cycle `at`; `lane`: index of its stack, and of its fill vectors where each has its own.
+    /// Serves an access from cycle `at`; `lane` is the index of its stack.
     #[inline]
     pub(super) fn serve(&mut self, access: Access, at: u64, lane: usize) -> Served {
         match access.memory {
@@ -463,10 +413,9 @@ impl Memories {
     }
 }
 
-/// Cycles of an access without any waiting, and with the longest wait alone on the hardware.
+/// Cycles of an access without waiting, and with the longest wait.
 #[derive(Debug, Clone)]
 pub(super) struct Latencies {
-    /// By memory, then read or write.
     alone: [[u64; 2]; Memory::ALL.len()],
     worst: [u64; Memory::ALL.len()],
 }

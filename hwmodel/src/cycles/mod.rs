@@ -2,32 +2,30 @@
 //!
 //! [`simulate`] executes a [`Workload`] one turn at a time, in the order of simulated time, observes its work by a probe
 //! ([`TurnLog`]), and lays it out in cycles. So a record that runs early finds fewer samples drawn than serially, as on
-//! the hardware. Only unfinished records are stored. A [`Recording`] can replace the workload in some cases.
+//! the hardware. A [`Recording`] can replace the workload in some cases.
 //!
 //! # Rules
 //!
 //! All times are whole cycles. The same input gives the same output.
 //!
-//! 1. **Hardware.** [`Hardware::lanes`] lanes; each has a stack, one block per stage, and [`Hardware::contexts`]
-//!    contexts. A context has one record at a time. Caches, fill vectors and pixels are shared by all lanes.
+//! 1. **Hardware.** Each of [`Hardware::lanes`] has a stack, one block per stage, and [`Hardware::contexts`], each with
+//!    one record at a time. Caches, fill vectors and pixels are shared by all lanes.
 //! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in this order: pop, filled?,
 //!    to screen, one pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw, blend, fill update. Stages
-//!    without work are left out. For other records, the reads and writes of a turn (fill vectors, pixels) happen in its
-//!    first cycle.
+//!    without work are left out. Other records see the effects of a turn from its first cycle.
 //! 3. **Block.** A visit waits until earlier visits have entered the block and the block is free. Then, in cycle *s*, it
 //!    begins. An operation of *b* bits is `ceil(b / width)` passes. Issuing a class of operation takes
 //!    `ceil(passes / count) * interval` cycles; the largest of these, at least 1, is the visit's *occupancy*. Its
 //!    *latency* is the largest among the used classes. Results are ready at *s* + occupancy + latency.
 //! 4. **Memory.** The visit's accesses are issued in order from *s*, each in the first cycle with a free port after all
 //!    accesses of visits that began before. A read is done `latency` cycles after its issue, a write after 1. The block
-//!    is free when all operations and accesses are issued (an access takes the cycle of its issue). The visit ends when
-//!    all results are ready and all accesses are done. Its delay against a visit with free ports and without misses is
-//!    *stall*. The stall's cause is that of the access that ended last (of equal ones the first).
-//! 5. **Stack.** Each lane's has `ports` accesses per cycle. A record on another lane's stack takes
-//!    [`Hardware::steal_cycles`] longer in stage *pop*. A record for which a stack has no entry is an error or is
-//!    *spilled*: written to outer memory in the background, and read back from the cycle in which it is taken, in
-//!    `spill_cycles` more of stage *pop*. Both transfers take the port to outer memory ([`OuterMemory::cycles`]);
-//!    waiting for it and the transfer's cycles add to the `spill_cycles`.
+//!    is free when all operations and accesses are issued. The visit ends when all results are ready and all accesses are
+//!    done. Its delay against a visit with free ports and without misses is *stall*, whose cause is that of the access
+//!    that ended last (of equal ones the first).
+//! 5. **Stack.** Each has `ports` accesses per cycle. A record on another lane's stack takes [`Hardware::steal_cycles`]
+//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*: written to outer memory
+//!    in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both transfers take the
+//!    port to outer memory ([`OuterMemory::cycles`]); waiting for it and the transfer's cycles add to the `spill_cycles`.
 //! 6. **Cache.** Set-associative, replaces the least recently used line. A hit is done after `hit_latency`. A miss waits
 //!    for one of the `misses` slots and for the port to outer memory, which its line then takes; both hold the cache's
 //!    port. It is done after `hit_latency` and the longer of `miss_latency` and the line's own cycles. A hit on the same
@@ -36,55 +34,38 @@
 //! 8. **Pixels.** Written into a buffer through ports. A pixel that finds it full waits for the oldest to leave. They
 //!    leave in order, at least `drain_interval` cycles apart. On entry, a pixel of 24 bits takes the port to outer
 //!    memory for as many cycles as it completes words, since neighbours share words. It leaves after those cycles.
-//! 9. **Children** are on the stack of the lane, nearest on top, in the cycle in which the turn ends. A child is *ready*
-//!    when all earlier siblings that it depends on ([`Independence::allows`]) are finished with all their descendants.
-//!    Other records need not be examined: descendants stay in their ancestor's image node and place in the order.
-//! 10. **Next record.** A ready record goes on top of its lane's list, below its own earlier siblings. A context whose
-//!     turn has ended takes, in the same cycle, the topmost record of its lane; if there is none, the lowest one of the
-//!     next lane (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle
-//!     contexts steal, lowest numbers first. With one context this is depth first, nearest first.
+//! 9. **Children** are on the stack of the lane, nearest on top, when the turn ends. A child is *ready* when all earlier
+//!    siblings that it depends on ([`Independence::allows`]) are finished with all their descendants. Other records need
+//!    not be examined: descendants stay in their ancestor's image node and place in the order.
+//! 10. **Next record.** Ready records are listed by lane, the newest on top, below its own earlier siblings. A context
+//!     whose turn has ended takes, in the same cycle, the topmost record of its lane, or the lowest one of the next lane
+//!     (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle contexts
+//!     steal, lowest numbers first.
 //! 11. **Start.** The work before the first record is a turn of lane 0, context 0, in cycle 0.
 //! 12. **Sequential hardware** ([`Hardware::sequential`]) does one thing at a time, in the order of the record loop.
 //!     Wherever the loop enters another stage, or reports a dependence
-//!     ([`Probe::next_step`](crate::Probe::next_step)), a visit ends and the next begins, so a stage may be visited
-//!     several times per turn. Work *beside* a stage ([`Probe::beside`](crate::Probe::beside)) belongs to that stage's
-//!     visit. An access is issued when the previous one is done; a read takes one more cycle, in which its result is
-//!     inspected. These cycles issue operations; the rest of the visit's occupancy, and its latency, come after the
-//!     last access. A visit takes at least a cycle, and its block is free when it ends. `rtl/` is such a state machine.
-//!     Requests of several lanes are served in order, each in its own cycle (unlike rule 4); of one cycle, nodes before
-//!     attributes, and the lowest lane and context first. An access takes the port of its cache for two cycles: lookup
-//!     and inspection, longer for a miss that waits for outer memory. An incoming line also takes it for the cycles of
-//!     its transfer.
-//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A context without
-//!     records requests a tile, from cycle 0 on. In each cycle the earliest request receives the next tile, row by row,
-//!     and its context begins it in the next cycle and draws it to its end. Nothing is stolen; stack and fill vectors
-//!     belong to the context.
-//! 14. **Contexts of a sequential lane**, which need tiles, share it: one has the lane. From its request to a cache, or
-//!     for a tile, until the cycle before the answer, another may have it. In each such cycle the context that has
-//!     wanted it longest, of one cycle the lowest number, receives the lane and continues in the next cycle. A context
-//!     without the lane wants it from the cycle of the answer; one with the lane still inspects its result in that
-//!     cycle. Cycles in which a context wants the lane are *block busy*.
-//!
-//! # Work and span
+//!     ([`Probe::next_step`](crate::Probe::next_step)), a visit ends and the next begins. Work *beside* a stage
+//!     ([`Probe::beside`](crate::Probe::beside)) belongs to that stage's visit. An access is issued when the previous
+//!     one is done; a read takes one more cycle, in which its result is inspected. These cycles issue operations; the
+//!     rest of the visit's occupancy, and its latency, come after the last access. A visit takes at least a cycle.
+//!     Requests of several lanes are served in order, each in its own cycle; of one cycle, nodes before attributes, and
+//!     the lowest lane and context first. An access takes the port of its cache for lookup and inspection, longer for a
+//!     miss that waits for outer memory. An incoming line also takes it for the cycles of its transfer.
+//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]). A context without records requests a tile, from
+//!     cycle 0 on. In each cycle the earliest request receives the next tile, row by row, and its context begins it in
+//!     the next cycle and draws it to its end, with its own stack and fill vectors.
+//! 14. **Contexts of a sequential lane** share it: one has the lane. From its request to a cache, or for a tile, until
+//!     the cycle before the answer, another may have it. In each such cycle the context that was answered first, of one
+//!     cycle the lowest number, receives the lane and continues in the next cycle; the cycles of its wait are *block
+//!     busy*. A context with the lane inspects its result in the cycle of the answer.
 //!
 //! A turn *alone* takes the sum over its visits of the larger of occupancy + latency and the longest latency of an
 //! access that hits. **Work** is the sum over all turns. **Span** is the longest chain of turns alone that had to follow
-//! each other, parent to child and sibling to sibling, in this execution. No number of lanes, contexts or ports makes the
-//! frame shorter.
+//! each other. Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context,
+//! no faster or wider part makes a frame slower.
 //!
-//! # Guarantees
-//!
-//! Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context, no faster
-//! or wider part makes a frame slower. With several contexts it can, because records meet in another order (the
-//! anomalies of list scheduling, Graham 1969): 117 of 2000 random improvements did, at worst by 19 %
-//! (`tests/hwmodel/cycles_properties.rs`).
-//!
-//! # Simplifications
-//!
-//! - Dependent operations of one visit (the levels of a fit, the steps of a divide) are charged with one latency, as in
-//!   a pipeline. For few contexts this is optimistic; raise latencies.
-//! - Others see a turn's effects from its first cycle (rule 2), up to one turn's length too early.
-//! - Passing results between stages and finding ready records take no time.
+//! docs/hardware-model.md lists what the model leaves out.
+
 mod hardware;
 mod memories;
 mod observe;
@@ -103,11 +84,11 @@ pub use hardware::{
     Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
-pub use recording::{Recording, Replay, Tape, TurnProbe};
+pub use recording::{Recording, Tape, TurnProbe};
 pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,
 };
 pub use simulate::{SimulationError, simulate};
-pub use trace::{Recorder, TraceLimit};
+pub use trace::Recorder;
 pub use turn::{Child, ImageNode, TurnLog, Workload};

@@ -33,13 +33,11 @@ pub struct VisitSpan {
 pub trait Observer {
     /// Whether [`visit`](Self::visit) and [`queue`](Self::queue) are called; constant during a simulation.
     fn watches_visits(&self) -> bool {
-        true
+        false
     }
 
     /// A visit of known course, in the order in which they begin.
-    fn visit(&mut self, span: &VisitSpan) {
-        let _ = span;
-    }
+    fn visit(&mut self, _: &VisitSpan) {}
 
     /// The numbers of records on a lane's stack, and of those that are ready, from `cycle` on.
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
@@ -56,21 +54,13 @@ pub trait Observer {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoObserver;
 
-impl Observer for NoObserver {
-    fn watches_visits(&self) -> bool {
-        false
-    }
-}
+impl Observer for NoObserver {}
 
 /// Calls a function with cycles and records every few thousand records.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<F>(pub F);
 
 impl<F: FnMut(u64, u64)> Observer for Progress<F> {
-    fn watches_visits(&self) -> bool {
-        false
-    }
-
     fn progress(&mut self, cycle: u64, records: u64) {
         (self.0)(cycle, records);
     }
@@ -95,23 +85,5 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn progress(&mut self, cycle: u64, records: u64) {
         self.0.progress(cycle, records);
         self.1.progress(cycle, records);
-    }
-}
-
-impl<O: Observer> Observer for &mut O {
-    fn watches_visits(&self) -> bool {
-        (**self).watches_visits()
-    }
-
-    fn visit(&mut self, span: &VisitSpan) {
-        (**self).visit(span);
-    }
-
-    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
-        (**self).queue(cycle, lane, stored, ready);
-    }
-
-    fn progress(&mut self, cycle: u64, records: u64) {
-        (**self).progress(cycle, records);
     }
 }

@@ -2,11 +2,15 @@
 //! depend on its time: where records that share a part of the picture run one after the other.
 
 use std::collections::HashMap;
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::hardware::Hardware;
+use super::observe::NoObserver;
+use super::report::CycleReport;
+use super::simulate::{SimulationError, simulate};
 use super::turn::{CLASSES, Child, STAGES, TurnLog, WIDTHS, Workload};
-use crate::{Memory, OpClass, Probe, Stage, StageLevel, Trap};
+use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 /// A probe that contains a turn's log and is notified of its end.
 pub trait TurnProbe: Probe {
@@ -35,7 +39,6 @@ impl TurnProbe for (TurnLog, Tape) {
     }
 }
 
-/// Equal operations of a visit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Tally {
     stage: Stage,
@@ -52,7 +55,6 @@ struct RecordedAccess {
     write: bool,
 }
 
-/// Ranges of a turn's parts.
 #[derive(Debug, Clone, Default)]
 struct Turn {
     level: u32,
@@ -73,7 +75,6 @@ pub struct Recording {
     /// Operations of a stage, each distinct list once.
     visits: Vec<Range<u32>>,
     tallies: Vec<Tally>,
-    /// The visits of turns.
     visited: Vec<u32>,
     accesses: Vec<RecordedAccess>,
     /// Their items are numbers of turns.
@@ -81,7 +82,6 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Approximate size in memory.
     fn bytes(&self) -> usize {
         size_of::<Turn>() * self.turns.len()
             + size_of::<Range<u32>>() * self.visits.len()
@@ -92,28 +92,30 @@ impl Recording {
             + size_of::<Child>() * self.children.len()
     }
 
-    /// The recorded turns as a workload, for hardware that [`Hardware::check`] accepts and that is not
-    /// [sequential](Hardware::sequential): the order of a turn's steps is not recorded.
-    pub fn replay(&self, hardware: &Hardware) -> Replay<'_> {
-        Replay {
+    /// Simulates the recorded turns on hardware that is not [sequential](Hardware::sequential): the order of a turn's
+    /// steps is not recorded.
+    ///
+    /// # Errors
+    /// When [`Hardware::check`] fails, or a stack overflows that does not spill.
+    pub fn simulate<E>(&self, hardware: &Hardware) -> Result<CycleReport, SimulationError<E>> {
+        hardware.check().map_err(SimulationError::Hardware)?;
+        let mut replay = Replay {
             recording: self,
             log: TurnLog::new(hardware),
-        }
+            error: PhantomData,
+        };
+        simulate(hardware, &mut replay, &mut NoObserver)
     }
 }
 
 /// A probe that records turns.
 #[derive(Debug)]
 pub struct Tape {
-    /// Number of operations in this turn; by stage, class and width.
     times: Box<[[[u32; WIDTHS]; CLASSES]; STAGES]>,
     met: Vec<Tally>,
-    /// Numbers of the distinct visits.
     known: HashMap<Box<[Tally]>, u32>,
-    /// First access of this turn.
     begun: u32,
     level: u32,
-    /// Turn of each of the workload's items.
     numbers: Vec<u32>,
     recording: Recording,
     most_bytes: usize,
@@ -224,7 +226,6 @@ impl Tape {
 impl Probe for Tape {
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        // As in `TurnLog`.
         let bits = (bits as usize).min(WIDTHS - 1);
         let sum = &mut self.times[place.stage as usize][class as usize][bits];
         if *sum == 0 {
@@ -251,14 +252,13 @@ impl Probe for Tape {
     }
 }
 
-/// Recorded turns as a workload.
-#[derive(Debug)]
-pub struct Replay<'a> {
+struct Replay<'a, E> {
     recording: &'a Recording,
     log: TurnLog,
+    error: PhantomData<E>,
 }
 
-impl Replay<'_> {
+impl<E> Replay<'_, E> {
     fn play(&mut self, turn: usize, children: &mut Vec<Child>) {
         let recording = self.recording;
         let turn = &recording.turns[turn];
@@ -284,15 +284,15 @@ impl Replay<'_> {
     }
 }
 
-impl Workload for Replay<'_> {
-    type Error = Trap;
+impl<E> Workload for Replay<'_, E> {
+    type Error = E;
 
-    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
+    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), E> {
         self.play(0, children);
         Ok(())
     }
 
-    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
+    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), E> {
         self.play(item as usize, children);
         Ok(())
     }

@@ -23,7 +23,7 @@ macro_rules! causes {
         /// Cycles by cause, summed over records.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
         pub struct Stalls {
-            $($(#[$doc])* pub $field: u64,)+
+            $(#[doc = $name] $(#[$doc])* pub $field: u64,)+
         }
 
         impl Stalls {
@@ -49,7 +49,6 @@ causes! {
     BankConflict bank_conflict = "bank conflict",
     /// A cache miss, its own or one in flight.
     CacheMiss cache_miss = "cache miss",
-    /// The output of pixels.
     PixelPort pixel_port = "pixel port",
     /// Being read back from outer memory.
     StackSpill stack_spill = "stack spill",
@@ -73,28 +72,28 @@ pub struct StageReport {
     pub visits: u64,
     /// Operations, including wires.
     pub operations: u64,
-    /// Passes through units: several for an operation wider than a unit, none for wires.
+    /// Passes through units; none for wires.
     pub passes: u64,
-    /// Most passes of one visit, by class in the order of [`OpClass::ALL`]: the most units that can be used.
+    /// Most passes of one visit by class: the most units that can be used.
     pub most_passes: [u64; OpClass::ALL.len()],
-    /// Cycles in which its blocks issued operations.
+    /// Cycles in which blocks issued operations.
     pub busy: u64,
-    /// Additional cycles in which its blocks waited to issue accesses.
+    /// Additional cycles in which blocks waited to issue accesses.
     pub held: u64,
     /// `busy + held` divided by cycles and lanes, 0 to 1.
     pub utilisation: f64,
-    /// Cycles of the records in it without any waiting.
+    /// Cycles of its records without waiting.
     pub alone: u64,
-    /// Additional cycles of the records in it, by cause.
+    /// Additional cycles of its records, by cause.
     pub stalls: Stalls,
 }
 
-/// Cycles of the contexts; the four sum to `cycles * lanes * contexts`.
+/// Cycles of the contexts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContextReport {
-    /// Cycles with a record in progress that waited for at most its own latencies.
+    /// Cycles with a record that did not wait.
     pub working: u64,
-    /// Cycles in which a record waited in a stage.
+    /// Cycles with a record that waited in a stage.
     pub stalled: u64,
     /// Cycles without a record, while all remaining records had to wait for others.
     pub order_wait: u64,
@@ -117,19 +116,18 @@ pub struct CacheReport {
     pub bytes_in: u64,
 }
 
-/// Stacks, and the table that keeps the order.
+/// Stacks, and the order's table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StackReport {
     /// Most records on one lane's stack.
     pub deepest: u64,
     /// Most records on all stacks and in all contexts.
     pub most_live: u64,
-    /// Most records at once that had their turn and have unfinished descendants: entries of the table that keeps the
-    /// order.
+    /// Most records at once that had their turn and have unfinished descendants: entries of the order's table.
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,
-    /// Their bits, written to outer memory once and read once.
+    /// Their bits, written once and read once.
     pub spilled_bits: u64,
     /// Records taken from another lane.
     pub stolen: u64,
@@ -142,12 +140,12 @@ pub struct Bound {
     pub resource: String,
     /// Cycles.
     pub cycles: u64,
-    /// `cycles` divided by the frame's, 0 to 1: utilisation of the resource.
+    /// `cycles` divided by the frame's, 0 to 1.
     pub share: f64,
 }
 
 /// The limit of the frame.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Bottleneck {
     /// A bound's `resource`, `latency`, `order` or `records`.
     pub resource: String,
@@ -157,60 +155,42 @@ pub struct Bottleneck {
     pub sentence: String,
 }
 
-/// The result of a simulation. Cycles are of the hardware's clock.
+/// The result of a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct CycleReport {
-    /// [`REPORT_VERSION`].
     pub version: u32,
-    /// The hardware's name.
     pub hardware: String,
-    /// Number of lanes.
     pub lanes: u32,
-    /// Contexts per lane.
     pub contexts: u32,
-    /// The rule of independence.
     pub independence: Independence,
-    /// Clock, MHz.
     pub clock_mhz: f64,
-    /// From the first record's first to the last pixel's last cycle.
+    /// Until the last pixel has left.
     pub cycles: u64,
-    /// Records that had their turn.
     pub records: u64,
-    /// Pixels written.
     pub pixels: u64,
-    /// `cycles / records`.
     pub cycles_per_record: f64,
     /// `cycles / pixels`; 0 without pixels.
     pub cycles_per_pixel: f64,
-    /// Frames per second at the clock.
     pub frames_per_second: f64,
-    /// Cycles of all turns without any waiting.
+    /// Cycles of all turns without waiting.
     pub work: u64,
-    /// Cycles of the longest chain of dependent turns without any other waiting: a bound for any number of lanes.
+    /// Cycles of the longest chain of dependent turns without other waiting.
     pub span: u64,
-    /// `work / span`: the average number of contexts that could be busy.
     pub parallelism: f64,
-    /// Cycles of all turns one after the other with their longest waits: an upper bound.
+    /// Upper bound: cycles of all turns one after the other with their longest waits.
     pub serial: u64,
-    /// By stage, in the order of the record loop.
     pub stages: Vec<StageReport>,
-    /// Cycles of the contexts.
     pub context_cycles: ContextReport,
-    /// The node cache.
     pub node_cache: CacheReport,
-    /// The attribute cache.
     pub attribute_cache: CacheReport,
-    /// Fill vectors read.
     pub fill_reads: u64,
-    /// Fill vectors written.
     pub fill_writes: u64,
-    /// Cycles in which lines of the caches and spilled records took the port to outer memory.
+    /// Cycles in which the port to outer memory was taken.
     pub outer_busy: u64,
-    /// Stacks.
     pub stack: StackReport,
     /// By resource, tightest first.
     pub bounds: Vec<Bound>,
-    /// The limit of the frame.
     pub bottleneck: Bottleneck,
 }
 
@@ -218,17 +198,14 @@ pub struct CycleReport {
 const LIMITING: f64 = 0.75;
 
 impl CycleReport {
-    /// Sets bounds and bottleneck.
     pub(super) fn conclude(&mut self, bounds: Vec<(String, u64)>) {
         let cycles = self.cycles.max(1) as f64;
-        self.bounds = bounds
-            .into_iter()
-            .map(|(resource, bound)| Bound {
-                resource,
-                cycles: bound,
-                share: bound as f64 / cycles,
-            })
-            .collect();
+        let bound = |(resource, bound)| Bound {
+            resource,
+            cycles: bound,
+            share: bound as f64 / cycles,
+        };
+        self.bounds = bounds.into_iter().map(bound).collect();
         // Stable: equal ones keep their order.
         self.bounds
             .sort_by_key(|bound| std::cmp::Reverse(bound.cycles));
@@ -236,84 +213,62 @@ impl CycleReport {
     }
 
     fn find_bottleneck(&self, cycles: f64) -> Bottleneck {
-        let tightest = self.bounds.first().filter(|bound| bound.share >= LIMITING);
-        if let Some(bound) = tightest {
-            let percent = bound.share * 100.0;
-            let name = &bound.resource;
-            let sentence = if name == SPAN {
-                format!(
-                    "the longest chain of records that wait for each other takes {percent:.0} % \
-                     of the time: more lanes or contexts cannot help, shorter latencies would"
-                )
-            } else {
-                format!("the {name} is busy {percent:.0} % of the time: widen it, or do less there")
-            };
-            return Bottleneck {
-                resource: name.clone(),
-                share: bound.share,
-                sentence,
-            };
-        }
-        let all = cycles * f64::from(self.lanes) * f64::from(self.contexts);
-        let of = |part: u64| part as f64 / all;
+        let contexts = f64::from(self.lanes) * f64::from(self.contexts);
+        let of = |part: u64| part as f64 / (cycles * contexts);
         let ContextReport {
             working,
             stalled,
             order_wait,
             no_record,
         } = self.context_cycles;
-        let (resource, share, sentence) = if of(working + stalled) >= LIMITING {
-            let stall = |cause: Cause| -> u64 {
-                self.stages.iter().map(|stage| stage.stalls.of(cause)).sum()
-            };
-            // Of equal ones the first.
-            let worst = Cause::ALL
-                .into_iter()
-                .rev()
-                .max_by_key(|&cause| stall(cause));
-            let waits = worst
-                .filter(|&cause| stall(cause) > 0)
-                .map_or_else(String::new, |cause| {
-                    let part = of(stall(cause)) * 100.0;
+        let in_progress = of(working + stalled);
+        let tightest = self.bounds.first().filter(|bound| bound.share >= LIMITING);
+        let (resource, share) = match tightest {
+            Some(bound) => (bound.resource.as_str(), bound.share),
+            None if in_progress >= LIMITING => ("latency", in_progress),
+            None if order_wait >= no_record => ("order", of(order_wait)),
+            None => ("records", of(no_record)),
+        };
+        let percent = share * 100.0;
+        let could = format!(
+            "this frame could keep {:.1} contexts busy, the hardware has {contexts}",
+            self.parallelism
+        );
+        let sentence = match resource {
+            SPAN => format!(
+                "the longest chain of records that wait for each other takes {percent:.0} % of the time: more lanes \
+                 or contexts cannot help, shorter latencies would"
+            ),
+            "latency" => {
+                let stall = |cause: Cause| -> u64 {
+                    self.stages.iter().map(|stage| stage.stalls.of(cause)).sum()
+                };
+                // Of equal ones the first.
+                let causes = Cause::ALL.into_iter().rev();
+                let worst = causes.max_by_key(|&cause| stall(cause));
+                let worst = worst.filter(|&cause| stall(cause) > 0);
+                let waits = worst.map_or_else(String::new, |cause| {
                     format!(
-                        "; records wait {part:.0} % of it, most of all for: {}",
+                        "; records wait {:.0} % of it, most of all for: {}",
+                        of(stall(cause)) * 100.0,
                         cause.name()
                     )
                 });
-            (
-                "latency",
-                of(working + stalled),
                 format!(
-                    "no unit is busy enough to limit, but every context has a record {:.0} % of \
-                     the time: latencies limit, more contexts per lane would help{waits}",
-                    of(working + stalled) * 100.0
-                ),
-            )
-        } else if order_wait >= no_record {
-            (
-                "order",
-                of(order_wait),
-                format!(
-                    "contexts are idle {:.0} % of the time because the records left wait for \
-                     earlier ones; this frame could keep {:.1} contexts busy, the hardware has {}",
-                    of(order_wait) * 100.0,
-                    self.parallelism,
-                    u64::from(self.lanes) * u64::from(self.contexts),
-                ),
-            )
-        } else {
-            (
-                "records",
-                of(no_record),
-                format!(
-                    "contexts are idle {:.0} % of the time because there are no records left \
-                     but those under way; this frame could keep {:.1} contexts busy, the \
-                     hardware has {}",
-                    of(no_record) * 100.0,
-                    self.parallelism,
-                    u64::from(self.lanes) * u64::from(self.contexts),
-                ),
-            )
+                    "no unit is busy enough to limit, but every context has a record {percent:.0} % of the time: \
+                     latencies limit, more contexts per lane would help{waits}"
+                )
+            }
+            "order" => format!(
+                "contexts are idle {percent:.0} % of the time because the records left wait for earlier ones; {could}"
+            ),
+            "records" => format!(
+                "contexts are idle {percent:.0} % of the time because there are no records left but those under way; \
+                 {could}"
+            ),
+            unit => {
+                format!("the {unit} is busy {percent:.0} % of the time: widen it, or do less there")
+            }
         };
         Bottleneck {
             resource: resource.to_owned(),
@@ -323,6 +278,5 @@ impl CycleReport {
     }
 }
 
-/// Names among the bounds.
 pub(super) const OUTER_PORT: &str = "outer memory port";
 pub(super) const SPAN: &str = "longest chain";

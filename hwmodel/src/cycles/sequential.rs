@@ -1,7 +1,4 @@
-//! Sequential hardware (rules 12 to 14): one access per cycle and visit, and tiles.
-//!
-//! Requests of a cycle are served when all its other events are over: the earliest first; of one cycle, nodes before
-//! attributes, and the lowest lane first.
+//! Sequential hardware (rules 12 to 14). Requests of a cycle are served after all its other events.
 
 use std::collections::VecDeque;
 
@@ -11,7 +8,6 @@ use super::simulate::{Simulation, SimulationError};
 use super::turn::Workload;
 use crate::Memory;
 
-/// Cycles from an uncontended request of a tile until it begins.
 const HAND_OUT: u64 = 1;
 
 /// Kinds of request, in the order in which they are served within a cycle.
@@ -23,17 +19,16 @@ enum Of {
     Tile,
 }
 
-/// The requests of the current cycle, and the waiting contexts.
 #[derive(Debug, Default)]
 pub(super) struct Asked {
     now: Vec<(Of, u32)>,
-    /// Contexts that wait for the node cache and the attribute cache; the first has its event set.
+    /// For the node cache and the attribute cache; the first has its event set.
     waiting: [VecDeque<u32>; 2],
     /// The next tile, and the first cycle in which one is handed out.
     tile: u32,
     tile_from: u64,
-    /// Per lane; and contexts of lanes whose holder may change at the end of this cycle.
     pub(super) sharing: Vec<Sharing>,
+    /// Contexts of lanes whose holder may change at the end of this cycle.
     pub(super) lanes: Vec<u32>,
 }
 
@@ -47,34 +42,27 @@ impl Asked {
     }
 }
 
-/// Progress of a context in its visit.
 #[derive(Debug, Default)]
 pub(super) struct Step {
     pub(super) tile: Option<u32>,
-    /// Whether its event is the cycle of the answer that it waits for.
     waits: bool,
-    /// First cycle in which another has the lane; cycles of the visit in which others had it; those of them in which it
-    /// wanted the lane.
+    /// First cycle in which another has the lane, cycles in which others had it, and those in which it was wanted.
     pub(super) away_from: u64,
     pub(super) away: u64,
     pub(super) wanted: u64,
-    /// Whether its visit is in progress; the next of the turn's accesses.
     is_begun: bool,
     access: usize,
     begun: u64,
-    /// Whether its next access was requested: it waits, or is served in its event's cycle.
     has_asked: bool,
     cause: Option<Cause>,
 }
 
 impl<W: Workload> Simulation<'_, W> {
-    /// All contexts request tiles.
     pub(super) fn ask_for_tiles(&mut self) {
         let contexts = 0..self.contexts.len() as u32;
         self.asked.now.extend(contexts.map(|of| (Of::Tile, of)));
     }
 
-    /// Whether requests must be served before the next event.
     pub(super) fn must_serve(&self, now: u64) -> bool {
         let is_asked = !self.asked.now.is_empty() || !self.asked.lanes.is_empty();
         is_asked && self.wheel.next_at().is_none_or(|next| next > now)
@@ -102,7 +90,6 @@ impl<W: Workload> Simulation<'_, W> {
         self.give_lanes(now);
     }
 
-    /// A context without records receives the next tile, one per cycle.
     fn hand_out(&mut self, now: u64, context: u32) {
         if self.asked.tile == self.workload.tiles() {
             return;
@@ -151,7 +138,6 @@ impl<W: Workload> Simulation<'_, W> {
             self.wheel.set(free, next);
         }
         self.is_served(context, served.cause);
-        // The result is inspected in that cycle.
         self.waits_until(now, served.done, context);
     }
 
@@ -162,7 +148,7 @@ impl<W: Workload> Simulation<'_, W> {
         step.cause = Some(cause);
     }
 
-    /// Handles a context's event, unless it arrives at a block or is at the end of its turn.
+    /// Handles a context's event, except an arrival at a block or the end of a turn.
     pub(super) fn step_on(
         &mut self,
         now: u64,
@@ -205,7 +191,6 @@ impl<W: Workload> Simulation<'_, W> {
         Ok(())
     }
 
-    /// Begins a visit: its accesses are requested one after the other.
     pub(super) fn begin_steps(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.step.is_begun = true;
@@ -240,7 +225,6 @@ impl<W: Workload> Simulation<'_, W> {
         self.end_visit(context, begun, (ends, ends), (cause, stalled));
     }
 
-    /// Gives a context at the end of its turn its own next record, or requests a tile.
     pub(super) fn go_on(
         &mut self,
         now: u64,
@@ -256,18 +240,14 @@ impl<W: Workload> Simulation<'_, W> {
     }
 }
 
-/// The holder of a lane, and its requests by other contexts.
 #[derive(Debug)]
 pub(super) struct Sharing {
     holder: u32,
-    /// Whether the holder waits for a cache or a tile, so that another may have the lane.
     waits: bool,
-    /// First cycle and context of each request, in order.
     wanted_by: Vec<(u64, u32)>,
 }
 
 impl Sharing {
-    /// Of a lane whose first context `first` has the lane, and waits for a tile.
     pub(super) fn new(first: u32) -> Self {
         Self {
             holder: first,
@@ -303,7 +283,7 @@ impl<W: Workload> Simulation<'_, W> {
         self.asked.lanes.push(context);
     }
 
-    /// Changes holders that wait while others want the lane, at the end of the cycle `now`.
+    /// At the end of the cycle `now`.
     pub(super) fn give_lanes(&mut self, now: u64) {
         while let Some(context) = self.asked.lanes.pop() {
             let sharing = self.sharing(context);

@@ -1,4 +1,4 @@
-//! The simulation: contexts, blocks, and the choice of the next record.
+//! Contexts, blocks, and the choice of the next record.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,6 @@ use crate::Stage;
 use crate::memory::RecordKind;
 
 const NONE: u32 = u32::MAX;
-/// Records between two reports of progress.
 const PROGRESS: u64 = 1 << 14;
 
 /// Why a simulation ended early.
@@ -42,26 +41,6 @@ pub enum SimulationError<E> {
     },
 }
 
-impl<E> SimulationError<E> {
-    /// Converts the workload's error.
-    pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> SimulationError<F> {
-        match self {
-            Self::Workload(error) => SimulationError::Workload(convert(error)),
-            Self::Hardware(error) => SimulationError::Hardware(error),
-            Self::StackOverflow {
-                record,
-                lane,
-                entries,
-            } => SimulationError::StackOverflow {
-                record,
-                lane,
-                entries,
-            },
-        }
-    }
-}
-
-/// A lane's block of one stage.
 #[derive(Debug, Clone, Copy)]
 struct StageBlock {
     free_at: u64,
@@ -76,34 +55,27 @@ pub(super) struct Context {
     pub(super) number: u32,
     pub(super) plan: TurnVisits,
     pub(super) children: Vec<Child>,
-    /// The current or next visit.
     pub(super) visit: usize,
-    /// On sequential hardware: the progress in it.
     pub(super) step: Step,
     arrived: u64,
     granted: bool,
     pub(super) task: u32,
     record: u64,
-    /// Lane of the record's stack, and additional cycles of taking it.
     pub(super) from: u32,
     steal: u64,
     spill: u64,
     in_screen_space: bool,
-    /// The next context in line at its block.
     behind: u32,
 }
 
 #[derive(Debug, Default)]
 pub(super) struct Lane {
-    /// Ready records, newest last.
     pub(super) ready: VecDeque<u32>,
-    /// Records on its stack, ready or not.
     stored: u64,
-    /// Contexts without a record, one bit each.
     pub(super) idle: u64,
 }
 
-/// Runs a workload on a hardware.
+/// Simulates a workload.
 ///
 /// # Errors
 /// When [`Hardware::check`] fails, the workload fails, or a stack overflows that does not spill.
@@ -185,7 +157,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// Runs to the end; returns the last turn's last cycle.
     fn run(&mut self) -> Result<u64, SimulationError<W::Error>> {
         if self.hardware.hands_out_tiles() {
             self.ask_for_tiles();
@@ -218,7 +189,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(now)
     }
 
-    /// The workload's start is a turn of lane 0's context 0.
     fn start(&mut self) -> Result<(), SimulationError<W::Error>> {
         let task = self.tasks.root();
         self.lanes[0].idle &= !1;
@@ -232,7 +202,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Begins the turn of the workload's start, or of a tile's, which was executed.
     pub(super) fn begin_turn_of_start(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.record = START;
@@ -241,7 +210,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.plan(now, context);
     }
 
-    /// Begins the visits of an executed turn.
     fn plan(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         self.workload.log().take(&mut of.plan);
@@ -262,7 +230,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(now, context);
     }
 
-    /// Adds idle cycles up to `now`; to be called before the numbers of idle contexts or waiting records change.
+    /// Adds idle cycles, before the numbers of idle contexts or waiting records change.
     #[inline]
     pub(super) fn account(&mut self, now: u64) {
         let idle = (now - self.accounted) * self.idle;
@@ -302,7 +270,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         }
     }
 
-    /// The head of a block's line enters when the block is free.
     fn grant(&mut self, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
@@ -311,7 +278,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.wheel.set(free_at, context);
     }
 
-    /// Begins a visit: issues its operations, books its accesses.
     #[inline]
     fn begin(&mut self, now: u64, context: u32) {
         if self.hardware.sequential {
@@ -338,7 +304,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.end_visit(context, now, (frees, ends), (cause, stalled));
     }
 
-    /// Ends a visit that began in the cycle `begun`, with the cycles in which it frees its block and ends, and its stall.
     #[inline]
     pub(super) fn end_visit(
         &mut self,
@@ -450,7 +415,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Reports the records of a lane that has stack `at`.
     fn tell_queue(&mut self, now: u64, at: usize) {
         let stacks = self.lanes.len() / self.hardware.lanes as usize;
         let lane = at / stacks;
@@ -462,7 +426,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.observer.queue(now, lane as u32, stored, ready);
     }
 
-    /// Gives ready records to idle contexts: each lane's own first.
     fn wake(&mut self, now: u64) -> Result<(), SimulationError<W::Error>> {
         for own in [true, false] {
             if self.ready == 0 || self.idle == 0 {
@@ -481,7 +444,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
         Ok(())
     }
 
-    /// Gives an idle context its next record: its own lane's newest, or the oldest of the next lane that has one.
+    /// Gives an idle context its next record (rule 10).
     pub(super) fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         let lanes = self.lanes.len();
         let lane = self.contexts[context as usize].lane as usize;

@@ -1,7 +1,4 @@
-//! Unfinished records, their dependences, and the longest chain.
-//!
-//! A record is *finished* when its turn and those of all its descendants are over. A child waits for the earlier
-//! siblings that it depends on. The same times without contention give the span.
+//! Unfinished records, their dependences, and the span.
 
 use super::hardware::Independence;
 use super::turn::Child;
@@ -13,18 +10,15 @@ const NO_TASK: u32 = u32::MAX;
 struct Task {
     parent: u32,
     item: u32,
-    /// Place among its siblings, nearest first.
     slot: u8,
     /// Earlier siblings that must be finished first, one bit each.
     waits: u8,
-    /// Its unfinished children.
     alive: u8,
     spilled: bool,
     kind: RecordKind,
-    /// Lane of its stack.
     lane: u32,
     children: [u32; 8],
-    /// Without contention: the cycles in which its turn can begin, and in which all known parts of it are over.
+    /// Without contention.
     begins: u64,
     over: u64,
 }
@@ -42,9 +36,7 @@ pub(super) struct Tasks {
     independence: Independence,
     tasks: Vec<Task>,
     free: Vec<u32>,
-    /// Children that wait for siblings.
     pub(super) waiting: u64,
-    /// Records that had their turn and have unfinished descendants.
     pub(super) open: u64,
     pub(super) most_open: u64,
     pub(super) span: u64,
@@ -73,7 +65,6 @@ impl Tasks {
         }
     }
 
-    /// The task of the workload's start, or of a tile.
     pub(super) fn root(&mut self) -> u32 {
         self.insert(Task {
             parent: NO_TASK,
@@ -133,7 +124,6 @@ impl Tasks {
             self.finish(task, ready);
             return;
         }
-        // The workload's start is not a record.
         self.open += u64::from(self.tasks[task as usize].parent != NO_TASK);
         self.most_open = self.most_open.max(self.open);
         for (slot, child) in children.iter().enumerate().rev() {

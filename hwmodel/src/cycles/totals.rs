@@ -10,17 +10,12 @@ use super::tasks::Tasks;
 use super::turn::{CLASSES, STAGES};
 use crate::Stage;
 
-/// Sums over a frame.
 #[derive(Debug)]
 pub(super) struct Totals {
     pub(super) stages: Vec<StageReport>,
-    /// Records that had their turn.
     pub(super) records: u64,
-    /// Cycles of all turns alone.
     pub(super) work: u64,
-    /// Cycles without any overlap.
     pub(super) serial: u64,
-    /// Cycles of contexts without a record.
     pub(super) idle_cycles: ContextReport,
     pub(super) stack: StackReport,
 }
@@ -108,11 +103,7 @@ impl Totals {
             },
             stages: self.stages,
             bounds: Vec::new(),
-            bottleneck: Bottleneck {
-                resource: String::new(),
-                share: 0.0,
-                sentence: String::new(),
-            },
+            bottleneck: Bottleneck::default(),
         };
         report.conclude(bounds);
         report

@@ -9,34 +9,29 @@ pub(super) const CLASSES: usize = OpClass::ALL.len();
 /// Widths that are counted separately; wider ones count as this less one.
 pub(super) const WIDTHS: usize = 128;
 
-/// The simulated work: records, one turn each. The cost of a turn is known only after its execution.
-///
-/// The simulator calls [`Workload::turn`] in the order of simulated time, so that a record finds the state at the
-/// beginning of its turn.
+/// The simulated work: records, one turn each, called in the order of simulated time.
 pub trait Workload {
     /// Failure of a turn.
     type Error;
 
-    /// Makes the first records. Counts as a turn of a record that was on no stack.
+    /// Makes the first records.
     ///
     /// # Errors
     /// Those of the workload.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Executes a record's turn, which writes to the log. The new records go into `children` (empty before), nearest
-    /// first, at most eight.
+    /// Executes a record's turn. New records go into the empty `children`, nearest first, at most eight.
     ///
     /// # Errors
     /// Those of the workload.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Number of tiles of the picture, which replace [`Self::start`] on hardware that
-    /// [hands them out](Hardware::hands_out_tiles).
+    /// Number of tiles, which replace [`Self::start`] on hardware that [hands them out](Hardware::hands_out_tiles).
     fn tiles(&self) -> u32 {
         0
     }
 
-    /// Begins a tile and makes its first records, at most eight. A turn, as [`Self::start`].
+    /// Begins a tile and makes its first records, at most eight.
     ///
     /// # Errors
     /// Those of the workload.
@@ -82,7 +77,7 @@ impl ImageNode {
     }
 }
 
-/// Classes of the occlusion order by place: `{7} {6, 5, 3} {4, 2, 1} {0}` in the image-order paper's octants.
+/// `{7} {6, 5, 3} {4, 2, 1} {0}` in the image-order paper's octants.
 const CLASS_OF_PLACE: [u8; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
 
 impl Independence {
@@ -121,38 +116,29 @@ const ROUND: [Stage; STAGES] = [
     Stage::FillUpdate,
 ];
 
-/// Operations and the passes that they take.
 #[derive(Debug, Clone, Copy, Default)]
 struct Done {
     operations: u64,
     passes: u64,
 }
 
-/// The probe of a turn: operations as passes through units, and accesses, by stage. All work of a turn in one stage is
-/// one *visit*.
+/// The probe of a turn: operations as passes through units, and accesses, by stage.
 #[derive(Debug)]
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
     accesses: [Vec<Access>; STAGES],
-    /// By stage, a bit per class of operation, and [`ACCESSED`].
     met: [u16; STAGES],
-    /// Passes of one operation: by stage, class, width.
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
-    /// Octree level of pushed records: one below the current record.
     child_level: u32,
-    /// Most passes of a visit, by stage and class.
     most_passes: [[u64; CLASSES]; STAGES],
     sequential: bool,
-    /// On sequential hardware: the finished visits, and the current stage.
     over: TurnVisits,
     stage: Stage,
-    /// Whether it does work of another stage beside.
     beside: bool,
 }
 
-/// A unit's numbers; `count` 0: wires.
 #[derive(Debug, Clone, Copy, Default)]
 struct Issue {
     count: u64,
@@ -161,7 +147,7 @@ struct Issue {
 }
 
 impl TurnLog {
-    /// A log for turns on a hardware that [`Hardware::check`] finds sound.
+    /// A log for turns on sound hardware.
     pub fn new(hardware: &Hardware) -> Self {
         let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
         let mut units = [[Issue::default(); CLASSES]; STAGES];
@@ -198,7 +184,7 @@ impl TurnLog {
         }
     }
 
-    /// Enters a stage: on sequential hardware this ends the visit of another stage.
+    /// On sequential hardware this ends the visit of another stage.
     #[inline(always)]
     fn enter(&mut self, stage: Stage) {
         if self.sequential && self.stage != stage {
@@ -226,7 +212,6 @@ impl TurnLog {
         });
     }
 
-    /// Most passes of one visit by class of operation, by stage.
     pub(super) fn most_passes(&self) -> &[[u64; CLASSES]; STAGES] {
         &self.most_passes
     }
@@ -239,7 +224,6 @@ impl TurnLog {
         plan.worst = 0;
         let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
-        // As in `memory::RecordProbe`.
         let divides = 1 << OpClass::DivideStep as u16;
         plan.changed_to_screen = changed || self.met[Stage::ToScreen as usize] & divides != 0;
         for stage in ROUND {
@@ -249,7 +233,6 @@ impl TurnLog {
         }
     }
 
-    /// The same on sequential hardware. Returns whether there were divides.
     fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
         self.end_step(Stage::Pop);
         std::mem::swap(&mut self.over, plan);
@@ -385,13 +368,10 @@ impl Probe for TurnLog {
     }
 }
 
-/// Work of a turn in one stage.
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
-    /// Cycles in which operations are issued, at least 1; 0 on sequential hardware.
     pub(super) occupied: u64,
-    /// Additional cycles until the results are ready.
     pub(super) latency: u64,
     /// Cycles without any waiting.
     pub(super) alone: u64,
@@ -408,7 +388,6 @@ pub(super) struct TurnVisits {
     pub(super) alone: u64,
     /// Cycles with the longest waits, alone on the hardware.
     pub(super) worst: u64,
-    /// Octree level of the children.
     pub(super) child_level: u32,
     pub(super) changed_to_screen: bool,
 }

@@ -1,10 +1,9 @@
-//! The miss curve of a memory, by stack distances (Mattson et al., "Evaluation techniques for storage hierarchies", IBM
-//! Systems Journal 1970): a fully associative cache of `c` lines with LRU replacement has a line exactly if fewer than
-//! `c` other lines were used since its last use.
+//! Miss curves by stack distances (Mattson et al., "Evaluation techniques for storage hierarchies", IBM Systems Journal
+//! 1970). A fully associative LRU cache of `c` lines has a line exactly if fewer than `c` others were used since.
 
 use serde::{Deserialize, Serialize};
 
-use super::NumberMap;
+use crate::hash::NumberMap;
 
 /// One size of cache and its misses.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,7 +18,7 @@ pub struct MissPoint {
     pub miss_rate: f64,
 }
 
-/// Misses of caches of all sizes, from one pass over the accesses. Memory grows with the lines touched.
+/// Misses of caches of all sizes, from one pass over the accesses.
 ///
 /// ```
 /// use hwmodel::memory::MissCurve;
@@ -31,19 +30,15 @@ pub struct MissPoint {
 ///     }
 /// }
 /// // Three lines in turn: two are never enough, three always.
-/// assert_eq!(curve.misses(2), 30);
-/// assert_eq!(curve.misses(3), 3);
+/// assert_eq!((curve.misses(2), curve.misses(3)), (30, 3));
 /// ```
 #[derive(Debug, Clone)]
 pub struct MissCurve {
     line_bytes: u32,
-    /// Time of each line's last access.
-    last: NumberMap<u32>,
+    last: NumberMap<u64, u32>,
     /// Binary indexed tree over times: 1 where a line was last accessed then.
     tree: Vec<u32>,
-    /// Next time, less than the tree's length.
     now: u32,
-    /// Accesses by stack distance.
     distances: Vec<u64>,
     newest: Option<u64>,
     accesses: u64,
@@ -125,7 +120,7 @@ impl MissCurve {
         sum
     }
 
-    /// Numbers the last accesses from 0 again, in their order, and leaves room for at least as many as there are lines.
+    /// Numbers the last accesses from 0 again.
     fn renumber(&mut self) {
         let mut times: Vec<&mut u32> = self.last.values_mut().collect();
         times.sort_unstable();
@@ -158,28 +153,21 @@ impl MissCurve {
         self.distinct_lines() + far.sum::<u64>()
     }
 
-    /// Accesses by stack distance, without first accesses: entry `d` counts those with `d` other lines accessed since the
-    /// same line.
-    pub fn distances(&self) -> &[u64] {
-        &self.distances
-    }
-
     /// The curve at 1, 2, 4, ... lines, up to the first size that holds every line.
     pub fn points(&self) -> Vec<MissPoint> {
-        let mut points = Vec::new();
-        let mut lines = 1;
-        loop {
-            let misses = self.misses(lines);
-            points.push(MissPoint {
-                lines,
-                bytes: lines * u64::from(self.line_bytes),
-                misses,
-                miss_rate: misses as f64 / self.accesses.max(1) as f64,
-            });
-            if lines >= self.distinct_lines() {
-                return points;
-            }
-            lines *= 2;
-        }
+        let sizes = (0..).map(|power| 1 << power);
+        let last = self.distinct_lines().max(1).next_power_of_two();
+        sizes
+            .take_while(|&lines| lines <= last)
+            .map(|lines| {
+                let misses = self.misses(lines);
+                MissPoint {
+                    lines,
+                    bytes: lines * u64::from(self.line_bytes),
+                    misses,
+                    miss_rate: misses as f64 / self.accesses.max(1) as f64,
+                }
+            })
+            .collect()
     }
 }

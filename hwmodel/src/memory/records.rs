@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::count::Accesses;
 use crate::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
 named! {
@@ -10,9 +11,7 @@ named! {
     #[serde(rename_all = "snake_case")]
     #[repr(u8)]
     pub enum RecordKind {
-        /// Its vertices are in clip space.
         Clip = "in clip space",
-        /// Its vertices are in screen space, as those of all its descendants.
         Screen = "in screen space",
         /// A finest voxel, which needs no vertices.
         Finest = "finest voxel",
@@ -29,7 +28,7 @@ pub struct RecordBits {
     pub screen: u32,
     /// Of [`RecordKind::Finest`].
     pub finest: u32,
-    /// First octree level of finest voxels; `None`: unknown.
+    /// First octree level of finest voxels, if known.
     pub finest_level: Option<u32>,
 }
 
@@ -68,17 +67,8 @@ impl RecordBits {
     }
 }
 
-/// Reads and writes of a stack's records of one kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
-pub struct RecordAccesses {
-    /// Records popped.
-    pub reads: u64,
-    /// Records pushed.
-    pub writes: u64,
-}
-
-/// A probe of the kinds of records on the stack, derived from the machine's work: a record that divides has changed to
-/// screen space with all that it pushes, and pushed records lie one octree level below it.
+/// A probe of the kinds of records on the stack. A record that divides has changed to screen space with all that it
+/// pushes.
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};
@@ -96,20 +86,16 @@ pub struct RecordAccesses {
 /// dp.begin_record(1, 1);
 /// dp.read(Memory::Stack, 0);
 /// dp.write(Memory::Stack, 0); // a finest voxel
-/// assert_eq!(probe.of(RecordKind::Clip).reads, 1);
-/// assert_eq!(probe.of(RecordKind::Screen).reads, 1);
+/// assert_eq!((probe.of(RecordKind::Clip).reads, probe.of(RecordKind::Screen).reads), (1, 1));
 /// assert_eq!(probe.written_bits(), 100 + 60 + 40);
 /// # Ok::<(), hwmodel::FormatError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct RecordProbe {
     bits: RecordBits,
-    accesses: [RecordAccesses; RecordKind::ALL.len()],
-    /// Kind of the record at each address.
+    accesses: [Accesses; RecordKind::ALL.len()],
     stack: Vec<RecordKind>,
-    /// Level of the next pushed record.
     child_level: u32,
-    /// Whether the current record is in screen space.
     in_screen_space: bool,
 }
 
@@ -130,8 +116,8 @@ impl RecordProbe {
         self.bits
     }
 
-    /// Accesses to records of a kind.
-    pub fn of(&self, kind: RecordKind) -> RecordAccesses {
+    /// Pops and pushes of records of a kind.
+    pub fn of(&self, kind: RecordKind) -> Accesses {
         self.accesses[kind as usize]
     }
 
@@ -145,7 +131,7 @@ impl RecordProbe {
         self.sum(|of| of.writes)
     }
 
-    fn sum(&self, times: fn(&RecordAccesses) -> u64) -> u64 {
+    fn sum(&self, times: fn(&Accesses) -> u64) -> u64 {
         RecordKind::ALL
             .iter()
             .map(|&kind| times(&self.of(kind)) * u64::from(self.bits.of(kind)))

@@ -1,15 +1,15 @@
 //! The probe of memory traffic.
 
-use super::NumberMap;
 use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
+use crate::count::Accesses;
+use crate::hash::NumberMap;
 use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
 
-/// Bits of a pixel's accumulator where voxels are blended: nine of transmittance, 24 of each colour (fixed by the drawing
-/// rule).
+/// Bits of a blended pixel's accumulator: nine of transmittance, 24 of each colour.
 pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
 
 /// Bits of a pixel: red, green and blue.
@@ -44,37 +44,11 @@ impl Widths {
     }
 }
 
-/// A probe of the traffic to the memories. It ignores operations; pair it with a
-/// [`Counter`](crate::count::Counter) for both.
-///
-/// ```
-/// use hwmodel::memory::{MemoryProbe, Widths};
-/// use hwmodel::{Datapath, Format, Memory, Overflow};
-///
-/// let widths = Widths {
-///     stack_bits: 700,
-///     node_bits: 64,
-///     attribute_bits: 56,
-///     fill_vector_bits: 4,
-///     pixel_bits: 24,
-/// };
-/// let mut probe = MemoryProbe::new(widths).with_curve(Memory::Node, 32);
-/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
-/// dp.write(Memory::Stack, 0); // a push
-/// dp.read(Memory::Stack, 0); // and its pop
-/// dp.read(Memory::Node, 0);
-/// dp.read(Memory::Node, 3); // the same line: four nodes are 32 bytes
-///
-/// assert_eq!(probe.deepest_stack(), 1);
-/// assert_eq!(probe.read_bits(Memory::Node), 128);
-/// assert_eq!(probe.curves()[0].1.misses(1), 1);
-/// # Ok::<(), hwmodel::FormatError>(())
-/// ```
+/// A probe of the traffic to the memories. It ignores operations.
 #[derive(Debug, Clone)]
 pub struct MemoryProbe {
     widths: Widths,
-    reads: [u64; MEMORIES],
-    writes: [u64; MEMORIES],
+    accesses: [Accesses; MEMORIES],
     touched: [Touched; MEMORIES],
     curves: Vec<(Memory, MissCurve)>,
     deepest: u64,
@@ -85,15 +59,14 @@ impl MemoryProbe {
     pub fn new(widths: Widths) -> Self {
         Self {
             widths,
-            reads: [0; MEMORIES],
-            writes: [0; MEMORIES],
+            accesses: Default::default(),
             touched: Default::default(),
             curves: Vec::new(),
             deepest: 0,
         }
     }
 
-    /// Adds a memory's miss curve for lines of `line_bytes`; may be called several times.
+    /// Adds a memory's miss curve for lines of `line_bytes`.
     #[must_use]
     pub fn with_curve(mut self, memory: Memory, line_bytes: u32) -> Self {
         self.curves.push((memory, MissCurve::new(line_bytes)));
@@ -107,12 +80,12 @@ impl MemoryProbe {
 
     /// Reads of a memory.
     pub fn reads(&self, memory: Memory) -> u64 {
-        self.reads[memory as usize]
+        self.accesses[memory as usize].reads
     }
 
     /// Writes of a memory.
     pub fn writes(&self, memory: Memory) -> u64 {
-        self.writes[memory as usize]
+        self.accesses[memory as usize].writes
     }
 
     /// Bits read from a memory.
@@ -125,9 +98,9 @@ impl MemoryProbe {
         self.writes(memory) * u64::from(self.widths.of(memory))
     }
 
-    /// Number of different addresses of a memory that were read or written.
+    /// Number of different addresses that were accessed.
     pub fn distinct(&self, memory: Memory) -> u64 {
-        self.touched[memory as usize].distinct()
+        self.touched[memory as usize].distinct
     }
 
     /// Miss curves, in the order in which they were requested.
@@ -162,12 +135,12 @@ impl Probe for MemoryProbe {
     fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: StageLevel) {}
 
     fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
-        self.reads[memory as usize] += 1;
+        self.accesses[memory as usize].reads += 1;
         self.access(memory, address);
     }
 
     fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
-        self.writes[memory as usize] += 1;
+        self.accesses[memory as usize].writes += 1;
         if memory == Memory::Stack {
             self.deepest = self.deepest.max(address.saturating_add(1));
         }
@@ -177,13 +150,13 @@ impl Probe for MemoryProbe {
 
 /// A set of addresses, one bit each in pages of 4096.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Touched {
-    pages: NumberMap<Box<[u64; 64]>>,
+struct Touched {
+    pages: NumberMap<u64, Box<[u64; 64]>>,
     distinct: u64,
 }
 
 impl Touched {
-    pub(super) fn touch(&mut self, address: u64) {
+    fn touch(&mut self, address: u64) {
         let page = self
             .pages
             .entry(address >> 12)
@@ -192,9 +165,5 @@ impl Touched {
         let bit = 1 << (address % 64);
         self.distinct += u64::from(*word & bit == 0);
         *word |= bit;
-    }
-
-    pub(super) fn distinct(&self) -> u64 {
-        self.distinct
     }
 }

@@ -5,16 +5,13 @@ use std::convert::Infallible;
 use hwmodel::cycles::{Child, Hardware, ImageNode, TurnLog, Workload};
 use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 
-/// An act of a record in its turn.
 #[derive(Debug, Clone)]
 pub(crate) enum Does {
     /// So many operations of a class and width.
     Ops(Stage, OpClass, u32, u32),
     /// The same, done beside the stage in which the turn is.
     Beside(Stage, OpClass, u32, u32),
-    /// A read.
     Read(Stage, Memory, u64),
-    /// A write.
     Write(Stage, Memory, u64),
     /// The next step needs this one, after so many cycles.
     Step(Stage, u32),

@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 use crate::cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{
     Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
-    TraceLimit, Unit, simulate,
+    Unit, simulate,
 };
 use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 
-/// Numbers from a seed (SplitMix64).
 struct Dice(u64);
 
 impl Dice {
@@ -53,7 +52,6 @@ fn does(dice: &mut Dice) -> Vec<Does> {
     does
 }
 
-/// A part of a region, or all of it.
 fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
     let mut part = image_node;
     while part.level < 6 && dice.one_in(2) {
@@ -66,7 +64,6 @@ fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
     part
 }
 
-/// A tree of up to `most` records.
 fn records(seed: u64, most: u64) -> Vec<Node> {
     let mut dice = Dice(seed);
     let mut nodes = vec![Node::default(), Node::default()];
@@ -149,7 +146,6 @@ fn run(nodes: &[Node], hardware: &Hardware) -> (CycleReport, Vec<u32>) {
     (report, workload.turns)
 }
 
-/// Records in the serial machine's order: depth first, nearest first.
 fn depth_first(nodes: &[Node]) -> Vec<u32> {
     let mut stack = vec![1];
     let mut order = Vec::new();
@@ -162,12 +158,25 @@ fn depth_first(nodes: &[Node]) -> Vec<u32> {
 }
 
 fn any_independence() -> impl Strategy<Value = Independence> {
-    prop_oneof![
-        Just(Independence::None),
-        Just(Independence::Classes),
-        Just(Independence::Image),
-        Just(Independence::Both),
-    ]
+    use Independence::{Both, Classes, Image, None};
+    prop::sample::select(vec![None, Classes, Image, Both])
+}
+
+type Child = (u32, u8, ImageNode);
+
+fn is_independent(rule: Independence, earlier: &Child, later: &Child) -> bool {
+    let class = |place: u8| [0, 1, 1, 1, 2, 2, 2, 3][place as usize];
+    let same_class = class(earlier.1) == class(later.1);
+    let (a, b) = (earlier.2, later.2);
+    let level = a.level.min(b.level);
+    let ancestor = |of: ImageNode| [of.x, of.y].map(|at| at >> (of.level - level));
+    let disjoint = ancestor(a) != ancestor(b);
+    match rule {
+        Independence::None => false,
+        Independence::Classes => same_class,
+        Independence::Image => disjoint,
+        Independence::Both => same_class || disjoint,
+    }
 }
 
 proptest! {
@@ -185,17 +194,14 @@ proptest! {
         }
         prop_assert!(report.span <= report.work);
         prop_assert!(report.cycles <= report.serial, "{} > {}", report.cycles, report.serial);
-        // Every context's every cycle is accounted for.
         let sum = report.context_cycles;
         prop_assert_eq!(
             sum.working + sum.stalled + sum.order_wait + sum.no_record,
             report.cycles * hardware.all_contexts()
         );
         prop_assert_eq!(report.stages.iter().map(|stage| stage.alone).sum::<u64>(), report.work);
-        // Every record has one turn.
         turns.sort_unstable();
         prop_assert_eq!(turns, (1..nodes.len() as u32).collect::<Vec<_>>());
-        // And it comes out the same again.
         prop_assert_eq!(run(&nodes, &hardware).0, report);
     }
 
@@ -206,9 +212,8 @@ proptest! {
         let nodes = records(seed, 120);
         let hardware = hardware(hw, independence);
         let mut workload = Listed::new(&nodes, &hardware);
-        let mut recorder = Recorder::new(TraceLimit::default());
+        let mut recorder = Recorder::new(u64::MAX);
         simulate(&hardware, &mut workload, &mut recorder).unwrap();
-        // First and last cycle of each record's own turn.
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();
         for visit in recorder.visits() {
             if let Some(&item) = workload.turns.get(visit.record as usize) {
@@ -226,22 +231,10 @@ proptest! {
                 of.1 = of.1.max(ends);
             }
         }
-        let class = |place: u8| [0, 1, 1, 1, 2, 2, 2, 3][place as usize];
         for node in &nodes {
             for (i, later) in node.children.iter().enumerate() {
                 for earlier in &node.children[..i] {
-                    let same_class = class(earlier.1) == class(later.1);
-                    let shift = |a: ImageNode, b: ImageNode| a.level.saturating_sub(b.level);
-                    let (a, b) = (earlier.2, later.2);
-                    let disjoint = a.x >> shift(a, b) != b.x >> shift(b, a)
-                        || a.y >> shift(a, b) != b.y >> shift(b, a);
-                    let free = match independence {
-                        Independence::None => false,
-                        Independence::Classes => same_class,
-                        Independence::Image => disjoint,
-                        Independence::Both => same_class || disjoint,
-                    };
-                    if !free {
+                    if !is_independent(independence, earlier, later) {
                         prop_assert!(whole[&later.0].0 >= whole[&earlier.0].1);
                     }
                 }
@@ -267,10 +260,8 @@ proptest! {
     }
 }
 
-/// Makes one part of a hardware better.
 fn improve(hardware: &mut Hardware, which: usize) {
     let class = OpClass::ALL[which % 8];
-    // Wires have none to improve.
     let mut none = unit(&mut Dice(0));
     let unit = hardware.units.get_mut(&class).unwrap_or(&mut none);
     match which {
@@ -304,33 +295,32 @@ fn improve(hardware: &mut Hardware, which: usize) {
 /// of list scheduling). The test fixes how often, and by how much, on these records.
 #[test]
 fn anomalies_with_several_contexts_are_rare_and_small() {
-    let (mut slower, mut worst, mut runs) = (0, 1.0f64, 0);
+    let (mut slower, mut worst) = (0, 1.0f64);
     for seed in 0..2000 {
         let nodes = records(seed, 100);
         let mut hardware = hardware(seed, Independence::Both);
         let before = run(&nodes, &hardware).0.cycles;
         improve(&mut hardware, seed as usize % 20);
         let after = run(&nodes, &hardware).0.cycles;
-        runs += 1;
         if after > before {
             slower += 1;
             worst = worst.max(after as f64 / before as f64);
         }
     }
-    eprintln!("{slower} of {runs} improvements made a frame slower, at worst {worst:.3} times");
-    assert_eq!((slower, runs), (117, 2000));
+    assert_eq!(slower, 117);
     assert!((1.18..1.19).contains(&worst), "{worst}");
 }
 
 #[test]
-fn a_stack_that_does_not_spill_says_where_it_overflows() {
+fn a_stack_that_does_not_spill_overflows() {
     let nodes = records(3, 200);
     let mut hardware = hardware(3, Independence::None);
     hardware.stack.entries = 2;
     hardware.stack.overflow = StackOverflow::Error;
     let mut workload = Listed::new(&nodes, &hardware);
     let error = simulate(&hardware, &mut workload, &mut NoObserver).unwrap_err();
-    let text = error.to_string();
-    assert!(text.contains("the 2 entries of lane"), "{text}");
-    assert!(text.contains("set overflow = \"spill\""), "{text}");
+    assert!(
+        error.to_string().contains("the 2 entries of lane"),
+        "{error}"
+    );
 }

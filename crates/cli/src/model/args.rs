@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
+use hwmodel::cost::{CostTable, Costing, Goal, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
@@ -57,9 +57,6 @@ pub(super) struct HardwareArgs {
     /// Whether gates are chosen for small area or short delay
     #[arg(long, value_enum, default_value_t)]
     goal: Goal,
-    /// Method of finding the span of eight values, for energy
-    #[arg(long, value_enum, default_value_t)]
-    spans: MinMaxUnits,
     /// Count shifts by constants as shifters, not as wires
     #[arg(long)]
     shifters: bool,
@@ -78,7 +75,7 @@ pub(super) struct FileArgs {
     /// Heat map of records per pixel, PNG
     #[arg(long, value_name = "FILE")]
     pub(super) heat: Option<PathBuf>,
-    /// Trace of the first records: .json for Perfetto, .vcd for waveform viewers
+    /// Trace of the first records, JSON for Perfetto
     #[arg(long, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
     /// Records of the trace
@@ -186,7 +183,6 @@ impl HardwareArgs {
                 } else {
                     ShiftUnits::Wires
                 },
-                min_max: self.spans,
             },
             goal: self.goal,
         })

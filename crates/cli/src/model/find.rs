@@ -1,16 +1,17 @@
 //! Draws a frame on the machine, on the hardware and by rays.
 
 use hwmodel::Overflow;
-use hwmodel::cycles::{Hardware, Progress as Ticks, Recorder, TraceLimit};
+use hwmodel::cycles::{Hardware, Progress as Ticks, Recorder};
 
 use super::args::ModelArgs;
-use super::{trace, vectors};
+use super::vectors;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::subjects;
 use shiftvox::frame::Frame;
 use shiftvox::machine::{SimulateError, Simulated};
 use shiftvox::project::{Camera, FrameSetup};
+use shiftvox::whole;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::model::frame::{self, Counted};
@@ -104,13 +105,12 @@ fn simulate(
     let drawn = match &args.files.trace {
         None => frame::simulate(&view, setup, hardware, overflow, &mut ticks)?,
         Some(path) => {
-            let mut recorder = Recorder::new(TraceLimit {
-                records: args.files.trace_records,
-                ..TraceLimit::default()
-            });
-            let mut both = (&mut recorder, ticks);
+            let mut both = (Recorder::new(args.files.trace_records), ticks);
             let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
-            trace::write(path, &recorder, hardware, args.export.force, console)?;
+            let mut text = Vec::new();
+            both.0.write_chrome(hardware, &mut text)?;
+            whole::write(path, &text, args.export.force)?;
+            console.note(format!("{}: written", path.display()));
             drawn
         }
     };

@@ -6,7 +6,6 @@ mod brief;
 mod explore;
 mod find;
 mod output;
-mod trace;
 mod vectors;
 
 pub(super) use args::ModelArgs;

@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use super::args::ModelArgs;
 use super::find::Found;
-use super::trace;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;
@@ -23,11 +22,7 @@ use shiftvox_lab::report::{Cell, Table, grouped, plot};
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
     let others = [&files.html, &files.heat, &files.trace];
-    export::check_with(&args.export, others.into_iter().flatten())?;
-    if let Some(trace) = &files.trace {
-        trace::kind(trace)?;
-    }
-    Ok(())
+    export::check_with(&args.export, others.into_iter().flatten())
 }
 
 fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(), CliError> {

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, Stores, energy_of,
-    memory_energy_of,
+    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
@@ -129,23 +128,23 @@ pub fn frame_cost(
         bytes: bits.div_ceil(8).max(1),
     };
     let stack = u64::from(hardware.stack.entries) * u64::from(widths.stack_bits);
-    let stores = Stores {
-        stack: bytes(stack),
-        node: bytes(8 * u64::from(hardware.node_cache.bytes)),
-        attribute: bytes(8 * u64::from(hardware.attribute_cache.bytes)),
-        fill_vector: bytes(
-            fill_store_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks),
-        ),
-        pixel: Store::Dram,
+    let store = |memory| match memory {
+        Memory::Stack => bytes(stack),
+        Memory::Node => bytes(8 * u64::from(hardware.node_cache.bytes)),
+        Memory::Attribute => bytes(8 * u64::from(hardware.attribute_cache.bytes)),
+        Memory::FillVector => {
+            bytes(fill_store_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks))
+        }
+        Memory::Pixel => Store::Dram,
         // As many as samples, on the chip: neighbours come again and again.
-        accumulator: bytes(accumulator_bits(setup)),
+        Memory::Accumulator => bytes(accumulator_bits(setup)),
     };
     let counter = &counted.counter;
     let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
     accesses.remove(&Memory::Stack);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
     let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
-    let others = memory_energy_of(&accesses, widths, &stores, table)?;
+    let others = memory_energy_of(&accesses, widths, store, table)?;
     for line in others.lines {
         on_chip.push(
             &line.name,
@@ -254,7 +253,6 @@ mod tests {
         );
         let all = Costing {
             shifts: ShiftUnits::Variable,
-            ..Costing::default()
         };
         let prices = Prices {
             costing: all,

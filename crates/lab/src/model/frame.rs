@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{self, CycleReport, Hardware, NoObserver, Observer, Organisation, Recording};
+use hwmodel::cycles::{CycleReport, Hardware, Observer, Organisation, Recording};
 use hwmodel::memory::{MemoryProbe, PIXEL_BITS, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
@@ -207,10 +207,7 @@ pub fn replay(
 ) -> Result<CycleReport, ModelError> {
     let setup = &*in_words(setup, hardware.organisation);
     let hardware = with_records(graph, setup, hardware);
-    hardware.check()?;
-    let mut workload = turns.replay(&hardware);
-    let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
-    Ok(report.map_err(|error| error.map(EngineError::from))?)
+    Ok(turns.simulate::<EngineError>(&hardware)?)
 }
 
 /// The view against which errors are measured: 64 bits, the exact rule.
