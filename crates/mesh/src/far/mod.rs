@@ -1,11 +1,8 @@
-//! Far voxels with anti-aliased voxels: a mesh as a hierarchy whose inner nodes
-//! are grids of voxels that look from afar like the geometry in them, and whose
-//! leaves are triangles.
-//!
-//! [`build()`] makes far voxels of triangles by shooting rays at every node. [`store`] is the `.far` file, and [`view`]
-//! draws it. Rules, and where they go beyond the paper: `spec/far.md`. Real numbers are allowed here.
+//! Far voxels with anti-aliased voxels: a mesh as a hierarchy whose inner nodes are grids of voxels that look from afar
+//! like the geometry in them, and whose leaves are triangles. Rules, and where they go beyond the paper: `spec/far.md`.
+//! Real numbers are allowed here.
 
-pub mod blend;
+mod blend;
 pub mod build;
 pub mod record;
 pub mod store;

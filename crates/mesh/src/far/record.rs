@@ -33,13 +33,9 @@ pub enum OpacityKind {
 pub enum Opacity {
     /// Every voxel is opaque: without anti-aliasing.
     None,
-    /// One number for each side of a voxel's surface: hits over rays, of all directions.
-    ///
-    /// Rays that hit, over rays that hit or pass.
+    /// One number for each side of a voxel's surface: rays that hit, over rays that hit or pass.
     Scalar,
-    /// A number for each main direction.
-    ///
-    /// Only where they differ.
+    /// A number for each main direction, where they differ.
     #[default]
     Six,
 }
@@ -54,17 +50,15 @@ pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Complex, OpacityKind::Six),
 ];
 
-/// Bytes of a voxel in each list. The place takes 3 bytes, a flat shader 8, a complex one 30, and opacities take 0, 2
-/// or 5.
+/// Bytes of a voxel in each list: place 3, flat shader 8 or complex one 30, opacities 0, 2 or 5.
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
-/// Bytes of the opacities in a voxel of each list: one number for each side, and six of four bits.
+/// Bytes of the opacities in a voxel of each list.
 pub const OPACITY_BYTES: [usize; 6] = [0, 2, 5, 0, 2, 5];
 
 /// Area of a unit cube's outline, mean over all directions.
 const MEAN_OUTLINE: f64 = 1.5;
 
-/// Steps of an opacity of a main direction: four bits, finer than tens of rays can measure.
 const SIX_STEPS: f64 = 15.0;
 
 /// How steeply one looks upon a surface: four equal ranges of the cosine to its normal.
@@ -72,7 +66,6 @@ pub const STEEPNESSES: usize = 4;
 
 /// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
 pub fn steepness(cosine: f64) -> usize {
-    // 0 to 4.
     ((cosine * STEEPNESSES as f64) as usize).min(STEEPNESSES - 1)
 }
 
@@ -136,8 +129,8 @@ impl Shader {
 pub struct SideOpacity {
     /// Over all directions, 0 to 1.
     pub scalar: f64,
-    /// The steepness from which on the voxel is opaque, because it is part of a large object. [`STEEPNESSES`] means
-    /// none, and 0 means from everywhere. [`STEEPNESSES`]: none; 0: it is opaque from everywhere.
+    /// The steepness from which on the voxel is opaque, as part of a large object. [`STEEPNESSES`]: none; 0: from
+    /// everywhere.
     pub solid_from: u8,
 }
 
@@ -206,19 +199,16 @@ fn normal_of(bytes: &[u8]) -> DVec3 {
     packed.decode().unwrap_or(DVec3::Z)
 }
 
-/// Steps of an opacity over all directions: six bits.
 const SCALAR_STEPS: f64 = 63.0;
 
-/// Six opacities in four bits each, lowest first, rounded up or down by lot, so
-/// that the mean over many voxels is kept: thin things do not vanish. The lot
-/// is drawn from the voxel's place.
+/// Six opacities in four bits each, rounded up or down by a lot drawn from the place, so that the mean over many voxels
+/// is kept: thin things do not vanish.
 fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
     let [x, y, z] = place.map(u64::from);
     let mut bits = 0u32;
     for (k, a) in opacity.iter().enumerate() {
         let seed = (x << 24 | y << 16 | z << 8 | k as u64) + 1;
         let lot = (seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
-        // 0 to 15.
         let steps = (a.clamp(0.0, 1.0) * SIX_STEPS + lot).min(SIX_STEPS) as u32;
         bits |= steps << (4 * k);
     }
@@ -312,8 +302,7 @@ impl Voxel {
         shares.map(|(k, share)| self.opacity[k] * share).sum()
     }
 
-    /// Whether a record of a list is of a voxel that is opaque from some directions and not from
-    /// all.
+    /// Whether a record is of a voxel that is opaque from some directions only.
     pub fn is_partly_solid(list: usize, bytes: &[u8]) -> bool {
         let end = RECORD_BYTES[list] - OPACITY_BYTES[list];
         let is_solid = |&byte: &u8| usize::from(SideOpacity::of(byte).solid_from) < STEEPNESSES;
@@ -321,7 +310,6 @@ impl Voxel {
     }
 }
 
-/// The opacities at the end of a record: over all directions, and of each.
 fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> ([SideOpacity; 2], [f64; DIRECTIONS]) {
     let sides = || [0, 1].map(|side| SideOpacity::of(bytes[side]));
     match kind {
@@ -346,9 +334,6 @@ pub struct LeafTriangle {
     pub colors: [[u8; 3]; 3],
 }
 
-/// Bytes of a [`LeafTriangle`] in memory.
-pub const TRIANGLE_BYTES: usize = size_of::<LeafTriangle>();
-
 /// A node of the hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -367,8 +352,7 @@ pub struct Node {
     pub is_leaf: u8,
     /// Levels below the root.
     pub level: u32,
-    /// Numbers of the children: two, or one and zero, or zeros in a leaf. [`Node::below`] iterates over the existing
-    /// ones. [`Node::below`] has those that there are.
+    /// Numbers of the children: two, or one and zero, or zeros in a leaf ([`Node::below`]).
     pub children: [u32; 2],
     /// The first of its triangles.
     pub first_triangle: u32,
@@ -411,7 +395,6 @@ pub const SHARED_BYTES: usize = 12;
 /// Most colours of which vertices have the numbers.
 pub const MOST_COLORS: usize = 256;
 
-/// Bytes of the columns of a surface's vertices and corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::far) struct SurfaceColumns {
     /// Of a vertex's normal.
@@ -499,63 +482,5 @@ impl Node {
         let cells = DVec3::from_array(self.cells.map(f64::from));
         let origin = point(self.origin);
         (origin, origin + cells * f64::from(self.voxel))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn records_have_their_sizes_and_come_back() {
-        assert_eq!((NODE_BYTES, TRIANGLE_BYTES), (144, 52));
-        let (white, black) = (DVec3::ONE, DVec3::ZERO);
-        let [x, y, z] = DVec3::AXES;
-        let flat = Shader::Flat {
-            normal: y,
-            colors: [white, black],
-        };
-        let complex = Shader::Complex {
-            normals: [x, -x, y, -y, z, -z],
-            colors: [white, white, black, white, black, white],
-        };
-        for shader in [flat, complex] {
-            for (opacity_kind, solid, opacity) in [
-                (OpacityKind::Opaque, [0, 0], [1.0; 6]),
-                (OpacityKind::Scalar, [3, 0], [1.0; 6]),
-                (OpacityKind::Six, [4, 1], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
-            ] {
-                let sides = solid.map(|solid_from| SideOpacity {
-                    scalar: if solid_from == 0 { 1.0 } else { 1.0 / 3.0 },
-                    solid_from,
-                });
-                let voxel = Voxel {
-                    place: [1, 2, 255],
-                    shader,
-                    opacity,
-                    sides,
-                    opacity_kind,
-                };
-                let mut bytes = Vec::new();
-                voxel.write(&mut bytes);
-                assert_eq!(bytes.len(), RECORD_BYTES[voxel.list()]);
-                assert_eq!(Voxel::read(voxel.list(), &bytes), voxel);
-            }
-        }
-    }
-
-    #[test]
-    fn rounded_opacities_keep_their_mean() {
-        for opacity in [0.01, 0.3, 0.5, 0.97] {
-            let rounded = |place: u32| {
-                let place = [place % 16, place / 16 % 16, place / 256].map(|c| c as u8);
-                let [a, b, c] = six_bytes(&[opacity; DIRECTIONS], place);
-                opacity_of(OpacityKind::Six, &[0, 0, a, b, c]).1
-            };
-            let all: Vec<f64> = (0..4096).flat_map(rounded).collect();
-            assert!(all.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
-            let mean = all.iter().sum::<f64>() / all.len() as f64;
-            assert!((mean - opacity).abs() < 2e-3, "{opacity}: {mean}");
-        }
     }
 }

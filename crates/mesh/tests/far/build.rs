@@ -1,4 +1,4 @@
-//! Building: the same bytes on any threads, better pictures with more rays, smaller voxels at each level.
+//! Building: threads, ray budgets, scales, clusters.
 
 use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
@@ -6,9 +6,11 @@ use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, build};
+use shiftvox_mesh::generate::{Kind, generate};
 
 use super::city::{city, draw, far, file_of, lit, options, view, with_rays};
-use super::shared::{difference, on_any_threads, triangles};
+use super::hybrid::hybrid;
+use super::shared::{difference, on_any_threads};
 
 fn sum(data: &FarData, of: fn(&Node) -> u64) -> u64 {
     data.nodes.iter().map(of).sum()
@@ -17,6 +19,8 @@ fn sum(data: &FarData, of: fn(&Node) -> u64) -> u64 {
 #[test]
 fn files_have_the_same_bytes_on_any_number_of_threads() {
     on_any_threads(|| encode(&far()).unwrap());
+    let wheel = generate(Kind::Wheel, 3);
+    on_any_threads(|| encode(&hybrid(&wheel, 300)).unwrap());
 }
 
 #[test]
@@ -52,29 +56,6 @@ fn invalid_options_are_refused() {
     }
 }
 
-#[test]
-fn voxels_shrink_from_level_to_level() {
-    let data = far();
-    // The voxel of the next node above that has any. Parents come first.
-    let mut above = vec![f32::INFINITY; data.nodes.len()];
-    let (mut finest, mut without) = (f32::INFINITY, 0);
-    for (number, node) in data.nodes.iter().enumerate() {
-        without += usize::from(!node.is_leaf() && !node.has_grid());
-        let mut voxel = above[number];
-        if node.has_grid() {
-            // The root of the hierarchy and the nodes above it have halves; rounded layers add a little.
-            assert!(node.voxel <= 0.75 * voxel, "{number}");
-            voxel = node.voxel;
-            finest = finest.min(voxel);
-        }
-        for child in node.below() {
-            above[child] = voxel;
-        }
-    }
-    assert!(data.nodes[0].voxel > 8.0 * finest, "{finest}");
-    assert!(without > 3, "boxes halved across another axis: {without}");
-}
-
 /// From 10^-12 to 10^12.
 #[test]
 fn a_mesh_scaled_by_a_power_of_two_has_the_same_picture() {
@@ -96,23 +77,6 @@ fn a_mesh_scaled_by_a_power_of_two_has_the_same_picture() {
         let error = difference(&picture(&data, scale), &expected, f64::from);
         assert!(error < 2.0, "{scale}: {error}");
     }
-}
-
-#[test]
-fn smaller_voxels_and_more_rays_have_less_error() {
-    let error = |data: &FarData, size, voxel_px| {
-        let view = view(30.0, 0.6, 150.0, size);
-        let options = lit(&view, voxel_px);
-        let reference = triangles(&city(), &view, 256, options.light, options.background);
-        let (picture, _) = draw(&file_of(data), &view, &options);
-        difference(&picture.rgba, &reference.rgba, f64::from)
-    };
-    let data = with_rays(800_000);
-    let errors = [1.0, 2.0, 4.0].map(|px| error(&data, 256, px));
-    assert!(errors.is_sorted_by(|a, b| a < b), "{errors:?}");
-    let errors = [15_000, 60_000, 240_000, 960_000].map(|rays| error(&with_rays(rays), 192, 2.0));
-    assert!(errors.is_sorted_by(|a, b| *b < a * 1.03), "{errors:?}");
-    assert!(errors[3] < errors[0], "{errors:?}");
 }
 
 /// A cluster of the ray hierarchy has at most 2^17 triangles.

@@ -2,14 +2,13 @@
 
 use shiftvox::graph::Silent;
 use shiftvox::scene::{FileKind, detect};
-use shiftvox_mesh::Surface;
 use shiftvox_mesh::far::record::{NODE_BYTES, Node, RECORD_BYTES};
 use shiftvox_mesh::far::store::{FarError, encode};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::generate::{Kind, generate};
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::city::{city, far, file_of, options};
+use super::city::{city, far, options};
 use super::hybrid::hybrid;
 
 fn small() -> Vec<u8> {
@@ -58,28 +57,6 @@ fn files_hold_the_data_that_was_built() {
             assert!(counts.eq(node.counts));
         }
     }
-}
-
-#[test]
-fn leaves_have_all_triangles_in_single_precision() {
-    let data = far();
-    let file = file_of(&data);
-    let bits = |corners: [[f32; 3]; 3]| corners.map(|corner| corner.map(f32::to_bits));
-    let mut stored = Vec::new();
-    for number in 0..file.nodes().len() {
-        let node = file.data(number).unwrap();
-        stored.extend(node.triangles().iter().map(|t| bits(t.corners)));
-    }
-    assert_eq!(stored.len() as u64, data.triangles());
-    let mesh = city();
-    let single = |number| {
-        let corners = Surface::corners(&mesh, number);
-        bits(corners.map(|p| (p - file.settings.centre).as_vec3().to_array()))
-    };
-    let mut expected: Vec<_> = (0..mesh.len()).map(single).collect();
-    stored.sort_unstable();
-    expected.sort_unstable();
-    assert_eq!(stored, expected);
 }
 
 #[test]
@@ -136,12 +113,6 @@ fn fields_are_checked_behind_their_checksums() {
     for place in header.chain(128 + 43..128 + 64) {
         let damaged = with_checksums(flipped(&bytes, place, 0x40));
         assert!(is_refused(&damaged), "byte {place}");
-    }
-    // No damage causes a panic.
-    for place in 8..128 + NODE_BYTES * 8 {
-        for flip in [0x01, 0x80, 0xff] {
-            let _ = is_refused(&with_checksums(flipped(&bytes, place, flip)));
-        }
     }
 }
 

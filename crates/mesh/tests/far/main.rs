@@ -4,6 +4,7 @@
 mod build;
 mod city;
 mod file;
+mod golden;
 mod hybrid;
 mod samples;
 #[path = "../shared/mod.rs"]

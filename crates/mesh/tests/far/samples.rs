@@ -4,10 +4,9 @@ use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewError, ViewOptions};
 use shiftvox_mesh::raster::RasterCamera;
 use shiftvox_mesh::srgb_to_linear;
 
-use super::city::{city, draw, far, file_of, lit, view};
-use super::shared::{difference, triangles};
+use super::city::{draw, far, file_of, lit, view};
 
-pub(super) fn linear(byte: u8) -> f64 {
+fn linear(byte: u8) -> f64 {
     f64::from(srgb_to_linear(byte))
 }
 
@@ -61,30 +60,6 @@ fn a_pixel_is_the_mean_of_its_samples() {
             assert_eq!(picture.depth[number], samples.depth[middle]);
             assert_eq!(picture.node[number], samples.node[middle]);
         }
-    }
-}
-
-#[test]
-fn more_samples_come_nearer_to_the_triangles() {
-    let file = file_of(&far());
-    // Leaves from near, then leaves and voxels, then voxels alone.
-    for (distance, ratio) in [(40.0, 0.7), (110.0, 0.8), (300.0, 0.9)] {
-        let view = view(30.0, 0.6, distance, 160);
-        let options = lit(&view, 1.0);
-        let reference = triangles(&city(), &view, 256, options.light, options.background);
-        let errors = [1, 2, 4].map(|samples_across| {
-            let options = ViewOptions {
-                samples_across,
-                ..options
-            };
-            difference(
-                &draw(&file, &view, &options).0.rgba,
-                &reference.rgba,
-                linear,
-            )
-        });
-        let is_better = errors.is_sorted_by(|a, b| a > b) && errors[2] < ratio * errors[0];
-        assert!(is_better, "{distance}: {errors:?}");
     }
 }
 

@@ -111,16 +111,3 @@ fn thin_tubes_keep_their_area() {
         }
     }
 }
-
-#[test]
-fn small_pictures_are_drawn_as_voxels_however_near() {
-    let mesh = shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [64, 64], 0));
-    let file = far(&mesh);
-    let counts = |size| {
-        let view = around(&mesh, DVec3::new(0.3, 0.4, 1.0), 1.0, size);
-        draw(&file, &view, &ViewOptions::default()).1
-    };
-    let small = counts(40);
-    assert_eq!((small.leaves, small.voxel_nodes), (0, 1), "{small:?}");
-    assert!(counts(2000).leaves > 0);
-}

@@ -6,8 +6,8 @@ use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 
-use super::city::{city, draw, far, far_of, file_of, lit, view, with_rays};
-use super::shared::{area, on_any_threads, triangles};
+use super::city::{city, draw, far, far_of, file_of, lit, view};
+use super::shared::{on_any_threads, triangles};
 
 #[test]
 fn culling_and_late_answers_never_change_the_picture() {
@@ -153,22 +153,4 @@ fn tiny_voxels_are_replaced_by_the_triangles() {
     let pairs = picture.rgba.iter().zip(&expected.rgba);
     assert!(pairs.filter(|(a, b)| a != b).count() < 40);
     assert_eq!(picture.depth, expected.depth);
-}
-
-#[test]
-fn opacities_make_thin_parts_thin() {
-    let file = file_of(&with_rays(500_000));
-    let view = view(30.0, 0.5, 200.0, 200);
-    let reference = triangles(&city(), &view, 256, None, None);
-    let [none, six] = [Opacity::None, Opacity::Six].map(|opacity| {
-        let options = ViewOptions {
-            voxel_px: 3.0,
-            opacity,
-            ..ViewOptions::default()
-        };
-        let (picture, _) = draw(&file, &view, &options);
-        area(&picture.coverage) / area(&reference.coverage) - 1.0
-    });
-    assert!(none > 0.1, "opaque voxels are bloated: {none}");
-    assert!(six.abs() < none / 2.0, "{six} {none}");
 }

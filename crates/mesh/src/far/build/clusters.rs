@@ -10,24 +10,19 @@ use rayon::prelude::*;
 
 use super::rays::{Around, Cluster, Meeting, Query, is_any_entered};
 
-/// Most triangles of a cluster. With more triangles rays test fewer clusters, and with fewer triangles a cluster takes
-/// less memory.
 pub(super) const CLUSTER: usize = 1 << 17;
-/// Bytes a triangle that a cluster takes while it is made, or less.
+/// Bytes per triangle of a cluster while it is made, or less.
 pub(super) const MAKING: u64 = 320;
-/// Bytes a triangle that a finished cluster takes, or less.
+/// Bytes per triangle of a finished cluster, or less.
 pub(super) const MADE: u64 = 80;
 
-/// All triangles, ready for rays.
 pub(super) struct Occluders {
     places: Vec<Place>,
     held: Held,
 }
 
-/// The place of a cluster whose triangles may be in the file.
 struct Place {
     around: Around,
-    /// The first of its triangles.
     first: u32,
 }
 
@@ -36,29 +31,23 @@ enum Held {
     Some(Mutex<Cache>),
 }
 
-/// Clusters in a file, those that were used last also in memory.
 struct Cache {
     file: File,
-    /// Where the sections of each begin in the file, and where the last ends.
+    /// Where the sections of each begin and end in the file.
     sections: Vec<[u64; 4]>,
-    /// Bytes that may be in memory.
     most: u64,
     bytes: u64,
     here: VecDeque<(usize, Arc<Cluster>)>,
 }
 
-/// Of what a cluster is made: its triangles, in the order of the hierarchy, and the box around them.
 pub(super) struct Part {
     pub(super) triangles: Range<usize>,
     pub(super) around: Around,
 }
 
 impl Occluders {
-    /// Makes clusters of parts. With `within`, a file and a number of bytes, no more than these are
-    /// in memory, and one for each thread that uses it.
-    ///
-    /// # Errors
-    /// Errors of reading the file.
+    /// With `within`, a file and a number of bytes, at most these bytes are in memory, and a cluster per thread that
+    /// uses it.
     pub(super) fn new<C, I>(
         parts: &[Part],
         corners: C,
@@ -70,7 +59,6 @@ impl Occluders {
     {
         let place = |part: &Part| Place {
             around: part.around,
-            // Fewer than 2^32 triangles.
             first: part.triangles.start as u32,
         };
         let make = |part: &Part| Cluster::new(corners(part.triangles.clone()));
@@ -84,7 +72,6 @@ impl Occluders {
                     bytes: 0,
                     here: VecDeque::new(),
                 };
-                // One after the other: many at a time would be all in memory.
                 for part in parts {
                     cache.put(make(part))?;
                 }
@@ -97,10 +84,7 @@ impl Occluders {
         })
     }
 
-    /// The triangles that stop rays. They begin within a box, and those of a batch are near to each other.
-    ///
-    /// # Errors
-    /// Errors of reading the file.
+    /// The triangles that stop rays, which begin within a box.
     pub(super) fn nearest(
         &self,
         within: &Around,
@@ -129,7 +113,6 @@ impl Occluders {
         match &self.held {
             Held::All(all) => Ok(all[number].clone()),
             Held::Some(cache) => {
-                // Counts stay sound whoever panicked.
                 let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
                 cache.get(number)
             }
@@ -152,7 +135,6 @@ impl Cache {
         Ok(())
     }
 
-    /// Lets go of the clusters that were not used for longest until so many bytes fit.
     fn make_room(&mut self, bytes: u64) {
         while self.bytes + bytes > self.most
             && let Some((_, old)) = self.here.pop_front()
@@ -188,19 +170,19 @@ impl Cache {
 mod tests {
     use glam::DVec3;
 
-    use super::super::chance::Chance;
+    use shiftvox::split_mix::SplitMix;
+
     use super::*;
 
     #[test]
     fn meetings_depend_neither_on_clusters_nor_on_memory() {
-        let mut chance = Chance::new(5);
+        let mut chance = SplitMix::new(5);
         let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit());
         let mut triangles: Vec<[DVec3; 3]> = Vec::new();
         for _ in 0..2000 {
             let corner = random();
             triangles.push([corner, corner + random() * 0.1, corner + random() * 0.1]);
         }
-        // Every other triangle twice: equally near.
         triangles.extend_from_within(..1000);
         let mut query = || {
             let (from, to) = (random() * 4.0 - DVec3::splat(1.5), random());
@@ -228,7 +210,6 @@ mod tests {
         let one = met(3000, None);
         let hits: Vec<_> = one.iter().filter(|m| **m != Meeting::NONE).collect();
         assert!(hits.len() > 2000);
-        // The first of equal ones.
         assert!(hits.iter().all(|meeting| meeting.triangle < 2000));
         for (size, within) in [
             (500, None),

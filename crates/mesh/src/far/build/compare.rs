@@ -1,7 +1,5 @@
-//! The choice among several representations of a node's triangles by error and bytes.
-//!
-//! Each is drawn alone, from four sides, with the largest pixels for which it is used, and compared
-//! with the triangles: light, and how much of each pixel is covered.
+//! The choice among several representations of a node's triangles by error and bytes: each is drawn from four sides
+//! with the largest pixels for which it is used, and compared with the triangles in light and coverage.
 
 use glam::{DVec3, DVec4};
 use xxhash_rust::xxh3::xxh3_64;
@@ -17,33 +15,26 @@ use crate::srgb_to_linear;
 
 /// The exponent of the bytes: a candidate with 32 times the bytes must have half of the error.
 const BYTES_WEIGH: f64 = 0.2;
-/// Light that comes from everywhere, as the engines have it: 0 to 256.
 const AMBIENT: u32 = 64;
-/// How far off the cameras are, in extents of the node.
 const DISTANCE: f64 = 4.0;
-/// Directions from the node to cameras.
 const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(1.0, 0.4, 0.3),
     DVec3::new(-0.5, 0.6, 1.0),
     DVec3::new(-0.8, 0.2, -0.6),
     DVec3::new(0.3, 1.0, -0.7),
 ];
-/// Side of a pixel, in voxels of the node: from there on nodes of the next coarser voxels are drawn.
+/// In voxels of the node: from there on coarser nodes are drawn.
 const PIXEL: f64 = 2.0;
-/// Samples along each axis of a pixel: of the triangles, which are right, and of a candidate. Fewer
-/// of these would hide small errors behind their own; as many would not show that triangles which
-/// are smaller than pixels need samples, and voxels do not.
+/// Samples along each axis of a pixel: of the triangles and of a candidate. With fewer, small errors vanish; with as
+/// many, the samples that small triangles need and voxels do not would not count.
 const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
-/// One way to hold a node's triangles.
 pub(super) struct Candidate {
-    /// The node with what belongs to its voxels.
     pub(super) node: Node,
     pub(super) lists: [Vec<u8>; 6],
     pub(super) triangles: Vec<LeafTriangle>,
 }
 
-/// Cameras and their reference pictures of a node's triangles.
 pub(super) struct Comparison<'o> {
     options: &'o BuildOptions,
     /// Coordinates are relative to it, so that single precision resolves the node's parts.
@@ -53,7 +44,6 @@ pub(super) struct Comparison<'o> {
 }
 
 impl<'o> Comparison<'o> {
-    /// Of an inner node with a grid, and all its triangles.
     pub(super) fn of(
         node: &Node,
         triangles: &[LeafTriangle],
@@ -86,7 +76,6 @@ impl<'o> Comparison<'o> {
         };
         let (truth, _) = of.file(&empty)?;
         let pixel = PIXEL * f64::from(node.voxel);
-        // At most 255 pixels by the root of three.
         let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
         for direction in DIRECTIONS {
             let towards = direction.normalize_or(DVec3::X);
@@ -114,7 +103,6 @@ impl<'o> Comparison<'o> {
         Ok(of)
     }
 
-    /// The candidate with the least error times a power of its bytes.
     pub(super) fn best(&self, mut candidates: Vec<Candidate>) -> Result<Candidate, BuildError> {
         let mut costs = Vec::new();
         for candidate in &candidates {
@@ -126,7 +114,6 @@ impl<'o> Comparison<'o> {
         Ok(candidates.swap_remove(least.unwrap_or(0)))
     }
 
-    /// Mean over the cameras.
     fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
         let mut sum = 0.0;
         for (view, light, right) in &self.views {
@@ -138,7 +125,6 @@ impl<'o> Comparison<'o> {
         Ok(sum / self.views.len() as f64)
     }
 
-    /// A file whose root is the candidate and whose leaf has all triangles, and the bytes of the candidate.
     fn file(&self, candidate: &Candidate) -> Result<(FarFile, u64), BuildError> {
         let (mut leaf, of_leaf) = (self.leaf.0, &self.leaf.1);
         let mut root = Node {
@@ -171,7 +157,6 @@ fn failed(error: impl std::fmt::Display) -> BuildError {
     BuildError::Surface(error.to_string())
 }
 
-/// A node about a point instead of the file's centre, without its surface.
 fn around(node: &Node, middle: DVec3) -> Node {
     let moved = |p: [f32; 3]| {
         (DVec3::from_array(p.map(f64::from)) - middle)
@@ -204,7 +189,6 @@ fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
 const NO_VOXEL: f64 = f64::MIN_POSITIVE;
 const ANY_VOXEL: f64 = 1e150;
 
-/// Light and cover of each pixel.
 fn draw(
     file: &FarFile,
     view: &RasterCamera,
@@ -225,14 +209,12 @@ fn draw(
         .map_err(failed)
 }
 
-/// Mean over the pixels.
 fn square_error(seen: &[DVec4], right: &[DVec4]) -> f64 {
     let both = seen.iter().zip(right);
     let sum: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
     sum / right.len().max(1) as f64
 }
 
-/// Light before black, and how much of each pixel is covered, which light or dark grounds show.
 fn light_and_cover(picture: &FarPicture) -> Vec<DVec4> {
     let pixels = picture.rgba.iter().zip(&picture.coverage);
     let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {

@@ -1,12 +1,9 @@
 //! Hits and passes: how much of a voxel is there, seen from which direction.
 //!
 //! A probe *hits* the voxel where it ends at one of the node's own triangles, and *passes* every kept voxel that it
-//! leaves before. A line through many voxels that are aimed at is chosen more often than one through few. Its weight is
-//! one over the number of probes aimed at the voxels on it, so that lines through a voxel are spread evenly.
-//!
-//! A voxel may hold only a corner of a large object that continues behind it. If all probes onto its surface are
-//! stopped in the voxel or right behind it, the voxel is opaque from there. So probes are counted by how steeply they
-//! look upon the surface.
+//! leaves before. Its weight is one over the number of probes aimed at the voxels on its line, so that lines through a
+//! voxel are spread evenly. A voxel is opaque from where all probes onto its surface, at a steepness, are stopped in it
+//! or right behind: it is part of a large object.
 
 use std::ops::ControlFlow;
 
@@ -17,39 +14,29 @@ use super::shot::Shot;
 use crate::far::blend::{DIRECTIONS, Fit, Shares, by_cosines};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
-/// A probe is stopped right behind a voxel if the hit may be on the same surface. That is within two voxels over the
-/// cosine, plus one.
+/// Right behind a voxel: within two voxels over the cosine, plus one.
 const RIGHT_BEHIND: [f64; 2] = [2.0, 1.0];
-/// Cosines below this count as this: a grazing probe is followed no farther.
 const LEAST_COSINE: f64 = 0.25;
-/// How far behind a voxel it matters at most what a probe meets, voxels.
 pub(super) const FOLLOWED: f64 = RIGHT_BEHIND[0] / LEAST_COSINE + RIGHT_BEHIND[1];
 
-/// The surface at a ray's end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfaceSample {
-    /// Unit vector to the eye.
     pub(super) towards_eye: DVec3,
-    /// Unit normal on the eye's side.
     pub(super) normal: DVec3,
-    /// Linear light.
     pub(super) color: DVec3,
 }
 
-/// A voxel that is kept, when all its rays were shot.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
     /// Its opacity where no ray says anything of it: from its triangles.
     pub(super) unseen_opacity: f64,
-    /// Probes that crossed it, whatever they met.
     pub(super) crossings: u32,
-    /// The counts of the probes, by side of the surface and by steepness.
+    /// By side of the surface and by steepness.
     pub(super) found: [[Found; STEEPNESSES]; 2],
 }
 
 impl Seen {
-    /// Becomes another voxel, of which nothing was found yet.
     pub(super) fn begin(&mut self, place: [u8; 3], unseen_opacity: f64) {
         self.place = place;
         self.unseen_opacity = unseen_opacity;
@@ -57,28 +44,23 @@ impl Seen {
         self.found = Default::default();
     }
 
-    /// The sum of all probes below a steepness, from one side.
     pub(super) fn counted_below(&self, side: usize, steepness: usize) -> Counted {
         let found = self.found[side][..steepness].iter();
         found.fold(Counted::default(), |all, found| all.with(&found.counted))
     }
 }
 
-/// The counts of a voxel's probes of one steepness.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) counted: Counted,
-    /// How many there were, and weights of those that were stopped in it or right behind it, and
-    /// of the others.
+    /// Their number, and weights of those stopped in it or right behind it, and of the others.
     pub(super) probes: u32,
     pub(super) stopped: f64,
     pub(super) passed: f64,
 }
 
-/// Hits and passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Counted {
-    /// Weight of hits and passes, of their squares, and of the hits.
     pub(super) weight: f64,
     square_weight: f64,
     hits: f64,
@@ -113,7 +95,6 @@ impl Counted {
         self
     }
 
-    /// Hits over hits and passes of all directions; 1 where there were none.
     pub(super) fn scalar(&self) -> f64 {
         if self.weight > 0.0 {
             (self.hits / self.weight).min(1.0)
@@ -122,8 +103,7 @@ impl Counted {
         }
     }
 
-    /// Opacity seen from each main direction: what makes the blend fit hits and
-    /// passes best, drawn to the scalar with the weight of a ray.
+    /// Drawn to the scalar with the weight of a ray.
     pub(super) fn six(&self) -> [f64; DIRECTIONS] {
         let pull = self.weight / self.independent().max(1.0);
         if self.weight <= 0.0 {
@@ -134,7 +114,6 @@ impl Counted {
         six.map(|v| v[0])
     }
 
-    /// How many probes of equal weight carry the same information.
     pub(super) fn independent(&self) -> f64 {
         if self.square_weight > 0.0 {
             self.weight * self.weight / self.square_weight
@@ -143,8 +122,7 @@ impl Counted {
         }
     }
 
-    /// Mean square, over the directions of hits and passes, of how far the
-    /// blend of six opacities is from a number.
+    /// Mean square, over the directions, of how far the blend of six opacities is from a number.
     pub(super) fn square_from(&self, six: &[f64; DIRECTIONS], number: f64) -> f64 {
         if self.weight <= 0.0 {
             return 0.0;
@@ -153,22 +131,17 @@ impl Counted {
     }
 }
 
-/// Where a probe crossed a kept voxel: the probe's number, and how far behind the voxel it was
-/// stopped, in one word.
+/// A probe's number, and how far behind a voxel it was stopped, in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Crossing(u32);
 
-/// Bits of a probe's number: nodes have no more rays.
 const PROBE_BITS: u32 = 22;
-/// Parts of a voxel in which it is counted how far behind a voxel a probe is stopped.
 const PARTS: f64 = 64.0;
 
 impl Crossing {
-    /// `past` is the distance behind the voxel at which the probe is stopped. `None` means that it is stopped in the
-    /// voxel.
+    /// `past`: the distance behind the voxel at which the probe is stopped; `None` in the voxel.
     fn new(probe: usize, past: Option<f64>) -> Self {
         let most = (1u32 << (32 - PROBE_BITS)) - 1;
-        // Farther than it matters is as far as can be counted.
         let parts = past.map_or(0, |past| {
             (1.0 + past.max(0.0) * PARTS).min(f64::from(most)) as u32
         });
@@ -185,27 +158,21 @@ impl Crossing {
     }
 }
 
-/// The state of the voxels of a grid.
 pub(super) struct Marks<'m> {
-    /// Of all voxels: numbers of those that are touched.
     pub(super) slot: &'m [u32],
-    /// Of those that are touched: places among those that are kept.
     pub(super) kept: &'m [u32],
     /// Of all voxels: 0 of one that is not kept, else one more than the number of probes that were
     /// aimed at it.
     pub(super) aimed: &'m [u8],
 }
 
-/// The probes of a node, by the voxels that they cross.
 pub(super) struct Probes<'p> {
     shots: &'p [Shot],
-    /// Of each: one over the number of probes that were aimed at what it crosses.
     weights: Vec<f32>,
     crossings: Groups<Crossing>,
 }
 
 impl<'p> Probes<'p> {
-    /// Follows probes through a grid of which so many voxels are kept.
     pub(super) fn new(grid: &Grid, shots: &'p [Shot], marks: &Marks<'_>, kept: usize) -> Self {
         let mut weights = Vec::with_capacity(shots.len());
         let mut all = Vec::new();
@@ -221,7 +188,6 @@ impl<'p> Probes<'p> {
                     aims += u32::from(aimed - 1);
                     let touched = marks.slot[number];
                     let is_end = touched == shot.touched;
-                    // Otherwise it ends at a triangle of another node.
                     if !is_over && (is_end || leave <= end) {
                         let past = (!is_end).then_some(end - leave);
                         all.push((marks.kept[touched as usize], Crossing::new(probe, past)));
@@ -239,7 +205,6 @@ impl<'p> Probes<'p> {
         }
     }
 
-    /// Counts the probes that crossed a voxel of a place.
     pub(super) fn count(&self, place: usize, shader: &Shader, seen: &mut Seen) {
         for crossing in self.crossings.of(place) {
             let probe = crossing.probe();
@@ -264,21 +229,17 @@ impl<'p> Probes<'p> {
     }
 }
 
-/// Items by the number of a group that each belongs to, in their order.
 pub(super) struct Groups<T> {
     items: Vec<T>,
-    /// Where each group ends; the next begins there.
     ends: Vec<u32>,
 }
 
 impl<T: Copy> Groups<T> {
-    /// Sorts items to so many groups; fewer than 2^32 items.
     pub(super) fn new(groups: usize, all: &[(u32, T)]) -> Self {
         let mut ends = vec![0u32; groups];
         for (group, _) in all {
             ends[*group as usize] += 1;
         }
-        // Where each begins, first.
         let mut sum = 0;
         for end in &mut ends {
             sum += std::mem::replace(end, sum);
@@ -298,7 +259,6 @@ impl<T: Copy> Groups<T> {
     }
 }
 
-/// The direction in which normals agree best, whichever side they were seen from.
 pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
     let mut columns = [DVec3::ZERO; 3];
     let mut sum = DVec3::ZERO;

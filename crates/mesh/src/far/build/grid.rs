@@ -4,21 +4,16 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-/// Cubes from `origin`, `cells` along each axis (1 to 255).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid {
-    /// Lowest corner, world units.
-    pub origin: DVec3,
-    /// Side of a voxel, world units, above 0.
-    pub voxel: f64,
-    /// Voxels along each axis.
-    pub cells: [u8; 3],
+pub(super) struct Grid {
+    pub(super) origin: DVec3,
+    pub(super) voxel: f64,
+    pub(super) cells: [u8; 3],
 }
 
 impl Grid {
-    /// The grid of a box. Its longest side spans `side` voxels, from the middle of the first to the middle of the last,
-    /// so that the outermost planes lie within a layer. `side` is 2 to 255.
-    pub fn around(low: DVec3, high: DVec3, side: u32) -> Self {
+    /// The longest side of a box spans `side` (2 to 255) voxels, from the middle of the first to that of the last.
+    pub(super) fn around(low: DVec3, high: DVec3, side: u32) -> Self {
         let extent = high - low;
         let steps = f64::from(side.clamp(2, 255) - 1);
         // As stored: so that the viewer's voxels are those that were sampled.
@@ -29,10 +24,9 @@ impl Grid {
             f64::from(f32::MIN_POSITIVE)
         };
         let origin = (low - DVec3::splat(voxel / 2.0)).as_vec3().as_dvec3();
-        let cells = (extent / voxel).to_array().map(|steps| {
-            // 0 to 254 steps: 1 to 255 layers.
-            (steps + 0.5) as u32 as f64 + 1.0
-        });
+        let cells = (extent / voxel)
+            .to_array()
+            .map(|steps| (steps + 0.5) as u32 as f64 + 1.0);
         Self {
             origin,
             voxel,
@@ -44,21 +38,17 @@ impl Grid {
         self.cells.iter().map(|&c| usize::from(c)).product()
     }
 
-    /// Number of a voxel, row by row.
     pub(super) fn number(&self, place: [u8; 3]) -> usize {
         let [x, y, z] = place.map(usize::from);
         let [nx, ny, _] = self.cells.map(usize::from);
         (z * ny + y) * nx + x
     }
 
-    /// Place of the voxel of a number.
     pub(super) fn place(&self, number: usize) -> [u8; 3] {
         let [nx, ny, _] = self.cells.map(usize::from);
-        // Below 255 each, as the grid is.
         [number % nx, number / nx % ny, number / nx / ny].map(|c| c as u8)
     }
 
-    /// Numbers of the voxels at a voxel's faces, edges and corners, 26 of them within the grid.
     pub(super) fn neighbours(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
         let place = self.place(number);
         let grid = *self;
@@ -66,33 +56,26 @@ impl Grid {
             let steps = [step % 3, step / 3 % 3, step / 9];
             let mut at = place;
             for k in 0..3 {
-                // One back, here, one on.
                 let next = (u16::from(place[k]) + steps[k]).checked_sub(1)?;
                 if next >= u16::from(grid.cells[k]) {
                     return None;
                 }
-                // Below the number of cells.
                 at[k] = next as u8;
             }
             (at != place).then(|| grid.number(at))
         })
     }
 
-    /// In voxels from the origin.
     pub(super) fn local(&self, point: DVec3) -> DVec3 {
         (point - self.origin) / self.voxel
     }
 
-    /// In world units, from voxels.
     pub(super) fn world(&self, local: DVec3) -> DVec3 {
         self.origin + local * self.voxel
     }
 
     /// Calls back with each voxel along a line, in order, and the distance (in voxels, from `from`) at which the line
-    /// leaves it. The callback can stop.
-    ///
-    /// Distances are whole numbers of 2^-32 voxels here, so that steps are exact and a step needs
-    /// no branch: this loop is a quarter of a build.
+    /// leaves it. Distances are whole numbers of 2^-32 voxels, so that steps are exact and need no branch.
     #[inline]
     pub(super) fn along(
         &self,
@@ -120,7 +103,6 @@ impl Grid {
         let start = from + direction * enter;
         let [nx, ny, _] = self.cells.map(i64::from);
         let strides = [1, nx, nx * ny];
-        // Planes that are not reached are far away, and two of them are no overflow.
         let units = |distance: f64| (distance * UNITS).clamp(-FAR_AWAY, FAR_AWAY) as i64;
         let (mut number, mut end) = (0, i64::MAX);
         let (mut step, mut next, mut size) = ([0; 3], [i64::MAX; 3], [0; 3]);
@@ -140,7 +122,6 @@ impl Grid {
         let ([mut x, mut y, mut z], [of_x, of_y, of_z]) = (next, size);
         loop {
             let nearest = x.min(y).min(z);
-            // Not negative: it is within the cells.
             if visit(number as usize, nearest as f64 / UNITS).is_break() || nearest >= end {
                 return;
             }
@@ -155,69 +136,5 @@ impl Grid {
     }
 }
 
-/// Parts of a voxel in which distances along a line are counted.
 const UNITS: f64 = (1u64 << 32) as f64;
-/// Farther than any plane of a grid that a line crosses within it, in these parts.
 const FAR_AWAY: f64 = (1u64 << 60) as f64;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_outermost_planes_lie_within_layers() {
-        let grid = Grid::around(DVec3::ZERO, DVec3::new(7.0, 3.0, 0.0), 8);
-        assert_eq!((grid.cells, grid.voxel), ([8, 4, 1], 1.0));
-        assert_eq!(grid.origin, DVec3::splat(-0.5));
-    }
-
-    /// Unit voxels from the origin.
-    fn unit(cells: [u8; 3]) -> Grid {
-        Grid {
-            origin: DVec3::ZERO,
-            voxel: 1.0,
-            cells,
-        }
-    }
-
-    #[test]
-    fn neighbours_are_all_within_one_voxel() {
-        let grid = unit([255, 2, 3]);
-        for number in 0..grid.len() {
-            let here = grid.place(number).map(i32::from);
-            assert_eq!(grid.number(grid.place(number)), number);
-            let is_near = |&other: &usize| {
-                let there = grid.place(other).map(i32::from);
-                other != number && (0..3).all(|k| (here[k] - there[k]).abs() <= 1)
-            };
-            let expected = (0..grid.len()).filter(is_near);
-            assert!(grid.neighbours(number).eq(expected), "{here:?}");
-        }
-    }
-
-    #[test]
-    fn a_ray_crosses_voxels_in_order() {
-        let direction = DVec3::new(1.0, 0.5, 0.0).normalize();
-        let walk = |from: DVec3| {
-            let (grid, mut walk) = (unit([4; 3]), Vec::new());
-            grid.along(from, direction, |number, leave| {
-                let [x, y, z] = grid.place(number);
-                let left = (from + direction * leave).to_array();
-                walk.push(([x, y, z], left.map(|c| (c * 1e6).round() / 1e6)));
-                ControlFlow::Continue(())
-            });
-            walk
-        };
-        // Each voxel, and the point where the ray leaves it.
-        let expected = [
-            ([0, 0, 0], [1.0, 0.75, 0.5]),
-            ([1, 0, 0], [1.5, 1.0, 0.5]),
-            ([1, 1, 0], [2.0, 1.25, 0.5]),
-            ([2, 1, 0], [3.0, 1.75, 0.5]),
-            ([3, 1, 0], [3.5, 2.0, 0.5]),
-            ([3, 2, 0], [4.0, 2.25, 0.5]),
-        ];
-        assert_eq!(walk(DVec3::new(-2.0, -0.75, 0.5)), expected);
-        assert_eq!(walk(DVec3::splat(9.0)), []);
-    }
-}

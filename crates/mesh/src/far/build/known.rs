@@ -6,16 +6,15 @@ use super::clusters::{Occluders, Part};
 use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Around;
-use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled, Triangles};
-use super::shader_fit::{self, ShaderFit};
+use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
+use super::shader_fit::ShaderFit;
 use super::shot::{Own, Target};
 use super::{MOST_RAYS, Ordered};
 use crate::far::blend::by_cosines;
-use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
-use crate::shared::{cuboid, quad, shape};
-use crate::{Material, Mesh, Surface};
+use crate::far::record::STEEPNESSES;
+use crate::shared::{cuboid, shape};
+use crate::{Mesh, Surface};
 
-/// A mesh of boxes.
 fn boxes(boxes: &[([f32; 3], [f32; 3])]) -> Mesh {
     shape(|builder| {
         for &(low, high) in boxes {
@@ -24,7 +23,6 @@ fn boxes(boxes: &[([f32; 3], [f32; 3])]) -> Mesh {
     })
 }
 
-/// The voxels and counts of a node with unit voxels, whose own triangles are the mesh's first.
 fn sampled(
     mesh: &Mesh,
     own: usize,
@@ -62,35 +60,14 @@ fn sampled(
     (seen, found.unwrap())
 }
 
-/// The voxels and counts of a node that is the whole mesh.
 fn all(mesh: &Mesh, cells: [u8; 3], rays: u32) -> (Vec<(Seen, ShaderFit)>, Sampled) {
     sampled(mesh, Surface::len(mesh), cells, rays)
 }
 
-/// The six opacities of a voxel.
 fn six(seen: &[(Seen, ShaderFit)], place: [u8; 3]) -> [f64; 6] {
     let (seen, _) = seen.iter().find(|(seen, _)| seen.place == place).unwrap();
     let [front, back] = [0, 1].map(|side| seen.counted_below(side, STEEPNESSES));
     front.with(&back).six()
-}
-
-#[test]
-fn an_opaque_slab_is_opaque_from_six_directions() {
-    // Almost two layers thick, so that its faces are within them.
-    let slab = boxes(&[([0.3, 0.3, 2.001], [7.7, 7.7, 3.999])]);
-    let (seen, _) = all(&slab, [8, 8, 6], 100_000);
-    // The slab fills the voxels of the rim in part.
-    let is_inner = |seen: &Seen| seen.place[..2].iter().all(|c| (1..7).contains(c));
-    let inner: Vec<_> = seen.iter().filter(|(seen, _)| is_inner(seen)).collect();
-    assert_eq!(inner.len(), 2 * 6 * 6);
-    for (seen, shown) in inner {
-        let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-        for eye in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
-            let opacity = voxel.opacity_from(eye, Opacity::Six);
-            let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
-            assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
-        }
-    }
 }
 
 #[test]
@@ -106,26 +83,6 @@ fn a_voxel_with_a_solid_lower_half_has_opacities_that_blend_by_cosines() {
         let blended: f64 = shares.map(|(k, share)| opacity[k] * share).sum();
         let error = blended - (0.5 * cos + sin) / (cos + sin);
         assert!(error.abs() < 0.02, "{degrees}: {error}");
-    }
-}
-
-#[test]
-fn wires_have_the_opacity_of_their_width() {
-    // Square wires along z in every other column: each is alone in its voxels along y.
-    let widths = [0.1f32, 0.2, 0.3, 0.4, 0.5];
-    let wire = |i: usize| {
-        let (x, half) = (2.0 * i as f32 + 0.5, widths[i] / 2.0);
-        ([x - half, 0.5 - half, 0.0], [x + half, 0.5 + half, 8.0])
-    };
-    let wires: Vec<_> = (0..5).map(wire).collect();
-    let (seen, _) = all(&boxes(&wires), [9, 1, 8], 200_000);
-    for (i, width) in widths.into_iter().enumerate() {
-        for k in [2, 3] {
-            let rows = (2..6).map(|z| six(&seen, [2 * i as u8, 0, z])[k]);
-            let mean = rows.sum::<f64>() / 4.0;
-            let error = mean - f64::from(width);
-            assert!(error.abs() < 0.05, "width {width}, direction {k}: {mean}");
-        }
     }
 }
 
@@ -146,7 +103,6 @@ fn enclosed_voxels_are_dropped_whoever_hides_them() {
 
 #[test]
 fn probes_find_neighbours_of_visible_voxels_through_a_window() {
-    // A picture on the wall of a closed room, in one layer of voxels. The wall opposite has a window.
     let room = [
         ([2.1, 2.1, 1.4], [13.9, 13.9, 1.6]),
         ([0.0, 0.0, 0.5], [16.0, 16.0, 0.6]),
@@ -154,7 +110,6 @@ fn probes_find_neighbours_of_visible_voxels_through_a_window() {
         ([0.0, 15.9, 0.5], [16.0, 16.0, 15.0]),
         ([0.0, 0.0, 0.5], [0.1, 16.0, 15.0]),
         ([15.9, 0.0, 0.5], [16.0, 16.0, 15.0]),
-        // Around the window.
         ([0.0, 0.0, 14.9], [6.0, 16.0, 15.0]),
         ([10.0, 0.0, 14.9], [16.0, 16.0, 15.0]),
         ([6.0, 0.0, 14.9], [10.0, 6.0, 15.0]),
@@ -165,71 +120,4 @@ fn probes_find_neighbours_of_visible_voxels_through_a_window() {
     let (seen, found) = sampled(&boxes(&room), 12, [16, 16, 3], 7000);
     assert_eq!(found.touched, 144);
     assert!(seen.len() > 72, "{}", seen.len());
-}
-
-#[test]
-fn a_thin_floor_has_no_holes() {
-    // Tilted, across the middle of voxels.
-    let corners = [
-        (0.5, 1.2, 0.5),
-        (7.5, 2.9, 0.5),
-        (7.5, 2.9, 7.5),
-        (0.5, 1.2, 7.5),
-    ];
-    let floor = shape(|builder| quad(builder, corners.map(|(x, y, z)| [x, y, z]), 0));
-    let (seen, _) = all(&floor, [8, 4, 8], 100_000);
-    // A voxel with a corner of the floor is not taken for a thin thing: no column is transparent.
-    for mode in [Opacity::Scalar, Opacity::Six] {
-        for eye in [DVec3::Y, DVec3::NEG_Y] {
-            let mut through = [[1.0; 8]; 8];
-            for (seen, shown) in &seen {
-                let [x, _, z] = seen.place.map(usize::from);
-                let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-                through[z][x] *= 1.0 - voxel.opacity_from(eye, mode);
-            }
-            let inner = through[1..7].iter().flat_map(|row| &row[1..7]);
-            let most = inner.copied().fold(0.0, f64::max);
-            assert!(most < 0.02, "{mode:?} {eye}: {through:?}");
-        }
-    }
-}
-
-#[test]
-fn untested_voxels_are_kept_and_look_like_their_triangles() {
-    // Red walls in a row, with one ray for eight of their voxels.
-    let walls = shape(|builder| {
-        let red = builder.material(Material::of_srgb("red", [255, 0, 0]));
-        for x in (0..16u8).map(|i| f32::from(i) + 0.5) {
-            let corners = [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]];
-            quad(builder, corners.map(|[y, z]| [x, y, z]), red);
-        }
-    });
-    let (seen, few) = all(&walls, [16, 8, 8], 128);
-    assert_eq!((few.touched, few.rays), (1024, 128));
-    assert_eq!(seen.len(), 1024, "none is known to be hidden");
-    assert!(few.untested > 512, "{}", few.untested);
-    for (seen, shown) in &seen {
-        let (normal, color) = shown.shader.seen_from(DVec3::X);
-        assert!(normal.x.abs() > 0.99 && color.x > 0.9 && color.y < 0.1);
-        if seen.crossings == 0 {
-            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-            assert_eq!(voxel.opacity_kind, OpacityKind::Opaque);
-        }
-    }
-    // Enough rays test all voxels.
-    let (_, enough) = all(&walls, [16, 8, 8], 100_000);
-    assert_eq!((enough.touched, enough.untested), (1024, 0));
-}
-
-#[test]
-fn no_more_voxels_are_kept_than_touched() {
-    // Walls exactly between voxels: rays see the end on either side.
-    let walls = [2.0, 4.0, 6.0].map(|x| ([x, 1.0, 1.0], [x + 1.0, 7.0, 7.0]));
-    let (seen, found) = all(&boxes(&walls), [8; 3], 200_000);
-    let kept = seen.len();
-    assert!(
-        kept <= found.touched as usize,
-        "{kept} of {}",
-        found.touched
-    );
 }

@@ -1,28 +1,23 @@
-//! The nodes that have voxels.
+//! Coarser nodes above the root, each with one child, for pictures smaller than the root's grid; and the nodes that
+//! have voxels.
 //!
-//! A box is halved across one axis, so its longest side, and with it the size of its voxels, is often that of the box
-//! above. Such a node would repeat the voxels of the one above, so it has none and its children are drawn instead.
-//!
-//! A node whose triangles each cover many voxels has none either. The voxels would take more bytes than the triangles,
-//! and would be drawn only where the triangles are large in the picture.
+//! A node whose box is almost as long as that of the one above has none, because its voxels would have the same size. A
+//! node whose triangles each cover many voxels has none either: the triangles take fewer bytes.
 
 use super::split::Branch;
 
-/// A node has voxels if they are at most this share of those of the next node above that has.
+/// A node has voxels if its side is at most this share of that of the next node above that has.
 const STEP: f64 = 0.7;
 /// Most voxels of a node for each of its triangles. So many take 180 bytes or more, a triangle 15 to 35.
 const MOST_VOXELS: usize = 16;
 
-/// Whether triangles touch too many voxels. Given all voxels of a grid, whether they could.
 pub(super) fn is_dense(touched: usize, triangles: usize) -> bool {
     touched / MOST_VOXELS >= triangles
 }
 
-/// Of each node whether it is a leaf or has voxels. `coarser` is the number of nodes above the root of the hierarchy.
-/// These and the root have voxels.
+/// Whether each node is a leaf or has voxels; `coarser` nodes above the root of the hierarchy, and the root, have.
 pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     let mut has_voxels = vec![true; branches.len()];
-    // The longest side of the next box above that has voxels; parents come first.
     let mut above = vec![f64::INFINITY; branches.len()];
     for (number, branch) in branches.iter().enumerate() {
         let Some(children) = branch.children else {
@@ -35,7 +30,6 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
         } else {
             above[number]
         };
-        // A second child of number 0 is none.
         for child in children.into_iter().filter(|&child| child > 0) {
             above[child] = nearest;
         }
@@ -43,7 +37,6 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     has_voxels
 }
 
-/// Leaves out nodes below the root of which triangles touch too many voxels; of those that were counted.
 pub(super) fn leave_out_dense(
     has_voxels: &mut [bool],
     branches: &[Branch],
@@ -56,40 +49,33 @@ pub(super) fn leave_out_dense(
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
+/// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
+const LEAST: [u32; 2] = [32, 16];
 
-    use super::*;
-
-    #[test]
-    fn dense_nodes_have_sixteen_voxels_per_triangle_or_more() {
-        assert!(is_dense(160, 10) && !is_dense(159, 10));
-        // A grid of 64 voxels along a side holds no more.
-        assert!(is_dense(64 * 64 * 64, 16_384) && !is_dense(64 * 64 * 64, 16_385));
+/// Puts nodes of half the voxels along a side, and so on, above the root, unless that is a leaf. Gives how many.
+pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
+    let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
+        return 0;
+    };
+    let count = (grid / LEAST[usize::from(hybrid)]).max(1).ilog2();
+    let coarser: Vec<Branch> = (0..count)
+        .map(|level| Branch {
+            level,
+            // No node's second child is the first of all.
+            children: Some([level as usize + 1, 0]),
+            ..root.clone()
+        })
+        .collect();
+    for branch in branches.iter_mut() {
+        branch.level += count;
+        if let Some(children) = &mut branch.children {
+            *children = children.map(|child| child + count as usize);
+        }
     }
+    branches.splice(0..0, coarser);
+    count as usize
+}
 
-    #[test]
-    fn a_box_halved_across_another_axis_has_no_voxels() {
-        // A coarser node, the root, a chain of halves across x, y, z and x, and a leaf.
-        let rows = [
-            ([8.0, 8.0, 8.0], Some([1, 0]), true),
-            ([8.0, 8.0, 8.0], Some([2, 6]), true),
-            ([4.0, 8.0, 8.0], Some([3, 6]), false),
-            ([4.0, 4.0, 8.0], Some([4, 6]), false),
-            ([4.0, 4.0, 4.0], Some([5, 6]), true),
-            ([2.0, 4.0, 4.0], Some([6, 6]), false),
-            ([2.0, 2.0, 4.0], None, true),
-        ];
-        let branch = |level: usize| Branch {
-            low: DVec3::ZERO,
-            high: rows[level].0.into(),
-            level: level as u32,
-            first: 0,
-            count: 1,
-            children: rows[level].1,
-        };
-        let branches: Vec<Branch> = (0..7).map(branch).collect();
-        assert_eq!(with_voxels(&branches, 1), rows.map(|row| row.2));
-    }
+pub(super) fn grid_of(number: usize, coarser: usize, grid: u32) -> u32 {
+    grid >> coarser.saturating_sub(number)
 }

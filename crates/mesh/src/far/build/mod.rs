@@ -4,9 +4,7 @@
 //! threads: a node's rays depend on its number and on nothing else.
 
 mod bvh;
-mod chance;
 mod clusters;
-mod coarser;
 mod compare;
 mod count;
 mod grid;
@@ -33,7 +31,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use grid::Grid;
+use grid::Grid;
 pub use spool::part_of;
 
 use super::record::{LeafTriangle, Node, Opacity};
@@ -47,7 +45,7 @@ use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
 use rays::Around;
 use room::{Room, shares};
-use sample::{Rays, Triangles};
+use sample::Rays;
 use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
 use shot::{Own, Target};
@@ -58,15 +56,13 @@ use surface::{MOST_TRIANGLES, Surfaces};
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// The number of rays of all nodes together. With `None`, as many as find the visible voxels, and
-    /// [`RAYS_PER_VOXEL`] for each of these.
+    /// Rays of all nodes together. With `None`, as many as find the visible voxels, and [`RAYS_PER_VOXEL`] for each.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
     pub leaf_triangles: u32,
     /// Voxels along the longest side of a node, 2 to 255.
     pub grid: u32,
-    /// Least distance from which a node is used, in its voxels: where the eye
-    /// may be and what may hide the node follow from it.
+    /// Least distance from which a node is used, in its voxels.
     pub distance_voxels: f64,
     /// The opacities to store. With `Six`, only those that differ.
     pub opacity: Opacity,
@@ -76,11 +72,9 @@ pub struct BuildOptions {
 
 /// Rays for each voxel that is kept, where no number of rays is given.
 pub const RAYS_PER_VOXEL: u32 = 24;
-/// Most rays of a node: what its memory is kept to.
 const MOST_RAYS: u32 = 1 << 22;
-/// Bytes a ray that a node takes while it is sampled, or less: 40 of its own, and 20 of each voxel that it crosses.
+/// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
 const RAY_BYTES: u64 = 160;
-/// Rays at a touched voxel, where no number of rays is given, or less: few get all.
 const RAYS_AT_VOXEL: u64 = 32;
 impl Default for BuildOptions {
     fn default() -> Self {
@@ -164,8 +158,7 @@ pub struct Outside<'o> {
     pub memory: Option<u64>,
     /// Folder of temporary files, which have no names where the system allows it.
     pub folder: &'o Path,
-    /// The unfinished file, which stores finished nodes and from which a build resumes. With `None` it is temporary.
-    /// `None`: a temporary one.
+    /// The unfinished file, from which a build resumes; `None`: a temporary one.
     pub part: Option<&'o Path>,
 }
 
@@ -241,13 +234,12 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
     }
 }
 
-/// Triangles in the order of the hierarchy, scaled so that all of them together have a size of about 1. So single
-/// precision holds their squares and products, however small the mesh is.
+/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1: single precision then holds
+/// their squares and products.
 struct Ordered<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
     centre: DVec3,
-    /// A power of two, so that nothing is rounded.
     scale: f64,
 }
 
@@ -255,9 +247,7 @@ impl Ordered<'_> {
     fn place(&self, point: DVec3) -> DVec3 {
         (point - self.centre) * self.scale
     }
-}
 
-impl Triangles for Ordered<'_> {
     fn corners(&self, number: usize) -> [DVec3; 3] {
         let corners = self.surface.corners(self.order[number] as usize);
         corners.map(|p| self.place(p))
@@ -274,7 +264,6 @@ impl Triangles for Ordered<'_> {
     }
 }
 
-/// Fills a spool with the nodes that are not in it yet.
 fn fill<F: Read + Write + Seek + Send>(
     surface: &dyn Surface,
     options: &BuildOptions,
@@ -290,8 +279,10 @@ fn fill<F: Read + Write + Seek + Send>(
     let memory = outside.and_then(|outside| outside.memory);
     let shares = shares(surface.len(), options.hybrid, memory)?;
     progress.begin("split triangles", 0);
-    let (mut branches, order) = split(surface, options.leaf_triangles as usize);
-    let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
+    let corners = |number: usize| surface.corners(number);
+    let fewest = options.leaf_triangles as usize;
+    let (mut branches, order) = split(surface.len(), corners, fewest);
+    let coarser = levels::put_above(&mut branches, options.grid, options.hybrid);
     progress.end();
     let mut has_voxels = match options.hybrid {
         true => vec![true; branches.len()],
@@ -324,7 +315,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
     let grid = |number: usize, branch: &Branch| {
         let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
-        Grid::around(low, high, coarser::grid_of(number, coarser, options.grid))
+        Grid::around(low, high, levels::grid_of(number, coarser, options.grid))
     };
     let target = |number: usize, branch: &Branch| Target {
         occluders: &occluders,
@@ -384,10 +375,9 @@ fn fill<F: Read + Write + Seek + Send>(
         // The root has seed 0, whatever its number.
         let seed = (number as u64).wrapping_sub(coarser as u64);
         let voxels = |node: &mut Node, target: &Target<'_>| {
-            let fitted = fit(target, rays[number], seed, &triangles, &room, options);
-            let fitted = fitted.map_err(|e| failed(folder, &e))?;
-            fitted.describe(node);
-            Ok(fitted.lists)
+            let rays = rays[number];
+            let lists = fit(node, target, rays, seed, &triangles, &room, options);
+            lists.map_err(|e| failed(folder, &e))
         };
         match &surfaces {
             Some(surfaces) if branch.count <= MOST_TRIANGLES => {
@@ -409,12 +399,10 @@ fn fill<F: Read + Write + Seek + Send>(
             let is_leaf = branch.children.is_none();
             if !done[number] {
                 let (node, data) = make(number, branch)?;
-                // Nodes that were added before a panic are sound.
                 let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
                 let added = spool.add(number, node, &data);
                 added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
             }
-            // Every triangle is in one leaf: progress is counted by these.
             progress.advance(if is_leaf { branch.count as u64 } else { 0 });
             Ok(())
         })?;
@@ -425,14 +413,12 @@ fn fill<F: Read + Write + Seek + Send>(
     Ok((data, spool))
 }
 
-/// The largest subtrees of no more triangles than a cluster may have.
 fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut waiting = vec![0];
     while let Some(number) = waiting.pop() {
         let branch: &Branch = &branches[number];
         match branch.children {
-            // Nodes above the root have one child, and their second number is 0.
             Some([near, far]) if branch.count > CLUSTER => {
                 waiting.extend([far, near].into_iter().filter(|&child| child != 0));
             }
@@ -468,7 +454,6 @@ fn check(surface: &dyn Surface, options: &BuildOptions) -> Result<(), BuildError
     centre(surface).map(drop)
 }
 
-/// The origin of coordinates, and the scale that makes them about 1.
 fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
@@ -476,7 +461,6 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     if !(farthest < 1e30 && extent > 1e-30) {
         return Err(BuildError::Range);
     }
-    // As the reader has it of the root's box, which is rounded outwards.
     let finest = 0.99 * extent / place::MOST_PARTS;
     if !place::can_be_seen(low.to_array(), high.to_array(), finest) {
         let distance = farthest;
@@ -487,22 +471,18 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     Ok((centre, libm::ldexp(1.0, -power)))
 }
 
-/// Rays of each node, in proportion to the voxels that its triangles touch.
 fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
     let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
     touched
         .iter()
         .map(|&n| {
-            // No overflow: 64 bits by 32.
             let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
-            // A node with triangles gets a ray at least.
             let share = share.clamp(u128::from(n > 0), u128::from(MOST_RAYS));
             Rays::InAll(share as u32)
         })
         .collect()
 }
 
-/// Normal and colour of a triangle at a point, seen from a side.
 fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
     let plane = plane_normal(triangle.corners);
     let shares = barycentric(&triangle.corners, point);
@@ -523,7 +503,6 @@ fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) 
     }
 }
 
-/// A node without voxels.
 fn outline(branch: &Branch, centre: DVec3) -> Node {
     let single = |p: DVec3| (p - centre).as_vec3().to_array();
     Node {
@@ -531,7 +510,6 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
         high: single(branch.high),
         is_leaf: u8::from(branch.children.is_none()),
         level: branch.level,
-        // Fewer than 2^32 triangles, and fewer nodes than twice that: see `assemble`.
         children: branch.children.map_or([0; 2], |c| c.map(|c| c as u32)),
         first_triangle: branch.first as u32,
         triangles: branch.count as u32,
@@ -539,43 +517,32 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
     }
 }
 
-/// Describes a grid in a node, of coordinates of a scale: back by a power of two, as exact as it was.
+/// Exact: the scale is a power of two.
 fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
     node.origin = (grid.origin / scale).as_vec3().to_array();
     node.voxel = (grid.voxel / scale) as f32;
     node.cells = grid.cells;
 }
 
-/// The voxels of a node, fitted.
-struct Fitted {
-    sampled: sample::Sampled,
-    lists: [Vec<u8>; 6],
-    counts: [u32; 6],
-    crossings: u32,
-    square_error: f64,
-    samples: usize,
-}
-
-/// Shoots rays at a node and fits its voxels.
 fn fit(
+    node: &mut Node,
     target: &Target<'_>,
     rays: Rays,
     seed: u64,
-    triangles: &impl Triangles,
+    triangles: &Ordered<'_>,
     room: &Room,
     options: &BuildOptions,
-) -> io::Result<Fitted> {
+) -> io::Result<[Vec<u8>; 6]> {
     let mut lists: [Vec<u8>; 6] = Default::default();
-    let (mut counts, mut crossings) = ([0; 6], 0u32);
     let (mut square_error, mut all_samples) = (0.0, 0);
     let keep = |seen: &Seen, shown: &ShaderFit, samples: usize| {
         let voxel = shader_fit::fit(seen, shown.shader, options.opacity);
         let list = voxel.list();
         voxel.write(&mut lists[list]);
-        counts[list] += 1;
+        node.counts[list] += 1;
         square_error += shown.square_error;
         all_samples += samples;
-        crossings = crossings.saturating_add(seen.crossings);
+        node.crossings = node.crossings.saturating_add(seen.crossings);
     };
     let admit = |touched: usize| {
         let rays = match rays {
@@ -585,28 +552,13 @@ fn fit(
         room.take(rays * RAY_BYTES)
     };
     let sampled = target.sample(rays, MOST_RAYS, seed, triangles, admit, keep)?;
-    Ok(Fitted {
-        sampled,
-        lists,
-        counts,
-        crossings,
-        square_error,
-        samples: all_samples,
-    })
-}
-
-impl Fitted {
-    /// Describes them in a node, whose grid is described.
-    fn describe(&self, node: &mut Node) {
-        node.counts = self.counts;
-        node.crossings = self.crossings;
-        node.touched = self.sampled.touched;
-        node.untested = self.sampled.untested;
-        node.rays = self.sampled.rays;
-        node.hits = self.sampled.hits;
-        let mean = self.square_error / f64::from(self.samples.max(1) as u32);
-        node.error = libm::sqrt(mean) as f32;
-    }
+    node.touched = sampled.touched;
+    node.untested = sampled.untested;
+    node.rays = sampled.rays;
+    node.hits = sampled.hits;
+    let mean = square_error / f64::from(all_samples.max(1) as u32);
+    node.error = libm::sqrt(mean) as f32;
+    Ok(lists)
 }
 
 fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<LeafTriangle> {
@@ -623,7 +575,6 @@ fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<Le
         .collect()
 }
 
-/// The result without the nodes' data.
 fn assemble<F: Read + Write + Seek>(
     spool: &Spool<F>,
     centre: DVec3,

@@ -1,9 +1,8 @@
 //! The first triangle on each ray.
 //!
-//! Triangles are held in *clusters*, subtrees of the hierarchy, each with a ray hierarchy of its own. Rays come in
-//! batches, and a batch is tested against one cluster after the other, so that only one cluster need be in memory
-//! (`clusters.rs`). The result is the nearest triangle, and of equally near ones the one with the lowest number. So it
-//! is independent of the order of the clusters and of how many are in memory.
+//! Triangles are held in *clusters*, subtrees of the hierarchy with a ray hierarchy each. A batch of rays is tested
+//! against one cluster after the other. Of equally near triangles the lowest number counts, so that the result is
+//! independent of the order of the clusters and of how many are in memory.
 
 use std::io::{self, Read};
 
@@ -16,23 +15,17 @@ use super::shot::NOWHERE;
 /// Share of an edge by which triangles reach beyond it, so that no ray slips
 /// between two that share it.
 const EDGE: f32 = 1e-5;
-/// Boxes are entered up to this share of a distance behind the nearest triangle yet.
 const MARGIN: f32 = 1.0 + 1e-3;
 
-/// A ray, in the coordinates of the triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Query {
     pub(super) origin: Vec3,
-    /// Unit vector.
     pub(super) direction: Vec3,
-    /// How far it is followed.
     pub(super) most: f32,
 }
 
-/// The nearest triangle on a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
-    /// Distance along the ray; infinite where it meets nothing.
     pub(super) distance: f32,
     /// The number of the triangle in the order of the hierarchy, or [`NOWHERE`].
     pub(super) triangle: u32,
@@ -45,7 +38,6 @@ impl Meeting {
     };
 }
 
-/// A box in single precision.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Around {
     pub(super) low: Vec3A,
@@ -53,7 +45,6 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// A box, widened by more than single precision rounds.
     pub(super) fn of(low: DVec3, high: DVec3) -> Self {
         let wider = 1e-5 * (high - low).length() + 1e-6 * low.abs().max(high.abs()).max_element();
         let wider = DVec3::splat(wider);
@@ -63,7 +54,6 @@ impl Around {
         }
     }
 
-    /// Whether a ray gets into it before a distance.
     fn is_entered(&self, query: &Query, before: f32) -> bool {
         let per_unit = Vec3A::from(query.direction).recip();
         let origin = Vec3A::from(query.origin);
@@ -77,7 +67,6 @@ impl Around {
         enter <= leave * MARGIN
     }
 
-    /// The square of the distance between two boxes.
     pub(super) fn square_from(&self, other: &Self) -> f32 {
         let apart = (self.low - other.high)
             .max(other.low - self.high)
@@ -89,13 +78,10 @@ impl Around {
 /// A triangle: its first corner, and from there to the others.
 type Corners = [[f32; 3]; 3];
 
-/// Triangles that lie side by side, ready for rays.
 #[derive(Debug)]
 pub(super) struct Cluster {
     nodes: Vec<Node>,
-    /// In the order of the ray hierarchy: those that a ray tests one after the other lie together.
     triangles: Vec<Corners>,
-    /// Their numbers.
     numbers: Vec<u32>,
 }
 
@@ -116,13 +102,11 @@ impl Cluster {
         }
     }
 
-    /// Bytes that it takes.
     pub(super) fn bytes(&self) -> u64 {
         let [nodes, numbers, triangles] = self.sections().map(<[u8]>::len);
         (nodes + numbers + triangles) as u64
     }
 
-    /// Its bytes, to be stored.
     pub(super) fn sections(&self) -> [&[u8]; 3] {
         [
             bytemuck::cast_slice(&self.nodes),
@@ -131,10 +115,6 @@ impl Cluster {
         ]
     }
 
-    /// Reads the bytes that it gave.
-    ///
-    /// # Errors
-    /// Errors of reading the file.
     pub(super) fn read(from: &mut impl Read, bytes: [usize; 3]) -> io::Result<Self> {
         let [nodes, numbers, triangles] = bytes;
         Ok(Self {
@@ -144,7 +124,6 @@ impl Cluster {
         })
     }
 
-    /// Replaces the nearest triangle if this one is nearer. `first` is the number of the first triangle here.
     fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
         let ray = Ray {
@@ -164,7 +143,6 @@ impl Cluster {
         });
     }
 
-    /// As for one ray, for those that get into a box.
     pub(super) fn meet_all(
         &self,
         around: &Around,
@@ -180,21 +158,18 @@ impl Cluster {
     }
 }
 
-/// Items of so many bytes in all, read where they stay.
 fn read_all<T: Pod>(from: &mut impl Read, bytes: usize) -> io::Result<Vec<T>> {
     let mut items = vec![T::zeroed(); bytes / size_of::<T>()];
     from.read_exact(bytemuck::cast_slice_mut(&mut items))?;
     Ok(items)
 }
 
-/// Whether any of some rays has to be tested against what is in a box.
 pub(super) fn is_any_entered(around: &Around, queries: &[Query], meetings: &[Meeting]) -> bool {
     let mut both = queries.iter().zip(meetings);
     both.any(|(query, meeting)| around.is_entered(query, query.most.min(meeting.distance)))
 }
 
-/// Distance along the ray; infinite where they do not meet. Möller and
-/// Trumbore's test, from both sides, a little beyond the edges.
+/// Möller and Trumbore's test, from both sides, a little beyond the edges; infinite where they do not meet.
 fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
     let [corner, to_second, to_third] = [corner, to_second, to_third].map(Vec3A::from_array);
     let across = ray.direction.cross(to_third);
@@ -218,7 +193,6 @@ mod tests {
     use super::*;
     use shiftvox::split_mix::SplitMix;
 
-    /// The nearest of all triangles that a ray meets.
     fn nearest_of_all(triangles: &[[DVec3; 3]], query: &Query, size: f32) -> Meeting {
         let ray = Ray {
             origin: query.origin.into(),
@@ -240,7 +214,6 @@ mod tests {
         nearest
     }
 
-    /// Many of the random triangles are equal or in one plane.
     #[test]
     fn rays_meet_the_nearest_triangle() {
         let mut dice = SplitMix::new(7);

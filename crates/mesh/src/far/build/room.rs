@@ -1,25 +1,19 @@
-//! Memory of a build: how a budget is shared out, and what nodes that are sampled at the same time take of it.
+//! Memory of a build: shares of a budget, and nodes that wait for room.
 
 use std::sync::{Condvar, Mutex, PoisonError};
 
 use super::BuildError;
 use super::clusters::{CLUSTER, MADE, MAKING};
 
-/// An upper bound of the bytes per triangle while the parts of a hybrid are found: three vertices in a table, and the
-/// records of vertices and triangle.
+/// Most bytes per triangle while the parts of a hybrid are found.
 const PARTS_BYTES: u64 = 160;
-/// Bytes that nodes may take together at the least.
 const LEAST_ROOM: u64 = 48 << 20;
 
-/// How a budget is shared out.
 pub(super) struct Shares {
-    /// Bytes of clusters in memory, or `None` for no limit.
     pub(super) clusters: Option<u64>,
-    /// Bytes of nodes that are sampled.
     pub(super) nodes: u64,
 }
 
-/// Shares out a budget for so many triangles.
 pub(super) fn shares(
     triangles: usize,
     hybrid: bool,
@@ -43,7 +37,6 @@ pub(super) fn shares(
     }
     let all = triangles * MADE;
     let rest = given - fixed;
-    // Clusters are worth more than nodes at the same time.
     let nodes = (rest - cluster * threads - LEAST_ROOM) / 4 + LEAST_ROOM;
     let room = rest - nodes;
     let fits = all + making <= room;
@@ -53,14 +46,12 @@ pub(super) fn shares(
     })
 }
 
-/// Bytes that nodes may take together.
 pub(super) struct Room {
     most: u64,
     taken: Mutex<u64>,
     freed: Condvar,
 }
 
-/// Bytes that a node has taken, until this is dropped.
 pub(super) struct Taken<'r> {
     room: &'r Room,
     bytes: u64,
@@ -77,7 +68,6 @@ impl Room {
 
     /// Waits until there are so many bytes, or no other node has any.
     pub(super) fn take(&self, bytes: u64) -> Taken<'_> {
-        // A number stays sound whoever panicked.
         let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
         while *taken > 0 && taken.saturating_add(bytes) > self.most {
             let woken = self.freed.wait(taken);

@@ -1,43 +1,34 @@
 //! Rays at a node: which of its voxels are seen, and what of them.
 //!
-//! First, *visibility rays* are aimed at points of each voxel's contents, from random directions and from those from
-//! which a neighbour was seen, until one ends in the voxel. Then *probes* are aimed at random points of the outlines of
-//! the voxels that were seen, from random directions: what share of them ends in a voxel is its opacity (`count.rs`).
+//! *Visibility rays* are aimed at points of each voxel's contents, from random directions and from where a neighbour
+//! was seen, until one ends in the voxel. Then *probes* are aimed at random points of the outlines of the voxels that
+//! were seen: the share that ends in a voxel is its opacity (`count.rs`).
 
 use std::io;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::chance::Chance;
-use super::count::{FOLLOWED, Groups, Marks, Probes, Seen, SurfaceSample, main_normal};
+use super::Ordered;
+use super::count::{FOLLOWED, Groups, Marks, Probes, Seen, main_normal};
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
+use shiftvox::split_mix::SplitMix;
 
-/// Most visibility rays from random directions at a voxel that none reached yet.
 pub(super) const MOST_VISIBILITY_RAYS: u32 = 16;
-/// Most of them from where neighbours were seen: what one window lets a ray
-/// through to lies side by side, and a random direction seldom finds the window.
+/// Most of them from where neighbours were seen: what a window lets through lies side by side.
 pub(super) const MOST_FOLLOWED: u8 = 12;
-/// A voxel that fewer rays were aimed at, none of which reached it, is not known to be hidden.
+/// With fewer rays, none of which reached it, a voxel is not known to be hidden.
 pub(super) const LEAST_TESTS: u8 = 8;
-/// Visibility rays are shot in so many batches a turn: those of one find what the next ones need
-/// not look for.
 const BATCHES: usize = 4;
-/// Probes that are aimed at each voxel before it is known how many cross it.
 const FIRST_PROBES: u32 = 4;
-/// Probes that are aimed at each voxel at the least, so that their directions are spread.
 const LEAST_PROBES: u32 = 8;
-/// How far beyond the point that it is aimed at a visibility ray is followed, voxels.
 const AIM_WITHIN: f64 = 0.5;
 
-/// Counts of a node's rays.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sampled {
-    /// Voxels that triangles touch.
     pub(super) touched: u32,
-    /// Voxels of those kept that were not tested.
     pub(super) untested: u32,
     pub(super) rays: u32,
     pub(super) hits: u32,
@@ -52,40 +43,26 @@ pub(super) enum Rays {
     InAll(u32),
 }
 
-/// The triangles of a node, by their numbers.
-pub(super) trait Triangles {
-    /// Corners.
-    fn corners(&self, number: usize) -> [DVec3; 3];
-    /// Unit normal of the plane.
-    fn plane(&self, number: usize) -> DVec3;
-    /// The appearance of a point from a direction.
-    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample;
-}
-
 impl Target<'_> {
     /// Shoots rays, at most `most`, which is no more than 2^22. `admit` gets the number of touched voxels, and waits
-    /// until there is memory for them. Calls back with each kept voxel, both seen and untested, in the order of the
-    /// grid, with its shader and its number of samples.
-    ///
-    /// # Errors
-    /// Errors of reading the file of triangles.
+    /// until there is memory for them. Calls back with each kept voxel, in the order of the grid, with its shader and
+    /// its number of samples.
     pub(super) fn sample<A>(
         &self,
         rays: Rays,
         most: u32,
         seed: u64,
-        triangles: &impl Triangles,
+        triangles: &Ordered<'_>,
         admit: impl FnOnce(usize) -> A,
         mut keep: impl FnMut(&Seen, &ShaderFit, usize),
     ) -> io::Result<Sampled> {
-        let mut chance = Chance::new(seed);
+        let mut chance = chance(seed);
         let own = self.own.numbers();
         let own = own.map(|number| (number, triangles.corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
         let _admitted = admit(touched.len());
         let mut slot = vec![NOWHERE; self.grid.len()];
         for (number, voxel) in touched.iter().enumerate() {
-            // Fewer than 2^24 voxels in a grid.
             slot[voxel.number as usize] = number as u32;
         }
         let most_visibility_rays = match rays {
@@ -124,7 +101,6 @@ impl Target<'_> {
             tests,
             ..
         } = found;
-        // The kept voxels, and the number of probes aimed at each: see `Marks`.
         let is_untested = |number: usize| !is_seen[number] && tests[number] < LEAST_TESTS;
         let mut kept = vec![NOWHERE; touched.len()];
         let mut aimed_of_grid = vec![0u8; self.grid.len()];
@@ -133,7 +109,6 @@ impl Target<'_> {
             if is_seen[number] || is_untested(number) {
                 kept[number] = count as u32;
                 count += 1;
-                // Only an explicit number of rays exceeds the range of a byte, and then for all voxels alike.
                 let probes = aimed[number].min(u32::from(u8::MAX) - 1) as u8;
                 aimed_of_grid[voxel.number as usize] = probes + 1;
             }
@@ -164,7 +139,6 @@ impl Target<'_> {
             if is_untested(number) {
                 untested += 1;
                 for (point, triangle) in voxel.points {
-                    // From either side.
                     let triangle = triangle as usize;
                     let (point, normal) = (self.grid.world(point), triangles.plane(triangle));
                     let sides = [normal, -normal];
@@ -178,7 +152,6 @@ impl Target<'_> {
                 triangles.sample(shot.triangle as usize, point, towards_eye)
             }));
             let fit = fit_shader(&samples, main_normal(&samples));
-            // As opaque as the area in it is large, in its faces.
             seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
             probes.count(place, &fit.shader, &mut seen);
             keep(&seen, &fit, samples.len());
@@ -191,7 +164,6 @@ impl Target<'_> {
         })
     }
 
-    /// How many of some probes reach each touched voxel.
     fn crossings(&self, probes: &[Shot], slot: &[u32], touched: usize) -> Vec<u32> {
         let mut crossings = vec![0; touched];
         for shot in probes {
@@ -214,19 +186,16 @@ impl Target<'_> {
     }
 }
 
-/// Aims probes at the voxels that were seen, in turn.
 struct Prober<'p> {
     target: &'p Target<'p>,
-    /// Numbers of those voxels among the touched ones.
     aims: &'p [u32],
     directions: Vec<Directions>,
-    chance: &'p mut Chance,
-    /// How far a probe is followed behind where it enters: beyond the grid as far as it matters.
+    chance: &'p mut SplitMix,
     beyond: f64,
 }
 
 impl<'p> Prober<'p> {
-    fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut Chance) -> Self {
+    fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut SplitMix) -> Self {
         let cells = DVec3::from_array(target.grid.cells.map(f64::from));
         Self {
             target,
@@ -237,7 +206,6 @@ impl<'p> Prober<'p> {
         }
     }
 
-    /// Probes each voxel until it has as many probes as are wanted, or there were `most` in all.
     fn probe(
         &mut self,
         wanted: impl Fn(usize) -> u32,
@@ -279,23 +247,17 @@ impl<'p> Prober<'p> {
     }
 }
 
-/// The rays of a node, as they are shot. Voxels are numbered as they are touched.
+/// Voxels are numbered as they are touched.
 struct Found<'s> {
     touched: &'s [Touched],
-    /// Numbers of the grid's voxels.
     slot: &'s [u32],
     shots: Vec<Shot>,
-    /// How many visibility rays there may be.
     most: usize,
-    /// Whether a ray ended in each.
     is_seen: Vec<bool>,
-    /// How many rays were aimed at what is in each, 255 at most.
     tests: Vec<u8>,
-    /// How many of them were from where a neighbour was seen.
     followed: Vec<u8>,
 }
 
-/// A visibility ray that is going to be shot, at a voxel.
 type Look = (u32, Aim);
 
 impl<'s> Found<'s> {
@@ -311,8 +273,7 @@ impl<'s> Found<'s> {
         }
     }
 
-    /// Aims visibility rays at every voxel until one reaches something in it.
-    fn find_visible(&mut self, target: &Target<'_>, chance: &mut Chance) -> io::Result<()> {
+    fn find_visible(&mut self, target: &Target<'_>, chance: &mut SplitMix) -> io::Result<()> {
         let touched = self.touched;
         let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
         for turn in 0..MOST_VISIBILITY_RAYS {
@@ -335,8 +296,7 @@ impl<'s> Found<'s> {
         Ok(())
     }
 
-    /// Shoots visibility rays, unless there were enough. Gives the voxels that were not seen before
-    /// and now are, and along which direction.
+    /// Shoots visibility rays, unless there were enough. Gives the voxels newly seen, and along which direction.
     fn look(&mut self, target: &Target<'_>, mut looks: Vec<Look>) -> io::Result<Vec<Look>> {
         looks.truncate(self.most - self.shots.len());
         for (number, _) in &looks {
@@ -358,8 +318,7 @@ impl<'s> Found<'s> {
         Ok(fresh)
     }
 
-    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no
-    /// more are found. A voxel is aimed at once a batch.
+    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no more are found.
     fn follow(&mut self, target: &Target<'_>, mut fresh: Vec<Look>) -> io::Result<()> {
         let mut waiting: Vec<Look> = Vec::new();
         let mut batch_of = vec![
@@ -404,11 +363,15 @@ impl<'s> Found<'s> {
     }
 }
 
-/// Directions of a voxel's rays: spread by the sequence R2 from a start of its own.
+fn chance(seed: u64) -> SplitMix {
+    SplitMix::new(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15)
+}
+
+/// Spread by the sequence R2.
 struct Directions([f64; 2]);
 
 impl Directions {
-    fn new(chance: &mut Chance) -> Self {
+    fn new(chance: &mut SplitMix) -> Self {
         Self([chance.unit(), chance.unit()])
     }
 
@@ -428,8 +391,8 @@ fn numbers(marks: &[bool]) -> Vec<u32> {
     marked.map(|(number, _)| number as u32).collect()
 }
 
-/// A random point of a voxel's outline as seen along a direction, on the side where a ray enters.
-fn entry(place: [u8; 3], direction: DVec3, chance: &mut Chance) -> DVec3 {
+/// A random point where a ray of a direction enters a voxel.
+fn entry(place: [u8; 3], direction: DVec3, chance: &mut SplitMix) -> DVec3 {
     let faces = direction.abs();
     let mut pick = chance.unit() * faces.element_sum();
     let mut axis = 0;

@@ -12,24 +12,18 @@ use super::clusters::Occluders;
 use super::grid::Grid;
 use super::rays::{Around, Meeting, Query};
 
-/// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 2;
 
-/// A node that is sampled.
 pub(super) struct Target<'t> {
     pub(super) occluders: &'t Occluders,
     pub(super) grid: Grid,
-    /// The node's own triangles among the occluders.
     pub(super) own: Own<'t>,
-    /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
 }
 
-/// The triangles that become voxels.
 #[derive(Debug, Clone)]
 pub(super) struct Own<'t> {
     range: Range<usize>,
-    /// Marks of the range's triangles that become voxels, or `None` if all do.
     is_taken: Option<&'t [bool]>,
 }
 
@@ -52,7 +46,6 @@ impl<'t> Own<'t> {
 }
 
 impl<'t> Target<'t> {
-    /// The same with some of its triangles.
     pub(super) fn of<'s>(&self, is_taken: &'s [bool]) -> Target<'s>
     where
         't: 's,
@@ -67,58 +60,44 @@ impl<'t> Target<'t> {
     }
 }
 
-/// Where a ray is aimed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Aim {
     /// In voxels of the grid.
     pub(super) point: Vec3,
-    /// Unit vector.
     pub(super) direction: Vec3,
 }
 
-/// A ray that ended, in voxels of the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shot {
-    /// The point that it was aimed at.
     pub(super) point: Vec3,
     pub(super) direction: Vec3,
-    /// Where it ends, from that point along its direction; infinite where it meets nothing as far
-    /// as it was followed.
+    /// Distance of its end from that point; infinite where it meets nothing as far as it was followed.
     pub(super) end: f32,
-    /// The triangle that it meets.
     pub(super) triangle: u32,
-    /// The number of the touched voxel in which it ends at one of the node's own triangles, or [`NOWHERE`].
+    /// The touched voxel in which it ends at one of the node's triangles, or [`NOWHERE`].
     pub(super) touched: u32,
 }
 
 impl Shot {
-    /// Where it ends.
     pub(super) fn end_point(&self) -> DVec3 {
         self.point.as_dvec3() + self.direction.as_dvec3() * f64::from(self.end)
     }
 }
 
-/// No voxel.
 pub(super) const NOWHERE: u32 = u32::MAX;
-/// A ray's end is in single precision: it may lie this far from the triangle, voxels, and so in
-/// the voxel beside the triangle's.
+/// A ray's end may lie this far from the triangle, voxels: in the voxel beside.
 const END_WITHIN: f64 = 0.01;
-/// Rays that are shot together: what their memory is kept to.
 const BATCH: usize = 1 << 17;
-/// Rays are shot in the order of their directions' cells, so many along each axis and to each side.
 const CELLS: f32 = 4.0;
 
-/// Cells of directions.
 const ALL_CELLS: usize = 128;
 
-/// The cell of a direction.
 fn cell(direction: Vec3) -> usize {
-    // Each below 8; a unit vector's third coordinate follows but for its sign.
     let cell = |c: f32| (((c + 1.0) * CELLS) as usize).min(7);
     (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
 }
 
-/// Numbers of rays, sorted so that similar rays, which visit the same boxes, follow one another.
+/// Similar rays, which visit the same boxes, follow one another.
 fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
     let mut places = [0u32; ALL_CELLS];
     for aim in aims {
@@ -132,15 +111,12 @@ fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
     order.resize(aims.len(), 0);
     for (number, aim) in aims.iter().enumerate() {
         let place = &mut places[cell(aim.direction)];
-        // A batch has fewer than 2^32.
         order[*place as usize] = number as u32;
         *place += 1;
     }
 }
 
 impl Target<'_> {
-    /// Number of the touched voxel in which a ray ends. `slot` has those numbers, of all voxels of
-    /// the grid.
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
         let number = |at: DVec3| {
@@ -151,7 +127,6 @@ impl Target<'_> {
         if here != NOWHERE {
             return here;
         }
-        // Triangles between two voxels, or in a corner.
         let near = (0..27).map(|step| {
             let step = DVec3::new(
                 f64::from(step % 3),
@@ -165,11 +140,8 @@ impl Target<'_> {
             .unwrap_or(NOWHERE)
     }
 
-    /// Shoots rays from S, followed until `beyond` voxels behind the points that they are aimed at.
-    /// `slot` has the numbers of touched voxels. Shots are in the order of the aims.
-    ///
-    /// # Errors
-    /// Errors of reading the file of triangles.
+    /// Shoots rays from S, followed until `beyond` voxels behind the points that they are aimed at. `slot` has the
+    /// numbers of touched voxels.
     pub(super) fn shoot(
         &self,
         aims: &[Aim],
@@ -218,9 +190,7 @@ impl Target<'_> {
         Ok(())
     }
 
-    /// Notes where a ray ends.
     fn end(&self, shot: &mut Shot, query: &Query, meeting: &Meeting, slot: &[u32], beyond: f64) {
-        // The ray extends to the point and a little beyond it.
         let length = f64::from(query.most) / self.grid.voxel;
         shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
         shot.triangle = meeting.triangle;
@@ -229,7 +199,6 @@ impl Target<'_> {
         }
     }
 
-    /// How far back from a point of the grid along a direction S is, voxels.
     #[inline]
     fn back_to_surface(&self, point: Vec3, direction: Vec3) -> f32 {
         let (point, direction) = (Vec3A::from(point), Vec3A::from(direction));
@@ -242,7 +211,6 @@ impl Target<'_> {
             let outside = (at - cells).max(Vec3A::ZERO) + at.min(Vec3A::ZERO);
             let distance = outside.length();
             let slope = -outside.dot(direction) / distance;
-            // Beyond the grid there is a slope; not for a direction of zero length.
             if slope.is_nan() || slope <= 0.0 {
                 break;
             }

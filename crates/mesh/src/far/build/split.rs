@@ -1,38 +1,26 @@
-//! The hierarchy: triangles split in two by the surface area heuristic, again and again.
-//!
-//! A plane across one axis assigns each triangle to the side of the middle of its box. So every triangle is in one
-//! leaf, and the triangles of a node are a range. The plane is the best of those between 32 slices along each axis.
+//! The hierarchy: triangles split in two by the surface area heuristic, each to the side of a plane on which the middle
+//! of its box is. The plane is the best between 32 slices along each axis. A node's triangles are a range.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::Surface;
-
-/// Slices along an axis.
 const SLICES: usize = 32;
-/// Below this level triangles are halved by number, whatever the heuristic would choose.
-const MOST_LEVELS: u32 = 64;
-/// Triangles from which on two halves are split by two threads.
+pub(super) const MOST_LEVELS: u32 = 64;
 const PARALLEL: usize = 4096;
-/// Triangles up to which their boxes are held in memory.
 const WITH_BOXES: usize = 1 << 16;
 
-/// A node of the hierarchy.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Branch {
     pub(super) low: DVec3,
     pub(super) high: DVec3,
     pub(super) level: u32,
-    /// The first of its triangles, in the new order.
     pub(super) first: usize,
-    /// How many.
     pub(super) count: usize,
     /// The places of the children in the list, or `None` for a leaf.
     pub(super) children: Option<[usize; 2]>,
 }
 
-/// A triangle's box and number.
 #[derive(Debug, Clone, Copy)]
 struct Item {
     low: DVec3,
@@ -47,7 +35,6 @@ impl Item {
 }
 
 impl Branch {
-    /// Its triangles, in the new order.
     pub(super) fn triangles(&self) -> Range<usize> {
         self.first..self.first + self.count
     }
@@ -60,28 +47,29 @@ struct Tree {
     halves: Option<Box<[Tree; 2]>>,
 }
 
-/// Splits until a node has fewer triangles than `leaf_triangles` (or one).
-/// Gives the nodes, parents before children, and the triangles' numbers in
-/// their new order. The surface has triangles, and fewer than 2^32.
-pub(super) fn split(surface: &dyn Surface, leaf_triangles: usize) -> (Vec<Branch>, Vec<u32>) {
+/// Splits until a node has fewer triangles than `leaf_triangles` (or one). Gives the nodes, parents first, and the
+/// triangles' numbers in their new order. `count` is 1 to 2^32 - 1.
+pub(super) fn split(
+    count: usize,
+    corners: impl Fn(usize) -> [DVec3; 3] + Sync,
+    leaf_triangles: usize,
+) -> (Vec<Branch>, Vec<u32>) {
     let item_of = |&number: &u32| {
-        let [a, b, c] = surface.corners(number as usize);
+        let [a, b, c] = corners(number as usize);
         Item {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
             number,
         }
     };
-    // Fewer than 2^32.
-    let mut numbers: Vec<u32> = (0..surface.len() as u32).collect();
+    let mut numbers: Vec<u32> = (0..count as u32).collect();
     let tree = tree_of_numbers(&mut numbers, &item_of, leaf_triangles, 0);
     let mut branches = Vec::new();
     flatten(&tree, 0, 0, &mut branches);
     (branches, numbers)
 }
 
-/// As [`tree`], of triangles whose boxes are found again each time while there are many of them: so
-/// they take four bytes each.
+/// As [`tree`], of triangles whose boxes are found again each time while there are many: they take four bytes each.
 fn tree_of_numbers<F>(numbers: &mut [u32], item_of: &F, leaf_triangles: usize, level: u32) -> Tree
 where
     F: Fn(&u32) -> Item + Sync,
@@ -129,7 +117,6 @@ fn bounds<T>(items: &[T], item_of: impl Fn(&T) -> Item) -> (DVec3, DVec3) {
     })
 }
 
-/// The tree of items of which boxes are known; `below` makes those of the halves.
 fn tree<T, F, B>(items: &mut [T], item_of: &F, leaf_triangles: usize, level: u32, below: &B) -> Tree
 where
     T: Copy + Send,
@@ -193,7 +180,6 @@ impl Slice {
     }
 }
 
-/// Sorts the items to the two sides of the best plane; how many are on the first, at least 1.
 fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = items.iter().map(item_of).fold(start, |(low, high), item| {
@@ -234,7 +220,6 @@ fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
         }
     }
     let Some((_, axis, plane)) = best else {
-        // All middles are one point.
         return items.len() / 2;
     };
     // Stable, so that the order does not depend on how it is done.
@@ -245,10 +230,8 @@ fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
     near.len()
 }
 
-/// The slice of an axis in which the middle of a box lies, of middles in a box.
 fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
     let scale = SLICES as f64 / (high[axis] - low[axis]);
-    // Not negative; what is not a number counts as 0.
     let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
     slice.min(SLICES - 1)
 }
@@ -256,48 +239,10 @@ fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::{shape, triangle};
-
-    #[test]
-    fn every_triangle_is_in_one_leaf_of_fewer_than_the_limit() {
-        let row = shape(|builder| {
-            for x in (0..1000u16).map(f32::from) {
-                let corners = [[x, 0.0, 0.0], [x + 0.5, 0.0, 0.0], [x, 0.5, 0.0]];
-                triangle(builder, corners, 0);
-            }
-        });
-        let (branches, mut order) = split(&row, 10);
-        order.sort_unstable();
-        assert!(order.into_iter().eq(0..1000));
-        let mut next = 0;
-        for (number, branch) in branches.iter().enumerate() {
-            let Some(children) = branch.children else {
-                assert!((1..10).contains(&branch.count));
-                assert_eq!(branch.first, next);
-                next += branch.count;
-                continue;
-            };
-            assert!(branch.count >= 10);
-            let sum: usize = children.iter().map(|&c| branches[c].count).sum();
-            assert_eq!(sum, branch.count);
-            for child in children {
-                assert!(child > number);
-                let child = &branches[child];
-                assert!(child.low.cmpge(branch.low).all() && child.high.cmple(branch.high).all());
-                assert_eq!(child.level, branch.level + 1);
-            }
-        }
-        assert_eq!(next, 1000);
-    }
 
     #[test]
     fn equal_triangles_are_split_by_number() {
-        let pile = shape(|builder| {
-            for _ in 0..100 {
-                triangle(builder, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 0);
-            }
-        });
-        let (branches, _) = split(&pile, 2);
+        let (branches, _) = split(100, |_| [DVec3::ZERO, DVec3::X, DVec3::Y], 2);
         let leaves = branches.iter().filter(|b| b.children.is_none());
         assert_eq!(leaves.count(), 100);
     }

@@ -1,7 +1,7 @@
-//! Finished nodes in a file, in any order. They need no memory there, and an interrupted build can resume.
+//! Finished nodes in a file, in any order, from which an interrupted build resumes.
 //!
-//! The file begins with hashes of the mesh and the options. Then follow the nodes, each with its number, its record and
-//! its data. One that was not written whole is known by its checksums.
+//! The file begins with hashes of the mesh and the options. Then follow the nodes, each with its number, record, data
+//! and checksums.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -17,7 +17,6 @@ use crate::far::record::Node;
 /// How an unfinished file begins; the last byte is the version of the layout and of the build.
 const MAGIC: [u8; 8] = *b"\x89FARPRT\x01";
 
-/// The input of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Origin {
@@ -27,7 +26,6 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    /// That of a build.
     pub(super) fn of(surface: &dyn Surface, options: &BuildOptions) -> Self {
         let mut mesh = Xxh3::new();
         for number in 0..surface.len() {
@@ -45,15 +43,12 @@ impl Origin {
     }
 }
 
-/// The header of a node's data.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Head {
     number: u64,
-    /// Length of its data.
     bytes: u64,
     node: Node,
-    /// xxh3-64 of the above.
     checksum: u64,
 }
 
@@ -64,17 +59,13 @@ impl Head {
     }
 }
 
-/// A node that is finished.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Done {
     pub(super) node: Node,
-    /// Length of its data.
     pub(super) bytes: u64,
-    /// Where that is in the file.
     at: u64,
 }
 
-/// Finished nodes, in a file or in memory.
 #[derive(Debug)]
 pub(super) struct Spool<F> {
     file: F,
@@ -83,7 +74,6 @@ pub(super) struct Spool<F> {
 }
 
 impl<F: Read + Write + Seek> Spool<F> {
-    /// An empty one.
     pub(super) fn new(file: F) -> Self {
         Self {
             file,
@@ -92,17 +82,14 @@ impl<F: Read + Write + Seek> Spool<F> {
         }
     }
 
-    /// For so many nodes.
     pub(super) fn expect(&mut self, nodes: usize) {
         self.done.resize(nodes, None);
     }
 
-    /// Whether a node is finished.
     pub(super) fn is_done(&self, number: usize) -> bool {
         self.done.get(number).is_some_and(Option::is_some)
     }
 
-    /// Adds a node.
     pub(super) fn add(&mut self, number: usize, mut node: Node, data: &[u8]) -> io::Result<()> {
         node.checksum = xxh3_64(data);
         let mut head = Head {
@@ -129,12 +116,10 @@ impl<F: Read + Write + Seek> Spool<F> {
         self.end = at + head.bytes;
     }
 
-    /// The finished nodes, in order.
     pub(super) fn nodes(&self) -> impl Iterator<Item = Done> {
         self.done.iter().flatten().copied()
     }
 
-    /// Writes their data, in order.
     pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
         for done in self.done.iter().flatten() {
             self.file.seek(SeekFrom::Start(done.at))?;
@@ -144,7 +129,6 @@ impl<F: Read + Write + Seek> Spool<F> {
     }
 }
 
-/// An unfinished file, locked while it is open.
 pub(super) fn open_part(path: &Path, origin: &Origin) -> Result<Spool<File>, BuildError> {
     let failed = |problem: String| BuildError::File {
         file: path.to_owned(),
@@ -192,7 +176,6 @@ pub(super) fn open_part(path: &Path, origin: &Origin) -> Result<Spool<File>, Bui
 }
 
 impl Spool<File> {
-    /// Finds the nodes that were finished, of so many; what is behind them is cut off.
     pub(super) fn resume(&mut self, nodes: usize) -> io::Result<()> {
         self.expect(nodes);
         let length = self.file.metadata()?.len();

@@ -1,7 +1,7 @@
 //! The hybrid: parts wider than a voxel stay a decimated surface, and thinner parts become voxels.
 //!
-//! For each inner node several candidates are made of its triangles, and compared (`compare.rs`). Shared corners stay
-//! in place, so that any two neighbouring nodes join without a gap, whatever their levels.
+//! Of several candidates for each inner node, `compare.rs` chooses. Shared corners stay in place, so that neighbouring
+//! nodes of any levels join without a gap.
 
 use std::ops::Range;
 
@@ -21,19 +21,17 @@ use shiftvox::graph::PackedNormal;
 
 /// Parts narrower than so many voxels of a node are thin.
 const THIN: f64 = 2.0;
-/// How far triangles may be from the mesh, in voxels of the node.
+/// In voxels of the node.
 const ERROR: f64 = 0.3;
 /// Shares of this error to which finer candidates are decimated; thin parts to the last.
 const FINER: f64 = 1.0 / 3.0;
 const FINEST: f64 = 0.1;
-/// Bytes of the smallest voxel's record.
 const LEAST_VOXEL_BYTES: f64 = 12.0;
-/// A finer candidate takes at most so many times the least bytes that voxels of the same could.
+/// A finer candidate takes at most so many times the least bytes of voxels.
 const MOST_BYTES: f64 = 4.0;
-/// Nodes of more triangles have voxels alone: what decimating takes of memory is kept to.
+/// Larger nodes have voxels alone: decimating takes memory.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
-/// The input of the nodes' surfaces.
 pub(super) struct Surfaces<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -66,15 +64,14 @@ impl<'s> Surfaces<'s> {
         }
     }
 
-    /// Bytes of a leaf.
     pub(super) fn leaf(&self, node: &mut Node, own: Range<usize>) -> Vec<u8> {
         let triangles = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
         let bytes = surface::lay_out(node, &triangles, |p| self.parts.shared(&own, p).is_some());
         pack(&Default::default(), &bytes)
     }
 
-    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles: it
-    /// sets what the node says of them, and gives their records.
+    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles and describes them in
+    /// the node.
     pub(super) fn inner(
         &self,
         node: &Node,
@@ -120,7 +117,6 @@ impl<'s> Surfaces<'s> {
             let _ = surface::lay_out(&mut counted, &candidate.triangles, |_| false);
             counted.drawn_bytes() as f64
         };
-        // There is a voxel at the least for each square of a voxel's face.
         let least_of = |is_taken: &dyn Fn(usize) -> bool| {
             let taken = own.clone().filter(|&place| is_taken(place));
             let area: f64 = taken.map(|place| self.area(place)).sum();
@@ -130,7 +126,6 @@ impl<'s> Surfaces<'s> {
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
             let all = decimated(&|place| is_seen(place, error), error)?;
             let all = surface(all);
-            // A candidate that takes many times the bytes of voxels is not worth it, even if it is near.
             if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
                 candidates.push(all);
             }
@@ -159,7 +154,6 @@ impl<'s> Surfaces<'s> {
         area(self.surface.corners(self.order[place] as usize))
     }
 
-    /// Some of a node's triangles, decimated to within an error, world units.
     fn decimated(
         &self,
         own: &Range<usize>,
@@ -187,8 +181,7 @@ impl<'s> Surfaces<'s> {
     }
 }
 
-/// Triangles as a mesh, of colours at their corners; or, of triangles of textures, of one colour
-/// each, which are blended between those of one material.
+/// Triangles with colours at their corners; or, of textures, with one colour each, blended within a material.
 fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
     let is_tinted = tinted.is_some();
     let mut mesh = Mesh {

@@ -1,27 +1,20 @@
-//! How much of a file's data is in memory, unpacked, and what goes when it is too much.
-//!
-//! Nodes are let go of in the order of a clock: round and round, one that was used since the hand last passed is spared
-//! once. Released nodes are read from the file again when they are next drawn, so a budget costs time and changes
-//! nothing else.
+//! Keeps unpacked data of nodes to a budget, by the clock algorithm: a node that was used since the hand last passed is
+//! spared once. Released nodes are read again when they are next drawn.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Keeps to a budget.
 #[derive(Debug)]
 pub(super) struct Budget {
     most: u64,
-    /// Nodes whose data is in memory.
     is_here: Vec<AtomicBool>,
-    /// Those of them that were used since the hand passed.
     was_used: Vec<AtomicBool>,
     clock: Mutex<Clock>,
 }
 
 #[derive(Debug, Default)]
 struct Clock {
-    /// Nodes whose data is in memory, from the hand on, and its bytes.
     here: VecDeque<(usize, u64)>,
     bytes: u64,
     most_bytes: u64,
@@ -50,14 +43,12 @@ impl Budget {
         }
     }
 
-    /// Notes that so many bytes of a node's data are examined, and lets go of others
-    /// until they fit; a node larger than the budget is alone in memory.
+    /// A node of so many bytes is used; releases others until it fits or is alone.
     pub(super) fn touch(&self, node: usize, bytes: u64, release: impl Fn(usize)) {
         self.was_used[node].store(true, Ordering::Relaxed);
         if self.is_here[node].load(Ordering::Relaxed) {
             return;
         }
-        // Counts stay sound whoever panicked.
         let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
         if self.is_here[node].swap(true, Ordering::Relaxed) {
             return;

@@ -28,7 +28,6 @@ pub(super) fn check(
             return fault(i, range);
         }
         before = node.data_at;
-        // Seven counts of 32 bits, of fewer than 2^32 nodes: no overflow.
         numbered += node.voxels() + u64::from(node.surface);
         if !has_parent[i] {
             return fault(i, "a parent before it".to_owned());
@@ -116,7 +115,6 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
 fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {
     let node = &nodes[number];
     let [near, far] = node.children.map(|child| child as usize);
-    // The only child of a coarser node has no sibling.
     let is_alone = far == 0;
     if near != number + 1 || near >= nodes.len() || !is_alone && (far <= near || far >= nodes.len())
     {

@@ -13,8 +13,7 @@ pub struct NodeData {
 }
 
 impl NodeData {
-    /// Of what was unpacked; `None` if a voxel is not within the grid or a triangle not within the
-    /// box.
+    /// `None` if a voxel is not within the grid or a triangle not within the box.
     pub(super) fn of(node: &Node, records: Vec<u8>, triangles: Vec<LeafTriangle>) -> Option<Self> {
         let data = Self {
             counts: node.counts,
@@ -47,13 +46,11 @@ impl NodeData {
         &self.triangles
     }
 
-    /// Bytes that it takes in memory.
     pub(super) fn bytes(&self) -> u64 {
         (self.records.len() + size_of_val(&self.triangles[..])) as u64
     }
 }
 
-/// Where the data of a node is kept once it was unpacked.
 #[derive(Debug, Default)]
 pub(super) struct Slot(Mutex<Option<Arc<NodeData>>>);
 

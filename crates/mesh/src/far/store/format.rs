@@ -12,20 +12,16 @@ use crate::far::FarData;
 use crate::far::record::{NODE_BYTES, Node};
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
 
-/// How files begin.
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
-    // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89FAR\r\n\x1a\n",
     version: 6,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
 
-/// Where [`Fields`] begin in the header.
 pub(super) const FIELDS: usize = 24;
 
-/// The fields of the header, beside those of every header.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Fields {
@@ -47,7 +43,6 @@ pub(super) struct Fields {
 /// Opacities are blended by cosines, normals and materials by their squares.
 pub(super) const BLENDS: [u8; 2] = [1, 0];
 
-/// Begin and end of the sections of nodes and data, bytes, of so many nodes and bytes of data. Saturates.
 pub(super) fn layout(nodes: u64, data_bytes: u64) -> [[u64; 2]; 2] {
     let nodes = section_after(HEADER_BYTES as u64, nodes, NODE_BYTES);
     [nodes, section_after(nodes[1], data_bytes, 1)]
@@ -63,7 +58,6 @@ pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
     })
 }
 
-/// As [`write_to`], with the nodes' data from elsewhere: `copy` writes so many bytes of it.
 pub(in crate::far) fn write_parts(
     data: &FarData,
     data_bytes: u64,

@@ -1,8 +1,7 @@
 //! The `.far` file: hierarchy and data apart, mapped and used in place.
 //!
-//! Opening a file reads header and hierarchy and checks every field of both. The data of a node is unpacked and checked
-//! when it is first needed, against its checksum and the node's box. So only drawn nodes are read. [`FarFile::verify`]
-//! reads all. [`FarFile::open_within`] keeps what is in memory of them to a budget.
+//! Opening a file checks every field of header and hierarchy. A node's data is unpacked and checked when it is first
+//! needed; [`FarFile::verify`] reads all.
 
 mod budget;
 mod check;

@@ -1,7 +1,5 @@
-//! A node's data as it is stored: deflated.
-//!
-//! Records of voxels are laid out byte by byte first: the first bytes of all records of a list, then the second ones,
-//! and so on. Neighbouring bytes are similar in each. The surface follows (`surface.rs`).
+//! A node's data as it is stored: the first bytes of all voxels of a list, then the second ones, and so on, then the
+//! surface (`surface.rs`); deflated.
 
 use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, compress_to_output, create_comp_flags_from_zip_params,
@@ -11,15 +9,11 @@ use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use super::surface;
 use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
-/// The compression level, 0 to 10: the usual default.
 const EFFORT: i32 = 6;
-/// Bytes after which the end of a column ends a block of the deflated data, too. Each block has codes of its own, and
-/// columns differ: places run on, normals are noise. Shorter blocks would cost more than their codes save.
+/// Bytes after which the end of a column ends a deflated block, too: columns differ, and each block has its own codes.
 const LEAST_BLOCK: usize = 2048;
 
-/// Packs the records of voxels, list by list, and the bytes of a surface.
 pub(in crate::far) fn pack(lists: &[Vec<u8>; 6], surface: &[u8]) -> Vec<u8> {
-    // A negative window: without zlib's header.
     let flags = create_comp_flags_from_zip_params(EFFORT, -15, 0);
     let mut compressor = Box::new(CompressorOxide::new(flags));
     let mut packed = Vec::new();
@@ -44,7 +38,6 @@ pub(in crate::far) fn pack(lists: &[Vec<u8>; 6], surface: &[u8]) -> Vec<u8> {
     packed
 }
 
-/// Unpacks records of voxels and triangles; `None` where it is not they that were packed.
 pub(super) fn unpack(packed: &[u8], node: &Node) -> Option<(Vec<u8>, Vec<LeafTriangle>)> {
     let lists = [0, 1, 2, 3, 4, 5];
     let lengths = lists.map(|list| node.counts[list] as usize * RECORD_BYTES[list]);
@@ -68,7 +61,6 @@ pub(super) fn unpack(packed: &[u8], node: &Node) -> Option<(Vec<u8>, Vec<LeafTri
 }
 
 fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
-    // It grows with the data, so a wrong length takes no memory.
     let bytes = decompress_to_vec_with_limit(packed, length).ok()?;
     (bytes.len() == length).then_some(bytes)
 }
@@ -77,42 +69,8 @@ fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
-    /// Voxels of each list: none, less than a block of deflated data, and more.
-    const COUNTS: [u32; 6] = [0, 7, 700, 21, 2800, 35];
-
-    fn node(counts: [u32; 6]) -> Node {
-        Node {
-            low: [-1.0, 0.0, 0.0],
-            high: [3.0, 1.0, 0.0],
-            counts,
-            ..bytemuck::Zeroable::zeroed()
-        }
-    }
-
-    #[test]
-    fn data_comes_back_and_wrong_lengths_are_refused() {
-        let lists: [Vec<u8>; 6] = std::array::from_fn(|list| {
-            let bytes = RECORD_BYTES[list] * COUNTS[list] as usize;
-            (0..bytes).map(|at| (at * at / 5) as u8).collect()
-        });
-        let packed = pack(&lists, &[]);
-        let records = |packed: &[u8], counts| unpack(packed, &node(counts)).map(|found| found.0);
-        assert_eq!(records(&packed, COUNTS), Some(lists.concat()));
-        for list in [0, 5] {
-            let mut counts = COUNTS;
-            counts[list] ^= 1;
-            assert_eq!(records(&packed, counts), None);
-        }
-        assert_eq!(records(&packed[1..], COUNTS), None);
-        let empty = unpack(&pack(&Default::default(), &[]), &node([0; 6]));
-        assert_eq!(empty, Some((Vec::new(), Vec::new())));
-    }
-
-    /// Shared vertices come back exactly, others within half a step of the box, with few or many colours, and with or
-    /// without normals.
     #[test]
     fn surfaces_come_back() {
-        // Triangles, their colours, the colours in the node's table, and whether normals are those of the planes.
         for (count, colors, in_table, is_flat) in [
             (1u32, 1u32, 1, false),
             (400, 7, 7, true),
@@ -138,7 +96,11 @@ mod tests {
             };
             let triangles: Vec<LeafTriangle> = (0..count).map(triangle).collect();
             let is_shared = |p: [f32; 3]| p[0] > 0.5;
-            let mut node = node([0; 6]);
+            let mut node = Node {
+                low: [-1.0, 0.0, 0.0],
+                high: [3.0, 1.0, 0.0],
+                ..bytemuck::Zeroable::zeroed()
+            };
             let bytes = surface::lay_out(&mut node, &triangles, is_shared);
             assert_eq!(bytes.len() as u64, node.surface_bytes());
             assert_eq!(node.colors, in_table);

@@ -21,7 +21,7 @@ use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use shiftvox::graph::map::release;
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
-/// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
+/// Linux's `fault_around_bytes`.
 const BROUGHT_IN: u64 = 64 << 10;
 
 /// An open `.far` file.
@@ -31,16 +31,11 @@ pub struct FarFile {
     pub settings: FarSettings,
     path: PathBuf,
     bytes: Bytes,
-    /// The section of the nodes' data.
     section: [u64; 2],
     nodes: Vec<Node>,
-    /// Number of each node's first voxel, over all nodes.
     first_voxel: Vec<u32>,
-    /// Number of the first triangle that each node draws, over all nodes.
     first_triangle: Vec<u32>,
-    /// Each node's data, once it was needed.
     data: Vec<Slot>,
-    /// The memory budget of the data, if there is one.
     budget: Option<Budget>,
 }
 
@@ -48,8 +43,7 @@ impl FarFile {
     /// Opens a file: maps it and checks header and hierarchy.
     ///
     /// # Errors
-    /// When it cannot be read, is something else, is truncated, or a field of header or
-    /// hierarchy is not as it should be.
+    /// When it cannot be read, or a field of header or hierarchy is not as it should be.
     pub fn open(path: &Path) -> Result<Self, FarError> {
         let refused = |refused| FarError::refused(path, refused);
         let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
@@ -57,9 +51,8 @@ impl FarFile {
         Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
-    /// Opens a file of which at most so many bytes of nodes' data are in memory, unpacked,
-    /// at a time (a node that is larger is there alone). Header and hierarchy,
-    /// pictures and what nodes are in use at the moment come on top.
+    /// Opens a file of which at most so many bytes of nodes' data are in memory, unpacked, at a time (a larger node is
+    /// there alone), beside header, hierarchy and pictures.
     ///
     /// # Errors
     /// As [`FarFile::open`]; and where the system cannot let go of mapped pages.
@@ -115,7 +108,6 @@ impl FarFile {
                 format!("node {node} to have {expected}"),
             )
         })?;
-        // Checked: there is a root, and fewer than 2^32 of all.
         let file = Self {
             settings: FarSettings {
                 centre: DVec3::from_array(header.centre),
@@ -179,12 +171,10 @@ impl FarFile {
         MeshBox::new(span, self.settings.bevels, self.settings.y_up)
     }
 
-    /// Number of a node's first voxel, over all nodes.
     pub(in crate::far) fn first_voxel(&self, node: usize) -> u32 {
         self.first_voxel[node]
     }
 
-    /// Number of the first triangle that a node draws, over all nodes.
     pub(in crate::far) fn first_triangle(&self, node: usize) -> u32 {
         self.first_triangle[node]
     }
@@ -192,7 +182,6 @@ impl FarFile {
     /// Voxels of all nodes.
     pub fn voxels(&self) -> u32 {
         let last = self.nodes.len() - 1;
-        // Checked: fewer than 2^32 of all.
         self.first_voxel[last] + self.nodes[last].voxels() as u32
     }
 
@@ -224,14 +213,12 @@ impl FarFile {
         (0..self.nodes.len()).try_for_each(|node| self.data(node).map(drop))
     }
 
-    /// Where a node's data is in the file.
     fn place_of(&self, number: usize) -> [u64; 2] {
         let [first, last] = self.section;
         let end = self.nodes.get(number + 1).map(|next| first + next.data_at);
         [first + self.nodes[number].data_at, end.unwrap_or(last)]
     }
 
-    /// Reads a node's data, and checks it.
     fn unpacked(&self, number: usize) -> Result<NodeData, FarError> {
         let node = &self.nodes[number];
         let place = self.place_of(number);
@@ -246,7 +233,6 @@ impl FarFile {
         if let (Some(_), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
             let begin = place[0] / BROUGHT_IN * BROUGHT_IN;
             let end = place[1].next_multiple_of(BROUGHT_IN).min(self.len());
-            // It did at the beginning; a page more in memory does no harm.
             let _ = release(map, begin as usize, (end - begin) as usize);
         }
         let expected = "voxels within the grid and triangles within the box of node";
@@ -265,10 +251,8 @@ fn first_of(nodes: &[Node], items: impl Fn(&Node) -> u32) -> Vec<u32> {
     nodes.iter().map(first).collect()
 }
 
-/// Where the centre is in the header.
 const CENTRE: u64 = (FIELDS + offset_of!(Fields, centre)) as u64;
 
-/// Reads and checks a header from the beginning of a file of `file_bytes`.
 fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, FarError> {
     let header = FORMAT.read(beginning, file_bytes, path)?;
     let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);

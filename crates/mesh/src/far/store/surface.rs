@@ -1,9 +1,8 @@
-//! Triangles of a node as they are stored: vertices, and three numbers of them a triangle.
+//! Triangles of a node as they are stored: vertices, and three numbers of them per triangle.
 //!
-//! A vertex of one node is stored in steps of 1/65,535 of the node's box. A shared vertex is stored in single
-//! precision, so that all nodes have it in the same place and no gap opens between them. Vertices are numbered as
-//! triangles name them first, in two lists. A triangle names a vertex by how far back in its list it is: 0 is the next
-//! one.
+//! A vertex of one node is stored in steps of 1/65,535 of the node's box, a shared one in single precision, so that no
+//! gap opens between nodes. There is a list of each. A triangle names a vertex by how far back in its list it is: 0 is
+//! the next.
 
 use std::collections::HashMap;
 
@@ -15,10 +14,8 @@ use crate::far::record::{
 use crate::geometry::{plane_normal, point};
 use shiftvox::graph::PackedNormal;
 
-/// Steps of a box along each axis.
 const STEPS: f64 = 65535.0;
 
-/// Where vertices of one node may be.
 struct Lattice {
     low: DVec3,
     high: Vec3,
@@ -38,7 +35,6 @@ impl Lattice {
     fn nearest(&self, position: [f32; 3]) -> [u16; 3] {
         let at = point(position) - self.low;
         [0, 1, 2].map(|k| match self.step[k] > 0.0 {
-            // Within the box: 0 to 65,535.
             true => (at[k] / self.step[k] + 0.5) as u16,
             false => 0,
         })
@@ -47,21 +43,18 @@ impl Lattice {
     fn point(&self, place: [u16; 3]) -> [f32; 3] {
         let steps = point(place);
         let point = (self.low + steps * self.step).as_vec3();
-        // Rounding must not leave the box.
         point.max(self.low.as_vec3()).min(self.high).to_array()
     }
 }
 
-/// The packed normal of a triangle's plane.
 pub(in crate::far) fn flat_normal(corners: &[[f32; 3]; 3]) -> u16 {
     PackedNormal::encode(plane_normal(corners.map(point))).0
 }
 
-/// The identity of a vertex: place, normal, colour.
 type Key = ([u32; 3], u16, [u8; 3]);
 
-/// Lays out a surface, sets the node's counts, and gives its bytes. The node has its box, in which
-/// all triangles lie. Normals are left out where all are those of the triangles' planes.
+/// Lays out a surface, sets the node's counts, and gives its bytes. The node has its box. Normals are left out where
+/// all are those of the triangles' planes.
 pub(in crate::far) fn lay_out(
     node: &mut Node,
     triangles: &[LeafTriangle],
@@ -71,7 +64,6 @@ pub(in crate::far) fn lay_out(
     let is_flat = triangles.iter().all(is_flat);
     let lattice = Lattice::of(node);
     let mut numbers: [HashMap<Key, u32>; 2] = Default::default();
-    // Place, normal and colour of each vertex, list by list.
     let mut vertices: [Vec<Key>; 2] = Default::default();
     let mut codes: Vec<u32> = Vec::with_capacity(3 * triangles.len());
     for triangle in triangles {
@@ -85,7 +77,6 @@ pub(in crate::far) fn lay_out(
             let normal = if is_flat { 0 } else { triangle.normals[k] };
             let key = (place, normal, triangle.colors[k]);
             let list = &mut vertices[usize::from(shared)];
-            // Fewer than 2^31: the builder refuses more triangles in a node.
             let next = list.len() as u32;
             let number = *numbers[usize::from(shared)].entry(key).or_insert(next);
             if number == next {
@@ -137,14 +128,12 @@ pub(in crate::far) fn lay_out(
     bytes
 }
 
-/// The first bytes of all items, then the second ones, and so on.
 fn planes<T>(out: &mut Vec<u8>, items: &[T], bytes: usize, byte_of: impl Fn(&T, usize) -> u8) {
     for byte in 0..bytes {
         out.extend(items.iter().map(|item| byte_of(item, byte)));
     }
 }
 
-/// Takes items of so many bytes from the front, each put together again.
 fn take<const N: usize>(bytes: &mut &[u8], count: usize, width: usize) -> Vec<[u8; N]> {
     let (own, rest) = bytes.split_at(count * width);
     *bytes = rest;
@@ -157,8 +146,7 @@ fn take<const N: usize>(bytes: &mut &[u8], count: usize, width: usize) -> Vec<[u
     items
 }
 
-/// The triangles of a node, of as many bytes as it says; `None` where they are not what was laid
-/// out.
+/// The triangles of a node, of as many bytes as it says; `None` where they were not laid out so.
 pub(super) fn read(node: &Node, mut bytes: &[u8]) -> Option<Vec<LeafTriangle>> {
     let columns = SurfaceColumns::of(node);
     let [own, shared] = node.vertices.map(|count| count as usize);
@@ -215,6 +203,5 @@ pub(super) fn read(node: &Node, mut bytes: &[u8]) -> Option<Vec<LeafTriangle>> {
         }
         triangles.push(triangle);
     }
-    // All vertices are named.
     (next == [own, shared]).then_some(triangles)
 }

@@ -6,13 +6,13 @@ use super::FarCounts;
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
 
-/// A node of the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Chosen {
     pub(super) number: usize,
+    /// Its voxels and triangles are drawn; else its children are, and the outline holds all that is below.
+    pub(super) is_drawn: bool,
     /// Distance of the eye from its box, world units.
     pub(super) distance: f64,
-    /// Distance of the eye from the middle of its box, world units.
     pub(super) middle: f64,
     pub(super) outline: Outline,
 }
@@ -20,17 +20,13 @@ pub(super) struct Chosen {
 /// Where in the picture a node may show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outline {
-    /// The first and the last pixel, right and down, also outside the picture. `None` if the box reaches behind the
-    /// eye.
+    /// The first and the last pixel, also outside the picture. `None` if the box reaches behind the eye.
     pub(super) pixels: Option<[[f64; 2]; 2]>,
-    /// Depth of its nearest point.
     pub(super) depth: f64,
-    /// Depth of its farthest point.
     pub(super) farthest: f64,
 }
 
 impl Outline {
-    /// Of a box, and everything within `margin` of it.
     fn of(view: &RasterCamera, low: DVec3, high: DVec3, margin: f64) -> Self {
         let (low, high) = (low - DVec3::splat(margin), high + DVec3::splat(margin));
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
@@ -54,7 +50,6 @@ impl Outline {
                 }
             }
         }
-        // A pixel more, since a voxel covers one at least.
         let pixels = [
             bounds[0].map(|c| (c - 1.5).floor()),
             bounds[1].map(|c| (c + 1.5).ceil()),
@@ -79,38 +74,19 @@ impl Outline {
     }
 }
 
-/// A node in the picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum CutNode {
-    /// It is drawn: its voxels and its triangles.
-    Drawn(Chosen),
-    /// Its children are. The outline holds all that is below.
-    Branch(Chosen),
-}
-
-impl CutNode {
-    pub(super) fn chosen(&self) -> &Chosen {
-        let (Self::Drawn(chosen) | Self::Branch(chosen)) = self;
-        chosen
-    }
-}
-
-/// Where the voxels below a node may reach beyond its own box, in voxels of its size.
 const BRANCH_MARGIN: f64 = 2.0;
 
-/// Decides of each node whether it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
     pub(super) view: RasterCamera,
-    /// The file.
     pub(super) cut_of: RasterCamera,
     pub(super) voxel_px: f64,
 }
 
 impl Cut<'_> {
     /// Classifies a node; `None` if it is beside or behind the picture.
-    pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
+    pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<Chosen> {
         counts.visited += 1;
         let node = &self.file.nodes()[number];
         let centre = self.file.settings.centre;
@@ -120,15 +96,13 @@ impl Cut<'_> {
         let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
         let from = distance_from(self.cut_of.eye);
         let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
-        // Nearer, things that were taken to hide it may be behind the eye; but there is nothing
-        // behind an eye outside the box of everything.
+        // Nearer, things that hide it may be behind the eye, unless the eye is outside the box of everything.
         let is_far = from >= self.file.settings.distance_voxels * voxel || self.is_outside_all();
         let is_drawn = node.is_leaf() || node.has_grid() && is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
             voxel
         } else {
-            // Those of nodes without a grid as those that it would have.
             let least = (high - low).max_element() / f64::from(self.file.settings.grid - 1);
             BRANCH_MARGIN * voxel.max(least)
         };
@@ -137,35 +111,29 @@ impl Cut<'_> {
             counts.outside += 1;
             return None;
         }
-        let chosen = Chosen {
+        Some(Chosen {
             number,
+            is_drawn,
             distance: distance_from(self.view.eye),
             middle: ((low + high) / 2.0 - self.view.eye).length(),
             outline,
-        };
-        Some(if is_drawn {
-            CutNode::Drawn(chosen)
-        } else {
-            CutNode::Branch(chosen)
         })
     }
 
-    /// Whether the eye whose cut it is lies outside the box of all triangles.
     fn is_outside_all(&self) -> bool {
         let (low, high) = self.file.bounds();
         let eye = self.cut_of.eye;
         eye.cmplt(low).any() || eye.cmpgt(high).any()
     }
 
-    /// All nodes that are drawn, hidden or not.
     pub(super) fn all(&self, counts: &mut FarCounts) -> Vec<Chosen> {
         let mut drawn = Vec::new();
         let mut waiting = vec![0];
         while let Some(number) = waiting.pop() {
             match self.classify(number, counts) {
                 None => {}
-                Some(CutNode::Drawn(chosen)) => drawn.push(chosen),
-                Some(CutNode::Branch(_)) => waiting.extend(self.children(number)),
+                Some(chosen) if chosen.is_drawn => drawn.push(chosen),
+                Some(_) => waiting.extend(self.children(number)),
             }
         }
         drawn
@@ -173,17 +141,5 @@ impl Cut<'_> {
 
     pub(super) fn children(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
         self.file.nodes()[number].below()
-    }
-}
-
-#[cfg(test)]
-impl Outline {
-    /// Of what may be anywhere.
-    pub(super) fn anywhere() -> Self {
-        Self {
-            pixels: None,
-            depth: 0.0,
-            farthest: 0.0,
-        }
     }
 }

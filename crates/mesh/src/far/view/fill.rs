@@ -3,7 +3,6 @@
 use super::cut::Outline;
 use crate::raster::RasterCamera;
 
-/// The most squares along a side that a query reads.
 const SQUARES: usize = 4;
 /// Depths are rounded to single precision: what is nearer by less counts as visible.
 const MARGIN: f64 = 1e-5;
@@ -14,8 +13,6 @@ struct Level {
     depth: Vec<f32>,
 }
 
-/// The greatest depth of pixels, of 2 by 2 of them, of 4 by 4, and so on.
-/// Infinite where anything is empty.
 pub(super) struct Fill {
     levels: Vec<Level>,
 }
@@ -48,7 +45,7 @@ impl Fill {
         Self { levels }
     }
 
-    /// Whether everything in an outline is behind what is drawn. False where that is not certain.
+    /// False where that is not certain.
     pub(super) fn hides(&self, view: &RasterCamera, outline: &Outline) -> bool {
         let Some([low, high]) = outline.pixels else {
             return false;
@@ -68,41 +65,5 @@ impl Fill {
             (x0 >> level..=x1 >> level)
                 .all(|x| f64::from(squares.depth[y * squares.width + x]) < nearest)
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::shared::looking;
-    use glam::DVec3;
-
-    #[test]
-    fn only_boxes_behind_everything_are_hidden() {
-        let view = looking(DVec3::ZERO, DVec3::Z, [37, 21], 20.0);
-        let mut depth = vec![5.0f32; 37 * 21];
-        depth[10 * 37 + 30] = f32::INFINITY;
-        let fill = Fill::of(&depth, &view);
-        // Left, top, side and depth of a box.
-        for (x, y, side, depth, is_hidden) in [
-            (3.0, 3.0, 9.0, 6.0, true),
-            (3.0, 3.0, 9.0, 4.0, false),
-            (3.0, 3.0, 9.0, 5.0, false),
-            (28.0, 8.0, 4.0, 6.0, false),
-            (31.0, 10.0, 0.0, 6.0, true),
-            (0.0, 0.0, 40.0, 6.0, false),
-        ] {
-            let outline = Outline {
-                pixels: Some([[x, y], [x + side, y + side]]),
-                depth,
-                ..Outline::anywhere()
-            };
-            assert_eq!(
-                fill.hides(&view, &outline),
-                is_hidden,
-                "{x} {y} {side} {depth}"
-            );
-        }
-        assert!(!fill.hides(&view, &Outline::anywhere()));
     }
 }

@@ -1,10 +1,10 @@
 //! Far voxels to a picture.
 //!
 //! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
-//! 2. Opaque voxels and triangles, front to back, into one word per pixel with the depth above and the number below. The
-//!    least word counts. So the result is independent of the order of drawing, of threads and of culling.
-//! 3. `visible`, with the depth pyramid of `fill`: branches of the hierarchy behind it are culled.
-//! 4. The winners' colours, then transparent voxels over them, back to front.
+//! 2. Opaque voxels and triangles into one word per pixel, depth above and number below. The least counts, so that the
+//!    result is independent of order, threads and culling.
+//! 3. `visible`, with the depth pyramid of `fill`: hidden branches of the hierarchy are culled.
+//! 4. The winners' colours, then transparent voxels over them.
 //! 5. With several samples per pixel all this happens per sample, and `samples` averages them.
 
 mod cut;
@@ -30,8 +30,7 @@ use visible::{VisibilityHistory, VisibleNodes};
 pub struct ViewOptions {
     /// Largest projected side of a voxel, pixels, above 0.
     pub voxel_px: f64,
-    /// Samples of a pixel along each axis, 1 to 16: the picture is drawn so many
-    /// times as large, with the same nodes, and averaged.
+    /// Samples of a pixel along each axis, 1 to 16.
     pub samples_across: u32,
     /// The opacities that are used.
     pub opacity: Opacity,
@@ -91,8 +90,8 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth of the opaque parts, world units, at the sample right of and below the pixel's middle, or at the
-    /// middle with one sample. Infinite where nothing is opaque.
+    /// View-axis depth of the opaque parts, world units, at the sample right of and below the pixel's middle; or
+    /// infinite.
     pub depth: Vec<f32>,
     /// The node that is opaque at that sample, or -1.
     pub node: Vec<i32>,
@@ -119,8 +118,7 @@ pub struct FarCounts {
     pub transparent_voxels: u64,
     /// Triangles given to the rasteriser.
     pub triangles: u64,
-    /// Whether two triangles of different batches were equally deep somewhere
-    /// and the frame was drawn again in one.
+    /// Whether two triangles of different batches were equally deep and the frame was drawn again in one.
     pub drawn_twice: u64,
     /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
@@ -142,8 +140,7 @@ impl<'f> FarViewer<'f> {
         }
     }
 
-    /// Takes these nodes for those that were visible in the last frame, by
-    /// their numbers; others were hidden. May be wrong: the picture is the same.
+    /// Takes these nodes, by number, for those that were visible in the last frame. Never changes the picture.
     pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
         self.memory.set(is_visible);
     }
@@ -160,8 +157,7 @@ impl<'f> FarViewer<'f> {
         self.draw_with_cut_of(view, view, options)
     }
 
-    /// Draws a frame with the nodes that would be drawn from elsewhere: what of
-    /// a change between frames is the hierarchy's.
+    /// Draws a frame with the nodes that would be drawn from elsewhere.
     ///
     /// # Errors
     /// See [`ViewError`].
@@ -242,12 +238,10 @@ impl<'f> FarViewer<'f> {
     }
 }
 
-/// Linear light, premultiplied, and coverage.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Pixel {
     light: [f32; 3],
     coverage: f32,
-    /// Depth of the opaque parts, or infinite.
     depth: f32,
 }
 
@@ -268,7 +262,6 @@ impl Pixel {
             }
             None => {
                 let [r, g, b] = bytes(light.map(|l| l / coverage));
-                // 0 to 255.
                 [r, g, b, (coverage * 255.0 + 0.5) as u8]
             }
         }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cut::Chosen;
-use super::splat::{Places, Square};
+use super::splat::Places;
 use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
@@ -18,20 +18,16 @@ use crate::raster::{
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
-/// Nothing: as deep as can be, and no number.
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
 
-/// Pixels that a thread resolves at a time.
 const RESOLVED: usize = 1 << 12;
 
-/// The buffer: for each pixel depth (bits of a positive `f32`, which order as
-/// numbers do) and number of the nearest voxel or triangle.
+/// For each pixel depth (bits of a positive `f32`) and number of the nearest voxel or triangle.
 pub(super) struct Opaque<'f> {
     file: &'f FarFile,
     view: RasterCamera,
     options: ViewOptions,
     words: Vec<AtomicU64>,
-    /// Pictures of the batches' triangles, with the numbers of these.
     pictures: Vec<(RasterPicture, Vec<u32>)>,
     has_tie: bool,
 }
@@ -54,8 +50,7 @@ impl<'f> Opaque<'f> {
         })
     }
 
-    /// Draws what is opaque of some nodes. In any order and any batches the result is the same,
-    /// unless [`Opaque::has_tie`].
+    /// Draws what is opaque of some nodes, in any order and batches, unless [`Opaque::has_tie`].
     pub(super) fn draw<N: Borrow<Chosen> + Sync>(
         &mut self,
         nodes: impl IntoIterator<Item = N>,
@@ -67,7 +62,6 @@ impl<'f> Opaque<'f> {
             .map(|node| self.voxels(node.number))
             .collect::<Result<Vec<u64>, ViewError>>()?;
         counts.opaque_voxels += drawn.iter().sum::<u64>();
-        // The file's order, whatever is nearer.
         let with_surface = nodes.iter().map(|node| node.number);
         let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
         let mut with_surface: Vec<usize> = with_surface.filter(has_surface).collect();
@@ -96,7 +90,11 @@ impl<'f> Opaque<'f> {
                 let Some(square) = places.square(&self.view, record) else {
                     continue;
                 };
-                if !is_opaque && !is_opaque_from(list, record, &square, &self.options) {
+                let seen_opacity = || {
+                    let voxel = Voxel::read(list, record);
+                    voxel.opacity_from(square.towards_eye, self.options.opacity)
+                };
+                if !is_opaque && seen_opacity() < 1.0 {
                     continue;
                 }
                 drawn += 1;
@@ -125,7 +123,7 @@ impl<'f> Opaque<'f> {
 
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
         let surface = Surfaces::of(self.file, nodes)?;
-        let numbers: Vec<u32> = (0..surface.len()).map(|at| surface.number(at)).collect();
+        let numbers: Vec<u32> = surface.places.iter().map(|place| place.2).collect();
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
@@ -149,19 +147,15 @@ impl<'f> Opaque<'f> {
         Ok(drawn)
     }
 
-    /// Whether triangles of two batches are equally deep in single precision,
-    /// so that which one shows depends on the batches.
     pub(super) fn has_tie(&self) -> bool {
         self.has_tie
     }
 
-    /// Depth of each pixel.
     pub(super) fn depths(&self) -> Vec<f32> {
         let depth = |word: &AtomicU64| f32::from_bits((word.load(Ordering::Relaxed) >> 32) as u32);
         self.words.iter().map(depth).collect()
     }
 
-    /// Node of each pixel; -1 where there is none.
     pub(super) fn nodes(&self) -> Vec<i32> {
         let voxels = self.file.voxels();
         self.words
@@ -172,7 +166,7 @@ impl<'f> Opaque<'f> {
                 let node = if word == EMPTY {
                     return -1;
                 } else if id < voxels {
-                    self.node_of(id)
+                    self.last_from(id, |node| self.file.first_voxel(node))
                 } else {
                     let first = |node| self.file.first_triangle(node);
                     self.last_from(id - voxels, first)
@@ -182,13 +176,6 @@ impl<'f> Opaque<'f> {
             .collect()
     }
 
-    /// The node of a voxel.
-    fn node_of(&self, voxel: u32) -> usize {
-        self.last_from(voxel, |node| self.file.first_voxel(node))
-    }
-
-    /// The last node whose first item is not above; nodes without items stand before the one that
-    /// has it.
     fn last_from(&self, item: u32, first: impl Fn(usize) -> u32) -> usize {
         let (mut low, mut high) = (0, self.file.nodes().len());
         while high - low > 1 {
@@ -202,7 +189,6 @@ impl<'f> Opaque<'f> {
         low
     }
 
-    /// Colours of the picture.
     pub(super) fn resolve(&self) -> Vec<Pixel> {
         let mut pixels = vec![Pixel::default(); self.words.len()];
         pixels
@@ -217,7 +203,7 @@ impl<'f> Opaque<'f> {
         pixels
     }
 
-    /// `last`: the node whose data was needed last, which neighbours need again.
+    /// `last`: the node whose data was needed last.
     fn pixel(&self, pixel: usize, last: &mut Option<(usize, Arc<NodeData>)>) -> Pixel {
         let word = self.words[pixel].load(Ordering::Relaxed);
         if word == EMPTY {
@@ -240,7 +226,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
-        let number = self.node_of(id);
+        let number = self.last_from(id, |node| self.file.first_voxel(node));
         if last.as_ref().is_none_or(|(node, _)| *node != number) {
             // The node was drawn, so its data is sound.
             *last = self.file.data(number).ok().map(|data| (number, data));
@@ -274,29 +260,16 @@ impl<'f> Opaque<'f> {
     }
 }
 
-/// Whether a voxel of a list with opacities is opaque as it is seen.
-pub(super) fn is_opaque_from(
-    list: usize,
-    record: &[u8],
-    square: &Square,
-    options: &ViewOptions,
-) -> bool {
-    let voxel = Voxel::read(list, record);
-    voxel.opacity_from(square.towards_eye, options.opacity) >= 1.0
-}
-
-/// Linear light of a voxel as seen from a direction.
 pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {
     let (normal, color) = voxel.shader.seen_from(towards_eye);
     let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
     (color * share).as_vec3().to_array()
 }
 
-/// Triangles of some nodes.
 struct Surfaces<'f> {
     file: &'f FarFile,
     data: Vec<Arc<NodeData>>,
-    /// Of each triangle its node among these, its place in it, and its number in the file.
+    /// Node among these, place in it, number in the file.
     places: Vec<(u32, u32, u32)>,
 }
 
@@ -315,11 +288,6 @@ impl<'f> Surfaces<'f> {
             surface.data.push(file.data(node)?);
         }
         Ok(surface)
-    }
-
-    /// Number in the file.
-    fn number(&self, at: usize) -> u32 {
-        self.places[at].2
     }
 
     fn triangle_at(&self, at: usize) -> &LeafTriangle {

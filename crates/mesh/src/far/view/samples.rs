@@ -3,7 +3,6 @@
 use super::Pixel;
 use crate::raster::RasterCamera;
 
-/// The same view, with so many samples along each axis of a pixel for pixels.
 pub(super) fn finer(view: &RasterCamera, across: u32) -> RasterCamera {
     RasterCamera {
         focal_px: view.focal_px * f64::from(across),

@@ -5,27 +5,21 @@ use glam::DVec3;
 use crate::far::record::Node;
 use crate::raster::RasterCamera;
 
-/// Share by which an outline is drawn larger, so that rounding and perspective leave no gap
-/// between cubes side by side.
+/// Share by which an outline is drawn larger, so that rounding leaves no gap between cubes.
 const OUTLINE_MARGIN: f64 = 0.01;
 
-/// Where the voxels of a node are.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
     origin: DVec3,
     voxel: f64,
 }
 
-/// A voxel's square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Square {
-    /// Its middle, pixels.
     pub(super) middle: [f64; 2],
     /// Half its side, pixels: its area is that of the cube's outline.
     pub(super) half: f64,
-    /// View-axis depth of the cube's middle.
     pub(super) depth: f64,
-    /// Unit vector to the eye.
     pub(super) towards_eye: DVec3,
 }
 
@@ -37,7 +31,6 @@ impl Places {
         }
     }
 
-    /// The direction from the middle of a voxel to the eye.
     pub(super) fn towards_eye(&self, view: &RasterCamera, place: &[u8]) -> DVec3 {
         (view.eye - self.middle(place)).normalize_or(-view.forward)
     }
@@ -51,14 +44,12 @@ impl Places {
         self.origin + (place + DVec3::splat(0.5)) * self.voxel
     }
 
-    /// The square of a voxel; `None` before the near plane.
     pub(super) fn square(&self, view: &RasterCamera, place: &[u8]) -> Option<Square> {
         let seen = view.seen(self.middle(place));
         if seen.z < view.near {
             return None;
         }
         let towards_eye = self.towards_eye(view, place);
-        // The outline of a unit cube has this area.
         let outline = towards_eye.abs().element_sum();
         let side = self.voxel * view.focal_px / seen.z * libm::sqrt(outline);
         Some(Square {
@@ -70,13 +61,10 @@ impl Places {
     }
 }
 
-/// The outline of a voxel's cube in the picture: a hexagon.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hexagon {
     middle: [f64; 2],
-    /// Half of the cube's edges, pixels.
     edges: [[f64; 2]; 3],
-    /// How far the hexagon reaches from its middle across each edge, times the edge's length.
     reach: [f64; 3],
 }
 
@@ -85,9 +73,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl Places {
-    /// The outline of a voxel's cube, of which `square` has the place.
     pub(super) fn hexagon(&self, view: &RasterCamera, square: &Square) -> Hexagon {
-        // Where the middle is, per unit of depth.
         let across = (square.middle[0] - f64::from(view.width) / 2.0) / view.focal_px;
         let up = (f64::from(view.height) / 2.0 - square.middle[1]) / view.focal_px;
         let scale = self.voxel / 2.0 * view.focal_px / square.depth;
@@ -111,11 +97,9 @@ impl Places {
 }
 
 impl Hexagon {
-    /// First pixel and the one after the last, right and down, of those whose middles may be in it.
     pub(super) fn pixels(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
         let range = |k: usize, side: u32| {
             let most = f64::from(side);
-            // Within the picture.
             let at = |c: f64| (c - 0.5).ceil().clamp(0.0, most) as usize;
             let half = self.edges.iter().map(|edge| edge[k].abs()).sum::<f64>();
             let half = half * (1.0 + OUTLINE_MARGIN);
@@ -125,7 +109,6 @@ impl Hexagon {
         [[x0, y0], [x1, y1]]
     }
 
-    /// Whether the middle of a pixel is in it.
     pub(super) fn holds(&self, x: usize, y: usize) -> bool {
         let offset = [
             x as f64 + 0.5 - self.middle[0],
@@ -139,7 +122,6 @@ impl Hexagon {
 }
 
 impl Square {
-    /// First pixel and the one after the last of those that it touches.
     pub(super) fn touched(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
         let range = |k: usize, side: u32| {
             let most = f64::from(side);
@@ -151,8 +133,8 @@ impl Square {
         [[x0, y0], [x1, y1]]
     }
 
-    /// The parts of a row or column of pixels whose middles are in the square, a bit for each of the [`PARTS`] of pixel
-    /// `pixel` along axis `k`.
+    /// The parts of a row or column of pixels whose middles are in the square, a bit for each of the [`PARTS`] of
+    /// `pixel`.
     pub(super) fn parts(&self, k: usize, pixel: usize) -> u32 {
         let at = |edge: f64| {
             let part = ((edge - pixel as f64) * PARTS as f64 - 0.5).ceil();
@@ -166,65 +148,4 @@ impl Square {
     }
 }
 
-/// Parts of a pixel along each axis, at which transparent voxels are resolved.
 pub(super) const PARTS: usize = 4;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::shared::looking;
-
-    #[test]
-    fn squares_side_by_side_share_the_parts_of_pixels() {
-        let square = |low: f64, high: f64| Square {
-            middle: [(low + high) / 2.0; 2],
-            half: (high - low) / 2.0,
-            depth: 1.0,
-            towards_eye: DVec3::Z,
-        };
-        for edge in (0..60).map(|step| 2.0 + f64::from(step) / 37.0) {
-            let (left, right) = (square(0.3, edge), square(edge, 5.2));
-            let mut parts = 0;
-            for pixel in 0..6 {
-                let (a, b) = (left.parts(0, pixel), right.parts(0, pixel));
-                assert_eq!(a & b, 0, "{edge}");
-                parts += (a | b).count_ones();
-            }
-            // From 0.3 to 5.2 there are the middles of 4.9 * 4 parts.
-            assert_eq!(parts, 20, "{edge}");
-        }
-    }
-
-    #[test]
-    fn hexagons_have_the_area_of_their_squares_and_leave_no_gap() {
-        let forward = DVec3::new(0.48, 0.6, 0.64);
-        let view = looking(DVec3::ZERO, forward, [64; 2], 400.0);
-        let places = Places {
-            origin: forward * 40.0 - DVec3::splat(2.0),
-            voxel: 1.0,
-        };
-        // A block of 4 x 4 x 4 cubes.
-        let mut covered = vec![0u32; 64 * 64];
-        let (mut pixels, mut area) = (0, 0.0);
-        for number in 0..64u8 {
-            let place = [number % 4, number / 4 % 4, number / 16];
-            let square = places.square(&view, &place).unwrap();
-            let hexagon = places.hexagon(&view, &square);
-            let [[x0, y0], [x1, y1]] = hexagon.pixels(&view);
-            for (y, x) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))) {
-                let held = u32::from(hexagon.holds(x, y));
-                covered[y * 64 + x] += held;
-                pixels += held;
-            }
-            area += (2.0 * square.half).powi(2);
-        }
-        let error = f64::from(pixels) / area - 1.0;
-        assert!(error.abs() < 0.03, "{error}");
-        // A row that begins outside the block enters and leaves it once.
-        for row in covered.chunks(64) {
-            let pairs = row.windows(2);
-            let edges = pairs.filter(|pair| (pair[0] == 0) != (pair[1] == 0));
-            assert!(edges.count() <= 2, "{row:?}");
-        }
-    }
-}

@@ -1,9 +1,7 @@
-//! Transparent voxels before what is opaque: nodes front to back, within a node
-//! against the file's order, tested against depth and not written to it.
+//! Transparent voxels before what is opaque, front to back, tested against depth and not written to it.
 //!
-//! A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in
-//! the parts whose middles its square covers: squares side by side cover each part once, and
-//! a square that is alone covers its own area and no more.
+//! A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in the parts whose
+//! middles its square covers: squares side by side cover each part once.
 
 use rayon::prelude::*;
 
@@ -15,19 +13,15 @@ use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
 use crate::raster::RasterCamera;
 
-/// Rows that a thread draws at a time.
 const BAND: usize = 16;
 
-/// A transparent voxel in the picture.
 struct Splat {
     square: Square,
     color: [f32; 3],
-    /// Share of light that it lets through.
     through: f32,
     rows: [usize; 2],
 }
 
-/// The light that transparent voxels transmit and add at a pixel.
 #[derive(Clone, Copy)]
 struct Veil {
     through: [[f32; PARTS]; PARTS],
@@ -93,7 +87,6 @@ fn splats(
             }
             let voxel = Voxel::read(list, record);
             let opacity = voxel.opacity_from(square.towards_eye, options.opacity);
-            // Voxels that are opaque from here were drawn before.
             if opacity < 1.0 {
                 splats.push(Splat {
                     through: (1.0 - opacity) as f32,
@@ -159,7 +152,6 @@ fn blend(
 }
 
 impl Pixel {
-    /// Lays transparent voxels over it.
     fn lay(&mut self, veil: &Veil) {
         let sum: f32 = veil.through.iter().flatten().sum();
         let through = sum / (PARTS * PARTS) as f32;

@@ -1,0 +1,92 @@
+//! Hashes of built files, of their pictures and of the counts of work: any change to the build or the view shows here.
+//!
+//! The order of additions in a vector product differs between processors, and with it the last bit.
+#![cfg(target_arch = "x86_64")]
+
+use shiftvox::graph::Silent;
+use shiftvox_mesh::far::record::LISTS;
+use shiftvox_mesh::far::store::encode;
+use shiftvox_mesh::far::view::{Opacity, ViewOptions};
+use shiftvox_mesh::far::{BuildOptions, FarFile, build};
+use shiftvox_mesh::generate::{Kind, generate};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::city::{city, draw, lit, options, view};
+
+/// Whether it is hybrid, rays, grid and leaf triangles; hashes of the files of the city and a village.
+const FILES: [(bool, Option<u64>, u32, u32, [u32; 2]); 4] = [
+    (false, Some(60_000), 24, 60, [0x317a_3d04, 0x3fee_026a]),
+    (false, None, 16, 300, [0x1f88_6761, 0xa6a5_e7d3]),
+    (true, Some(60_000), 24, 200, [0x7031_7a4d, 0xe231_4f72]),
+    (true, None, 16, 300, [0xbe9c_9872, 0xaa66_dac3]),
+];
+
+/// Distance, height of the eye, voxel size, samples across, opacities, and the hash of pictures and counts.
+const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
+    (60.0, 0.02, 1.0, 1, Opacity::Six, 0x9b46_8999),
+    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x3937_0096),
+    (110.0, 0.6, 2.0, 1, Opacity::Six, 0x3778_1e92),
+    (110.0, 0.6, 2.0, 3, Opacity::None, 0xaecd_ff8e),
+    (300.0, 0.1, 1.0, 4, Opacity::Six, 0xa132_8bf6),
+    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0xcf1c_a60c),
+];
+
+fn hash(bytes: &[u8]) -> u32 {
+    (xxh3_64(bytes) >> 32) as u32
+}
+
+#[test]
+fn files_and_pictures_have_their_hashes() {
+    let meshes = [city(), generate(Kind::Village, 3)];
+    let mut counts = [0; LISTS.len()];
+    let mut files = Vec::new();
+    for (hybrid, rays, grid, leaf_triangles, expected) in FILES {
+        let options = BuildOptions {
+            hybrid,
+            rays,
+            grid,
+            leaf_triangles,
+            ..options()
+        };
+        let built = meshes.each_ref().map(|mesh| {
+            let data = build(mesh, &options, &Silent).unwrap();
+            for node in &data.nodes {
+                for (sum, count) in counts.iter_mut().zip(node.counts) {
+                    *sum += count;
+                }
+            }
+            encode(&data).unwrap()
+        });
+        let found = built.each_ref().map(|bytes| hash(bytes));
+        assert_eq!(found, expected, "{hybrid} {rays:?}: {found:#x?}");
+        files.push(FarFile::from_bytes(&built[0]).unwrap());
+    }
+    assert!(counts.iter().all(|&count| count > 10), "{counts:?}");
+    for (distance, height, voxel_px, samples_across, opacity, expected) in PICTURES {
+        let view = view(30.0, height, distance, 96);
+        let mut bytes = Vec::new();
+        for background in [None, Some([240, 240, 245])] {
+            let options = ViewOptions {
+                samples_across,
+                opacity,
+                background,
+                ..lit(&view, voxel_px)
+            };
+            for file in &files {
+                let (picture, counts) = draw(file, &view, &options);
+                bytes.extend(picture.rgba.as_flattened());
+                bytes.extend(picture.depth.iter().flat_map(|depth| depth.to_le_bytes()));
+                bytes.extend(
+                    picture
+                        .coverage
+                        .iter()
+                        .flat_map(|share| share.to_le_bytes()),
+                );
+                bytes.extend(picture.node.iter().flat_map(|node| node.to_le_bytes()));
+                bytes.extend(format!("{counts:?}").bytes());
+            }
+        }
+        let found = hash(&bytes);
+        assert_eq!(found, expected, "{distance} {height}: {found:#x}");
+    }
+}
