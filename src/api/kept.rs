@@ -60,7 +60,6 @@ impl Kept {
         })
     }
 
-    /// Drops the idle jobs.
     pub(super) fn clear(&self) {
         self.0
             .lock()
@@ -68,7 +67,6 @@ impl Kept {
             .clear();
     }
 
-    /// Keeps a job for the next picture.
     pub(super) fn put(&self, job: Job) {
         self.0
             .lock()

@@ -16,7 +16,6 @@ use crate::project::{
     Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
-/// Settings for drawing a voxel graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphStyle {
     pub options: SetupOptions,
@@ -38,7 +37,6 @@ pub struct GraphDrawing<'g> {
     contents: Contents,
     /// Memory per finished pixel in addition to the frame, bytes.
     pixel_bytes: u64,
-    /// The last picture, if it was finished.
     last: Option<Drawn>,
 }
 
@@ -49,7 +47,6 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A canvas without a frame.
     pub fn new(engine: Box<dyn Engine + Send>) -> Self {
         Self {
             engine,
@@ -58,10 +55,8 @@ impl Canvas {
     }
 }
 
-/// A frame that the viewer shows.
 pub struct DrawnFrame {
     pub setup: FrameSetup,
-    /// The counters of the engine.
     pub stats: Stats,
     /// Time to draw it, milliseconds.
     pub draw_ms: f64,
@@ -69,7 +64,6 @@ pub struct DrawnFrame {
     was_shown: bool,
 }
 
-/// A picture that was made from the viewer's frame.
 struct Drawn {
     pixels: Pixels,
     pixels_drawn: usize,
@@ -209,7 +203,6 @@ impl<'g> GraphDrawing<'g> {
         })
     }
 
-    /// The buffers of the viewer's frame.
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
         // Without a frame there are no samples.
         let frame = self.viewer.frame();
@@ -223,7 +216,6 @@ impl<'g> GraphDrawing<'g> {
     }
 }
 
-/// All colours, in the form of a file.
 fn pixels(resolver: &Resolver<'_>) -> Result<Pixels, ResolveError> {
     let (width, height) = resolver.size();
     let rows = 0..height;

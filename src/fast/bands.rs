@@ -15,7 +15,6 @@ use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
 
-/// Data that all bands of a frame share.
 pub(super) struct Job<'j> {
     pub(super) constants: &'j Constants,
     pub(super) exact: &'j Exact,
@@ -23,7 +22,6 @@ pub(super) struct Job<'j> {
     pub(super) switches: &'j Switches,
 }
 
-/// The memory of a band: whole rows of tiles.
 pub(super) struct BandBuffers<'p> {
     pub(super) grid: TileGrid,
     pub(super) bounds: Window,
@@ -82,7 +80,6 @@ impl BandBuffers<'_> {
     }
 }
 
-/// Draws the first band, while other threads draw the rest in the same way. `object`: the rows of tiles that it covers.
 pub(super) fn run_bands<I: Isa>(
     job: &Job<'_>,
     buffers: BandBuffers<'_>,

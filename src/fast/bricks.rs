@@ -18,7 +18,6 @@ use super::squares::{SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::window::Window;
 
-/// Draws a brick of two levels, or of four (`DEEP`).
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -53,7 +52,6 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     );
 }
 
-/// Draws the parts that samples show; returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -192,7 +190,6 @@ impl Hit {
         parts.part(band.graph, u32::from(self.part))
     }
 
-    /// The node, and its place in the brick.
     #[inline(never)]
     fn path<I: Isa, const DEEP: bool>(
         self,
@@ -263,7 +260,6 @@ fn blend<I: Isa, const DEEP: bool>(
     (full != 0, path.levels)
 }
 
-/// Whether a doubtful sample meets a part, by the exact rule.
 #[inline(never)]
 fn is_hit<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -276,7 +272,6 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, usize::from(hit.bit), &path)
 }
 
-/// Puts a block's parts in occlusion order.
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
     let block = brick
@@ -288,7 +283,6 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octa
     band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
 }
 
-/// The place of a voxel in a brick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path {
     pub(super) block: Option<u32>,
@@ -321,7 +315,6 @@ impl Path {
     }
 }
 
-/// Whether a voxel covers a sample, by the exact rule.
 #[inline(never)]
 pub(super) fn is_covered<I: Isa>(
     band: &mut Band<'_, I>,

@@ -14,7 +14,6 @@ const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 pub(super) struct Fill<'p> {
     pub(super) bounds: Window,
     grid: TileGrid,
-    /// Index of the band's first tile in the whole picture.
     first_tile: usize,
     /// Row of the band's first blocks in the whole picture. A band may have only the lower tiles of these.
     first_block_row: i32,
@@ -57,7 +56,6 @@ impl FillMemory {
 }
 
 impl FillPart<'_> {
-    /// The first rows of tiles, and the others. `top`: the first row in the picture.
     pub(super) fn split(self, grid: &TileGrid, top: usize, rows: usize) -> (Self, Self) {
         let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_across);
         let block_rows = (top + rows).div_ceil(TILES_PER_BLOCK) - top / TILES_PER_BLOCK;
@@ -75,7 +73,6 @@ pub(super) struct TileGrid {
 }
 
 impl TileGrid {
-    /// Whole blocks across, whole tiles down.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let blocks_across = (width as usize).div_ceil(1 << BLOCK_LOG2);
         Self {
@@ -148,7 +145,6 @@ impl<'p> Fill<'p> {
             .wrapping_sub(self.first_tile)
     }
 
-    /// Index of a tile's block, and the tile's bit there.
     #[inline(always)]
     fn block_of(&self, x: i32, y: i32) -> (usize, u64) {
         let row = ((y >> 3) - self.first_block_row) as usize;
@@ -156,7 +152,6 @@ impl<'p> Fill<'p> {
         (at, 1u64 << ((y & 7) << 3 | (x & 7)))
     }
 
-    /// A tile's open samples; none outside the band.
     #[inline(always)]
     fn tile(&self, at: usize) -> u64 {
         self.part.tiles.get(at).copied().unwrap_or(0)
@@ -270,9 +265,7 @@ impl<'p> Fill<'p> {
 
 #[derive(Debug)]
 pub(super) struct Pixels<'f> {
-    /// Samples per row.
     pub(super) width: usize,
-    /// First row of the band.
     pub(super) top: i32,
     /// Nodes, or their colours.
     pub(super) shown: &'f mut [u32],
@@ -290,7 +283,6 @@ impl Pixels<'_> {
         !self.voxel.is_empty()
     }
 
-    /// What a sample that shows a node holds.
     #[inline(always)]
     pub(super) fn word(&self, node: u32) -> u32 {
         if self.color.is_empty() {
@@ -305,7 +297,6 @@ impl Pixels<'_> {
         (y - self.top) as usize * self.width + x as usize
     }
 
-    /// Shows a node, and a voxel if wanted, at samples of a square, eight bits per row.
     #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,

@@ -29,7 +29,6 @@ impl ChildWindows {
         Window::of([0, 1, 2, 3].map(|i| self.sides[i][octant & 7]))
     }
 
-    /// Computes the windows of a node's children. `centre`: the node's clip vector.
     #[inline(always)]
     pub(super) fn compute<I: Isa>(
         &mut self,

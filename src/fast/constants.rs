@@ -31,9 +31,7 @@ pub(super) struct Level {
     pub(super) half_depth: f64,
     /// Least W of a node with children that level of detail makes a solid; infinite where there is none.
     pub(super) lod_depth: f64,
-    /// Side, finest voxels.
     pub(super) side: i32,
-    /// 1 / side: a power of two.
     pub(super) inverse_side: f64,
     /// Largest depth at which parts of a quarter of a node's side are coarse ([`COARSE_SAMPLES`]).
     pub(super) coarse_depth: f64,
@@ -80,9 +78,7 @@ impl Declined {
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
     pub(super) levels: Vec<Level>,
-    /// Octree level of the finest voxels.
     pub(super) depth: u32,
-    /// Clip vector of the object's centre.
     pub(super) centre: [f64; 3],
     pub(super) root_samples: f64,
     /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
@@ -104,7 +100,6 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Errors: why this engine does not draw the frame.
     pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
         if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
             return Err(Declined::Rule);

@@ -2,7 +2,6 @@
 
 use crate::project::Stats;
 
-/// Makes [`Counters`] of a table: field, name in reports, meaning.
 macro_rules! counters {
     ($($(#[$meaning:meta])* $field:ident = $name:literal;)*) => {
         #[derive(Debug, Default, Clone, Copy)]
@@ -36,7 +35,6 @@ counters! {
     samples_blended = "samples_blended";
     /// Samples that the exact rule decided, once for each voxel.
     exact_samples = "samples_decided_exactly";
-    /// Children that do not exist.
     skipped_absent = "skipped_absent_children";
     skipped_behind = "skipped_behind_eye";
     /// Nodes beside the picture, or that hold no sample.

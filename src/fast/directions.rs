@@ -14,7 +14,6 @@ pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
 /// times as large (`Constants::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
-/// Direction of the lines in a square's middle, and its change from there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions<I: Isa> {
     pub(super) middle: I::F32x4,
@@ -23,7 +22,6 @@ pub(super) struct Directions<I: Isa> {
     pub(super) size: I::F32x4,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
-    /// Whether the lines of the square may begin in several octants.
     pub(super) is_mixed: bool,
 }
 
@@ -62,7 +60,6 @@ static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Samples<'s, I: Isa> {
     pub(super) square: &'s Window,
-    /// Their mask, eight bits per row.
     pub(super) open: u64,
     pub(super) directions: Directions<I>,
     pub(super) octant: u8,

@@ -15,7 +15,6 @@ use crate::project::FrameSetup;
 /// products. Each of a few operations in a row adds 2^-53, so there is room.
 const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The integers of a frame that exact decisions need.
 #[derive(Debug, Clone)]
 pub(super) struct Exact {
     origin: [i64; 3],
@@ -26,7 +25,6 @@ pub(super) struct Exact {
     positive: bool,
     eye_floor: [i64; 3],
     eye_ceil: [i64; 3],
-    /// The third coordinate of a sample.
     unit: i64,
 }
 
@@ -72,7 +70,6 @@ impl Exact {
         }
     }
 
-    /// The clip vector of a point of the object's lattice.
     #[inline(always)]
     fn at(&self, point: [i32; 3]) -> [i64; 3] {
         let mut at = self.origin;
@@ -121,7 +118,6 @@ impl Exact {
         is_certain || self.covers_exactly(corner, side, q)
     }
 
-    /// [`Exact::covers`] in integers.
     #[cold]
     fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
         (0..3).all(|j| {
@@ -240,7 +236,6 @@ pub(super) struct Outline {
     front: Option<(Plane, i8)>,
 }
 
-/// The share of a window that a silhouette covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     None,

@@ -48,13 +48,11 @@ pub(super) struct Lines<I: Isa> {
     /// Directions: at the first sample, and their slopes by column and by row.
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
-    /// Tables of strips, by function.
     pub(super) tables: [usize; 3],
     /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
     inverse: I::F32x4,
     /// Bound of the error of the values of functions that see, in widths.
     pub(super) error: f32,
-    /// The part of `error` that is rounding.
     pub(super) rounding: f32,
     /// Whether a function is blind: its table excludes no part.
     pub(super) has_blind: bool,
@@ -71,7 +69,6 @@ pub(super) struct InUnits<I: Isa> {
 }
 
 impl<I: Isa> InUnits<I> {
-    /// Values of the functions about a part's centre.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, offset: &Offset) -> [I::F32x4; 3] {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
@@ -83,13 +80,11 @@ impl<I: Isa> InUnits<I> {
     }
 }
 
-/// The line of one sample, by its Plücker coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line<I: Isa> {
     /// The direction: `v_n` and `v_l`, by function.
     next: I::F32x4,
     last: I::F32x4,
-    /// The moment about the node's centre.
     moment: I::F32x4,
     /// `(v_n + v_l) / 2`.
     half: I::F32x4,
@@ -228,7 +223,6 @@ impl<I: Isa> Lines<I> {
         ]
     }
 
-    /// The line of a sample of the square.
     #[inline(always)]
     pub(super) fn line(&self, isa: I, [x, y]: [f32; 2]) -> Line<I> {
         let (x, y) = (isa.splat(x), isa.splat(y));
@@ -243,7 +237,6 @@ impl<I: Isa> Lines<I> {
         }
     }
 
-    /// The cells of a line's values about a node's centre.
     #[inline(always)]
     pub(super) fn cells(&self, isa: I, line: &Line<I>) -> [usize; 3] {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
@@ -331,7 +324,6 @@ pub(super) mod tests {
     use crate::graph::Placement;
     use crate::project::{Camera, FrameSetup, SetupOptions};
 
-    /// Pseudo-random numbers from 0 to 1.
     pub(in crate::fast) fn numbers() -> impl FnMut() -> f64 {
         let mut state = 7u64;
         move || {
@@ -457,7 +449,6 @@ pub(super) mod tests {
         assert!(worst > 0.01, "{worst}");
     }
 
-    /// The steps that `spec/fast.md` adds up: those of moments, and of the rest.
     #[test]
     #[expect(
         clippy::assertions_on_constants,

@@ -73,10 +73,8 @@ pub struct FastOptions {
     pub switches: Switches,
 }
 
-/// The fast engine.
 pub struct Fast {
     options: FastOptions,
-    /// Draws the frames that this engine declines.
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
     /// Constants of the last frame, reused for the next one of the same set-up.

@@ -14,7 +14,6 @@ const NEAR: f32 = 0.25;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection<I: Isa> {
-    /// Column and row.
     pub(super) centre: [f64; 2],
     inverse: f64,
     /// Slopes of the moments by column and by row, by axis.
@@ -131,7 +130,6 @@ mod tests {
     use crate::fast::lines::tests::{numbers, random_frame};
     use crate::fast::orders::along;
 
-    /// Windows hold the picture of each corner of each part, and are hardly larger.
     #[test]
     fn windows_hold_the_parts_and_little_more() {
         let mut next = numbers();

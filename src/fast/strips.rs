@@ -57,7 +57,6 @@ pub(super) struct Strips {
     begins_below: Vec<Row>,
 }
 
-/// Made on first use.
 pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 
 #[derive(Debug)]

@@ -205,7 +205,6 @@ impl<'b> Children<'b> {
         self.left = u32::from(turned(wanted, nearest));
     }
 
-    /// Takes the next child and its window, if something of it may be seen.
     #[inline(always)]
     fn next<I: Isa>(&mut self, band: &mut Band<'_, I>) -> Option<(Record, Window)> {
         let (record, level) = (&self.record, self.level);

@@ -38,7 +38,6 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     );
 }
 
-/// Returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa>(
     band: &mut Band<'_, I>,

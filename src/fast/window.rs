@@ -14,7 +14,6 @@ pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
 /// Columns and rows beyond all pictures.
 pub(super) const BEYOND: f64 = 40_000.0;
 
-/// The numbers of a mask's bits, lowest first.
 #[inline(always)]
 pub(super) fn bits(mask: u64) -> impl Iterator<Item = usize> {
     let mut left = mask;

@@ -5,17 +5,12 @@ use std::sync::LazyLock;
 use super::{Blend, Frame, NO_NODE};
 use crate::srgb::from_linear;
 
-/// Samples tested together for being empty.
 const TOGETHER: usize = 16;
-/// Samples per task of a thread.
 const SHARE: usize = 1 << 15;
 
-/// The colours of a frame's samples.
 #[derive(Debug, Clone)]
 pub struct Colors {
-    /// Samples across.
     pub width: u32,
-    /// Samples down.
     pub height: u32,
     /// [`color_word`] of each sample, row by row; 0 without a voxel.
     pub words: Vec<u32>,
@@ -30,7 +25,6 @@ pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
 }
 
 impl Colors {
-    /// An empty picture.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -78,11 +72,9 @@ impl Colors {
     }
 }
 
-/// Bits of linear light for a preview's colours.
 const ENCODED_BITS: u32 = 12;
 const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
 
-/// The sRGB value of linear light.
 static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     std::array::from_fn(|light| {
         let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
@@ -90,7 +82,6 @@ static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     })
 });
 
-/// Halves the samples until each thread has a few shares.
 fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) {
     if threads > 1 && nodes.len() > SHARE {
         let half = nodes.len() / 2 / TOGETHER * TOGETHER;

@@ -22,7 +22,6 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The tables, made on first use.
     pub fn tables() -> &'static Self {
         static TABLES: LazyLock<Linear> = LazyLock::new(Linear::new);
         &TABLES

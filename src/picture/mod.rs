@@ -30,9 +30,7 @@ pub const NO_DEPTH: f32 = f32::INFINITY;
 /// A finished picture: one entry of each buffer per pixel, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
     /// Colour, sRGB, and coverage (0 to 255), not premultiplied.
     pub rgba: Vec<[u8; 4]>,

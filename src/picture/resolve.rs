@@ -47,7 +47,6 @@ pub fn resolve(
     })
 }
 
-/// A drawn frame as a picture that is made on demand: see [`resolve`].
 pub struct Resolver<'f> {
     frame: &'f Frame,
     shader: Shader<'f>,
@@ -58,7 +57,6 @@ pub struct Resolver<'f> {
     shares: OnceLock<Option<Shares>>,
 }
 
-/// Name of the pixels' memory in messages.
 const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes faster than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
@@ -70,7 +68,6 @@ struct At {
 }
 
 impl<'f> Resolver<'f> {
-    /// Fails when the frame is not of the set-up's size.
     pub fn new(
         frame: &'f Frame,
         graph: &'f Graph,
@@ -177,7 +174,6 @@ impl<'f> Resolver<'f> {
         (self.frame.node[at] != NO_NODE).then_some((x, y, at))
     }
 
-    /// The voxel of a sample that shows one.
     fn voxel_at(&self, at: usize) -> Result<[i32; 4], ResolveError> {
         let voxel = match self.frame.voxel.get(at) {
             Some(&voxel) => Some(voxel),
@@ -280,7 +276,6 @@ fn flat<T, const N: usize>(items: Vec<[T; N]>) -> Vec<T> {
 /// Why a frame and its set-up make no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ResolveError {
-    /// Frame and set-up differ in size.
     #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
     Size(u32, u32, u32, u32),
     /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
@@ -289,7 +284,6 @@ pub enum ResolveError {
     /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
-    /// The system refuses the memory of the pixels.
     #[error(transparent)]
     Memory(#[from] Shortage),
 }

@@ -40,7 +40,6 @@ hwmodel::named! {
 }
 
 impl Buffer {
-    /// Numbers per pixel.
     pub fn entries(self) -> usize {
         match self {
             Self::Depth | Self::Node | Self::Records => 1,
@@ -63,10 +62,8 @@ impl Buffer {
 const SHARE: u32 = 1 << 17;
 
 pub trait Rows {
-    /// Failure of making rows.
     type Error;
 
-    /// Pixels across and down.
     fn size(&self) -> (u32, u32);
 
     /// Some rows of a buffer. Fails when they cannot be made.

@@ -14,17 +14,14 @@ use super::shade::AWAY;
 use super::sight::Sight;
 use crate::graph::PackedNormal;
 
-/// Samples of a row that are processed together.
 pub(super) const TOGETHER: usize = 16;
 
-/// Number of packed normals.
 const NORMALS: usize = 1 << 16;
 
 /// Error bound of `f32` here, as a share of the three columns' lengths together: eight roundings of 2^-24 in the product
 /// and ten in the length are 1e-6; this is ten times as much.
 const MARGIN: f32 = 1e-5;
 
-/// Shares by normal, for one frame.
 pub(super) struct Shares {
     light: Light,
     /// Object direction of a step across the image root, of one down, and of its corner; of any common length.
@@ -143,7 +140,6 @@ impl Shares {
         })
     }
 
-    /// Makes the entry of a normal and returns its shares; none without a normal.
     #[cold]
     fn make(&self, packed: PackedNormal, entry: &[AtomicU32; 4]) -> Option<u32> {
         let normal = packed.decode()?;

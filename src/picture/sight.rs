@@ -9,7 +9,6 @@ use crate::project::FrameSetup;
 /// where f64 rounds either way.
 const GRAZE: f64 = 1e-9;
 
-/// The quantised view of a frame, in real numbers.
 pub(super) struct Sight {
     origin: [i64; 3],
     edge: [[i64; 3]; 3],
@@ -31,12 +30,10 @@ pub(super) struct Meeting {
     pub(super) depth: f64,
     /// Outward normal of the visible face.
     pub(super) face: DVec3,
-    /// Unit direction of the sample's ray.
     pub(super) ray: DVec3,
 }
 
 impl Sight {
-    /// The view of a frame. A set-up's view has a volume.
     pub(super) fn new(setup: &FrameSetup) -> Self {
         let column = |k: usize| {
             let edge = setup.edge_clip[k];
@@ -136,7 +133,6 @@ impl Sight {
     }
 }
 
-/// Whether the clip vectors of all points of the object fit 64 bits.
 fn is_narrow(setup: &FrameSetup) -> bool {
     let within = |c: usize| {
         let longest: u128 = (0..3)

@@ -27,7 +27,6 @@ pub enum Up {
 }
 
 impl Up {
-    /// +Y or +Z.
     pub fn y_or_z(is_y: bool) -> Self {
         if is_y { Self::Y } else { Self::Z }
     }
@@ -81,7 +80,6 @@ impl Bounds {
         (search.low[0] < search.high[0]).then_some((search.low, search.high))
     }
 
-    /// The bounds for a fitted camera: those of the graph's mesh, otherwise of its voxels.
     pub fn of(graph: &Graph) -> Self {
         match &graph.placement.mesh {
             Some(mesh) => Self::of_mesh(mesh),
@@ -163,7 +161,6 @@ impl Bounds {
     }
 }
 
-/// Points of a ring around the up axis.
 const RING_POINTS: u32 = 72;
 /// Level of the nodes whose corners enclose an object.
 const HULL_LEVEL: u32 = 5;

@@ -75,11 +75,9 @@ pub enum SetupError {
 /// The input of a frame: all integers from which an engine starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSetup {
-    /// The settings of this set-up.
     pub options: SetupOptions,
     /// Samples across; the picture's width times the samples per pixel and axis.
     pub width: u32,
-    /// Samples down.
     pub height: u32,
     /// Levels of the image quadtree: its root has `2^levels` samples a side.
     pub levels: u32,
@@ -119,7 +117,6 @@ pub struct FrameSetup {
     pub size_limit: ShiftSum,
     /// Size, in samples, up to which a node with children becomes a solid. `None`: only leaves are drawn.
     pub lod_limit: Option<ShiftSum>,
-    /// The object's place, to name voxels and depths.
     pub placement: Placement,
 }
 

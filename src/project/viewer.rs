@@ -131,12 +131,10 @@ impl<'g, E: Engine> Viewer<'g, E> {
         Ok(stats)
     }
 
-    /// The picture of the last set-up, if there is one.
     pub fn frame(&self) -> Option<&Frame> {
         self.shown.as_ref().map(|_| &self.frame)
     }
 
-    /// Memory of the frame, bytes.
     pub fn frame_bytes(&self) -> u64 {
         let Frame {
             node,
@@ -150,7 +148,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
         (size_of_val(&node[..]) + size_of_val(&voxel[..]) + records + blend) as u64
     }
 
-    /// Whether the frame is that of this set-up.
     pub fn shows(&self, setup: &FrameSetup) -> bool {
         self.shown.as_ref() == Some(setup)
     }

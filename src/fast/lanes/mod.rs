@@ -29,7 +29,6 @@ pub(super) trait Lanes<const N: usize>: Copy + Send + Sync + Debug {
     fn splat(isa: Self::Isa, value: Self::Lane) -> Self;
 }
 
-/// Floating-point numbers.
 pub(super) trait Floats<const N: usize>: Lanes<N> {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -84,7 +83,6 @@ pub(super) trait I16x16: Lanes<16, Lane = i16> {
     fn below(self, next: Self, limit: Self) -> u32;
 }
 
-/// Four masks of 64 bits.
 pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn and(self, other: Self) -> Self;
     /// The lanes that are 0, one bit each.
@@ -92,14 +90,12 @@ pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn values(self) -> [u64; 4];
 }
 
-/// Sixteen bytes.
 pub(super) trait U8x16: Lanes<16, Lane = u8> {
     fn or(self, other: Self) -> Self;
     /// The lower and the upper half of each byte.
     fn nibbles(self) -> [Self; 2];
     /// By lane, this table's entry of the number `at`, which is below 16.
     fn look_up(self, at: Self) -> Self;
-    /// The first eight.
     fn low(self) -> u64;
 }
 
@@ -138,6 +134,5 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     /// Writes a value to those of 8 x 8 entries that a mask has, eight bits per row; rows begin `width` apart. Panics
     /// unless all entries exist: a check per row would take a fifth more instructions per voxel.
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
-    /// Prefetches an entry, if it exists.
     fn prefetch<T>(self, entries: &[T], at: usize);
 }
