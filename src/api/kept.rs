@@ -1,7 +1,7 @@
 //! Threads, engine and frame of a renderer, kept from picture to picture.
 
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use hwmodel::Overflow;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -40,7 +40,7 @@ impl Kept {
             let reason = format!("threads: 0 to {MOST_THREADS}, not {threads}");
             return Err(Error::Setting(reason));
         }
-        let idle = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let idle = self.idle().pop();
         if let Some(job) = idle.filter(|job| job.key == key) {
             return Ok(job);
         }
@@ -60,18 +60,8 @@ impl Kept {
         })
     }
 
-    pub(super) fn clear(&self) {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clear();
-    }
-
-    pub(super) fn put(&self, job: Job) {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push(job);
+    pub(super) fn idle(&self) -> MutexGuard<'_, Vec<Job>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -301,13 +301,13 @@ impl Renderer {
             None => draw(),
         };
         job.canvas = Some(canvas);
-        self.kept.put(job);
+        self.kept.idle().push(job);
         Ok(made?)
     }
 
     /// Frees the memory that is kept for the next picture: that of the largest pictures drawn at the same time.
     pub fn forget(&self) {
-        self.kept.clear();
+        self.kept.idle().clear();
     }
 
     fn kind(&self) -> EngineKind {

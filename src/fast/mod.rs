@@ -89,14 +89,6 @@ struct Prepared {
     exact: Exact,
 }
 
-impl std::fmt::Debug for Fast {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Fast")
-            .field("options", &self.options)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Fast {
     /// `fallback` draws the frames that this engine declines, and must draw the machine's bits.
     pub fn new(options: FastOptions, fallback: Box<dyn Engine + Send>) -> Self {

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use rayon::prelude::*;
+
 use super::{Blend, Frame, NO_NODE};
 use crate::srgb::from_linear;
 
@@ -54,8 +56,11 @@ impl Colors {
             self.take_blended(blend);
             return;
         }
-        let threads = rayon::current_num_threads();
-        write(of_node, &frame.node, &mut self.words, threads);
+        let nodes = frame.node.par_chunks(SHARE);
+        let words = self.words.par_chunks_mut(SHARE);
+        nodes
+            .zip(words)
+            .for_each(|(nodes, words)| look_up(of_node, nodes, words));
     }
 
     /// Blended samples over black: linear light by a table to sRGB.
@@ -82,17 +87,7 @@ static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     })
 });
 
-fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) {
-    if threads > 1 && nodes.len() > SHARE {
-        let half = nodes.len() / 2 / TOGETHER * TOGETHER;
-        let (upper, lower) = nodes.split_at(half);
-        let (to_upper, to_lower) = words.split_at_mut(half);
-        rayon::join(
-            || write(of_node, upper, to_upper, threads),
-            || write(of_node, lower, to_lower, threads),
-        );
-        return;
-    }
+fn look_up(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32]) {
     let chunks = nodes.chunks(TOGETHER).zip(words.chunks_mut(TOGETHER));
     for (nodes, words) in chunks {
         if nodes

@@ -114,13 +114,4 @@ mod tests {
             assert!(bad.parse::<Background>().is_err(), "{bad}");
         }
     }
-
-    #[test]
-    fn light_stays_between_ambient_and_full() {
-        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-        let light = Light::new(Shading::Lambert, axes);
-        assert_eq!(light.on(KEY_LIGHT.normalize()), 256);
-        assert_eq!(light.on(-KEY_LIGHT), AMBIENT);
-        assert_eq!(Light::new(Shading::Flat, axes).on(DVec3::X), 256);
-    }
 }

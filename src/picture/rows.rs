@@ -120,15 +120,3 @@ impl Values {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_are_little_endian() {
-        assert_eq!(*Values::U8(vec![7, 8]).bytes(), [7, 8]);
-        assert_eq!(*Values::I32(vec![-2]).bytes(), [0xfe, 0xff, 0xff, 0xff]);
-        assert_eq!(*Values::F32(vec![1.0]).bytes(), [0, 0, 0x80, 0x3f]);
-    }
-}

@@ -227,11 +227,4 @@ mod tests {
         // A margin of 1e-5 leaves about so many of each 1e5.
         assert!(undecided < 40, "{undecided}");
     }
-
-    #[test]
-    fn flat_is_the_front_and_unknown_is_undecided() {
-        let run = Run::FLAT;
-        assert_eq!(run.share(3, &Facing::FLAT), Some(256));
-        assert_eq!(run.share(3, &Facing::UNKNOWN), None);
-    }
 }

@@ -57,18 +57,7 @@ hwmodel::named! {
 
 impl Coverage {
     /// The rules that do not blend, the most accurate first.
-    pub const UNBLENDED: [Self; 3] = {
-        let (mut rules, mut found, mut left) = ([Self::Any; 3], 0, Self::ALL.len());
-        while left > 0 {
-            left -= 1;
-            if !Self::ALL[left].blends() {
-                rules[found] = Self::ALL[left];
-                found += 1;
-            }
-        }
-        assert!(found == rules.len(), "the array's length is their number");
-        rules
-    };
+    pub const UNBLENDED: [Self; 3] = [Self::Exact, Self::Center, Self::Any];
 
     #[inline]
     pub const fn outline_rule(self) -> OutlineRule {

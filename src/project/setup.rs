@@ -234,29 +234,27 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
 }
 
 fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
-    let tolerance = options.tolerance_px;
-    let lod = options.lod_px;
-    let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
-    if tolerance.is_nan() || tolerance < 0.0 {
-        return bad("tolerance", "0 samples or more", options.tolerance_px);
-    }
-    // More than any picture needs, within any word; `inf` is larger.
-    if tolerance.is_finite() && tolerance > 4096.0 {
-        return bad(
-            "tolerance",
-            "0 to 4096 samples, or inf",
-            options.tolerance_px,
-        );
+    let (tolerance, lod) = (options.tolerance_px, options.lod_px);
+    let samples = f64::from(1u32 << options.aa_log2.min(31));
+    // More than any picture needs, within any word.
+    let sizes = 0.0..=4096.0;
+    let is_size = sizes.contains(&tolerance) || tolerance == f64::INFINITY;
+    for (name, range, value, is_valid) in [
+        ("tolerance", "0 to 4096 samples, or inf", tolerance, is_size),
+        (
+            "level of detail",
+            "0 to 4096 pixels",
+            lod,
+            sizes.contains(&lod),
+        ),
+        ("samples per axis", "1, 2 or 4", samples, samples <= 4.0),
+    ] {
+        if !is_valid {
+            return Err(SetupError::Setting { name, range, value });
+        }
     }
     if options.coverage.draws_outlines() && tolerance != 0.0 {
-        return Err(SetupError::Tolerance(options.tolerance_px));
-    }
-    if !(0.0..=4096.0).contains(&lod) {
-        return bad("level of detail", "0 to 4096 pixels", options.lod_px);
-    }
-    if options.aa_log2 > 2 {
-        let samples = f64::from(1u32 << options.aa_log2.min(31));
-        return bad("samples per axis", "1, 2 or 4", samples);
+        return Err(SetupError::Tolerance(tolerance));
     }
     Ok(())
 }

@@ -20,27 +20,6 @@ pub enum Contents {
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
 /// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
-///
-/// Neither the shown frame nor the graph can be changed while there is a viewer:
-///
-/// ```compile_fail,E0596
-/// # use shiftvox::project::Viewer;
-/// fn paint_over(viewer: &mut Viewer<'_, impl shiftvox::project::Engine>) {
-///     if let Some(frame) = viewer.frame() {
-///         frame.clear();
-///     }
-/// }
-/// ```
-///
-/// ```compile_fail,E0506
-/// # use shiftvox::{graph::Graph, project::{Engine, FrameSetup, Viewer}};
-/// fn replant(graph: &mut Graph, engine: impl Engine, setup: &FrameSetup) {
-///     let mut viewer = Viewer::new(graph.view(), engine, Default::default());
-///     let _ = viewer.draw(setup);
-///     graph.mask = vec![0].into();
-///     let _ = viewer.draw(setup);
-/// }
-/// ```
 pub struct Viewer<'g, E> {
     graph: GraphView<'g>,
     engine: E,
@@ -50,15 +29,6 @@ pub struct Viewer<'g, E> {
     shown: Option<FrameSetup>,
     /// The engine's counters of `frame`, if they were requested.
     stats: Option<Stats>,
-}
-
-impl<E> std::fmt::Debug for Viewer<'_, E> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Viewer")
-            .field("contents", &self.contents)
-            .field("shown", &self.shown)
-            .finish_non_exhaustive()
-    }
 }
 
 impl<'g, E: Engine> Viewer<'g, E> {
