@@ -20,7 +20,6 @@ pub(super) struct Key {
     pub(super) threads: usize,
 }
 
-/// Threads, an engine and a frame, which draw one picture at a time.
 pub(super) struct Job {
     key: Key,
     pub(super) pool: Option<ThreadPool>,

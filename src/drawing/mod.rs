@@ -120,7 +120,6 @@ pub fn check_samples(
 const UNCHECKED_BYTES: u64 = 1 << 24;
 /// Bytes per colour of a pixel in a file.
 pub const COLOR_BYTES: u64 = 3;
-/// Calls `run` `runs` times, at least once. Returns the last result, and the time of each run, milliseconds.
 pub fn timed<T>(
     runs: u32,
     mut run: impl FnMut() -> Result<T, DrawError>,

@@ -20,7 +20,6 @@ pub(super) struct Band<'b, I> {
     pub(super) pixels: Pixels<'b>,
     pub(super) counters: Counters,
     pub(super) blends: bool,
-    /// By sample of a square: how many entries of the picture it lies behind the square's first sample.
     pub(super) sample_offsets: [u32; 64],
     pub(super) candidates: Candidates,
     pub(super) hits: [Hit; 64],

@@ -1,8 +1,7 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
-//! A mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second level has one bit
-//! per tile, in words of 8 x 8 tiles (blocks). So a few words show whether a window is open. Samples outside the
-//! picture count as drawn. A square (`squares.rs`) is at most a tile large and may lie anywhere.
+//! A mask has a bit per open sample, in words of 8 x 8 samples (tiles), and a bit per tile with open samples, in words
+//! of 8 x 8 tiles (blocks). Samples outside the picture count as drawn. A square (`squares.rs`) may lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
@@ -36,7 +35,6 @@ pub(super) struct FillMemory {
 }
 
 impl FillMemory {
-    /// Makes room for a picture. Allocates nothing for the next one of its size.
     pub(super) fn resize(&mut self, grid: &TileGrid) {
         // Room below and beside the last tile, so that squares there are read like others.
         let beyond = grid.tiles_across + 2;
@@ -83,7 +81,6 @@ impl TileGrid {
     }
 }
 
-/// The lowest columns of a tile, by number of columns.
 static COLUMNS: [u64; 9] = {
     let mut masks = [0; 9];
     let mut i = 0;
@@ -111,7 +108,6 @@ static SQUARES: [u64; 64] = {
 };
 
 impl<'p> Fill<'p> {
-    /// An empty band. `bounds.top` is the top of a tile.
     pub(super) fn clear(grid: &TileGrid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;
@@ -273,7 +269,6 @@ pub(super) struct Pixels<'f> {
     pub(super) color: &'f [[u8; 3]],
     /// Empty where voxels are not wanted.
     pub(super) voxel: &'f mut [[i32; 4]],
-    /// Blended light so far; empty under rules that do not blend.
     pub(super) blend: &'f mut [Blend],
 }
 

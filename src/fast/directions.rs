@@ -18,7 +18,6 @@ const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 pub(super) struct Directions<I: Isa> {
     pub(super) middle: I::F32x4,
     pub(super) spread: I::F32x4,
-    /// The greatest sum of the sizes of a direction's terms.
     pub(super) size: I::F32x4,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
@@ -34,7 +33,6 @@ impl<I: Isa> Directions<I> {
         let x = isa.splat(square.left as f32).add(half_across);
         let y = isa.splat(square.top as f32).add(half_down);
         let middle = columns.fma(x, rows.fma(y, first));
-        // The sizes of the terms bound the rounding of the sum.
         let right = isa.splat((square.right + 1) as f32);
         let bottom = isa.splat((square.bottom + 1) as f32);
         let size = columns
@@ -77,7 +75,6 @@ impl<I: Isa> Samples<'_, I> {
     }
 }
 
-/// Samples of a square by the octant in which their lines begin, by each sample's own signs.
 #[inline(never)]
 pub(super) fn by_octant(
     constants: &Constants,

@@ -1,12 +1,8 @@
 //! Exact silhouettes (R8, ties R8.1, the plane of the eye R8.2): in `f64` where its error bound decides, otherwise in
 //! 128-bit integers.
 //!
-//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube. The sign
-//! of their permuted inner product is the side on which the ray passes.
-//!
-//! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. With the
-//! sample as `q = (2x + 1, 2y + 1, 2^(R + 1))` its side is the sign of `n q`; a zero is decided by the signs of `n_X`
-//! and `n_Y`, as in the machine.
+//! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. The side of the
+//! sample `q = (2x + 1, 2y + 1, 2^(R + 1))` is the sign of `n q`; a zero is decided by the signs of `n_X` and `n_Y`.
 
 use super::window::Window;
 use crate::project::FrameSetup;
@@ -20,7 +16,6 @@ pub(super) struct Exact {
     origin: [i64; 3],
     edge: [[i64; 3]; 3],
     edge_float: [[f64; 3]; 3],
-    /// Planes through the eye, perpendicular to the axes.
     axis: [[i128; 3]; 3],
     positive: bool,
     eye_floor: [i64; 3],
@@ -81,10 +76,8 @@ impl Exact {
         at
     }
 
-    /// Whether the ray of a sample meets the inside of a cube before the eye.
-    ///
-    /// In direction j, `n q = A (e_j x q)` for the starts `A` of the four edges, the corners of a parallelogram: their
-    /// least and greatest values decide.
+    /// Whether the ray of a sample meets the inside of a cube before the eye. In direction j, `n q = A (e_j x q)` for the
+    /// starts `A` of the four edges: their least and greatest values decide.
     #[inline(always)]
     pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
         let corner = self.at(min);

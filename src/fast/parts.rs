@@ -5,12 +5,10 @@ use crate::graph::GraphView;
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
-    /// Mask of those that exist: bit `outer << 3 | inner`, octants in Morton order.
     pub(super) exist: u64,
     first: u32,
     node: u32,
     mask: u8,
-    /// Children that are solid: each fills all its parts.
     solid: u8,
     kind: Kind,
 }
@@ -28,7 +26,6 @@ enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Part {
     pub(super) node: u32,
-    /// Levels below the node: 2, or less for a part of something larger.
     pub(super) levels: u32,
 }
 
@@ -64,7 +61,6 @@ impl Parts {
         parts
     }
 
-    /// [`Parts::of`] in place, because moving parts is slower than making them.
     #[inline(always)]
     pub(super) fn read<I: Isa>(
         &mut self,

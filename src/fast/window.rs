@@ -4,9 +4,7 @@
 pub(super) const TILE_LOG2: u32 = 3;
 /// Log2 of the samples per side of a block.
 pub(super) const BLOCK_LOG2: u32 = 6;
-/// A tile or block with everything open.
 pub(super) const ALL: u64 = u64::MAX;
-/// The leftmost samples of a tile's eight rows.
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
 /// Margin beyond rounding, samples.

@@ -43,7 +43,6 @@ impl Linear {
         Self { of, nearest }
     }
 
-    /// Linear light of a colour, 0..=65535 per channel.
     #[inline]
     pub fn decode(&self, color: [u8; 3]) -> [u32; 3] {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))

@@ -32,7 +32,6 @@ pub const NO_DEPTH: f32 = f32::INFINITY;
 pub struct Picture {
     pub width: u32,
     pub height: u32,
-    /// Colour, sRGB, and coverage (0 to 255), not premultiplied.
     pub rgba: Vec<[u8; 4]>,
     /// View-axis depth in world units at which the pixel's ray enters the voxel; [`NO_DEPTH`] without one.
     pub depth: Vec<f32>,

@@ -7,7 +7,6 @@ use super::shares::{Facing, Run, Shares, TOGETHER};
 use crate::frame::{Blend, Frame, NO_NODE};
 use crate::graph::PackedNormal;
 
-/// Paints pixels of `N` bytes: red, green, blue, and alpha if `N` is 4.
 pub(super) struct Painter<'p, const N: usize> {
     frame: &'p Frame,
     shader: &'p Shader<'p>,
@@ -17,7 +16,6 @@ pub(super) struct Painter<'p, const N: usize> {
     shares: Option<&'p Shares>,
     /// Logarithm of the samples per pixel along an axis.
     aa: u32,
-    /// A row without voxels.
     behind: Vec<[u8; N]>,
 }
 

@@ -35,7 +35,6 @@ pub(super) struct Shares {
     entries: Vec<[AtomicU32; 4]>,
 }
 
-/// A normal's numbers for the samples of a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Facing {
     /// Normal times direction is `along * u + base`.
@@ -62,7 +61,6 @@ impl Facing {
     };
 }
 
-/// Neighbouring samples of a row.
 pub(super) struct Run {
     /// Position to the right, of the image root.
     across: [f32; TOGETHER],

@@ -63,7 +63,6 @@ impl Sight {
         self.axes
     }
 
-    /// The meeting of the ray of sample `(x, y)` with a voxel, given as in a frame.
     pub(super) fn meet(&self, x: u32, y: u32, voxel: [i32; 4]) -> Meeting {
         let (corner, side) = self.cube(voxel);
         // The ray is eye + t * direction, where t is the depth W.
@@ -143,7 +142,6 @@ fn is_narrow(setup: &FrameSetup) -> bool {
     (0..3).all(within)
 }
 
-/// The inverse by Cramer's rule.
 fn inverse(m: &DMat3) -> DMat3 {
     let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
     let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));

@@ -213,7 +213,6 @@ impl FrameSetup {
         whole
     }
 
-    /// Largest magnitude of a coordinate of a clip vector in the object.
     pub fn position_reach(&self) -> Option<i128> {
         let quantised = Quantised {
             origin: self.origin_clip,
@@ -222,7 +221,6 @@ impl FrameSetup {
         Reach::of(&quantised, self.depth).map(|reach| reach.position)
     }
 
-    /// World depth of one unit of `W`.
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }

@@ -8,7 +8,6 @@ use crate::graph::GraphView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Contents {
-    /// The node only ([`Frame::nodes_only`]).
     Nodes,
     #[default]
     Voxels,
@@ -25,9 +24,7 @@ pub struct Viewer<'g, E> {
     engine: E,
     contents: Contents,
     frame: Frame,
-    /// The set-up of `frame`; none before the first drawing, during drawing, and after a failure.
     shown: Option<FrameSetup>,
-    /// The engine's counters of `frame`, if they were requested.
     stats: Option<Stats>,
 }
 
