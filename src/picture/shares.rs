@@ -18,8 +18,8 @@ pub(super) const TOGETHER: usize = 16;
 
 const NORMALS: usize = 1 << 16;
 
-/// Error bound of `f32` here, as a share of the three columns' lengths together: eight roundings of 2^-24 in the product
-/// and ten in the length are 1e-6; this is ten times as much.
+/// Error bound of `f32`, as a share of the three columns' lengths together: ten times the eight roundings of 2^-24 in the
+/// product and ten in the length.
 const MARGIN: f32 = 1e-5;
 
 pub(super) struct Shares {
@@ -31,7 +31,7 @@ pub(super) struct Shares {
     step: f32,
     margin: f32,
     /// By packed normal: the change of its product with the direction across and down the image root, its start, and both
-    /// shares; zeros: not made. Every thread computes the same values; the shares are stored last.
+    /// shares. Zeros are not made yet. Every thread computes the same values. The shares are stored last.
     entries: Vec<[AtomicU32; 4]>,
 }
 

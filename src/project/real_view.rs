@@ -1,6 +1,6 @@
-//! The view of an object in real numbers, its quantisation, and by level the depths from which a record may change to
-//! screen space, or counts as a solid (`SPEC.md`, "The change to screen space", "Drawing rules"). At twice the depth a
-//! voxel of twice the side looks the same, so one ratio of side to depth serves all levels.
+//! The view of an object in real numbers, its quantisation, and the depths by level at which records change (`SPEC.md`,
+//! "The change to screen space", "Drawing rules"). At twice the depth a voxel of twice the side looks the same, so one
+//! ratio of side to depth serves all levels.
 
 use hwmodel::Format;
 
@@ -94,8 +94,8 @@ impl RealView {
         split_fraction(plane_frac + room, plane_frac, coverage)
     }
 
-    /// Sum over a finest voxel's edges of the speed of a picture position, samples times depth: the greatest of both
-    /// axes, and of the ends of the positions that may change, where linear and convex functions are greatest.
+    /// Sum over a finest voxel's edges of the speed of a picture position, samples times depth. Linear and convex functions are
+    /// greatest at the ends of the positions that may change.
     fn total_speed(&self, options: &SetupOptions) -> f64 {
         let root_samples = (1u64 << (self.root_px_log2 + options.aa_log2)) as f64;
         let guard = libm::ldexp(1.0, -(SCREEN_GUARD_SHIFT as i32));

@@ -110,8 +110,8 @@ pub struct FrameSetup {
     pub lod_depth: Vec<i64>,
     /// Whether no word of the frame can overflow.
     pub has_headroom: bool,
-    /// Widening of a clip-space box in tests against the quadtree, in samples, as a shift to the right (0 = one sample):
-    /// the tolerance, rounded up to a power of two; `None`: nothing.
+    /// Widening, in samples, of a clip-space box in tests against the quadtree, as a shift to the right (0 = one sample). It is
+    /// the tolerance, rounded up to a power of two.
     pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
