@@ -37,7 +37,7 @@ fn agree(scene: &str, azimuth: f64, coverage: Coverage, (size, aa_log2, zoom): (
         assert!(drawn.is_ok() && shown.count() == frame.drawn());
         frame
     };
-    let right = draw(Box::new(Machine::default()));
+    let right = draw(Box::<Machine>::default());
     assert!(right.drawn() > 0);
     for instructions in [Instructions::Auto, Instructions::Scalar] {
         let options = FastOptions {
