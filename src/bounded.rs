@@ -20,7 +20,8 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The bytes of a regular file of at most `most` bytes. Fails also if it is longer, or does not fit in memory.
+/// The bytes of a regular file of at most `most` bytes. Fails also if it is longer, or with
+/// [`OutOfMemory`](io::ErrorKind::OutOfMemory).
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut file = open(path)?;
     let bytes = file.metadata()?.len();
@@ -31,7 +32,9 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if bytes > most {
         return Err(too_long(bytes));
     }
-    let mut content = crate::budget::room("a file that is read whole", bytes as usize)
+    let what = "a file that is read whole";
+    let mut content = crate::budget::check(what, bytes)
+        .and_then(|()| crate::budget::room(what, bytes as usize))
         .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
     // It may have grown.
     (&mut file)
@@ -41,14 +44,6 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         read if read > most => Err(too_long(read)),
         _ => Ok(content),
     }
-}
-
-/// The bytes of a regular file; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if it does not fit in memory.
-pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
-    let bytes = open(path)?.metadata()?.len();
-    crate::budget::check("a file that is read whole", bytes)
-        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
-    read(path, u64::MAX)
 }
 
 /// The text of a file of settings, which must be UTF-8.

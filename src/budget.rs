@@ -130,7 +130,6 @@ pub fn resident() -> Option<u64> {
     )
 }
 
-/// The bytes of an entry in kibibytes.
 fn kibibytes_of(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;

@@ -1,6 +1,5 @@
 //! SplitMix64: reproducible random numbers.
 
-/// The sequence of a seed.
 #[derive(Debug, Clone)]
 pub struct SplitMix(u64);
 
@@ -17,12 +16,10 @@ impl SplitMix {
         z ^ z >> 31
     }
 
-    /// A number from 0 to below `count`, which is at least 1.
     pub fn below(&mut self, count: u64) -> u64 {
         self.bits() % count.max(1)
     }
 
-    /// A number from 0 to below 1.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }

@@ -1,7 +1,7 @@
 //! Small scenes on all engines, under all rules, with each instruction set: seconds after a change (CONTRIBUTING.md).
 
 use shiftvox::fast::{Fast, FastOptions, Instructions};
-use shiftvox::frame::Frame;
+use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::Silent;
 use shiftvox::machine::Machine;
 use shiftvox::project::{
@@ -24,23 +24,30 @@ fn agree(scene: &str, azimuth: f64, coverage: Coverage, (size, aa_log2, zoom): (
         ..SetupOptions::of(coverage)
     };
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect("a frame");
-    let draw = |engine: &mut dyn Engine| {
+    let draw = |mut engine: Box<dyn Engine>| {
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn = engine.render(&graph.view(), &setup, &mut frame);
-        drawn.expect("64 bits are enough");
+        let stats = engine.render(&graph.view(), &setup, &mut frame);
+        assert!(!stats.expect("64 bits are enough").is_empty());
+        let mut again = Frame::new(setup.width, setup.height, false);
+        let drawn = engine.draw(&graph.view(), &setup, &mut again);
+        assert!(drawn.is_ok() && again == frame);
+        let mut colors = Colors::new(setup.width, setup.height);
+        let drawn = engine.draw_colors(&graph.view(), &graph.color, &setup, &mut colors);
+        let shown = colors.words.iter().filter(|&&word| word != 0);
+        assert!(drawn.is_ok() && shown.count() == frame.drawn());
         frame
     };
-    let right = draw(&mut Machine::default());
+    let right = draw(Box::<Machine>::default());
     assert!(right.drawn() > 0);
     for instructions in [Instructions::Auto, Instructions::Scalar] {
         let options = FastOptions {
             instructions,
             ..FastOptions::default()
         };
-        let fast = draw(&mut Fast::new(options, Box::new(Machine::default())));
+        let fast = draw(Box::new(Fast::new(options, Box::new(Machine::default()))));
         assert!(fast == right, "{scene} {coverage:?} {instructions:?}");
     }
-    assert!(coverage != Coverage::Exact || draw(&mut Rays) == right);
+    assert!(coverage != Coverage::Exact || draw(Box::new(Rays)) == right);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Threads, engine and frame of a renderer, kept from picture to picture.
 
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use hwmodel::Overflow;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -20,7 +20,6 @@ pub(super) struct Key {
     pub(super) threads: usize,
 }
 
-/// Threads, an engine and a frame, which draw one picture at a time.
 pub(super) struct Job {
     key: Key,
     pub(super) pool: Option<ThreadPool>,
@@ -40,7 +39,7 @@ impl Kept {
             let reason = format!("threads: 0 to {MOST_THREADS}, not {threads}");
             return Err(Error::Setting(reason));
         }
-        let idle = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let idle = self.idle().pop();
         if let Some(job) = idle.filter(|job| job.key == key) {
             return Ok(job);
         }
@@ -60,20 +59,8 @@ impl Kept {
         })
     }
 
-    /// Drops the idle jobs.
-    pub(super) fn clear(&self) {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clear();
-    }
-
-    /// Keeps a job for the next picture.
-    pub(super) fn put(&self, job: Job) {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push(job);
+    pub(super) fn idle(&self) -> MutexGuard<'_, Vec<Job>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The renderer of the public API.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
@@ -155,8 +155,7 @@ impl Renderer {
     }
 
     /// Buffers in addition to the colours; none by default. Bytes per pixel: 4 for [`Buffer::Depth`], [`Buffer::Node`]
-    /// and
-    /// [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for [`Buffer::Voxel`].
+    /// and [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for [`Buffer::Voxel`].
     ///
     /// ```
     /// # use shiftvox::{Buffer, Camera, Renderer, Scene};
@@ -213,12 +212,8 @@ impl Renderer {
         };
         let (drawn, buffers) = self.draw(scene, &camera, bytes, operations.as_ref(), finish)?;
         let counters = drawn.stats;
-        let operations = operations.map(|operations| {
-            operations
-                .lock()
-                .map(|mut o| std::mem::take(&mut *o))
-                .unwrap_or_default()
-        });
+        let counted = |operations: Arc<Mutex<Counter>>| std::mem::take(&mut *lock(&operations));
+        let operations = operations.map(counted);
         Ok(Picture::new((width, height), buffers, counters, operations))
     }
 
@@ -301,13 +296,13 @@ impl Renderer {
             None => draw(),
         };
         job.canvas = Some(canvas);
-        self.kept.put(job);
+        self.kept.idle().push(job);
         Ok(made?)
     }
 
     /// Frees the memory that is kept for the next picture: that of the largest pictures drawn at the same time.
     pub fn forget(&self) {
-        self.kept.clear();
+        self.kept.idle().clear();
     }
 
     fn kind(&self) -> EngineKind {
@@ -431,6 +426,10 @@ struct Counting {
     operations: Arc<Mutex<Counter>>,
 }
 
+fn lock(operations: &Mutex<Counter>) -> MutexGuard<'_, Counter> {
+    operations.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Engine for Counting {
     fn render(
         &mut self,
@@ -441,10 +440,7 @@ impl Engine for Counting {
         let (stats, counter) = self
             .machine
             .render_probed(graph, setup, frame, Counter::new())?;
-        *self
-            .operations
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner) = counter;
+        *lock(&self.operations) = counter;
         Ok(stats)
     }
 }

@@ -16,7 +16,6 @@ use crate::project::{
     Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
-/// Settings for drawing a voxel graph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphStyle {
     pub options: SetupOptions,
@@ -36,9 +35,7 @@ pub struct GraphDrawing<'g> {
     engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
     viewer: Viewer<'g, Box<dyn Engine + Send>>,
     contents: Contents,
-    /// Memory per finished pixel in addition to the frame, bytes.
     pixel_bytes: u64,
-    /// The last picture, if it was finished.
     last: Option<Drawn>,
 }
 
@@ -49,7 +46,6 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A canvas without a frame.
     pub fn new(engine: Box<dyn Engine + Send>) -> Self {
         Self {
             engine,
@@ -58,10 +54,8 @@ impl Canvas {
     }
 }
 
-/// A frame that the viewer shows.
 pub struct DrawnFrame {
     pub setup: FrameSetup,
-    /// The counters of the engine.
     pub stats: Stats,
     /// Time to draw it, milliseconds.
     pub draw_ms: f64,
@@ -69,7 +63,6 @@ pub struct DrawnFrame {
     was_shown: bool,
 }
 
-/// A picture that was made from the viewer's frame.
 struct Drawn {
     pixels: Pixels,
     pixels_drawn: usize,
@@ -166,19 +159,21 @@ impl<'g> GraphDrawing<'g> {
     pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
         let setup = self.setup(camera)?;
         let was_shown = self.viewer.shows(&setup);
-        let started = Instant::now();
-        let stats = self.draw_set_up(&setup)?;
+        let (stats, draw_ms) = self.draw_set_up(&setup)?;
         Ok(DrawnFrame {
             setup,
             stats,
-            draw_ms: milliseconds_since(started),
+            draw_ms,
             was_shown,
         })
     }
 
-    fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<Stats, DrawError> {
+    /// Returns the counters, and the time in milliseconds.
+    fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<(Stats, f64), DrawError> {
+        let started = Instant::now();
         let light = lights(self.graph, setup, self.style.shading);
-        Ok(self.viewer.render_lit(setup, &light)?)
+        let stats = self.viewer.render_lit(setup, &light)?;
+        Ok((stats, milliseconds_since(started)))
     }
 
     /// Makes something from a drawn frame. Draws the frame again with voxels if colours depend on them.
@@ -191,25 +186,16 @@ impl<'g> GraphDrawing<'g> {
             Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
                 self.contents = Contents::Voxels;
                 self.viewer.store(self.contents);
-                let again = self.draw_frame_again(drawn)?;
-                *drawn = again;
+                let (stats, draw_ms) = self.draw_set_up(&drawn.setup)?;
+                drawn.stats = stats;
+                drawn.draw_ms += draw_ms;
+                drawn.was_shown = false;
                 Ok(make(&self.resolver(&drawn.setup)?)?)
             }
             made => Ok(made?),
         }
     }
 
-    fn draw_frame_again(&mut self, drawn: &DrawnFrame) -> Result<DrawnFrame, DrawError> {
-        let started = Instant::now();
-        Ok(DrawnFrame {
-            stats: self.draw_set_up(&drawn.setup)?,
-            setup: drawn.setup.clone(),
-            draw_ms: drawn.draw_ms + milliseconds_since(started),
-            was_shown: false,
-        })
-    }
-
-    /// The buffers of the viewer's frame.
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
         // Without a frame there are no samples.
         let frame = self.viewer.frame();
@@ -223,7 +209,6 @@ impl<'g> GraphDrawing<'g> {
     }
 }
 
-/// All colours, in the form of a file.
 fn pixels(resolver: &Resolver<'_>) -> Result<Pixels, ResolveError> {
     let (width, height) = resolver.size();
     let rows = 0..height;
@@ -242,8 +227,6 @@ impl Drawable for GraphDrawing<'_> {
         self.up
     }
 
-    /// Draws the graph, unless the last frame was the same, and makes the colours. Several runs are measured on separate
-    /// frames.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         let measured = match runs {
             0 | 1 => None,
@@ -299,7 +282,6 @@ impl Drawable for GraphDrawing<'_> {
         }))
     }
 
-    /// Clears, traverses, and looks up unlit colours, as experiments time a frame.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
         let (graph, setup) = (self.graph, self.setup(camera)?);
         let mut engine = (self.engine)();

@@ -22,7 +22,6 @@ pub trait Drawable {
     /// The box, and points that enclose the contents, for a fitted camera.
     fn bounds(&self) -> Bounds;
 
-    /// The vertical axis of the file.
     fn up(&self) -> Up;
 
     /// Draws a frame `runs` times (0 counts as 1), each time completely, and keeps the last. After an error nothing is
@@ -36,13 +35,10 @@ pub trait Drawable {
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
 
-/// Draws a frame per call.
 pub type Frames<'d> = Box<dyn FnMut() -> Result<(), DrawError> + Send + 'd>;
 
-/// Figures by name, in the order of display.
 pub type Figures = Vec<(&'static str, Value)>;
 
-/// A drawn picture, and its measurements.
 pub struct Shown<'d> {
     pub pixels: Cow<'d, Pixels>,
     /// All buffers, made on demand.
@@ -53,9 +49,7 @@ pub struct Shown<'d> {
     pub coverage: &'d [f32],
     /// Time of each run, milliseconds.
     pub times_ms: &'d [f64],
-    /// Counts of one frame.
     pub counters: Figures,
-    /// Figures of this method only.
     pub details: Figures,
 }
 
@@ -84,25 +78,18 @@ impl Rows for Buffers<'_> {
     }
 }
 
-/// Why a frame was not drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
-    /// The picture would take too much memory.
     #[error(transparent)]
     TooLarge(#[from] TooManySamples),
-    /// The picture takes more memory than is free.
     #[error(transparent)]
     Memory(#[from] Shortage),
-    /// The camera has no direction.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// The frame cannot be set up.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// The engine gave up.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The colours cannot be made.
     #[error(transparent)]
     Resolve(#[from] ResolveError),
     /// A failure of another crate's method.
@@ -133,7 +120,6 @@ pub fn check_samples(
 const UNCHECKED_BYTES: u64 = 1 << 24;
 /// Bytes per colour of a pixel in a file.
 pub const COLOR_BYTES: u64 = 3;
-/// Calls `run` `runs` times, at least once. Returns the last result, and the time of each run, milliseconds.
 pub fn timed<T>(
     runs: u32,
     mut run: impl FnMut() -> Result<T, DrawError>,

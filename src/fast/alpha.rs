@@ -85,7 +85,6 @@ impl<I: Isa> Band<'_, I> {
         full
     }
 
-    /// A voxel's weight, 0 to 256.
     fn weight(&self, eye: &OpacityEye, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
         let opacity = self.graph.opacity_of(node);
         let side = self.constants.levels[level as usize].side;

@@ -20,9 +20,7 @@ pub(super) struct Band<'b, I> {
     pub(super) pixels: Pixels<'b>,
     pub(super) counters: Counters,
     pub(super) blends: bool,
-    /// By sample of a square: how many entries of the picture it lies behind the square's first sample.
     pub(super) sample_offsets: [u32; 64],
-    /// By sample of the current square: the parts that its line may meet.
     pub(super) candidates: Candidates,
     pub(super) hits: [Hit; 64],
     /// The node that each of them shows. Only for bricks of four levels without blending.
@@ -30,7 +28,6 @@ pub(super) struct Band<'b, I> {
     pub(super) brick_blocks: &'b mut BrickBlocks,
 }
 
-/// The parts of a brick of four levels, with theirs.
 #[derive(Debug)]
 pub(super) struct BrickBlocks {
     /// Masks of the parts of each block. Blocks and parts are both in order of occlusion.
@@ -38,7 +35,6 @@ pub(super) struct BrickBlocks {
     pub(super) parts: [Parts; 64],
 }
 
-/// A node and its place: the unit of work above bricks.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Record {
     pub(super) node: u32,
@@ -49,13 +45,11 @@ pub(super) struct Record {
     pub(super) centre: [f64; 3],
 }
 
-/// A voxel as pictures store it: lowest corner and level.
 #[inline(always)]
 pub(super) fn voxel_at(min: [i32; 3], level: u32) -> [i32; 4] {
     [min[0], min[1], min[2], level as i32]
 }
 
-/// A node that is drawn in one step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Brick<'b> {
     pub(super) record: &'b Record,

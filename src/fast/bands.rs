@@ -15,7 +15,6 @@ use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
 
-/// Data that all bands of a frame share.
 pub(super) struct Job<'j> {
     pub(super) constants: &'j Constants,
     pub(super) exact: &'j Exact,
@@ -23,7 +22,6 @@ pub(super) struct Job<'j> {
     pub(super) switches: &'j Switches,
 }
 
-/// The memory of a band: whole rows of tiles.
 pub(super) struct BandBuffers<'p> {
     pub(super) grid: TileGrid,
     pub(super) bounds: Window,
@@ -31,10 +29,8 @@ pub(super) struct BandBuffers<'p> {
     pub(super) pixels: Pixels<'p>,
 }
 
-/// Rows of tiles of the first band, of `rows` from `top`. If these are all, there is one band.
-///
-/// A node across two bands is visited in both, so bands are few: several per thread, large ones first, so that threads
-/// end together. Only rows that the object covers count.
+/// Rows of tiles of the first of `rows` from `top`. A node across two bands is visited in both, so bands are few: several
+/// per thread, large ones first, so that threads end together. Only rows that the object covers count.
 fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) -> usize {
     let begin = object.start.max(top);
     let covered = object.end.min(top + rows).saturating_sub(begin);
@@ -82,7 +78,6 @@ impl BandBuffers<'_> {
     }
 }
 
-/// Draws the first band, while other threads draw the rest in the same way. `object`: the rows of tiles that it covers.
 pub(super) fn run_bands<I: Isa>(
     job: &Job<'_>,
     buffers: BandBuffers<'_>,

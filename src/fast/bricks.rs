@@ -1,8 +1,5 @@
-//! Bricks: nodes of which two or four levels are drawn in one step, sample by sample.
-//!
-//! The 64 parts of a brick, its grandchildren, are solids. For each open sample three look-ups give the parts that its
-//! line may meet, nearest first (`strips.rs`); the sample shows the first part that the line meets (`lines.rs`). So
-//! occluded voxels cost nothing.
+//! Bricks: nodes whose 64 grandchildren (parts) are solids, drawn in one step. For each open sample three look-ups give
+//! the parts that its line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
 //! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice, for 4096
 //! voxels. A block's parts are read when the first line needs them.
@@ -18,7 +15,6 @@ use super::squares::{SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::window::Window;
 
-/// Draws a brick of two levels, or of four (`DEEP`).
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -30,7 +26,6 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     let level = &band.constants.levels[brick.record.level as usize];
     let across = if DEEP { 16.0 } else { 4.0 };
     let projection = Projection::new(isa, band.constants, level, brick.record.centre, across);
-    // One square is not worth the time.
     let window = if window.right - window.left > 7 || window.bottom - window.top > 7 {
         let parts = brick.parts.exist;
         projection.window(isa, band.constants, level, across, parts, window)
@@ -53,7 +48,6 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     );
 }
 
-/// Draws the parts that samples show; returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -151,8 +145,8 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// Splits samples by the first part that their lines may meet: those that meet it, whose hits come first, and those
-/// that may meet others. Has no branches, because the outcome is unpredictable.
+/// Splits samples: those whose lines meet the first part that they may meet, hits first, and those that may meet others.
+/// Has no branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
     let isa = band.isa;
@@ -173,7 +167,6 @@ fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: 
         };
         count += usize::from(is_met);
         drawn |= u64::from(is_met) << bit;
-        // Without the first part if that is certainly missed.
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
         others |= u64::from((parts != 0) & !is_met) << bit;
@@ -192,7 +185,6 @@ impl Hit {
         parts.part(band.graph, u32::from(self.part))
     }
 
-    /// The node, and its place in the brick.
     #[inline(never)]
     fn path<I: Isa, const DEEP: bool>(
         self,
@@ -210,7 +202,6 @@ impl Hit {
     }
 }
 
-/// Shows the hits. All memory was prefetched, so that waiting for one hit does not delay the next.
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -263,7 +254,6 @@ fn blend<I: Isa, const DEEP: bool>(
     (full != 0, path.levels)
 }
 
-/// Whether a doubtful sample meets a part, by the exact rule.
 #[inline(never)]
 fn is_hit<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -276,7 +266,6 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, usize::from(hit.bit), &path)
 }
 
-/// Puts a block's parts in occlusion order.
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
     let block = brick
@@ -288,7 +277,6 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octa
     band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
 }
 
-/// The place of a voxel in a brick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path {
     pub(super) block: Option<u32>,
@@ -321,7 +309,6 @@ impl Path {
     }
 }
 
-/// Whether a voxel covers a sample, by the exact rule.
 #[inline(never)]
 pub(super) fn is_covered<I: Isa>(
     band: &mut Band<'_, I>,

@@ -1,8 +1,7 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
-//! A mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second level has one bit
-//! per tile, in words of 8 x 8 tiles (blocks). So a few words show whether a window is open. Samples outside the
-//! picture count as drawn. A square (`squares.rs`) is at most a tile large and may lie anywhere.
+//! A mask has a bit per open sample, in words of 8 x 8 samples (tiles), and a bit per tile with open samples, in words
+//! of 8 x 8 tiles (blocks). Samples outside the picture count as drawn. A square (`squares.rs`) may lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
@@ -14,7 +13,6 @@ const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 pub(super) struct Fill<'p> {
     pub(super) bounds: Window,
     grid: TileGrid,
-    /// Index of the band's first tile in the whole picture.
     first_tile: usize,
     /// Row of the band's first blocks in the whole picture. A band may have only the lower tiles of these.
     first_block_row: i32,
@@ -37,7 +35,6 @@ pub(super) struct FillMemory {
 }
 
 impl FillMemory {
-    /// Makes room for a picture. Allocates nothing for the next one of its size.
     pub(super) fn resize(&mut self, grid: &TileGrid) {
         // Room below and beside the last tile, so that squares there are read like others.
         let beyond = grid.tiles_across + 2;
@@ -57,7 +54,6 @@ impl FillMemory {
 }
 
 impl FillPart<'_> {
-    /// The first rows of tiles, and the others. `top`: the first row in the picture.
     pub(super) fn split(self, grid: &TileGrid, top: usize, rows: usize) -> (Self, Self) {
         let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_across);
         let block_rows = (top + rows).div_ceil(TILES_PER_BLOCK) - top / TILES_PER_BLOCK;
@@ -75,7 +71,6 @@ pub(super) struct TileGrid {
 }
 
 impl TileGrid {
-    /// Whole blocks across, whole tiles down.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let blocks_across = (width as usize).div_ceil(1 << BLOCK_LOG2);
         Self {
@@ -86,7 +81,6 @@ impl TileGrid {
     }
 }
 
-/// The lowest columns of a tile, by number of columns.
 static COLUMNS: [u64; 9] = {
     let mut masks = [0; 9];
     let mut i = 0;
@@ -114,7 +108,6 @@ static SQUARES: [u64; 64] = {
 };
 
 impl<'p> Fill<'p> {
-    /// An empty band. `bounds.top` is the top of a tile.
     pub(super) fn clear(grid: &TileGrid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;
@@ -148,7 +141,6 @@ impl<'p> Fill<'p> {
             .wrapping_sub(self.first_tile)
     }
 
-    /// Index of a tile's block, and the tile's bit there.
     #[inline(always)]
     fn block_of(&self, x: i32, y: i32) -> (usize, u64) {
         let row = ((y >> 3) - self.first_block_row) as usize;
@@ -156,7 +148,6 @@ impl<'p> Fill<'p> {
         (at, 1u64 << ((y & 7) << 3 | (x & 7)))
     }
 
-    /// A tile's open samples; none outside the band.
     #[inline(always)]
     fn tile(&self, at: usize) -> u64 {
         self.part.tiles.get(at).copied().unwrap_or(0)
@@ -270,9 +261,7 @@ impl<'p> Fill<'p> {
 
 #[derive(Debug)]
 pub(super) struct Pixels<'f> {
-    /// Samples per row.
     pub(super) width: usize,
-    /// First row of the band.
     pub(super) top: i32,
     /// Nodes, or their colours.
     pub(super) shown: &'f mut [u32],
@@ -280,7 +269,6 @@ pub(super) struct Pixels<'f> {
     pub(super) color: &'f [[u8; 3]],
     /// Empty where voxels are not wanted.
     pub(super) voxel: &'f mut [[i32; 4]],
-    /// Blended light so far; empty under rules that do not blend.
     pub(super) blend: &'f mut [Blend],
 }
 
@@ -290,7 +278,6 @@ impl Pixels<'_> {
         !self.voxel.is_empty()
     }
 
-    /// What a sample that shows a node holds.
     #[inline(always)]
     pub(super) fn word(&self, node: u32) -> u32 {
         if self.color.is_empty() {
@@ -305,7 +292,6 @@ impl Pixels<'_> {
         (y - self.top) as usize * self.width + x as usize
     }
 
-    /// Shows a node, and a voxel if wanted, at samples of a square, eight bits per row.
     #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,

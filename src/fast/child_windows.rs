@@ -11,13 +11,11 @@ const SCALE: f32 = 1.0 + 1.0 / 256.0;
 /// Margin of windows in `f64`: in samples, and relative to their terms.
 const TINY_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Windows by octant, cut to the band. They hold all samples in the children's boxes.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(32))]
 pub(super) struct ChildWindows {
     /// Left, top, right and bottom.
     sides: [[i32; 8]; 4],
-    /// Windows with a sample, as a mask; no meaning for children that are near.
     pub(super) held: u8,
     /// Children that reach the eye's plane or lie behind it, as a mask.
     pub(super) near: u8,
@@ -29,7 +27,6 @@ impl ChildWindows {
         Window::of([0, 1, 2, 3].map(|i| self.sides[i][octant & 7]))
     }
 
-    /// Computes the windows of a node's children. `centre`: the node's clip vector.
     #[inline(always)]
     pub(super) fn compute<I: Isa>(
         &mut self,
@@ -88,7 +85,6 @@ impl ChildWindows {
         }
     }
 
-    /// The same in `f64`, child by child, with a margin for nodes much smaller than a sample.
     #[inline(never)]
     fn compute_tiny(
         &mut self,

@@ -1,7 +1,5 @@
-//! Constants of a frame for the traversal; the nearest octant of a node (R9).
-//!
-//! Clip vectors of nodes are halves of whole numbers in `f64`, and exact: [`Constants::new`] declines frames whose
-//! positions, times sixteen, exceed 53 bits. So level of detail compares the same depths as the machine.
+//! Constants of a frame for the traversal; the nearest octant of a node (R9). Clip vectors of nodes are halves of whole
+//! numbers, exact in `f64`, so level of detail compares the same depths as the machine.
 
 use crate::project::vector::cross;
 use crate::project::{FrameSetup, OpacityEye};
@@ -19,7 +17,6 @@ const FINE_SAMPLES: f64 = 0.75;
 /// Least size of a cube drawn by its planes, whole blocks and tiles at a time (`exact.rs`), samples. Measured.
 const LARGE_SAMPLES: f64 = 24.0;
 
-/// Least size of nodes whose windows are computed in `f32`, samples.
 const TINY_SAMPLES: f64 = 1.0 / 8.0;
 
 #[derive(Debug, Clone)]
@@ -29,11 +26,8 @@ pub(super) struct Level {
     /// Vertices relative to the centre, likewise.
     pub(super) vertices: [[f64; 8]; 3],
     pub(super) half_depth: f64,
-    /// Least W of a node with children that level of detail makes a solid; infinite where there is none.
     pub(super) lod_depth: f64,
-    /// Side, finest voxels.
     pub(super) side: i32,
-    /// 1 / side: a power of two.
     pub(super) inverse_side: f64,
     /// Largest depth at which parts of a quarter of a node's side are coarse ([`COARSE_SAMPLES`]).
     pub(super) coarse_depth: f64,
@@ -80,9 +74,7 @@ impl Declined {
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
     pub(super) levels: Vec<Level>,
-    /// Octree level of the finest voxels.
     pub(super) depth: u32,
-    /// Clip vector of the object's centre.
     pub(super) centre: [f64; 3],
     pub(super) root_samples: f64,
     /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
@@ -104,7 +96,6 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Errors: why this engine does not draw the frame.
     pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
         if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
             return Err(Declined::Rule);
@@ -164,8 +155,7 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object's box covers, about; all rows of a picture of this height where the box reaches
-    /// behind the eye. Only divides the work.
+    /// Rows of samples that the object's box covers, about; all where it reaches behind the eye. Only divides the work.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
@@ -181,8 +171,6 @@ impl Constants {
         top..bottom
     }
 
-    /// The octant nearest to the eye, of a node with this lowest corner and half side: bit k is set where the eye is
-    /// above the centre.
     #[inline(always)]
     pub(super) fn nearest_octant(&self, min: [i32; 3], half_side: i32) -> u8 {
         let mut octant = 0;
@@ -197,7 +185,6 @@ impl Constants {
 /// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that a finest voxel takes, times its depth.
 fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
-    // Corners of a cube about its centre: by coordinate, then by octant.
     let corners = |half: f64| -> [[f64; 8]; 3] {
         [0, 1, 2].map(|c| {
             std::array::from_fn(|octant: usize| {

@@ -2,7 +2,6 @@
 
 use crate::project::Stats;
 
-/// Makes [`Counters`] of a table: field, name in reports, meaning.
 macro_rules! counters {
     ($($(#[$meaning:meta])* $field:ident = $name:literal;)*) => {
         #[derive(Debug, Default, Clone, Copy)]
@@ -23,25 +22,18 @@ macro_rules! counters {
 }
 
 counters! {
-    /// Nodes whose children were visited.
     nodes = "nodes";
     /// Nodes of which two or four levels were drawn in one step.
     bricks = "bricks";
-    /// Squares of their windows, and of solids', in which something was open.
     squares = "squares";
     samples_tested = "samples_tested";
     solids = "solids_drawn";
     samples_drawn = "samples_drawn";
-    /// Voxels that samples took, under the rule that blends.
     samples_blended = "samples_blended";
-    /// Samples that the exact rule decided, once for each voxel.
     exact_samples = "samples_decided_exactly";
-    /// Children that do not exist.
     skipped_absent = "skipped_absent_children";
     skipped_behind = "skipped_behind_eye";
-    /// Nodes beside the picture, or that hold no sample.
     skipped_off_screen = "skipped_off_screen";
-    /// Nodes behind what is drawn.
     skipped_hidden = "skipped_hidden";
     /// Nodes whose further children were left because all samples were drawn.
     skipped_full = "skipped_picture_full";

@@ -14,16 +14,13 @@ pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
 /// times as large (`Constants::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
-/// Direction of the lines in a square's middle, and its change from there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions<I: Isa> {
     pub(super) middle: I::F32x4,
     pub(super) spread: I::F32x4,
-    /// The greatest sum of the sizes of a direction's terms.
     pub(super) size: I::F32x4,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
-    /// Whether the lines of the square may begin in several octants.
     pub(super) is_mixed: bool,
 }
 
@@ -36,7 +33,6 @@ impl<I: Isa> Directions<I> {
         let x = isa.splat(square.left as f32).add(half_across);
         let y = isa.splat(square.top as f32).add(half_down);
         let middle = columns.fma(x, rows.fma(y, first));
-        // The sizes of the terms bound the rounding of the sum.
         let right = isa.splat((square.right + 1) as f32);
         let bottom = isa.splat((square.bottom + 1) as f32);
         let size = columns
@@ -62,7 +58,6 @@ static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Samples<'s, I: Isa> {
     pub(super) square: &'s Window,
-    /// Their mask, eight bits per row.
     pub(super) open: u64,
     pub(super) directions: Directions<I>,
     pub(super) octant: u8,
@@ -80,7 +75,6 @@ impl<I: Isa> Samples<'_, I> {
     }
 }
 
-/// Samples of a square by the octant in which their lines begin, by each sample's own signs.
 #[inline(never)]
 pub(super) fn by_octant(
     constants: &Constants,

@@ -1,12 +1,8 @@
 //! Exact silhouettes (R8, ties R8.1, the plane of the eye R8.2): in `f64` where its error bound decides, otherwise in
 //! 128-bit integers.
 //!
-//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and an edge of a cube. The sign
-//! of their permuted inner product is the side on which the ray passes.
-//!
-//! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. With the
-//! sample as `q = (2x + 1, 2y + 1, 2^(R + 1))` its side is the sign of `n q`; a zero is decided by the signs of `n_X`
-//! and `n_Y`, as in the machine.
+//! The plane through the eye and the edge of direction j that starts at `A` has the normal `n = A x e_j`. The side of the
+//! sample `q = (2x + 1, 2y + 1, 2^(R + 1))` is the sign of `n q`; a zero is decided by the signs of `n_X` and `n_Y`.
 
 use super::window::Window;
 use crate::project::FrameSetup;
@@ -15,18 +11,15 @@ use crate::project::FrameSetup;
 /// products. Each of a few operations in a row adds 2^-53, so there is room.
 const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The integers of a frame that exact decisions need.
 #[derive(Debug, Clone)]
 pub(super) struct Exact {
     origin: [i64; 3],
     edge: [[i64; 3]; 3],
     edge_float: [[f64; 3]; 3],
-    /// Planes through the eye, perpendicular to the axes.
     axis: [[i128; 3]; 3],
     positive: bool,
     eye_floor: [i64; 3],
     eye_ceil: [i64; 3],
-    /// The third coordinate of a sample.
     unit: i64,
 }
 
@@ -72,7 +65,6 @@ impl Exact {
         }
     }
 
-    /// The clip vector of a point of the object's lattice.
     #[inline(always)]
     fn at(&self, point: [i32; 3]) -> [i64; 3] {
         let mut at = self.origin;
@@ -84,10 +76,8 @@ impl Exact {
         at
     }
 
-    /// Whether the ray of a sample meets the inside of a cube before the eye.
-    ///
-    /// In direction j, `n q = A (e_j x q)` for the starts `A` of the four edges, the corners of a parallelogram: their
-    /// least and greatest values decide.
+    /// Whether the ray of a sample meets the inside of a cube before the eye. In direction j, `n q = A (e_j x q)` for the
+    /// starts `A` of the four edges: their least and greatest values decide.
     #[inline(always)]
     pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
         let corner = self.at(min);
@@ -118,25 +108,12 @@ impl Exact {
             }
             is_certain &= least < -doubt && greatest > doubt;
         }
-        is_certain || self.covers_exactly(corner, side, q)
+        is_certain || self.covers_exactly(min, side, sample)
     }
 
-    /// [`Exact::covers`] in integers.
     #[cold]
-    fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
-        (0..3).all(|j| {
-            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-            let sides = [0, 1, 2, 3].map(|vertex| {
-                let mut at = corner;
-                for (axis, times) in [(k, vertex & 1), (l, vertex >> 1)] {
-                    for c in 0..3 {
-                        at[c] += self.edge[axis][c] * i64::from(side) * i64::from(times);
-                    }
-                }
-                side_of(cross(at, self.edge[j]), sample)
-            });
-            sides.contains(&1) && sides.contains(&-1)
-        })
+    fn covers_exactly(&self, min: [i32; 3], side: i32, [x, y]: [i32; 2]) -> bool {
+        self.outline(min, side, true).covers(self, x, y)
     }
 
     #[cold]
@@ -197,6 +174,7 @@ struct Plane {
 
 impl Plane {
     /// The side of all samples of a window; `None`: both may occur. 0: there is no plane.
+    #[inline(always)]
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;
         let odd = |i: i32| f64::from(i) * 2.0 + 1.0;
@@ -218,18 +196,8 @@ impl Plane {
     }
 
     fn side_of_sample(&self, exact: &Exact, x: i32, y: i32) -> i8 {
-        let [a, b, c] = self.float;
-        let x_part = a * (f64::from(x) * 2.0 + 1.0);
-        let y_part = b * (f64::from(y) * 2.0 + 1.0);
-        let value = x_part + y_part + c;
-        let doubt = (x_part.abs() + y_part.abs() + c.abs()) * PLANE_ERROR;
-        if value > doubt {
-            1
-        } else if value < -doubt {
-            -1
-        } else {
-            side_of(self.exact, exact.sample([x, y]))
-        }
+        let side = self.side(&Window::of([x, y, x, y]));
+        side.unwrap_or_else(|| side_of(self.exact, exact.sample([x, y])))
     }
 }
 
@@ -240,7 +208,6 @@ pub(super) struct Outline {
     front: Option<(Plane, i8)>,
 }
 
-/// The share of a window that a silhouette covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     None,
@@ -272,16 +239,12 @@ impl Outline {
     }
 
     pub(super) fn covers(&self, exact: &Exact, x: i32, y: i32) -> bool {
-        let inside = self.edges.iter().all(|edges| {
-            let sides = edges
-                .each_ref()
-                .map(|plane| plane.side_of_sample(exact, x, y));
+        let side_of = |plane: &Plane| plane.side_of_sample(exact, x, y);
+        let is_between = |edges: &[Plane; 4]| {
+            let sides = edges.each_ref().map(side_of);
             sides.contains(&1) && sides.contains(&-1)
-        });
-        inside
-            && self
-                .front
-                .as_ref()
-                .is_none_or(|(plane, side)| plane.side_of_sample(exact, x, y) == *side)
+        };
+        let is_in_front = |(plane, side): &(Plane, i8)| side_of(plane) == *side;
+        self.edges.iter().all(is_between) && self.front.iter().all(is_in_front)
     }
 }

@@ -1,9 +1,7 @@
 //! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! Under `exact` the picture is defined without reference to an algorithm (`SPEC.md`): each sample
-//! shows the first voxel on its ray. So this engine works sample by sample, where the machine works
-//! record by record. Approximate arithmetic with a bounded error decides nearly all samples, and the
-//! exact rule decides those in doubt (`spec/fast.md`).
+//! It works sample by sample, where the machine works record by record. Approximate arithmetic with a bounded error
+//! decides nearly all samples, the exact rule those in doubt (`spec/fast.md`).
 //!
 //! ```text
 //! for each band of the picture, from the whole object down (traversal):
@@ -14,8 +12,7 @@
 //!     large or near ones:     by exact planes (planes, exact)
 //! ```
 //!
-//! Frames that it does not draw ([`Declined`]: other rules, positions too large, records asked for)
-//! go to the engine that it is made with.
+//! Frames that it declines ([`Declined`]) go to another engine.
 
 mod alpha;
 mod band;
@@ -73,13 +70,10 @@ pub struct FastOptions {
     pub switches: Switches,
 }
 
-/// The fast engine.
 pub struct Fast {
     options: FastOptions,
-    /// Draws the frames that this engine declines.
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
-    /// Constants of the last frame, reused for the next one of the same set-up.
     prepared: Option<Prepared>,
     counters: Counters,
     declined: Option<Declined>,
@@ -89,14 +83,6 @@ struct Prepared {
     setup: FrameSetup,
     constants: Result<Constants, Declined>,
     exact: Exact,
-}
-
-impl std::fmt::Debug for Fast {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Fast")
-            .field("options", &self.options)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Fast {
@@ -112,7 +98,6 @@ impl Fast {
         }
     }
 
-    /// Why the fallback, many times slower, drew the last frame, if it did.
     pub fn declined(&self) -> Option<Declined> {
         self.declined
     }
@@ -270,8 +255,7 @@ pub struct Switches {
     pub bricks: bool,
     /// Fill blocks and tiles inside large solids at once, and skip those beside them.
     pub whole_blocks: bool,
-    /// Skip absent children at once. Off: above bricks, all eight are tested first. A brick has a lane for each of 64
-    /// parts in any case.
+    /// Skip absent children at once. Off: above bricks, all eight are tested first.
     pub absent_children: bool,
 }
 

@@ -5,18 +5,14 @@ use crate::graph::GraphView;
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
-    /// Mask of those that exist: bit `outer << 3 | inner`, octants in Morton order.
     pub(super) exist: u64,
     first: u32,
     node: u32,
-    /// Mask of the node's children.
     mask: u8,
-    /// Children that are solid: each fills all its parts.
     solid: u8,
     kind: Kind,
 }
 
-/// How parts become nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Kind {
     /// Each part is a node; children lie one after the other.
@@ -30,13 +26,11 @@ enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Part {
     pub(super) node: u32,
-    /// Levels below the node: 2, or less for a part of something larger.
     pub(super) levels: u32,
 }
 
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// Set bits below a place in a byte.
 #[inline(always)]
 fn rank(mask: u32, place: u32) -> u32 {
     (mask & ((1 << place) - 1)).count_ones()
@@ -67,7 +61,6 @@ impl Parts {
         parts
     }
 
-    /// [`Parts::of`] in place, because moving parts is slower than making them.
     #[inline(always)]
     pub(super) fn read<I: Isa>(
         &mut self,
@@ -104,7 +97,6 @@ impl Parts {
         self.look_up_all(graph, node, is_last, detail);
     }
 
-    /// [`Parts::read`], child by child.
     #[inline(never)]
     fn look_up_all(&mut self, graph: &GraphView<'_>, node: u32, is_last: bool, detail: u8) {
         let mask = graph.mask(node);
@@ -132,7 +124,6 @@ impl Parts {
         }
     }
 
-    /// Whether each part is a node of its own.
     #[inline(always)]
     pub(super) fn are_even(&self) -> bool {
         self.solid == 0 && self.kind != Kind::Solid
@@ -163,7 +154,6 @@ impl Parts {
         }
     }
 
-    /// Whether all parts are one solid node.
     #[inline(always)]
     pub(super) fn is_single(&self) -> bool {
         self.kind == Kind::Solid

@@ -14,7 +14,6 @@ const NEAR: f32 = 0.25;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection<I: Isa> {
-    /// Column and row.
     pub(super) centre: [f64; 2],
     inverse: f64,
     /// Slopes of the moments by column and by row, by axis.
@@ -43,11 +42,9 @@ impl<I: Isa> Projection<I> {
         }
     }
 
-    /// The part of a window that the box around some of a node's 64 parts covers, or a little more. The node, that of
-    /// [`Projection::new`], lies before the eye. Where it is near ([`NEAR`]), the whole window.
-    ///
-    /// A point `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth, which
-    /// differs from the centre's by at most half a node's.
+    /// The part of a window that the box around some parts of the node of [`Projection::new`] covers, or a little more; where
+    /// the node is near ([`NEAR`]), the whole window. A point `t` parts from the centre is seen `t . step` from it, times a
+    /// constant, over its depth, which differs from the centre's by at most half a node's.
     #[inline(always)]
     pub(super) fn window(
         &self,
@@ -110,7 +107,6 @@ fn steps<I: Isa>(isa: I, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> 
     ]
 }
 
-/// Middle and half the extent by axis of the box around parts of a node: from its centre, in sides of a part.
 #[inline(always)]
 fn extent<I: Isa>(isa: I, parts: u64) -> [I::F32x4; 2] {
     let mut extent = [isa.splat(0.0); 2];
@@ -128,32 +124,18 @@ fn extent<I: Isa>(isa: I, parts: u64) -> [I::F32x4; 2] {
 mod tests {
     use super::*;
     use crate::fast::lanes::Scalar;
-    use crate::fast::lines::tests::{numbers, random_frame};
+    use crate::fast::lines::tests::{Node, numbers};
     use crate::fast::orders::along;
 
-    /// Windows hold the picture of each corner of each part, and are hardly larger.
     #[test]
     fn windows_hold_the_parts_and_little_more() {
         let mut next = numbers();
         let (mut checked, mut far, mut tight) = (0, 0, 0);
         while checked < 20_000 {
-            let Some((setup, constants)) = random_frame(&mut next) else {
-                continue;
-            };
-            let index = (next() * 4.0) as usize;
-            let level = &constants.levels[index];
+            let node = Node::random(&mut next, 0);
+            let (constants, centre, min) = (&node.constants, node.centre, node.min);
+            let level = &constants.levels[node.level];
             let side = f64::from(level.side);
-            let min = [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side);
-            let clip = |at: [f64; 3]| {
-                [0, 1, 2].map(|c| {
-                    let along = |k: usize| setup.edge_clip[k][c] as f64 * at[k];
-                    setup.origin_clip[c] as f64 + along(0) + along(1) + along(2)
-                })
-            };
-            let centre = clip(min.map(|c| c + side / 2.0));
-            if centre[2] - level.half_depth <= 0.0 {
-                continue;
-            }
             let parts = (0..1 + (next() * 3.0) as u32)
                 .fold(0, |all, _| all | 1u64 << (next() * 64.0) as u32);
             let mut ends = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
@@ -163,7 +145,7 @@ mod tests {
                         let steps = along(part, k) + (corner >> (2 - k) & 1);
                         min[k] + steps as f64 * side / 4.0
                     });
-                    let [x, y, w] = clip(at);
+                    let [x, y, w] = node.clip(at);
                     let [x, y] = [x, y].map(|c| c * constants.root_samples / w - 0.5);
                     ends = [
                         ends[0].min(x),
@@ -173,15 +155,10 @@ mod tests {
                     ];
                 }
             }
-            let bounds = Window {
-                left: 0,
-                top: 0,
-                right: 399,
-                bottom: 299,
-            };
+            let bounds = Window::of([0, 0, 399, 299]);
             let across = [4.0, 16.0][checked % 2];
-            let projection = Projection::new(Scalar, &constants, level, centre, across);
-            let window = projection.window(Scalar, &constants, level, across, parts, &bounds);
+            let projection = Projection::new(Scalar, constants, level, centre, across);
+            let window = projection.window(Scalar, constants, level, across, parts, &bounds);
             let [left, top, right, bottom] = [
                 ends[0].ceil().max(0.0),
                 ends[1].ceil().max(0.0),

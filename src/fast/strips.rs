@@ -1,17 +1,14 @@
-//! Strips: three table look-ups give the parts of a node that a line may meet.
+//! Strips: three table look-ups give the parts of a node that a line may meet (`spec/fast.md`, section 3).
 //!
-//! Seen along a line, a part (a cube) is a hexagon: the intersection of three strips, one along each kind of edge. With
-//! `v` and `m` the line's Plücker coordinates about the node's centre (`lines.rs`), the line is in the strips of the
-//! part at `t` (in sides of a part) if for each axis j, with `n`, `l` the next two,
+//! Seen along a line, a part is a hexagon: three strips, one along each kind of edge. With `v` and `m` the line's Plücker
+//! coordinates (`lines.rs`) and `n`, `l` the axes after j, the line is in the strips of the part at `t` if for each j
 //!
 //! ```text
 //! |m_j - (t_n v_l - t_l v_n)| < (v_n + v_l) / 2
 //! ```
 //!
-//! Divided by `v_n + v_l`, a strip is 1 wide, and the 16 strips of a function lie at `t_n s - t_l (1 - s)`: they depend
-//! only on the share `s = v_l / (v_n + v_l)`. A table per share, made once for all frames, gives for each cell of the
-//! value the parts that may be met. The answers of the three functions are combined by `and`. Strips in tables are
-//! wider by a margin, so that no part is left out (`spec/fast.md`, section 3).
+//! Divided by `v_n + v_l`, a strip is 1 wide and lies at `t_n s - t_l (1 - s)`, with the share `s = v_l / (v_n + v_l)`. A
+//! table per share has for each cell of the value the parts whose strip, with a margin, it may lie in.
 //!
 //! Parts are numbered `outer << 3 | inner`, octants in Morton order, with bits turned where the line runs downwards. So
 //! a line meets lower numbers first.
@@ -31,7 +28,6 @@ pub(super) const CELLS: usize = 128;
 pub(super) const MIDDLE: f32 = 64.0;
 
 const CLASSES: usize = 3;
-/// Margins with tables, in widths.
 const MARGINS: [f32; CLASSES] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0];
 /// The part of a margin for the rounding of the share and of the cell's number: at most `3 / 2 SHARE_STEPS`, and 1/512.
 const ROUNDING: f32 = 1.5 / SHARE_STEPS + 1.0 / 512.0;
@@ -43,10 +39,8 @@ pub(super) const MOST_ERROR: [f32; CLASSES] = [
 ];
 
 const PER_MARGIN: usize = 3 * SHARES;
-/// By cell, parts.
 pub(super) type Row = [u64; CELLS];
 
-/// By margin, axis and share, and the blind table.
 #[derive(Debug)]
 pub(super) struct Strips {
     /// Parts whose strip the cell may lie in.
@@ -57,7 +51,6 @@ pub(super) struct Strips {
     begins_below: Vec<Row>,
 }
 
-/// Made on first use.
 pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 
 #[derive(Debug)]
@@ -65,8 +58,8 @@ pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 pub(super) struct Candidates(pub(super) [u64; 64]);
 
 impl Candidates {
-    /// Looks up the parts among `wanted` by open sample of a square. Returns the open samples that have any, eight bits
-    /// per row. `cells`: the three functions in cells, at the first sample, and their slopes by column and by row.
+    /// Looks up the parts among `wanted` by open sample. Returns the open samples that have any, eight bits per row. `cells`:
+    /// the functions in cells, at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn look_up<I: Isa>(
         &mut self,
@@ -145,8 +138,7 @@ impl Strips {
         strips
     }
 
-    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then adds up, upwards
-    /// the parts that have begun and downwards those that have not ended.
+    /// Notes where strips begin and end, then adds up the parts that have begun, and downwards those that have not ended.
     fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
@@ -176,7 +168,6 @@ impl Strips {
     /// Number of the blind table, which excludes no part.
     pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
-    /// By cell, the parts that may be met, of three tables.
     #[inline(always)]
     pub(super) fn touched(&self, tables: [usize; 3]) -> [&Row; 3] {
         tables.map(|table| &self.touched[table])
@@ -210,7 +201,6 @@ mod tests {
         parts
     }
 
-    /// Whether tables leave out a part of a line whose values are wrong by `error`.
     fn leave_a_part_out(class: usize, error: f64) -> bool {
         let strips = &*STRIPS;
         let mut left_out = false;

@@ -1,13 +1,5 @@
-//! The traversal of the graph, from the whole object down to solids and bricks, front to back: a
-//! loop with an explicit stack of the nodes whose children are being visited. Rules R7.1 (level of detail), R8.2 (plane
-//! of the eye) and R10 (termination).
-//!
-//! ```text
-//! for each child that exists of the stack's last node, nearest to the eye first:
-//!     skip it if its window holds no open sample
-//!     a solid, or a brick (a node whose parts are solids):   draw it (voxels, bricks, planes)
-//!     else:                                                  put it on the stack
-//! ```
+//! The traversal of the graph, front to back, with an explicit stack of the nodes whose children are being visited. Rules
+//! R7.1 (level of detail), R8.2 (plane of the eye) and R10 (termination).
 //!
 //! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too narrow. The loop and each
 //! way to draw are functions compiled for the instruction set ([`Isa::vectorize`]).
@@ -59,7 +51,6 @@ pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
     }
 }
 
-/// Draws a visible node. `false`: its children have to be visited instead.
 #[inline(always)]
 fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> bool {
     let (constants, isa) = (band.constants, band.isa);
@@ -124,7 +115,6 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     true
 }
 
-/// Whether all solids below a node are four levels below it, by the graph's depth or by level of detail.
 #[inline(always)]
 fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
     let ends = record.level as usize + 4;
@@ -160,7 +150,6 @@ struct Children<'b> {
     level: &'b Level,
     windows: ChildWindows,
     nearest: u32,
-    /// Remaining children: bit `c` is child `c ^ nearest`.
     left: u32,
 }
 
@@ -205,7 +194,6 @@ impl<'b> Children<'b> {
         self.left = u32::from(turned(wanted, nearest));
     }
 
-    /// Takes the next child and its window, if something of it may be seen.
     #[inline(always)]
     fn next<I: Isa>(&mut self, band: &mut Band<'_, I>) -> Option<(Record, Window)> {
         let (record, level) = (&self.record, self.level);
@@ -243,7 +231,6 @@ impl<'b> Children<'b> {
     }
 }
 
-/// Tests the windows of absent children, to measure what skipping them saves.
 #[inline(never)]
 fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: u8) {
     let held = absent & windows.held & !windows.near;
@@ -254,8 +241,7 @@ fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: 
     }
 }
 
-/// Whether a box partly behind the eye lies outside the frustum: all eight vertices are beyond one edge of the image
-/// root. Exact, and linear: what holds for the vertices holds for every point.
+/// Whether all eight vertices of a box partly behind the eye are beyond one edge of the image root: exact, and linear.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {

@@ -1,8 +1,5 @@
-//! Voxels one after the other, each against a square of samples at once.
-//!
-//! For each square, the tables (`strips.rs`) give the parts that its lines may meet, between the least and greatest
-//! values of the three functions. Each part, nearest first, is tested against 64 samples in 16-bit numbers. Samples
-//! well inside are drawn; those near the outline are decided one by one.
+//! Voxels one after the other, nearest first, each against the 64 samples of a square in 16-bit numbers. The tables
+//! (`strips.rs`) give those that the square's lines may meet. Samples near an outline are decided one by one.
 
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
@@ -38,7 +35,6 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     );
 }
 
-/// Returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa>(
     band: &mut Band<'_, I>,
@@ -137,7 +133,6 @@ fn draw_samples<I: Isa>(
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
-    /// Distances of values, at the first sample and by column and row, rounded to whole numbers.
     #[inline(always)]
     fn new(isa: I, values: &[I::F32x4; 3]) -> Self {
         let mut distances = Self([I::I16x16::splat(isa, 0); 4]);

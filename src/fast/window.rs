@@ -4,9 +4,7 @@
 pub(super) const TILE_LOG2: u32 = 3;
 /// Log2 of the samples per side of a block.
 pub(super) const BLOCK_LOG2: u32 = 6;
-/// A tile or block with everything open.
 pub(super) const ALL: u64 = u64::MAX;
-/// The leftmost samples of a tile's eight rows.
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
 /// Margin beyond rounding, samples.
@@ -14,7 +12,6 @@ pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
 /// Columns and rows beyond all pictures.
 pub(super) const BEYOND: f64 = 40_000.0;
 
-/// The numbers of a mask's bits, lowest first.
 #[inline(always)]
 pub(super) fn bits(mask: u64) -> impl Iterator<Item = usize> {
     let mut left = mask;

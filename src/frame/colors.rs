@@ -2,20 +2,17 @@
 
 use std::sync::LazyLock;
 
+use rayon::prelude::*;
+
 use super::{Blend, Frame, NO_NODE};
 use crate::srgb::from_linear;
 
-/// Samples tested together for being empty.
 const TOGETHER: usize = 16;
-/// Samples per task of a thread.
 const SHARE: usize = 1 << 15;
 
-/// The colours of a frame's samples.
 #[derive(Debug, Clone)]
 pub struct Colors {
-    /// Samples across.
     pub width: u32,
-    /// Samples down.
     pub height: u32,
     /// [`color_word`] of each sample, row by row; 0 without a voxel.
     pub words: Vec<u32>,
@@ -30,7 +27,6 @@ pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
 }
 
 impl Colors {
-    /// An empty picture.
     pub fn new(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -60,8 +56,11 @@ impl Colors {
             self.take_blended(blend);
             return;
         }
-        let threads = rayon::current_num_threads();
-        write(of_node, &frame.node, &mut self.words, threads);
+        let nodes = frame.node.par_chunks(SHARE);
+        let words = self.words.par_chunks_mut(SHARE);
+        nodes
+            .zip(words)
+            .for_each(|(nodes, words)| look_up(of_node, nodes, words));
     }
 
     /// Blended samples over black: linear light by a table to sRGB.
@@ -78,11 +77,9 @@ impl Colors {
     }
 }
 
-/// Bits of linear light for a preview's colours.
 const ENCODED_BITS: u32 = 12;
 const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
 
-/// The sRGB value of linear light.
 static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     std::array::from_fn(|light| {
         let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
@@ -90,18 +87,7 @@ static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     })
 });
 
-/// Halves the samples until each thread has a few shares.
-fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) {
-    if threads > 1 && nodes.len() > SHARE {
-        let half = nodes.len() / 2 / TOGETHER * TOGETHER;
-        let (upper, lower) = nodes.split_at(half);
-        let (to_upper, to_lower) = words.split_at_mut(half);
-        rayon::join(
-            || write(of_node, upper, to_upper, threads),
-            || write(of_node, lower, to_lower, threads),
-        );
-        return;
-    }
+fn look_up(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32]) {
     let chunks = nodes.chunks(TOGETHER).zip(words.chunks_mut(TOGETHER));
     for (nodes, words) in chunks {
         if nodes

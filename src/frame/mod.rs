@@ -30,9 +30,7 @@ pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 /// The samples of one frame, row by row from the top left. Colour, normal and depth follow from the visible voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// Samples across.
     pub width: u32,
-    /// Samples down.
     pub height: u32,
     /// Visible graph node, or [`NO_NODE`].
     pub node: Vec<u32>,
@@ -45,7 +43,6 @@ pub struct Frame {
     pub blend: Option<Vec<Blend>>,
 }
 
-/// Blended voxels of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Blend {
     /// Transmittance: 256 all, 0 nothing.
@@ -88,7 +85,6 @@ impl Frame {
         }
     }
 
-    /// Clears the samples, and keeps the memory.
     pub fn clear(&mut self) {
         self.node.fill(NO_NODE);
         self.voxel.fill(NO_VOXEL);
@@ -106,7 +102,6 @@ impl Frame {
         }
     }
 
-    /// Samples that show a voxel.
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node != NO_NODE).count()
     }

@@ -8,9 +8,7 @@
 pub struct QuadNode {
     /// Level, 0 = root; a sample is at the deepest level.
     pub level: u32,
-    /// Column among the `2^level` nodes across.
     pub x: u32,
-    /// Row among the `2^level` nodes down.
     pub y: u32,
 }
 
@@ -55,7 +53,6 @@ impl QuadNode {
     }
 }
 
-/// All four quadrants.
 pub const FULL: u8 = 0b1111;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -90,7 +87,6 @@ pub const fn nodes_to(levels: u32) -> usize {
 }
 
 impl FillVectors {
-    /// An empty picture of `width` x `height` samples in a root of `2^levels` a side.
     pub fn new(levels: u32, width: u32, height: u32) -> Self {
         let mut fill = Self {
             levels,
@@ -119,7 +115,6 @@ impl FillVectors {
         fill
     }
 
-    /// Empties the picture.
     pub fn clear(&mut self) {
         self.vectors.copy_from_slice(&self.empty_picture);
     }
@@ -149,7 +144,6 @@ impl FillVectors {
 mod tests {
     use super::*;
 
-    /// Whether every invariant holds: a bit is set exactly where the quadrant is full.
     fn is_consistent(fill: &FillVectors) -> bool {
         let is_right = |node: QuadNode, quadrant| {
             let full = fill.vector(node.quadrant(quadrant)) == FULL;

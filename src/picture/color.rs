@@ -34,7 +34,6 @@ impl Default for Background {
 }
 
 impl Background {
-    /// The colour, sRGB; `None` if transparent.
     pub fn color(self) -> Option<[u8; 3]> {
         match self {
             Self::None => None,
@@ -76,7 +75,6 @@ pub const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
 /// Ambient light, of 256.
 pub const AMBIENT: u32 = 64;
 
-/// Light by direction: a share of 256.
 #[derive(Clone, Copy)]
 pub(super) struct Light {
     /// Direction to the key light. `None`: full light everywhere.
@@ -84,7 +82,6 @@ pub(super) struct Light {
 }
 
 impl Light {
-    /// The light of a shading, given the camera's right, up and back.
     pub(super) fn new(shading: Shading, axes: [DVec3; 3]) -> Self {
         let key = KEY_LIGHT.normalize();
         Self {
@@ -93,7 +90,6 @@ impl Light {
         }
     }
 
-    /// Whether it depends on the direction of a surface.
     pub(super) fn is_directed(&self) -> bool {
         self.key.is_some()
     }
@@ -117,14 +113,5 @@ mod tests {
         for bad in ["", "1,2", "1,2,256", "1,2,3,4", "red"] {
             assert!(bad.parse::<Background>().is_err(), "{bad}");
         }
-    }
-
-    #[test]
-    fn light_stays_between_ambient_and_full() {
-        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-        let light = Light::new(Shading::Lambert, axes);
-        assert_eq!(light.on(KEY_LIGHT.normalize()), 256);
-        assert_eq!(light.on(-KEY_LIGHT), AMBIENT);
-        assert_eq!(Light::new(Shading::Flat, axes).on(DVec3::X), 256);
     }
 }

@@ -22,7 +22,6 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The tables, made on first use.
     pub fn tables() -> &'static Self {
         static TABLES: LazyLock<Linear> = LazyLock::new(Linear::new);
         &TABLES
@@ -44,7 +43,6 @@ impl Linear {
         Self { of, nearest }
     }
 
-    /// Linear light of a colour, 0..=65535 per channel.
     #[inline]
     pub fn decode(&self, color: [u8; 3]) -> [u32; 3] {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))
@@ -127,15 +125,5 @@ mod tests {
             let expected = (light * 65535.0).round() as u32;
             assert_eq!(linear.decode([byte; 3]), [expected; 3]);
         }
-    }
-
-    #[test]
-    fn every_byte_survives_linear_light() {
-        let linear = Linear::tables();
-        for byte in 0..=255 {
-            let color = [byte, 255 - byte, byte / 2];
-            assert_eq!(linear.encode(linear.decode(color)), color);
-        }
-        assert_eq!(linear.encode([0, 65535, 40_000]), [0, 255, 205]);
     }
 }

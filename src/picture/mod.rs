@@ -30,11 +30,8 @@ pub const NO_DEPTH: f32 = f32::INFINITY;
 /// A finished picture: one entry of each buffer per pixel, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Colour, sRGB, and coverage (0 to 255), not premultiplied.
     pub rgba: Vec<[u8; 4]>,
     /// View-axis depth in world units at which the pixel's ray enters the voxel; [`NO_DEPTH`] without one.
     pub depth: Vec<f32>,

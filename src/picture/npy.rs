@@ -4,11 +4,8 @@
 /// The numbers of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Unsigned bytes.
     U8(Vec<u8>),
-    /// Signed 32-bit integers.
     I32(Vec<i32>),
-    /// 32-bit floating point numbers.
     F32(Vec<f32>),
 }
 
@@ -17,16 +14,13 @@ pub enum Values {
 pub struct Array {
     /// Rows, columns, and entries per pixel if there are several.
     pub shape: Vec<usize>,
-    /// Row by row.
     pub values: Values,
 }
 
-/// Why bytes are not a supported array.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NpyError {
     #[error("byte {offset}: expected {expected}, found {found}")]
     Format {
-        /// From the file's beginning.
         offset: usize,
         expected: &'static str,
         found: String,
@@ -42,12 +36,10 @@ const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// Magic, version and header length.
 const PREFIX: usize = 10;
 
-/// Whether a file begins like a `.npy` file.
 pub fn is_npy(beginning: &[u8]) -> bool {
     beginning.starts_with(MAGIC)
 }
 
-/// The bytes of a `.npy` file.
 pub fn encode(array: &Array) -> Vec<u8> {
     let mut bytes = header(&array.shape, &array.values);
     bytes.extend_from_slice(&array.values.bytes());

@@ -7,18 +7,15 @@ use super::shares::{Facing, Run, Shares, TOGETHER};
 use crate::frame::{Blend, Frame, NO_NODE};
 use crate::graph::PackedNormal;
 
-/// Paints pixels of `N` bytes: red, green, blue, and alpha if `N` is 4.
 pub(super) struct Painter<'p, const N: usize> {
     frame: &'p Frame,
     shader: &'p Shader<'p>,
-    /// The graph's, as plain slices.
     color: &'p [[u8; 3]],
     normal: &'p [PackedNormal],
     /// None where everything is fully lit.
     shares: Option<&'p Shares>,
     /// Logarithm of the samples per pixel along an axis.
     aa: u32,
-    /// A row without voxels.
     behind: Vec<[u8; N]>,
 }
 
@@ -35,7 +32,6 @@ struct Look<T> {
 }
 
 impl<'p, const N: usize> Painter<'p, N> {
-    /// `shares`: those of the shader, or none where everything is fully lit.
     pub(super) fn new(
         frame: &'p Frame,
         shader: &'p Shader<'p>,
@@ -68,7 +64,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// One sample per pixel.
     fn single(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
         if self.shares.is_none() {
             self.flat(y, to);
@@ -97,7 +92,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// Several samples per pixel: the mean of their light.
     fn several(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
         // Red, green, blue, and the number of samples with a voxel.
         let mut sums = vec![[0u32; 4]; to.len()];
@@ -203,7 +197,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         };
     }
 
-    /// The place of a node's voxel, if the frame has no voxels.
     #[cold]
     fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         match self.frame.voxel.is_empty() {
@@ -212,7 +205,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         }
     }
 
-    /// The lit share of a sample's colour, by the rule itself.
     #[cold]
     fn share_by_rule(
         &self,
@@ -235,7 +227,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         Ok(self.shader.light.on(sight.meet(x, y, voxel).face))
     }
 
-    /// The mean of a pixel's samples, of which `seen` show a voxel.
     fn mix(&self, sum: [u32; 3], seen: u32) -> [u8; N] {
         let samples_log2 = 2 * self.aa;
         let samples = 1u32 << samples_log2;
@@ -253,7 +244,6 @@ impl<'p, const N: usize> Painter<'p, N> {
         pixel(self.shader.encode(mean), alpha as u8)
     }
 
-    /// A row of blended samples.
     fn blended(&self, y: u32, blend: &[Blend], to: &mut [[u8; N]]) {
         let width = self.frame.width as usize;
         let side = 1usize << self.aa;
@@ -299,7 +289,6 @@ impl Blended {
         }
     }
 
-    /// The mean of `2^samples_log2` samples.
     fn mix<const N: usize>(&self, shader: &Shader<'_>, samples_log2: u32) -> [u8; N] {
         let places = 8 + samples_log2;
         let half = 1u32 << (places - 1);

@@ -40,7 +40,6 @@ impl Pixels {
         }
     }
 
-    /// Red, green, blue and alpha of each pixel.
     pub fn rgba(&self) -> Vec<[u8; 4]> {
         let (with_alpha, _) = self.bytes.as_chunks::<4>();
         let (opaque, _) = self.bytes.as_chunks::<3>();
@@ -64,7 +63,6 @@ impl Pixels {
         }
     }
 
-    /// Pixels across and down.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }

@@ -9,15 +9,12 @@ pub use png::{DecodingError, EncodingError};
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
     /// sRGB and alpha, row by row from the top left.
     pub rgba: Vec<[u8; 4]>,
 }
 
-/// Largest width and height that are read, pixels.
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {

@@ -31,23 +31,22 @@ pub fn resolve(
 ) -> Result<Picture, ResolveError> {
     let resolver = Resolver::new(frame, graph, setup, shading, background)?;
     let (width, height) = resolver.size();
-    let all = 0..height;
+    let all = || 0..height;
     Ok(Picture {
         width,
         height,
-        rgba: resolver.colors(all.clone())?,
-        depth: resolver.fill(all.clone(), NO_DEPTH, |at, to| resolver.depth(at, to))?,
-        normal: resolver.fill(all.clone(), [0.0; 3], |at, to| resolver.normal(at, to))?,
-        voxel: resolver.fill(all.clone(), NO_VOXEL, |at, to| resolver.voxel(at, to))?,
-        node: resolver.fill(all.clone(), -1, |at, to| resolver.node(at, to))?,
+        rgba: resolver.colors(all())?,
+        depth: resolver.depth(all())?,
+        normal: resolver.normal(all())?,
+        voxel: resolver.voxel(all())?,
+        node: resolver.node(all())?,
         records: match frame.records {
-            Some(_) => Some(resolver.fill(all, 0.0, |at, to| resolver.records(at, to))?),
+            Some(_) => Some(resolver.records(all())?),
             None => None,
         },
     })
 }
 
-/// A drawn frame as a picture that is made on demand: see [`resolve`].
 pub struct Resolver<'f> {
     frame: &'f Frame,
     shader: Shader<'f>,
@@ -58,7 +57,6 @@ pub struct Resolver<'f> {
     shares: OnceLock<Option<Shares>>,
 }
 
-/// Name of the pixels' memory in messages.
 const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes faster than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
@@ -70,7 +68,6 @@ struct At {
 }
 
 impl<'f> Resolver<'f> {
-    /// Fails when the frame is not of the set-up's size.
     pub fn new(
         frame: &'f Frame,
         graph: &'f Graph,
@@ -138,18 +135,21 @@ impl<'f> Resolver<'f> {
         (0..height).map(|y| row(y).count()).sum()
     }
 
-    /// Some rows of a buffer. `each` changes a pixel that shows a voxel; others are `nothing`.
     fn fill<T: Copy + Send + Sync>(
         &self,
         rows: Range<u32>,
         nothing: T,
-        each: impl Fn(At, &mut T) -> Result<(), ResolveError> + Sync,
+        each: impl Fn(At) -> Result<Option<T>, ResolveError> + Sync,
     ) -> Result<Vec<T>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, nothing, width as usize * rows.len())?;
         self.each_row(rows, &mut pixels, |y, to| {
-            let row = (0..width).zip(to);
-            { row }.try_for_each(|(x, to)| each(At { x, y }, to))
+            for (x, to) in (0..width).zip(to) {
+                if let Some(value) = each(At { x, y })? {
+                    *to = value;
+                }
+            }
+            Ok(())
         })?;
         Ok(pixels)
     }
@@ -177,7 +177,6 @@ impl<'f> Resolver<'f> {
         (self.frame.node[at] != NO_NODE).then_some((x, y, at))
     }
 
-    /// The voxel of a sample that shows one.
     fn voxel_at(&self, at: usize) -> Result<[i32; 4], ResolveError> {
         let voxel = match self.frame.voxel.get(at) {
             Some(&voxel) => Some(voxel),
@@ -199,52 +198,47 @@ impl<'f> Resolver<'f> {
         )))
     }
 
-    fn depth(&self, at: At, to: &mut f32) -> Result<(), ResolveError> {
-        if let Some(surface) = self.surface(at)? {
-            *to = surface.meeting.depth as f32;
-        }
-        Ok(())
+    fn depth(&self, rows: Range<u32>) -> Result<Vec<f32>, ResolveError> {
+        let depth = |surface: Surface| surface.meeting.depth as f32;
+        self.fill(rows, NO_DEPTH, |at| Ok(self.surface(at)?.map(depth)))
     }
 
-    fn normal(&self, at: At, to: &mut [f32; 3]) -> Result<(), ResolveError> {
-        if let Some(surface) = self.surface(at)? {
-            *to = surface.normal.as_vec3().to_array();
-        }
-        Ok(())
+    fn normal(&self, rows: Range<u32>) -> Result<Vec<[f32; 3]>, ResolveError> {
+        let normal = |surface: Surface| surface.normal.as_vec3().to_array();
+        self.fill(rows, [0.0; 3], |at| Ok(self.surface(at)?.map(normal)))
     }
 
-    fn voxel(&self, at: At, to: &mut [i32; 4]) -> Result<(), ResolveError> {
-        if let Some((_, _, sample)) = self.middle(at) {
-            let voxel = self.voxel_at(sample)?;
-            for k in 0..3 {
-                let index = i64::from(voxel[k]) + self.origin_index[k];
-                to[k] = i32::try_from(index).map_err(|_| ResolveError::Index)?;
+    fn voxel(&self, rows: Range<u32>) -> Result<Vec<[i32; 4]>, ResolveError> {
+        self.fill(rows, NO_VOXEL, |at| {
+            let Some((_, _, sample)) = self.middle(at) else {
+                return Ok(None);
+            };
+            let mut voxel = self.voxel_at(sample)?;
+            for (index, origin) in voxel.iter_mut().zip(self.origin_index) {
+                let of_file = i32::try_from(i64::from(*index) + origin);
+                *index = of_file.map_err(|_| ResolveError::Index)?;
             }
-            to[3] = voxel[3];
-        }
-        Ok(())
+            Ok(Some(voxel))
+        })
     }
 
-    fn node(&self, at: At, to: &mut i32) -> Result<(), ResolveError> {
-        if let Some((_, _, sample)) = self.middle(at) {
-            *to = self.frame.node[sample] as i32;
-        }
-        Ok(())
+    fn node(&self, rows: Range<u32>) -> Result<Vec<i32>, ResolveError> {
+        self.fill(rows, -1, |at| {
+            let middle = self.middle(at);
+            Ok(middle.map(|(_, _, sample)| self.frame.node[sample] as i32))
+        })
     }
 
-    fn records(&self, at: At, to: &mut f32) -> Result<(), ResolveError> {
-        let Some(records) = &self.frame.records else {
-            return Ok(());
-        };
+    fn records(&self, rows: Range<u32>) -> Result<Vec<f32>, ResolveError> {
         let side = 1usize << self.aa;
         let width = self.frame.width as usize;
-        for j in 0..side {
-            let start = (at.y as usize * side + j) * width + at.x as usize * side;
-            for share in &records[start..start + side] {
-                *to += share;
-            }
-        }
-        Ok(())
+        self.fill(rows, 0.0, |at| {
+            let Some(records) = &self.frame.records else {
+                return Ok(None);
+            };
+            let row = |j| &records[(at.y as usize * side + j) * width + at.x as usize * side..];
+            Ok(Some((0..side).flat_map(|j| &row(j)[..side]).sum()))
+        })
     }
 }
 
@@ -257,30 +251,19 @@ impl Rows for Resolver<'_> {
 
     fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, ResolveError> {
         Ok(match buffer {
-            Buffer::Color => Values::U8(flat(self.colors::<4>(rows)?)),
-            Buffer::Depth => Values::F32(self.fill(rows, NO_DEPTH, |at, to| self.depth(at, to))?),
-            Buffer::Normal => {
-                let normals = self.fill(rows, [0.0; 3], |at, to| self.normal(at, to))?;
-                Values::F32(flat(normals))
-            }
-            Buffer::Voxel => {
-                let voxels = self.fill(rows, NO_VOXEL, |at, to| self.voxel(at, to))?;
-                Values::I32(flat(voxels))
-            }
-            Buffer::Node => Values::I32(self.fill(rows, -1, |at, to| self.node(at, to))?),
-            Buffer::Records => Values::F32(self.fill(rows, 0.0, |at, to| self.records(at, to))?),
+            Buffer::Color => Values::U8(self.colors::<4>(rows)?.into_flattened()),
+            Buffer::Depth => Values::F32(self.depth(rows)?),
+            Buffer::Normal => Values::F32(self.normal(rows)?.into_flattened()),
+            Buffer::Voxel => Values::I32(self.voxel(rows)?.into_flattened()),
+            Buffer::Node => Values::I32(self.node(rows)?),
+            Buffer::Records => Values::F32(self.records(rows)?),
         })
     }
-}
-
-fn flat<T, const N: usize>(items: Vec<[T; N]>) -> Vec<T> {
-    items.into_flattened()
 }
 
 /// Why a frame and its set-up make no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ResolveError {
-    /// Frame and set-up differ in size.
     #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
     Size(u32, u32, u32, u32),
     /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
@@ -289,7 +272,6 @@ pub enum ResolveError {
     /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
-    /// The system refuses the memory of the pixels.
     #[error(transparent)]
     Memory(#[from] Shortage),
 }

@@ -40,7 +40,6 @@ hwmodel::named! {
 }
 
 impl Buffer {
-    /// Numbers per pixel.
     pub fn entries(self) -> usize {
         match self {
             Self::Depth | Self::Node | Self::Records => 1,
@@ -63,10 +62,8 @@ impl Buffer {
 const SHARE: u32 = 1 << 17;
 
 pub trait Rows {
-    /// Failure of making rows.
     type Error;
 
-    /// Pixels across and down.
     fn size(&self) -> (u32, u32);
 
     /// Some rows of a buffer. Fails when they cannot be made.
@@ -121,17 +118,5 @@ impl Values {
             Self::I32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::F32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_are_little_endian() {
-        assert_eq!(*Values::U8(vec![7, 8]).bytes(), [7, 8]);
-        assert_eq!(*Values::I32(vec![-2]).bytes(), [0xfe, 0xff, 0xff, 0xff]);
-        assert_eq!(*Values::F32(vec![1.0]).bytes(), [0, 0, 0x80, 0x3f]);
     }
 }

@@ -19,7 +19,6 @@ pub struct Shader<'g> {
     background: Option<[u32; 3]>,
 }
 
-/// The visible surface at a sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
     pub(super) meeting: Meeting,
@@ -28,7 +27,6 @@ pub(super) struct Surface {
 }
 
 impl<'g> Shader<'g> {
-    /// The samples of a frame; `setup.levels` is their resolution.
     pub fn new(
         graph: &'g Graph,
         setup: &FrameSetup,
@@ -61,7 +59,6 @@ impl<'g> Shader<'g> {
         self.background
     }
 
-    /// The sRGB colour whose linear light is nearest.
     pub fn encode(&self, light: [u32; 3]) -> [u8; 3] {
         self.linear.encode(light)
     }

@@ -14,17 +14,14 @@ use super::shade::AWAY;
 use super::sight::Sight;
 use crate::graph::PackedNormal;
 
-/// Samples of a row that are processed together.
 pub(super) const TOGETHER: usize = 16;
 
-/// Number of packed normals.
 const NORMALS: usize = 1 << 16;
 
-/// Error bound of `f32` here, as a share of the three columns' lengths together: eight roundings of 2^-24 in the product
-/// and ten in the length are 1e-6; this is ten times as much.
+/// Error bound of `f32`, as a share of the three columns' lengths together: ten times the eight roundings of 2^-24 in the
+/// product and ten in the length.
 const MARGIN: f32 = 1e-5;
 
-/// Shares by normal, for one frame.
 pub(super) struct Shares {
     light: Light,
     /// Object direction of a step across the image root, of one down, and of its corner; of any common length.
@@ -34,11 +31,10 @@ pub(super) struct Shares {
     step: f32,
     margin: f32,
     /// By packed normal: the change of its product with the direction across and down the image root, its start, and both
-    /// shares; zeros: not made. Every thread computes the same values; the shares are stored last.
+    /// shares. Zeros are not made yet. Every thread computes the same values. The shares are stored last.
     entries: Vec<[AtomicU32; 4]>,
 }
 
-/// A normal's numbers for the samples of a row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Facing {
     /// Normal times direction is `along * u + base`.
@@ -65,7 +61,6 @@ impl Facing {
     };
 }
 
-/// Neighbouring samples of a row.
 pub(super) struct Run {
     /// Position to the right, of the image root.
     across: [f32; TOGETHER],
@@ -143,7 +138,6 @@ impl Shares {
         })
     }
 
-    /// Makes the entry of a normal and returns its shares; none without a normal.
     #[cold]
     fn make(&self, packed: PackedNormal, entry: &[AtomicU32; 4]) -> Option<u32> {
         let normal = packed.decode()?;
@@ -230,12 +224,5 @@ mod tests {
         }
         // A margin of 1e-5 leaves about so many of each 1e5.
         assert!(undecided < 40, "{undecided}");
-    }
-
-    #[test]
-    fn flat_is_the_front_and_unknown_is_undecided() {
-        let run = Run::FLAT;
-        assert_eq!(run.share(3, &Facing::FLAT), Some(256));
-        assert_eq!(run.share(3, &Facing::UNKNOWN), None);
     }
 }

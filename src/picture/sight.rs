@@ -9,7 +9,6 @@ use crate::project::FrameSetup;
 /// where f64 rounds either way.
 const GRAZE: f64 = 1e-9;
 
-/// The quantised view of a frame, in real numbers.
 pub(super) struct Sight {
     origin: [i64; 3],
     edge: [[i64; 3]; 3],
@@ -31,12 +30,10 @@ pub(super) struct Meeting {
     pub(super) depth: f64,
     /// Outward normal of the visible face.
     pub(super) face: DVec3,
-    /// Unit direction of the sample's ray.
     pub(super) ray: DVec3,
 }
 
 impl Sight {
-    /// The view of a frame. A set-up's view has a volume.
     pub(super) fn new(setup: &FrameSetup) -> Self {
         let column = |k: usize| {
             let edge = setup.edge_clip[k];
@@ -66,7 +63,6 @@ impl Sight {
         self.axes
     }
 
-    /// The meeting of the ray of sample `(x, y)` with a voxel, given as in a frame.
     pub(super) fn meet(&self, x: u32, y: u32, voxel: [i32; 4]) -> Meeting {
         let (corner, side) = self.cube(voxel);
         // The ray is eye + t * direction, where t is the depth W.
@@ -136,7 +132,6 @@ impl Sight {
     }
 }
 
-/// Whether the clip vectors of all points of the object fit 64 bits.
 fn is_narrow(setup: &FrameSetup) -> bool {
     let within = |c: usize| {
         let longest: u128 = (0..3)
@@ -147,7 +142,6 @@ fn is_narrow(setup: &FrameSetup) -> bool {
     (0..3).all(within)
 }
 
-/// The inverse by Cramer's rule.
 fn inverse(m: &DMat3) -> DMat3 {
     let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
     let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
@@ -201,17 +195,6 @@ mod tests {
         assert_eq!(slabs(eye, DVec3::Y, 2.0), (3.0, 5.0, 1));
         let (enter, exit, _) = slabs(eye, DVec3::X, 2.0);
         assert!(enter > exit, "a ray beside the cube misses it");
-    }
-
-    #[test]
-    fn inverse_undoes() {
-        let m = DMat3::from_cols(
-            DVec3::new(2.0, 1.0, 0.0),
-            DVec3::new(-1.0, 3.0, 0.5),
-            DVec3::new(4.0, 0.0, 5.0),
-        );
-        let v = DVec3::new(7.0, -2.0, 3.0);
-        assert!((inverse(&m) * (m * v) - v).length() < 1e-12);
     }
 
     #[test]

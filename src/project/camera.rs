@@ -14,9 +14,7 @@ pub struct Camera {
     pub up: DVec3,
     /// Vertical field of view, degrees, above 0 and below 180.
     pub fov_degrees: f64,
-    /// Width of the picture, pixels.
     pub width: u32,
-    /// Height of the picture, pixels.
     pub height: u32,
 }
 
@@ -42,7 +40,6 @@ pub enum CameraError {
     Size(u32, u32),
 }
 
-/// Most pixels per side.
 pub const MAX_SIDE: u32 = 1 << 15;
 
 /// The camera's axes: orthonormal, right-handed as (right, up, back).

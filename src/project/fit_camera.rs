@@ -27,7 +27,6 @@ pub enum Up {
 }
 
 impl Up {
-    /// +Y or +Z.
     pub fn y_or_z(is_y: bool) -> Self {
         if is_y { Self::Y } else { Self::Z }
     }
@@ -70,18 +69,35 @@ impl Bounds {
         if graph.is_empty() {
             return None;
         }
-        let mut search = Search {
-            graph,
-            low: [i64::MAX; 3],
-            high: [i64::MIN; 3],
-            visits: 0,
-        };
-        search.visit(graph.root, 0, [0; 3]);
+        let view = graph.view();
+        let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
+        let mut visits = 0;
+        let mut open = vec![(graph.root, 0, [0; 3])];
+        while let Some((node, level, corner)) = open.pop() {
+            let side = 1i64 << (graph.depth - level);
+            // Only nodes that may enlarge the box are visited.
+            if (0..3).all(|k| corner[k] >= low[k] && corner[k] + side <= high[k]) {
+                continue;
+            }
+            visits += 1;
+            if level == graph.depth || view.mask(node) == 0 || visits > MAX_VISITS {
+                for k in 0..3 {
+                    low[k] = low[k].min(corner[k]);
+                    high[k] = high[k].max(corner[k] + side);
+                }
+                continue;
+            }
+            for octant in (0..8u8).rev() {
+                if let Some(child) = view.child(node, octant) {
+                    let at = |k: usize| corner[k] + side / 2 * i64::from(octant >> (2 - k) & 1);
+                    open.push((child, level + 1, [at(0), at(1), at(2)]));
+                }
+            }
+        }
         // In a damaged file that was not verified, the lists of children may lead nowhere.
-        (search.low[0] < search.high[0]).then_some((search.low, search.high))
+        (low[0] < high[0]).then_some((low, high))
     }
 
-    /// The bounds for a fitted camera: those of the graph's mesh, otherwise of its voxels.
     pub fn of(graph: &Graph) -> Self {
         match &graph.placement.mesh {
             Some(mesh) => Self::of_mesh(mesh),
@@ -98,7 +114,6 @@ impl Bounds {
         }
     }
 
-    /// The box of a graph's voxels in world units; the unit cube without voxels.
     pub fn of_voxels(graph: &Graph) -> Self {
         let Some((low, high)) = Self::in_voxels(graph) else {
             return Self::of_box(DVec3::ZERO, DVec3::ONE);
@@ -163,12 +178,10 @@ impl Bounds {
     }
 }
 
-/// Points of a ring around the up axis.
 const RING_POINTS: u32 = 72;
 /// Level of the nodes whose corners enclose an object.
 const HULL_LEVEL: u32 = 5;
 
-/// The corners, in object coordinates, of all nodes at a coarse level.
 fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
     let view = graph.view();
     let level = HULL_LEVEL.min(graph.depth);
@@ -201,41 +214,6 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
             place.map(|p| p as i64 * side)
         })
         .collect()
-}
-
-/// Visits only nodes that may enlarge the box.
-struct Search<'g> {
-    graph: &'g Graph,
-    low: [i64; 3],
-    high: [i64; 3],
-    visits: u32,
-}
-
-impl Search<'_> {
-    fn visit(&mut self, node: u32, level: u32, corner: [i64; 3]) {
-        let side = 1i64 << (self.graph.depth - level);
-        let within = (0..3).all(|k| corner[k] >= self.low[k] && corner[k] + side <= self.high[k]);
-        if within {
-            return;
-        }
-        self.visits += 1;
-        let view = self.graph.view();
-        let leaf = level == self.graph.depth || view.mask(node) == 0;
-        if leaf || self.visits > MAX_VISITS {
-            for k in 0..3 {
-                self.low[k] = self.low[k].min(corner[k]);
-                self.high[k] = self.high[k].max(corner[k] + side);
-            }
-            return;
-        }
-        for octant in 0..8u8 {
-            if let Some(child) = view.child(node, octant) {
-                let half = side / 2;
-                let at = |k: usize| corner[k] + half * i64::from(octant >> (2 - k) & 1);
-                self.visit(child, level + 1, [at(0), at(1), at(2)]);
-            }
-        }
-    }
 }
 
 /// Direction from an object to its viewer, degrees.

@@ -1,7 +1,6 @@
 //! From a camera to the integers of a frame, and the interface of the engines.
 
 pub mod camera;
-mod depths;
 pub mod engine;
 mod fit_camera;
 mod opacity;

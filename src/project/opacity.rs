@@ -17,7 +17,6 @@ pub const OPAQUE_ENOUGH: u32 = 64;
 /// The eye, for directions to voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OpacityEye {
-    /// Places by which coordinates are shifted right.
     pub shift: u32,
     /// The eye in object coordinates, rounded down, shifted.
     pub at: [i64; 3],

@@ -57,20 +57,8 @@ hwmodel::named! {
 
 impl Coverage {
     /// The rules that do not blend, the most accurate first.
-    pub const UNBLENDED: [Self; 3] = {
-        let (mut rules, mut found, mut left) = ([Self::Any; 3], 0, Self::ALL.len());
-        while left > 0 {
-            left -= 1;
-            if !Self::ALL[left].blends() {
-                rules[found] = Self::ALL[left];
-                found += 1;
-            }
-        }
-        assert!(found == rules.len(), "the array's length is their number");
-        rules
-    };
+    pub const UNBLENDED: [Self; 3] = [Self::Exact, Self::Center, Self::Any];
 
-    /// The rule without blending.
     #[inline]
     pub const fn outline_rule(self) -> OutlineRule {
         match self {
@@ -89,7 +77,6 @@ impl Coverage {
         }
     }
 
-    /// Whether voxels are drawn by their silhouettes.
     #[inline]
     pub const fn draws_outlines(self) -> bool {
         self.outline_rule().has_planes()
@@ -127,7 +114,6 @@ pub enum OutlineRule {
 }
 
 impl OutlineRule {
-    /// Whether it needs silhouette planes.
     #[inline]
     pub const fn has_planes(self) -> bool {
         match self {
@@ -162,7 +148,6 @@ impl Default for SetupOptions {
 }
 
 impl SetupOptions {
-    /// The default settings of a drawing rule.
     pub fn of(coverage: Coverage) -> Self {
         Self {
             bits: 64,
@@ -206,7 +191,6 @@ pub(super) fn grow_shift(tolerance: f64) -> Option<i32> {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ShiftSum(Vec<i32>);
 
-/// Significant bits of a [`ShiftSum`].
 const SHIFT_SUM_BITS: i32 = 5;
 
 impl ShiftSum {
@@ -225,12 +209,10 @@ impl ShiftSum {
         )
     }
 
-    /// The shifts to the right, ascending.
     pub fn shifts(&self) -> &[i32] {
         &self.0
     }
 
-    /// The factor.
     pub fn value(&self) -> f64 {
         let powers = self.0.iter().map(|&shift| libm::ldexp(1.0, -shift));
         powers.fold(0.0, |sum, power| sum + power)

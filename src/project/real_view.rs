@@ -1,11 +1,13 @@
-//! The view of an object in real numbers, its quantisation, and the depths by level at which records change.
+//! The view of an object in real numbers, its quantisation, and the depths by level at which records change (`SPEC.md`,
+//! "The change to screen space", "Drawing rules"). At twice the depth a voxel of twice the side looks the same, so one
+//! ratio of side to depth serves all levels.
 
 use hwmodel::Format;
 
 use super::camera::{Axes, Camera};
-use super::depths::{self, Edges};
 use super::options::{
-    Coverage, MAX_CLIP_FRAC, MAX_SUB_LEVELS, SetupOptions, detail_limit, split_fraction,
+    Coverage, MAX_CLIP_FRAC, MAX_SUB_LEVELS, SCREEN_GUARD_SHIFT, SetupOptions, detail_limit,
+    split_fraction,
 };
 use super::reach::{Quantised, Reach};
 use crate::graph::Placement;
@@ -92,11 +94,21 @@ impl RealView {
         split_fraction(plane_frac + room, plane_frac, coverage)
     }
 
-    fn edges(&self, options: &SetupOptions) -> Edges {
-        Edges {
-            edge: self.edge,
-            root_samples: (1u64 << (self.root_px_log2 + options.aa_log2)) as f64,
+    /// Sum over a finest voxel's edges of the speed of a picture position, samples times depth. Linear and convex functions are
+    /// greatest at the ends of the positions that may change.
+    fn total_speed(&self, options: &SetupOptions) -> f64 {
+        let root_samples = (1u64 << (self.root_px_log2 + options.aa_log2)) as f64;
+        let guard = libm::ldexp(1.0, -(SCREEN_GUARD_SHIFT as i32));
+        let mut most = 0.0f64;
+        for axis in 0..2 {
+            let [low, high] = [-guard, guard + 1.0].map(|position| {
+                let speed = |e: [f64; 3]| (e[axis] - position * e[2]) * root_samples;
+                self.edge.map(|e| speed(e).abs())
+            });
+            let [x, y, z] = [0, 1, 2].map(|k| low[k].max(high[k]));
+            most = most.max(x + y + z);
         }
+        most
     }
 
     /// Least `W`, by level, at which a record deviates from its screen-space cage by at most the tolerance: `SPEC.md`, "The
@@ -111,17 +123,21 @@ impl RealView {
         if tolerance.is_infinite() {
             return levels.all(levels.near);
         }
-        let allowed = (tolerance - depths::rounding(screen_frac)) * (1.0 - 1e-6);
+        // Quotients are rounded down, a corner and three edges by one unit each.
+        let rounding = libm::ldexp(4.0, -(screen_frac as i32));
+        let allowed = (tolerance - rounding) * (1.0 - 1e-6);
         if tolerance == 0.0 || allowed <= 0.0 {
             return levels.all(i64::MAX);
         }
-        levels.scaled(self.edges(options).screen_depth(allowed))
+        let [x, y, z] = self.edge.map(|e| e[2].abs());
+        let speed = self.total_speed(options);
+        levels.scaled(libm::sqrt(speed * (x + y + z) / allowed))
     }
 
     /// Least `W`, by level, at which a node with children is no larger than the level of detail, anywhere in the picture.
     pub(super) fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
         match detail_limit(options) {
-            Some(limit) => levels.scaled(self.edges(options).detail_depth(limit.value())),
+            Some(limit) => levels.scaled(self.total_speed(options) / limit.value()),
             None => levels.all(i64::MAX),
         }
     }

@@ -75,11 +75,9 @@ pub enum SetupError {
 /// The input of a frame: all integers from which an engine starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSetup {
-    /// The settings of this set-up.
     pub options: SetupOptions,
     /// Samples across; the picture's width times the samples per pixel and axis.
     pub width: u32,
-    /// Samples down.
     pub height: u32,
     /// Levels of the image quadtree: its root has `2^levels` samples a side.
     pub levels: u32,
@@ -112,14 +110,13 @@ pub struct FrameSetup {
     pub lod_depth: Vec<i64>,
     /// Whether no word of the frame can overflow.
     pub has_headroom: bool,
-    /// Widening of a clip-space box in tests against the quadtree, in samples, as a shift to the right (0 = one sample):
-    /// the tolerance, rounded up to a power of two; `None`: nothing.
+    /// Widening, in samples, of a clip-space box in tests against the quadtree, as a shift to the right (0 = one sample). It is
+    /// the tolerance, rounded up to a power of two.
     pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
     /// Size, in samples, up to which a node with children becomes a solid. `None`: only leaves are drawn.
     pub lod_limit: Option<ShiftSum>,
-    /// The object's place, to name voxels and depths.
     pub placement: Placement,
 }
 
@@ -216,7 +213,6 @@ impl FrameSetup {
         whole
     }
 
-    /// Largest magnitude of a coordinate of a clip vector in the object.
     pub fn position_reach(&self) -> Option<i128> {
         let quantised = Quantised {
             origin: self.origin_clip,
@@ -225,7 +221,6 @@ impl FrameSetup {
         Reach::of(&quantised, self.depth).map(|reach| reach.position)
     }
 
-    /// World depth of one unit of `W`.
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }
@@ -237,29 +232,27 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
 }
 
 fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
-    let tolerance = options.tolerance_px;
-    let lod = options.lod_px;
-    let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
-    if tolerance.is_nan() || tolerance < 0.0 {
-        return bad("tolerance", "0 samples or more", options.tolerance_px);
-    }
-    // More than any picture needs, within any word; `inf` is larger.
-    if tolerance.is_finite() && tolerance > 4096.0 {
-        return bad(
-            "tolerance",
-            "0 to 4096 samples, or inf",
-            options.tolerance_px,
-        );
+    let (tolerance, lod) = (options.tolerance_px, options.lod_px);
+    let samples = f64::from(1u32 << options.aa_log2.min(31));
+    // More than any picture needs, within any word.
+    let sizes = 0.0..=4096.0;
+    let is_size = sizes.contains(&tolerance) || tolerance == f64::INFINITY;
+    for (name, range, value, is_valid) in [
+        ("tolerance", "0 to 4096 samples, or inf", tolerance, is_size),
+        (
+            "level of detail",
+            "0 to 4096 pixels",
+            lod,
+            sizes.contains(&lod),
+        ),
+        ("samples per axis", "1, 2 or 4", samples, samples <= 4.0),
+    ] {
+        if !is_valid {
+            return Err(SetupError::Setting { name, range, value });
+        }
     }
     if options.coverage.draws_outlines() && tolerance != 0.0 {
-        return Err(SetupError::Tolerance(options.tolerance_px));
-    }
-    if !(0.0..=4096.0).contains(&lod) {
-        return bad("level of detail", "0 to 4096 pixels", options.lod_px);
-    }
-    if options.aa_log2 > 2 {
-        let samples = f64::from(1u32 << options.aa_log2.min(31));
-        return bad("samples per axis", "1, 2 or 4", samples);
+        return Err(SetupError::Tolerance(tolerance));
     }
     Ok(())
 }

@@ -8,7 +8,6 @@ use crate::graph::GraphView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Contents {
-    /// The node only ([`Frame::nodes_only`]).
     Nodes,
     #[default]
     Voxels,
@@ -20,45 +19,13 @@ pub enum Contents {
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
 /// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
-///
-/// Neither the shown frame nor the graph can be changed while there is a viewer:
-///
-/// ```compile_fail,E0596
-/// # use shiftvox::project::Viewer;
-/// fn paint_over(viewer: &mut Viewer<'_, impl shiftvox::project::Engine>) {
-///     if let Some(frame) = viewer.frame() {
-///         frame.clear();
-///     }
-/// }
-/// ```
-///
-/// ```compile_fail,E0506
-/// # use shiftvox::{graph::Graph, project::{Engine, FrameSetup, Viewer}};
-/// fn replant(graph: &mut Graph, engine: impl Engine, setup: &FrameSetup) {
-///     let mut viewer = Viewer::new(graph.view(), engine, Default::default());
-///     let _ = viewer.draw(setup);
-///     graph.mask = vec![0].into();
-///     let _ = viewer.draw(setup);
-/// }
-/// ```
 pub struct Viewer<'g, E> {
     graph: GraphView<'g>,
     engine: E,
     contents: Contents,
     frame: Frame,
-    /// The set-up of `frame`; none before the first drawing, during drawing, and after a failure.
     shown: Option<FrameSetup>,
-    /// The engine's counters of `frame`, if they were requested.
     stats: Option<Stats>,
-}
-
-impl<E> std::fmt::Debug for Viewer<'_, E> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Viewer")
-            .field("contents", &self.contents)
-            .field("shown", &self.shown)
-            .finish_non_exhaustive()
-    }
 }
 
 impl<'g, E: Engine> Viewer<'g, E> {
@@ -131,12 +98,10 @@ impl<'g, E: Engine> Viewer<'g, E> {
         Ok(stats)
     }
 
-    /// The picture of the last set-up, if there is one.
     pub fn frame(&self) -> Option<&Frame> {
         self.shown.as_ref().map(|_| &self.frame)
     }
 
-    /// Memory of the frame, bytes.
     pub fn frame_bytes(&self) -> u64 {
         let Frame {
             node,
@@ -150,7 +115,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
         (size_of_val(&node[..]) + size_of_val(&voxel[..]) + records + blend) as u64
     }
 
-    /// Whether the frame is that of this set-up.
     pub fn shows(&self, setup: &FrameSetup) -> bool {
         self.shown.as_ref() == Some(setup)
     }

@@ -107,7 +107,7 @@ const READING_BYTES: u64 = 64 << 20;
 
 fn read(path: &Path) -> Result<Content, CliError> {
     let place = path.display();
-    let bytes = bounded::read_whole(path).map_err(|e| CliError::of_reading(e).at(place))?;
+    let bytes = bounded::read(path, u64::MAX).map_err(|e| CliError::of_reading(e).at(place))?;
     if npy::is_npy(&bytes) {
         // Its numbers beside its bytes.
         budget::check("a buffer that is compared", bytes.len() as u64)

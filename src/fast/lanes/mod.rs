@@ -1,16 +1,9 @@
-//! Operations on lanes: several numbers by one instruction where the processor has it.
+//! Operations on lanes. Algorithms are generic over [`Isa`]; [`Scalar`] defines every operation, [`Avx2`] uses AVX2. An
+//! instruction set is a value that exists only where the processor has the set, and vectors are made only from it. Sets
+//! round differently; no picture depends on it, because doubtful cases are decided exactly.
 //!
-//! Each algorithm is written once, generic over [`Isa`], in the file of its subject. [`Scalar`] is plain Rust and
-//! defines every operation; [`Avx2`] uses AVX2. Another instruction set is a file that implements these traits.
-//!
-//! An instruction set is a value that exists only where the processor has the set. Vectors are only made from it, so
-//! their methods are safe. Two rules keep them fast:
-//!
-//! 1. Each large step of the traversal runs in [`Isa::vectorize`], which compiles it for the set.
-//! 2. Functions below it that use lanes are `#[inline(always)]`, so that they are compiled with it.
-//!
-//! Sets may round differently, because AVX2 multiplies and adds in one step. No picture depends on it: doubtful cases
-//! are decided exactly.
+//! Each large step of the traversal runs in [`Isa::vectorize`], which compiles it for the set. Functions below it that use
+//! lanes are `#[inline(always)]`.
 
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -29,7 +22,6 @@ pub(super) trait Lanes<const N: usize>: Copy + Send + Sync + Debug {
     fn splat(isa: Self::Isa, value: Self::Lane) -> Self;
 }
 
-/// Floating-point numbers.
 pub(super) trait Floats<const N: usize>: Lanes<N> {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -69,7 +61,6 @@ pub(super) trait F32x8: Floats<8, Lane = f32> {
     fn at_most(self, other: Self) -> u8;
     /// The inverse, to 11 bits or more.
     fn reciprocal(self) -> Self;
-    /// Whole parts, of lanes that fit.
     fn whole(self) -> [i32; 8];
 }
 
@@ -84,7 +75,6 @@ pub(super) trait I16x16: Lanes<16, Lane = i16> {
     fn below(self, next: Self, limit: Self) -> u32;
 }
 
-/// Four masks of 64 bits.
 pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn and(self, other: Self) -> Self;
     /// The lanes that are 0, one bit each.
@@ -92,14 +82,11 @@ pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn values(self) -> [u64; 4];
 }
 
-/// Sixteen bytes.
 pub(super) trait U8x16: Lanes<16, Lane = u8> {
     fn or(self, other: Self) -> Self;
-    /// The lower and the upper half of each byte.
     fn nibbles(self) -> [Self; 2];
     /// By lane, this table's entry of the number `at`, which is below 16.
     fn look_up(self, at: Self) -> Self;
-    /// The first eight.
     fn low(self) -> u64;
 }
 
@@ -135,9 +122,8 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes one after the other at the places of a mask's bits, and bytes of ones there.
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
-    /// Writes a value to those of 8 x 8 entries that a mask has, eight bits per row; rows begin `width` apart. Panics
-    /// unless all entries exist: a check per row would take a fifth more instructions per voxel.
+    /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist: a check
+    /// per row would take a fifth more instructions per voxel.
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
-    /// Prefetches an entry, if it exists.
     fn prefetch<T>(self, entries: &[T], at: usize);
 }

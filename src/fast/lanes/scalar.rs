@@ -4,7 +4,6 @@ use std::array::from_fn;
 
 use super::*;
 
-/// The set that every processor has.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fast) struct Scalar;
 
@@ -57,13 +56,11 @@ macro_rules! floats {
 floats!(f32);
 floats!(f64);
 
-/// The lanes for which a condition holds, one bit each.
 #[inline(always)]
 fn bits<const N: usize>(holds: impl Fn(usize) -> bool) -> u32 {
     (0..N).fold(0, |bits, i| bits | u32::from(holds(i)) << i)
 }
 
-/// A whole part as an index of a table of `N` entries.
 #[inline(always)]
 fn index<const N: usize>(at: f32) -> usize {
     (at as i32 as u32 as usize).min(N - 1)

@@ -26,7 +26,6 @@ macro_rules! avx {
     };
 }
 
-/// Types of lanes, the intrinsics that load one and that fill one.
 macro_rules! lanes {
     ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(
         #[derive(Debug, Clone, Copy)]

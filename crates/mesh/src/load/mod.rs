@@ -53,7 +53,7 @@ impl Beside for SameFolder {
         let path = Path::new(&name);
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         if path.components().all(inside) {
-            let found = bounded::read_whole(&self.0.join(path));
+            let found = bounded::read(&self.0.join(path), u64::MAX);
             // The mesh means a file that exists, even if it cannot be read.
             if !matches!(&found, Err(error) if error.kind() == io::ErrorKind::NotFound) {
                 return found;
@@ -62,7 +62,7 @@ impl Beside for SameFolder {
         let last = path
             .file_name()
             .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "not a file's name"))?;
-        bounded::read_whole(&self.0.join(last))
+        bounded::read(&self.0.join(last), u64::MAX)
     }
 }
 

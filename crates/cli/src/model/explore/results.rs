@@ -38,7 +38,7 @@ impl ResultsFile {
             // Where files cannot be locked there is no harm in one run.
             Err(TryLockError::Error(_)) => {}
         }
-        let text = bounded::read_whole(path).map_err(|error| at(Kind::Run)(&error))?;
+        let text = bounded::read(path, u64::MAX).map_err(|error| at(Kind::Run)(&error))?;
         let recorded = lines::read(&text, asked).map_err(|error| {
             at(Kind::Input)(&error).advise("give another name with --results, or remove the file")
         })?;
