@@ -25,7 +25,7 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let others = [&files.html, &files.heat, &files.trace];
     export::check_with(&args.export, others.into_iter().flatten())?;
     if let Some(trace) = &files.trace {
-        trace::kind(trace)?;
+        trace::has_waves(trace)?;
     }
     Ok(())
 }

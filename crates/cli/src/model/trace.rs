@@ -8,18 +8,11 @@ use crate::console::Console;
 use crate::error::CliError;
 use shiftvox::whole;
 
-/// The format of a trace.
-#[derive(Clone, Copy)]
-pub(super) enum TraceKind {
-    Events,
-    Waves,
-}
-
-/// Fails where the name says no format.
-pub(super) fn kind(path: &Path) -> Result<TraceKind, CliError> {
+/// Whether a trace has waveforms and not events. Fails where the name says no format.
+pub(super) fn has_waves(path: &Path) -> Result<bool, CliError> {
     match path.extension().and_then(|e| e.to_str()) {
-        Some("json") => Ok(TraceKind::Events),
-        Some("vcd") => Ok(TraceKind::Waves),
+        Some("json") => Ok(false),
+        Some("vcd") => Ok(true),
         _ => Err(CliError::usage(format!(
             "{}: a trace is .json (Perfetto) or .vcd (waveforms)",
             path.display()
@@ -36,9 +29,9 @@ pub(super) fn write(
     console: &Console,
 ) -> Result<(), CliError> {
     let mut text = Vec::new();
-    match kind(path)? {
-        TraceKind::Events => recorder.write_chrome(hardware, &mut text)?,
-        TraceKind::Waves => recorder.write_vcd(hardware, &mut text)?,
+    match has_waves(path)? {
+        false => recorder.write_chrome(hardware, &mut text)?,
+        true => recorder.write_vcd(hardware, &mut text)?,
     }
     whole::write(path, &text, force)?;
     console.note(format!("{}: written", path.display()));
