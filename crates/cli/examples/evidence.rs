@@ -171,7 +171,7 @@ impl Tool {
         Ok(faults)
     }
 
-    /// The page, and what stands in it between the marks of a table.
+    /// The page, and its text between the marks of a table.
     fn block(&self, name: &str, table: &Table) -> Result<(String, String), String> {
         let text = read(&self.root.join(&table.page))?;
         let (begin, end) = marks(name);
@@ -231,7 +231,7 @@ impl Tool {
         text
     }
 
-    /// What a command prints.
+    /// Stdout of a command.
     fn run(&self, command: &str) -> Result<Vec<u8>, String> {
         let mut process = Command::new(&self.program);
         process

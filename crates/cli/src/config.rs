@@ -91,23 +91,16 @@ impl Expanded {
         let message = error.render().to_string();
         let first = message.lines().next().unwrap_or_default();
         let reason = first.trim_start_matches("error: ");
-        let (reason, advice) = match (error.kind(), of(ContextKind::SuggestedArg)) {
-            (ErrorKind::UnknownArgument, Some(near)) => {
-                let reason = format!("there is no setting `{key}` here");
-                (reason, Some(format!("is `{near}` meant?")))
-            }
-            (ErrorKind::UnknownArgument, None) => {
-                let advice = "settings are the long names of flags, which --help lists";
-                (
-                    format!("there is no setting `{key}` here"),
-                    Some(advice.to_owned()),
-                )
-            }
-            _ => (format!("`{key}`: {reason}"), None),
+        let place = format!("{}, line {line}", file.place);
+        if error.kind() != ErrorKind::UnknownArgument {
+            return Some(CliError::input(format!("`{key}`: {reason}")).at(place));
+        }
+        let advice = match of(ContextKind::SuggestedArg) {
+            Some(near) => format!("is `{near}` meant?"),
+            None => "settings are the long names of flags, which --help lists".to_owned(),
         };
-        let mut error = CliError::input(reason).at(format!("{}, line {line}", file.place));
-        error.advice = advice;
-        Some(error)
+        let failure = CliError::input(format!("there is no setting `{key}` here"));
+        Some(failure.at(place).advise(advice))
     }
 }
 

@@ -11,7 +11,7 @@ use shiftvox::rays::Rays;
 use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
 use shiftvox_lab::float_rays::FloatRays;
 
-/// What makes the engine that the flags name, as often as one is needed.
+/// Makes engines as the flags name them.
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
 /// Makers of the engines of voxels.

@@ -37,7 +37,7 @@ pub(super) fn tidy_up_when_stopped() {
             });
         }
     };
-    // No thread, no tidying; the signals' defaults are gone by then, but the work goes on.
+    // Without the thread the signals have no effect.
     let _ = std::thread::Builder::new()
         .name("signals".to_owned())
         .spawn(wait);

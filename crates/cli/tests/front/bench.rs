@@ -5,13 +5,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{bench, folder, json_of, stderr_of, stdout_of};
+use crate::program::{bench, folder, json_of, stderr_of, stdout_of, words};
 
 const SCENE: &str = "gen:menger,depth=2";
-
-fn words(line: &str) -> Vec<&str> {
-    line.split(' ').collect()
-}
 
 /// The rows of an experiment's document.
 fn rows(folder: &Path, line: &str) -> Vec<Value> {
@@ -296,8 +292,7 @@ fn wrong_experiments_exit_with_2_or_5() {
         ("quality S --size 8192", 5),
     ] {
         let line = line.replace('S', SCENE);
-        let line: Vec<&str> = line.split_whitespace().collect();
-        let assert = bench(folder.path(), &line).code(code);
+        let assert = bench(folder.path(), &words(&line)).code(code);
         assert!(!stderr_of(&assert).is_empty(), "{line:?}");
         assert_eq!(stdout_of(&assert), "", "{line:?}");
     }

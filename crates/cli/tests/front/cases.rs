@@ -20,7 +20,7 @@ struct Case {
     folder: tempfile::TempDir,
     /// Kept outputs, by name.
     kept: BTreeMap<String, String>,
-    /// Limit of address space, MB. 0 stands for none.
+    /// Limit of address space, MB. 0: no limit.
     memory: u32,
     is_on_small_disk: bool,
     last: Option<Output>,

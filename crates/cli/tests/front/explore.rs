@@ -1,4 +1,4 @@
-//! `model --explore`: what its points are, how a run is gone on with and shared out, what it refuses.
+//! `model --explore`: points, interrupted and divided runs, refusals.
 
 use std::fs;
 use std::path::PathBuf;
@@ -14,6 +14,7 @@ use std::process::Command;
 use tempfile::TempDir;
 
 use crate::common::Run;
+use crate::program::{json_of, run, shiftvox, stderr_of, stdout_of};
 
 const SCENE: &str = "gen:menger,depth=3";
 
@@ -42,38 +43,27 @@ impl Folder {
     }
 
     fn command(&self, scene: &str, more: &[&str]) -> Command {
-        let mut command = crate::common::command();
-        command.current_dir(self.0.path());
+        let mut command = shiftvox(self.0.path());
         command.args(["model", scene, "--size", "40", "--explore", "space.toml"]);
         command.args(more);
         command
     }
 
-    /// What a run prints, which succeeds.
     fn run(&self, more: &[&str]) -> String {
-        let output = self.command(SCENE, more).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{told}");
-        String::from_utf8(output.stdout).unwrap()
+        stdout_of(&self.command(SCENE, more).assert().success())
     }
 
-    /// The exit code of a run, and what it says.
+    /// Exit code and stderr.
     fn refusal(&self, scene: &str, more: &[&str]) -> (i32, String) {
-        let output = self.command(scene, more).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        (output.status.code().unwrap(), told)
+        let assert = self.command(scene, more).assert();
+        let code = assert.get_output().status.code().unwrap();
+        (code, stderr_of(&assert))
     }
 }
 
 fn lines(text: &str, kind: &str) -> Vec<Value> {
     let all = text.lines().map(|line| serde_json::from_str(line).unwrap());
     all.filter(|line: &Value| line["kind"] == kind).collect()
-}
-
-fn sum(parts: [&Value; 3], end: &str) -> f64 {
-    parts
-        .iter()
-        .fold(0.0, |sum, part| sum + part[end].as_f64().unwrap())
 }
 
 /// Asserts that points have the figures that `model` has of their hardware alone.
@@ -83,11 +73,9 @@ fn assert_as_alone(folder: &Folder, points: &[Value]) {
         let hardware = folder.run(&["--points", &number, "--print-hw"]);
         fs::write(folder.path("hw.toml"), hardware).unwrap();
         let bits = found["values"]["bits"].as_u64().unwrap_or(32).to_string();
-        let mut alone = crate::common::command();
-        alone.current_dir(folder.0.path());
+        let mut alone = shiftvox(folder.0.path());
         alone.args(["model", SCENE, "--size", "40", "--hw", "hw.toml", "--json"]);
-        let output = alone.args(["--bits", &bits]).output().unwrap();
-        let model: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let model = json_of(&alone.args(["--bits", &bits]).assert().success());
         let cycles = &model["simulated"]["cycles"];
         assert_eq!(found["cycles"], cycles["cycles"], "{found}");
         let rate = cycles["frames_per_second"].as_f64().unwrap();
@@ -130,8 +118,10 @@ fn assert_as_alone(folder: &Folder, points: &[Value]) {
         for (found, model) in [(found, &model), (&found["ray_caster"], rays)] {
             for (end, name) in [("value", "total"), ("low", "low"), ("high", "high")] {
                 assert_eq!(found["area_nand2"][end], model["area"][name], "{found}");
-                let cost = ["operations", "on_chip", "outer"].map(|of| &model["cost"][of]);
-                assert_eq!(found["energy_pj"][end], sum(cost, name), "{found}");
+                let cost = ["operations", "on_chip", "outer"]
+                    .map(|of| model["cost"][of][name].as_f64().unwrap());
+                let sum = cost.iter().fold(0.0, |sum, part| sum + part);
+                assert_eq!(found["energy_pj"][end], sum, "{found}");
             }
         }
     }
@@ -166,7 +156,7 @@ fn points_have_the_figures_of_model() {
         &folder,
         &[0, 9, 14, 17, 26, 31].map(|at: usize| points[at].clone()),
     );
-    // Not all alike in anything.
+    // Each figure varies.
     for key in [
         "wrong_samples",
         "meets_clock",
@@ -176,7 +166,7 @@ fn points_have_the_figures_of_model() {
     ] {
         assert!(points.iter().any(|of| of[key] != points[0][key]), "{key}");
     }
-    // What is too slow for its clock is on no front, although it would be the fastest.
+    // Points that miss their clock are on no front.
     let front = &lines(&text, "front")[0];
     let on_front = front["front"].as_array().unwrap();
     assert!(!on_front.is_empty());
@@ -192,7 +182,7 @@ fn a_run_is_the_same_on_one_thread_on_two_and_after_an_interruption() {
     assert!(whole == two, "one thread and two");
     let file = fs::read(folder.path("one.jsonl")).unwrap();
     assert!(file == fs::read(folder.path("two.jsonl")).unwrap());
-    // The file is what was printed, without the front.
+    // The file is stdout without the front.
     assert!(whole.as_bytes().starts_with(&file));
     assert_eq!(lines(&whole[file.len()..], "front").len(), 1);
     // Stopped in the middle of a line, of the first one too, and after one.
@@ -202,7 +192,7 @@ fn a_run_is_the_same_on_one_thread_on_two_and_after_an_interruption() {
         assert!(after == whole, "stopped at byte {end}");
         assert!(fs::read(folder.path("one.jsonl")).unwrap() == file);
     }
-    // What stands there is not measured again: a figure that cannot be stays.
+    // Existing results are kept: an impossible figure stays.
     let text = String::from_utf8(file).unwrap();
     let marked = text.replacen("\"cycles\":", "\"cycles\":1000000", 1);
     fs::write(folder.path("one.jsonl"), &marked).unwrap();
@@ -272,16 +262,8 @@ fn spaces_that_ship() {
     let folder = Folder::new("");
     let explored = |space: &str, more: &[&str]| {
         let line = ["model", SCENE, "--size", "32", "--json", "--explore", space];
-        let mut command = crate::common::command();
-        let output = command
-            .current_dir(folder.0.path())
-            .args(line)
-            .args(more)
-            .output()
-            .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{space}: {told}");
-        lines(&String::from_utf8(output.stdout).unwrap(), "point")
+        let line = [&line, more].concat();
+        lines(&stdout_of(&run(folder.0.path(), &line).success()), "point")
     };
     let of = |points: &[Value], path: &str| -> Vec<f64> {
         let drawn = points.iter().filter(|of| of["outcome"] == "drawn");
@@ -448,7 +430,7 @@ fn results_of_something_else_are_refused_by_name() {
         &["--eye", "9,9,9", "--target", "0,0,0"],
         "`scene` is",
     );
-    // What could not have become a line of results is nobody's to cut off.
+    // A last line that is no unfinished result is kept.
     let notes = "precious notes without an end of line";
     fs::write(folder.path("notes.txt"), notes).unwrap();
     let (code, told) = folder.refusal(SCENE, &["--results", "notes.txt"]);
@@ -575,14 +557,6 @@ fn line(point: usize, [time_ms, area, energy, wrong]: [f64; 4]) -> PointLine {
     }
 }
 
-fn choices(points: &[PointLine]) -> Vec<(usize, bool)> {
-    let front = front(points);
-    front
-        .iter()
-        .map(|of| (of.line.point, of.stands_out))
-        .collect()
-}
-
 #[test]
 fn a_front_by_hand() {
     let mut points = vec![
@@ -619,11 +593,12 @@ fn a_front_by_hand() {
         .map(|of| of.gain.objective)
         .collect();
     assert_eq!(gains, [Objective::Time, Objective::Area, Objective::Energy]);
-    // A point that is hardly slower and clearly smaller stands for another.
+    // A slightly slower, clearly smaller point replaces another.
     points.push(line(8, [1.05, 6.0, 2.0, 0.0]));
-    let clear = choices(&points);
+    let clear = front(&points);
+    let clear = clear.iter().map(|of| (of.line.point, of.stands_out));
     assert_eq!(
-        clear,
+        clear.collect::<Vec<_>>(),
         [(2, false), (8, true), (5, true), (1, true), (0, true)]
     );
     points.pop();

@@ -7,6 +7,8 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::program::words;
+
 /// Runs the program with so many MB of address space.
 fn within(megabytes: u32, folder: &Path, line: &[&str]) -> Output {
     let limit = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
@@ -18,10 +20,6 @@ fn within(megabytes: u32, folder: &Path, line: &[&str]) -> Output {
         .current_dir(folder)
         .output()
         .unwrap()
-}
-
-fn words(line: &str) -> Vec<&str> {
-    line.split(' ').collect()
 }
 
 fn told(output: &Output) -> String {

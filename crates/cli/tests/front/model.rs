@@ -5,13 +5,12 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::program::{folder, json_of, run, stderr_of, stdout_of};
+use crate::program::{folder, json_of, run, stderr_of, stdout_of, words};
 
 /// The report of a small sponge, with further flags.
 fn report(flags: &str) -> Value {
     let line = format!("model gen:menger,depth=3 --size 64 --json {flags}");
-    let line: Vec<&str> = line.split_whitespace().collect();
-    json_of(&run(folder().path(), &line).success())
+    json_of(&run(folder().path(), &words(&line)).success())
 }
 
 fn number(value: &Value) -> f64 {
@@ -136,8 +135,7 @@ fn samples_that_the_order_of_children_changes_are_counted() {
         ("--paper --hw tiny", false),
     ] {
         let line = format!("model gen:terrain,depth=6 --size 64 --json {flags}");
-        let line: Vec<&str> = line.split_whitespace().collect();
-        let found = json_of(&run(folder().path(), &line).success());
+        let found = json_of(&run(folder().path(), &words(&line)).success());
         let differing = found["differing_samples"].as_u64().unwrap();
         assert_eq!(
             (differing > 0, found["same_picture"] == false),
@@ -202,8 +200,7 @@ fn the_default_hardware_follows_the_rule() {
         ("--paper --hw light", "light"),
     ] {
         let line = format!("model --print-hw {flags}");
-        let line: Vec<&str> = line.split_whitespace().collect();
-        let printed = stdout_of(&run(folder().path(), &line).success());
+        let printed = stdout_of(&run(folder().path(), &words(&line)).success());
         assert!(
             printed.contains(&format!("\nname = \"{wanted}\"")),
             "{flags}: {printed}"

@@ -11,14 +11,13 @@ use shiftvox_mesh::SceneOptions;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::{LoadOptions, mesh_box};
 
-use crate::common::Run;
+use crate::program::{run, stdout_of, words};
 
 /// The output of a command, without the last line's end.
 fn printed(folder: &Path, line: &str) -> String {
-    let mut command = crate::common::command();
-    let assert = command.current_dir(folder).args(line.split(' ')).assert();
-    let output = assert.success().get_output().stdout.clone();
-    String::from_utf8(output).unwrap().trim_end().to_owned()
+    stdout_of(&run(folder, &words(line)).success())
+        .trim_end()
+        .to_owned()
 }
 
 fn put_knot(folder: &Path) {

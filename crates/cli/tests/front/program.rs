@@ -16,6 +16,10 @@ pub(crate) fn shiftvox(folder: &Path) -> Command {
     command
 }
 
+pub(crate) fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 pub(crate) fn run(folder: &Path, line: &[&str]) -> Assert {
     shiftvox(folder).args(line).assert()
 }

@@ -18,7 +18,7 @@ use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::TexturedFile;
 
-/// What is run: every command, on inputs from `../in`.
+/// Every command, on inputs from `../in`.
 const LINES: [&str; 30] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",

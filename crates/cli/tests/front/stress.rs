@@ -4,15 +4,14 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::program::{run, stderr_of, stdout_of};
+use crate::program::{run, stderr_of, stdout_of, words};
 
 #[test]
 fn a_sweep_is_told_in_every_form() {
     let folder = tempfile::tempdir().unwrap();
     let line = "stress gen:shell,depth=3 cyclic:4,1 --bits 16,32 --size 16 --rules 1 --viewpoints 0 \
         --json --export-json s.json";
-    let line: Vec<&str> = line.split(' ').collect();
-    let told = run(folder.path(), &line).success();
+    let told = run(folder.path(), &words(line)).success();
     let document: Value = serde_json::from_str(&stdout_of(&told)).unwrap();
     assert_eq!(document["schema"], "shiftvox.stress");
     // Two scenes, thirteen viewpoints, two widths with three fractions each.
@@ -25,7 +24,7 @@ fn a_sweep_is_told_in_every_form() {
         document
     );
     // Nothing is replaced unasked.
-    let again = run(folder.path(), &line).code(1);
+    let again = run(folder.path(), &words(line)).code(1);
     assert!(stderr_of(&again).contains("--force"));
 }
 

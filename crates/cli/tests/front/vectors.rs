@@ -84,7 +84,7 @@ fn what_is_there_stays_there() {
     assert_eq!(files(&folder)["centre.jsonl"], b"mine");
     model(at, &forced).success();
     assert_ne!(files(&folder)["centre.jsonl"], b"mine");
-    // What did not come from here is not replaced, even so.
+    // Foreign files are kept.
     fs::write(folder.join("thesis.tex"), b"mine").unwrap();
     let refused = model(at, &forced).code(1);
     assert!(stderr_of(&refused).contains("thesis.tex"));
