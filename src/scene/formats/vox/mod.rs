@@ -129,10 +129,9 @@ fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'
                 contents.palette = Palette::read(&chunk)?;
                 contents.palette.entries().clone_into(&mut info.palette);
             }
-            b"IMAP" => palette::check_index_map(&chunk)?,
             b"nTRN" | b"nGRP" | b"nSHP" => contents.graph.add_node(&chunk)?,
             b"LAYR" => contents.graph.add_layer(&chunk)?,
-            // Materials, cameras, notes, render settings, and chunks of later versions.
+            // Materials, the editor's order of the palette, cameras, notes, and chunks of later versions.
             _ => {}
         }
     }

@@ -67,36 +67,3 @@ impl Palette {
         &self.rgba[1..=self.given.min(255)]
     }
 }
-
-/// Checks a chunk `IMAP`, which changes no colour.
-pub(super) fn check_index_map(chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
-    if chunk.content.len() == 256 {
-        return Ok(());
-    }
-    Err(Fault::new(
-        "chunk IMAP",
-        chunk.offset as u64,
-        "256 bytes",
-        format!("{} bytes", chunk.content.len()),
-        AGAIN,
-    ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn default_palette_is_magicavoxels() {
-        let ours = Palette::default_colors();
-        // dot_vox keeps the published table without its unused entry 0.
-        for (i, color) in dot_vox::DEFAULT_PALETTE.iter().take(255).enumerate() {
-            assert_eq!(
-                ours.rgba[i + 1],
-                [color.r, color.g, color.b, color.a],
-                "index {}",
-                i + 1
-            );
-        }
-    }
-}

@@ -92,20 +92,3 @@ fn mean(colors: &[Counted]) -> [u8; 3] {
         ((sum + total / 2) / total) as u8
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn few_colors_are_kept_exactly() {
-        let histogram = (0..255u8)
-            .map(|i| ([i, 255 - i, 7], 1 + u64::from(i)))
-            .collect();
-        let (palette, index_of) = palette(&histogram);
-        assert_eq!(palette.len(), 255);
-        for color in histogram.keys() {
-            assert_eq!(palette[usize::from(index_of[color]) - 1], *color);
-        }
-    }
-}

@@ -97,28 +97,3 @@ pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
         DAMAGED,
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn all() -> Vec<(u8, Transform)> {
-        (0..=255)
-            .filter_map(|byte| Some((byte, Transform::from_rotation_byte(byte)?)))
-            .collect()
-    }
-
-    #[test]
-    fn matrices_agree_with_dot_vox() {
-        assert_eq!(all().len(), 48);
-        for (byte, ours) in all() {
-            let columns = dot_vox::Rotation::from_byte(byte).to_cols_array_2d();
-            for (axis, column) in columns.iter().enumerate() {
-                let mut unit = [0i64; 3];
-                unit[axis] = 1;
-                let ours = ours.rotate(unit);
-                assert_eq!(ours.map(|c| c as f32), *column, "byte {byte}, axis {axis}");
-            }
-        }
-    }
-}
