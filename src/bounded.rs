@@ -22,7 +22,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 
 /// The bytes of a regular file of at most `most` bytes. Fails also if it is longer, or does not fit in memory.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let mut file = open(path)?;
+    let file = open(path)?;
     let bytes = file.metadata()?.len();
     let too_long = |bytes| {
         let message = format!("it has {bytes} bytes or more, and at most {most} are read");
@@ -31,16 +31,21 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if bytes > most {
         return Err(too_long(bytes));
     }
-    let mut content = crate::budget::room("a file that is read whole", bytes as usize)
-        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
     // It may have grown.
-    (&mut file)
-        .take(bytes.saturating_add(1))
-        .read_to_end(&mut content)?;
+    let content = rest(&mut { file }.take(bytes.saturating_add(1)), bytes)?;
     match content.len() as u64 {
         read if read > most => Err(too_long(read)),
         _ => Ok(content),
     }
+}
+
+/// The rest of a file, about `bytes` long; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if the system refuses the memory.
+pub(crate) fn rest(reader: &mut impl Read, bytes: u64) -> io::Result<Vec<u8>> {
+    let length = usize::try_from(bytes).unwrap_or(usize::MAX);
+    let mut content = crate::budget::room("a file that is read whole", length)
+        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
+    reader.read_to_end(&mut content)?;
+    Ok(content)
 }
 
 /// The bytes of a regular file; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if it does not fit in memory.

@@ -307,9 +307,6 @@ fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildEr
     Ok(starts.into_iter().map(|start| start as u32).collect())
 }
 
-/// Longest side of the bounding box of a set of voxels.
-pub(in crate::graph) const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
-
 /// Why no graph was built.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BuildError {
@@ -317,8 +314,9 @@ pub enum BuildError {
     #[error("there are no voxels, so there is nothing to build")]
     Empty,
     #[error(
-        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
-         are there stray voxels far from the object?"
+        "the voxels span {extent} along axis {axis}, more than {}; \
+         are there stray voxels far from the object?",
+        morton::MAX_SIDE
     )]
     TooLarge { axis: char, extent: u64 },
     /// More voxels or nodes than 32 bits number.

@@ -144,33 +144,19 @@ impl Graph {
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
             let level = (self.depth - height) as usize;
-            let nodes = if ordered {
-                let start = |l: usize| self.level_start.get(l).map_or(0, |&n| n as usize);
-                start(level)..start(level + 1).min(self.len())
-            } else {
-                0..self.len()
+            let start = |l: usize| self.level_start.get(l).map_or(0, |&n| n as usize);
+            let nodes = match ordered {
+                true => start(level).min(self.len())..start(level + 1).min(self.len()),
+                false => 0..self.len(),
             };
-            let count = |node: usize, below: &[u64]| {
-                let mut total = 0u64;
-                let mut leaf = true;
-                for child in self.children(node as u32).into_iter().flatten() {
-                    leaf = false;
-                    total = total.saturating_add(below[child as usize]);
-                }
-                if leaf {
-                    1u64.checked_shl(3 * height).unwrap_or(u64::MAX)
-                } else {
-                    total
-                }
+            let count = |node: usize| {
+                let children = self.children(node as u32).into_iter().flatten();
+                let each = children.map(|child| below[child as usize]);
+                let leaf = 1u64.checked_shl(3 * height).unwrap_or(u64::MAX);
+                each.reduce(u64::saturating_add).unwrap_or(leaf)
             };
-            if ordered {
-                // Children are of the level below, which is done.
-                for node in nodes {
-                    below[node] = count(node, &below);
-                }
-            } else {
-                below = nodes.map(|node| count(node, &below)).collect();
-            }
+            let counted: Vec<u64> = nodes.clone().map(count).collect();
+            below[nodes.start..nodes.start + counted.len()].copy_from_slice(&counted);
         }
         below.get(self.root as usize).copied().unwrap_or(0)
     }

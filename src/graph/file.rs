@@ -180,10 +180,10 @@ pub struct Format {
 pub const HEADER_BYTES: usize = 128;
 
 /// Offsets in the header of every format.
-mod at {
-    pub(super) const VERSION: usize = 8;
+pub(super) mod at {
+    pub(in crate::graph) const VERSION: usize = 8;
     pub(super) const HEADER_BYTES: usize = 12;
-    pub(super) const FILE_BYTES: usize = 16;
+    pub(in crate::graph) const FILE_BYTES: usize = 16;
 }
 
 impl Format {

@@ -29,10 +29,6 @@ pub enum MergeBy {
 pub struct MergeReport {
     pub nodes_before: u64,
     pub nodes_after: u64,
-    /// [`Graph::bytes`].
-    pub bytes_before: u64,
-    /// The same, including the child lists.
-    pub bytes_after: u64,
 }
 
 impl MergeReport {
@@ -77,8 +73,6 @@ pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, Mer
     let report = MergeReport {
         nodes_before: graph.len() as u64,
         nodes_after: merged.len() as u64,
-        bytes_before: graph.bytes(),
-        bytes_after: merged.bytes(),
     };
     (merged, report)
 }

@@ -6,7 +6,7 @@ pub mod cells;
 pub mod external;
 pub mod file;
 mod layout;
-pub mod linked;
+mod linked;
 pub mod map;
 pub mod merge;
 mod mesh_box;

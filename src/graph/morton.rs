@@ -3,7 +3,7 @@
 /// Most bits per coordinate: three fit 63 bits.
 pub(super) const MAX_BITS: u32 = 21;
 /// Longest side of a box of voxels.
-const MAX_SIDE: u64 = 1 << MAX_BITS;
+pub(super) const MAX_SIDE: u64 = 1 << MAX_BITS;
 
 /// Inserts two zeros after each of 21 bits.
 fn spread(value: u32) -> u64 {

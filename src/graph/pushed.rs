@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::build::{BuildError, MAX_SIDE};
+use super::build::BuildError;
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
@@ -13,7 +13,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
         let side = i64::from(max[axis]) - i64::from(min[axis]) + 1;
         extent[axis] = side.unsigned_abs();
-        if extent[axis] > MAX_SIDE {
+        if extent[axis] > morton::MAX_SIDE {
             return Err(BuildError::TooLarge {
                 axis: name,
                 extent: extent[axis],

@@ -1,6 +1,8 @@
 //! The bytes of a file, as a reader of voxels receives them.
 
-use std::io::{self, BufReader, ErrorKind, Read, Seek};
+use std::io::{self, BufReader, Read, Seek};
+
+use crate::bounded;
 
 /// A file, or bytes in memory.
 pub(super) trait Stream: Read + Seek {}
@@ -22,12 +24,6 @@ impl<'f> Input<'f> {
 
     /// The whole file.
     pub(super) fn bytes(&mut self) -> io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let length = usize::try_from(self.length).unwrap_or(usize::MAX);
-        bytes
-            .try_reserve_exact(length)
-            .map_err(|refused| io::Error::new(ErrorKind::OutOfMemory, refused))?;
-        self.reader.read_to_end(&mut bytes)?;
-        Ok(bytes)
+        bounded::rest(&mut self.reader, self.length)
     }
 }

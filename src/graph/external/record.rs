@@ -9,7 +9,6 @@
 //!
 //! Of equal keys, the last pushed comes first.
 
-use crate::graph::build::MAX_SIDE;
 use crate::graph::{PackedNormal, Voxel, morton};
 
 /// Most records per run: their numbers take 24 bits.
@@ -34,7 +33,7 @@ pub(super) fn moved(record: u128, from: [i32; 3], to: [i32; 3]) -> u128 {
     let old = morton::at(key(record));
     let at = [0, 1, 2].map(|axis| {
         let further = (from[axis] as u32).wrapping_sub(to[axis] as u32);
-        old[axis].wrapping_add(further) & (MAX_SIDE as u32 - 1)
+        old[axis].wrapping_add(further) & (morton::MAX_SIDE as u32 - 1)
     });
     with_key(record, morton::key(at))
 }

@@ -24,7 +24,7 @@ pub(super) const SECTIONS: usize = 5;
 
 /// Offsets in the header, in addition to those of every format.
 pub(super) mod at {
-    pub(in super::super) const FILE_BYTES: usize = 16;
+    pub(in super::super) use crate::graph::file::at::{FILE_BYTES, VERSION};
     pub(in super::super) const DEPTH: usize = 24;
     pub(in super::super) const ROOT: usize = 28;
     pub(in super::super) const VOXELS: usize = 32;

@@ -195,7 +195,7 @@ impl Header {
 /// The section table: kinds, and the one layout that lengths allow.
 fn read_sections(fields: &Fields<'_>, file_bytes: u64) -> Result<Vec<Section>, VxgError> {
     // The version says whether there are opacities.
-    let expected = match fields.u32_at(8) {
+    let expected = match fields.u32_at(at::VERSION) {
         VERSION => SECTIONS,
         _ => KINDS.len(),
     };
