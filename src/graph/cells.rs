@@ -2,7 +2,6 @@
 
 use super::Graph;
 
-/// A finest voxel, or a solid leaf above the finest level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
     /// Lowest corner in object coordinates, finest voxels.
@@ -68,8 +67,8 @@ impl Graph {
 
     /// Lowest corner, in finest voxels, and level of the one voxel that shows a node.
     ///
-    /// Searches upwards by the node's number, one binary search per level. None in graphs whose nodes may be in several
-    /// places or are not stored level by level, and for leaves above the finest level.
+    /// One binary search per level. None in graphs whose nodes may be in several places or are not stored level by level,
+    /// and for leaves above the finest level.
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -133,8 +132,7 @@ impl Graph {
         !self.level_start.is_empty()
     }
 
-    /// Counts the finest voxels, including those inside solid leaves, and repeated parts as often as they occur;
-    /// saturates. Takes time in proportion to the nodes (times the levels, if they are not stored level by level).
+    /// Counts the finest voxels, also those inside solid leaves, repeated parts as often as they occur; saturates.
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {

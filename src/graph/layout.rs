@@ -25,7 +25,6 @@ struct Bricks {
 const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
-    /// The layout of a graph. Only trees stored level by level have bricks.
     pub fn new(graph: &GraphView<'_>, leaf_masks: bool, bricks: bool) -> Self {
         let level = graph.depth.checked_sub(2).filter(|_| bricks);
         let found = level.filter(|_| is_by_level(graph)).and_then(|level| {

@@ -36,7 +36,6 @@ impl LinkedGraph {
         number
     }
 
-    /// Builds the graph. Colours are not averaged. Fails when it is too deep, or the root or a child was not added.
     pub fn build(&self) -> Result<Graph, Invalid> {
         let mut mask = Vec::with_capacity(self.nodes.len());
         let mut first = Vec::with_capacity(self.nodes.len());

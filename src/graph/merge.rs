@@ -14,7 +14,6 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 use super::{Graph, Progress, Store};
 
-/// Compared properties of nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MergeBy {
     /// Same shape, colours, normals and opacities: the merged graph looks the same.
@@ -24,7 +23,6 @@ pub enum MergeBy {
     Shape,
 }
 
-/// Sizes before and after merging.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MergeReport {
     pub nodes_before: u64,
@@ -32,7 +30,6 @@ pub struct MergeReport {
 }
 
 impl MergeReport {
-    /// Nodes before per node after, at least 1.
     pub fn gain(&self) -> f64 {
         self.nodes_before as f64 / self.nodes_after.max(1) as f64
     }
@@ -56,7 +53,6 @@ impl Hasher for Parts {
 }
 
 type Map<K> = HashMap<K, u32, BuildHasherDefault<Parts>>;
-/// Number of a child that does not exist.
 const ABSENT: u32 = u32::MAX;
 
 /// Merges equal nodes. The cells of the result are those of `graph` one for one, with the same colours and normals
@@ -77,7 +73,6 @@ pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, Mer
     (merged, report)
 }
 
-/// Colour, normal and opacity in one number, or 0.
 fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
     if by == MergeBy::Shape {
         return 0;
@@ -100,7 +95,6 @@ fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
     *known.entry(key).or_insert(next)
 }
 
-/// The class of each node; levels have separate classes.
 fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let mut class = vec![0; graph.len()];
     for pair in graph.level_start.windows(2).rev() {
@@ -117,7 +111,6 @@ fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     class
 }
 
-/// The class of each node of any graph.
 fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let nodes = 0..graph.len() as u32;
     let mut class = vec![0; graph.len()];
@@ -140,7 +133,6 @@ fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
     }
 }
 
-/// A graph with one node per reachable class.
 fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     let ordered = graph.is_level_ordered();
     let classes = class.iter().max().map_or(0, |&most| most as usize + 1);

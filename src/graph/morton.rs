@@ -20,7 +20,6 @@ pub(super) fn key(at: [u32; 3]) -> u64 {
     spread(at[0]) << 2 | spread(at[1]) << 1 | spread(at[2])
 }
 
-/// Inverse of [`spread`].
 fn gather(bits: u64) -> u32 {
     let mut value = bits & 0x1249_2492_4924_9249;
     value = (value | value >> 2) & 0x10c3_0c30_c30c_30c3;

@@ -9,16 +9,12 @@ use glam::DVec3;
 
 use super::PackedNormal;
 
-/// Grid steps from the middle of the square to its edge.
 const STEPS: f64 = 127.0;
-/// The byte of coordinate 0.
 const ZERO: u16 = 128;
 
 impl PackedNormal {
-    /// No normal.
     pub const NONE: Self = Self(0);
 
-    /// [`Self::encode`] of coordinates x, y, z.
     pub fn from_array(direction: [f64; 3]) -> Self {
         Self::encode(direction.into())
     }
@@ -75,7 +71,6 @@ fn fold(u: f64, v: f64) -> (f64, f64) {
     ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v))
 }
 
-/// The point of the octahedron of a grid point.
 fn unfold(u: f64, v: f64) -> DVec3 {
     let (mut u, mut v) = (u * (1.0 / STEPS), v * (1.0 / STEPS));
     let z = 1.0 - u.abs() - v.abs();

@@ -26,7 +26,6 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
 /// Voxels per piece; a reserved one may have more. 40 MB: allocators return blocks of that size to the system at once.
 const PIECE: usize = 1 << 21;
 
-/// The voxels' name in errors.
 const VOXELS: &str = "voxels that are sorted";
 
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +55,6 @@ impl PushedVoxel {
         record.with_key(morton::pack(index))
     }
 
-    /// The Morton key, once sorted.
     pub(super) fn key(&self) -> u64 {
         u64::from(self.key_high) << 32 | u64::from(self.key_low)
     }
@@ -74,7 +72,6 @@ impl PushedVoxel {
         }
     }
 
-    /// With the Morton key from the lowest corner instead of the index.
     fn placed(&self, min: [i32; 3]) -> Self {
         self.with_key(morton::key_from(self.key(), min))
     }
@@ -121,8 +118,7 @@ impl PushedVoxels {
         Ok(())
     }
 
-    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays. Fails when the system
-    /// refuses memory for one array.
+    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays.
     pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         let mut sorted = self.in_one(min)?;
         sorted.par_sort_unstable_by_key(PushedVoxel::order);

@@ -6,11 +6,9 @@ use super::{Graph, MAX_DEPTH, place};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{array} entry {index}: expected {expected}")]
 pub struct Invalid {
-    /// Field of [`Graph`].
     pub array: &'static str,
     /// Entry of the array; 0 for a field that is not an array.
     pub index: usize,
-    /// The expected value, and the found one.
     pub expected: String,
 }
 
@@ -109,7 +107,6 @@ impl Graph {
         })
     }
 
-    /// The level table, if there is one.
     pub(super) fn validate_levels(&self) -> Result<(), Invalid> {
         let starts = &self.level_start;
         if starts.is_empty() {
@@ -138,7 +135,6 @@ impl Graph {
         })
     }
 
-    /// Every child list and every link.
     pub(super) fn validate_children(&self) -> Result<(), Invalid> {
         let nodes = self.len() as u64;
         let linked = !self.links.is_empty();

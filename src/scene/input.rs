@@ -4,15 +4,12 @@ use std::io::{self, BufReader, Read, Seek};
 
 use crate::bounded;
 
-/// A file, or bytes in memory.
 pub(super) trait Stream: Read + Seek {}
 
 impl<S: Read + Seek> Stream for S {}
 
-/// A file at its beginning.
 pub(super) struct Input<'f> {
     pub(super) reader: BufReader<&'f mut dyn Stream>,
-    /// Bytes of the file.
     pub(super) length: u64,
 }
 
@@ -22,7 +19,6 @@ impl<'f> Input<'f> {
         Self { reader, length }
     }
 
-    /// The whole file.
     pub(super) fn bytes(&mut self) -> io::Result<Vec<u8>> {
         bounded::rest(&mut self.reader, self.length)
     }

@@ -4,12 +4,10 @@
 /// (`spec/graph.md`).
 const LEAST_BYTES: u64 = 25;
 
-/// Most voxels that fit so many bytes.
 pub(super) fn most_voxels(bytes: u64) -> u64 {
     bytes / LEAST_BYTES
 }
 
-/// Least bytes for so many voxels.
 pub(super) fn least_bytes(voxels: u64) -> u64 {
     voxels.saturating_mul(LEAST_BYTES)
 }

@@ -50,7 +50,7 @@ impl Graph {
     fn random(seed: u64, inner: u32) -> Self {
         let mut dice = Dice(SplitMix::new(seed));
         // Small scenes overlap; large ones use all of a byte and of a translation.
-        let [side, span] = [[3, 4], [256, 10_000]][usize::from(seed % 4 == 0)];
+        let [side, span] = [[3, 4], [256, 10_000]][usize::from(seed.is_multiple_of(4))];
         let models = (0..1 + dice.below(3)).map(|_| {
             let size = [0; 3].map(|_| 1 + dice.below(side));
             let voxels = (0..1 + dice.below(4)).map(|_| {

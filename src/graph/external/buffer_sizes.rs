@@ -1,21 +1,16 @@
-//! The sizes of all buffers, from a limit of memory.
-
 use super::record::MAX_RUN;
 
 /// Bytes of the program itself: code, stacks, the allocator's reserve.
 const PROGRAM: u64 = 48 << 20;
 const LEAST_READER: u64 = 64 << 10;
-/// Most runs that are merged at once.
 const MAX_FAN_IN: u64 = 256;
 /// Bytes per cluster in progress: 64 voxels with colour and normal, up to nine nodes, and the sum.
 const CLUSTER_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
 /// Streams that may be open together: four for each of 21 levels, and a few.
 const SPOOLS: u64 = 96;
 
-/// Largest blocks: 128 clusters, or 512 voxels, a side.
 const MAX_BLOCK_SHIFT: u32 = 7;
 
-/// Bytes of a block: its grid, and its clusters if all are there.
 fn block_bytes(shift: u32) -> u64 {
     let side = 1u64 << shift;
     (side + 2).pow(3) * 8 + side.pow(3) * 16
@@ -29,12 +24,10 @@ fn block_bytes(shift: u32) -> u64 {
 pub(super) struct BufferSizes {
     pub(super) run_records: usize,
     pub(super) merge_bytes: usize,
-    /// Most runs per merge.
     pub(super) fan_in: usize,
     pub(super) halo_records: usize,
     /// Blocks are `2^block_shift` clusters a side.
     pub(super) block_shift: u32,
-    /// Clusters that are processed at once.
     pub(super) chunk_clusters: usize,
     /// Bytes of a stream's buffer; whole items of 1, 2, 3, 4 and 16 bytes.
     pub(super) spool_bytes: usize,

@@ -6,8 +6,6 @@
 //! | 63..40 | all ones less the number within the run | the same |
 //! | 39..16 | colour | colour |
 //! | 15..0 | normal | normal |
-//!
-//! Of equal keys, the last pushed comes first.
 
 use crate::graph::{PackedNormal, Voxel, morton};
 
@@ -23,7 +21,6 @@ pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
     u128::from(morton::pack(voxel.index)) << 64 | u128::from(rest)
 }
 
-/// With the Morton key from a corner instead of the index.
 pub(super) fn placed(record: u128, corner: [i32; 3]) -> u128 {
     with_key(record, morton::key_from(key(record), corner))
 }

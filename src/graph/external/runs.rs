@@ -58,7 +58,6 @@ impl Runs {
     ) -> io::Result<()> {
         let Run { offset, records } = self.runs[run];
         buffer.clear();
-        // A run was in memory when it was added.
         buffer.resize(records as usize, 0);
         self.file.read(offset, bytemuck::cast_slice_mut(buffer))?;
         buffer
@@ -143,7 +142,6 @@ impl Merge {
         Ok(merge)
     }
 
-    /// Reads the next piece of a run; false at its end.
     fn refill(&mut self, number: u32) -> io::Result<bool> {
         let reader = &mut self.readers[number as usize];
         let records = reader.rest.records.min(self.reader_bytes / RECORD_BYTES);
@@ -160,7 +158,6 @@ impl Merge {
         Ok(true)
     }
 
-    /// The next record; none at the end.
     pub(super) fn next(&mut self) -> io::Result<Option<u128>> {
         loop {
             let Some(&Reverse((head, Reverse(number)))) = self.heads.peek() else {
@@ -186,7 +183,6 @@ impl Merge {
     }
 }
 
-/// Sorts records within a limit of memory.
 #[derive(Debug)]
 pub(super) struct Sorter {
     buffer: Vec<u128>,
@@ -218,7 +214,6 @@ impl Sorter {
         Ok(())
     }
 
-    /// All records in order.
     pub(super) fn merged(
         mut self,
         sizes: &BufferSizes,

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Folder and sizes of temporary files.
 #[derive(Debug)]
 pub(super) struct Scratch {
     folder: PathBuf,
@@ -42,7 +41,6 @@ impl Scratch {
     }
 }
 
-/// A temporary file, removed when dropped.
 #[derive(Debug)]
 pub(super) struct ScratchFile {
     file: File,
@@ -55,7 +53,6 @@ impl ScratchFile {
         self.bytes
     }
 
-    /// Writes at the end.
     pub(super) fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(self.bytes))?;
         self.file.write_all(bytes)?;
@@ -67,7 +64,6 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Overwrites existing bytes.
     pub(super) fn replace(&mut self, offset: u64, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.write_all(bytes)?;
@@ -76,7 +72,6 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Reads existing bytes.
     pub(super) fn read(&mut self, offset: u64, into: &mut [u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.read_exact(into)
@@ -93,7 +88,6 @@ impl Drop for ScratchFile {
 #[derive(Debug)]
 pub(super) struct Spool {
     buffer: Vec<u8>,
-    /// Capacity of the buffer, bytes.
     room: usize,
     file: Option<ScratchFile>,
     scratch: Arc<Scratch>,
@@ -109,7 +103,6 @@ impl Spool {
         }
     }
 
-    /// Writes at the end.
     pub(super) fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
         if self.buffer.len() + bytes.len() > self.room {
             self.flush()?;
@@ -144,7 +137,6 @@ impl Spool {
         self.file.as_ref().map_or(0, ScratchFile::len) + self.buffer.len() as u64
     }
 
-    /// Reads bytes that were written.
     pub(super) fn read(&mut self, offset: u64, into: &mut [u8]) -> io::Result<()> {
         let in_file = self.file.as_ref().map_or(0, ScratchFile::len);
         let from_file = in_file.saturating_sub(offset).min(into.len() as u64) as usize;

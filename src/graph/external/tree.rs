@@ -20,7 +20,6 @@ pub(super) struct FinishedNode {
 }
 
 impl FinishedNode {
-    /// A node that shows the average of a sum.
     pub(super) fn new(mask: u8, sum: &Sum) -> Self {
         Self {
             mask,
@@ -32,7 +31,6 @@ impl FinishedNode {
 
 #[derive(Debug, Clone)]
 pub(super) struct ClusterNodes {
-    /// Octants that contain voxels.
     pub(super) mask: u8,
     pub(super) octants: Vec<FinishedNode>,
     pub(super) sum: Sum,
@@ -47,7 +45,6 @@ pub(super) struct LevelArrays {
     pub(super) normal: Spool,
 }
 
-/// A node that may receive more children.
 #[derive(Debug, Clone, Copy, Default)]
 struct Open {
     mask: u8,
@@ -55,14 +52,11 @@ struct Open {
     sum: Sum,
 }
 
-/// Writes the levels above the finest.
 #[derive(Debug)]
 pub(super) struct TreeWriter {
     depth: u32,
     levels: Vec<LevelArrays>,
-    /// Nodes begun per level, including the finest.
     begun: Vec<u64>,
-    /// The open node of each level above the clusters.
     open: Vec<Open>,
     before: Option<u64>,
 }
@@ -160,7 +154,6 @@ impl TreeWriter {
     fn write(&mut self, level: usize, node: FinishedNode, first: u64) -> io::Result<()> {
         let to = &mut self.levels[level];
         to.mask.push(&[node.mask])?;
-        // More than 32 bits are rejected at the end.
         to.first.push(&(first as u32).to_ne_bytes())?;
         to.color.push(&node.color)?;
         to.normal.push(&node.normal.0.to_le_bytes())

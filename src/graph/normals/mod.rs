@@ -22,7 +22,6 @@ use super::{PackedNormal, Progress};
 use cluster::{Cluster, MORTON_TO_XYZ, Surroundings, enclosed, put};
 use moments::Moments;
 
-/// Entry of `Neighbours` without a node.
 const ABSENT: u32 = u32::MAX;
 /// Nodes of one level in and around a node: `(x * 3 + y) * 3 + z`.
 type Neighbours = [u32; 27];
@@ -31,13 +30,11 @@ const SELF: usize = 13;
 /// Most pieces that the work is split into.
 const MAX_PIECES: usize = 4096;
 
-/// A tree stored level by level, whose normals are estimated.
 pub(super) struct Estimate<'t> {
     pub(super) mask: &'t [u8],
     pub(super) first: &'t [u32],
     pub(super) level_start: &'t [u32],
     pub(super) depth: u32,
-    /// Middle of the object, finest voxels.
     pub(super) centre: [f64; 3],
 }
 
@@ -48,7 +45,6 @@ struct Piece {
 }
 
 impl Estimate<'_> {
-    /// Writes the normals of those finest voxels that have none.
     pub(super) fn fill(&self, normals: &mut [PackedNormal], progress: &dyn Progress) {
         if normals.iter().all(|normal| !normal.is_none()) {
             return;
@@ -150,7 +146,6 @@ impl Estimate<'_> {
         (first_voxel(node + 1) - first_voxel(node)) as usize
     }
 
-    /// Calls `call` with the corner and the neighbours of each child of a node.
     #[inline]
     fn for_children(
         &self,

@@ -1,6 +1,6 @@
 //! Voxel grids of the program binvox: a text header, then runs of empty and filled cells.
 //!
-//! Read as a stream. Nothing is allocated by the sizes in the header.
+//! Nothing is allocated by the sizes in the header.
 
 use std::io::{BufRead, ErrorKind, Read};
 
@@ -14,7 +14,6 @@ const MAX_LINE: u64 = 256;
 
 const AGAIN: &str = "the file is damaged or its exporter is at fault; export or copy it again";
 
-/// Passes on the filled cells of a grid.
 pub(super) fn read(
     input: &mut Input<'_>,
     _: &ReadOptions,
@@ -63,7 +62,7 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// Reads the header, with its line `data`: the cells along x, z and y.
+/// Reads the header up to `data`: the cells along x, z and y.
 fn read_header(input: &mut Input<'_>, offset: &mut u64) -> Result<[u64; 3], Problem> {
     let mut sizes = None;
     loop {

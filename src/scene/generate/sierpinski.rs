@@ -7,7 +7,6 @@ use crate::graph::{Graph, PackedNormal, Placement};
 const OCTANTS: [u8; 4] = [0b000, 0b011, 0b101, 0b110];
 const COLOR: [u8; 3] = [226, 174, 88];
 
-/// One node whose children 0, 3, 5 and 6 are itself.
 pub(super) fn graph(settings: &Settings) -> Graph {
     Graph {
         depth: settings.depth,

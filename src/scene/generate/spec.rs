@@ -5,7 +5,6 @@ use std::fmt;
 use super::list::{GENERATORS, Generator, Settings, Shape};
 use crate::graph::{Graph, GraphView, Progress, Voxel};
 
-/// The beginning of every specification.
 pub const PREFIX: &str = "gen:";
 
 /// A scene that can be generated: a generator and its settings, all in range.
@@ -15,16 +14,12 @@ pub struct Spec {
     settings: Settings,
 }
 
-/// A fault in a specification; the message lists the alternatives.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct SpecError(String);
 
 impl Spec {
-    /// Reads a spec; keys left out have the generator's defaults.
-    ///
-    /// # Errors
-    /// When the text is no spec.
+    /// Keys left out have the generator's defaults.
     pub fn parse(text: &str) -> Result<Self, SpecError> {
         let wrong = |message: String| Err(SpecError(message));
         let Some(body) = text.strip_prefix(PREFIX) else {
@@ -77,12 +72,10 @@ impl Spec {
         })
     }
 
-    /// The generator.
     pub fn generator(&self) -> &'static Generator {
         self.generator
     }
 
-    /// The generator's settings.
     pub fn settings(&self) -> Settings {
         self.settings
     }
@@ -99,8 +92,7 @@ impl Spec {
         }
     }
 
-    /// The graph of a scene with cycles; `None` for others, whose voxels
-    /// [`Self::voxels`] passes on.
+    /// The graph of a scene with cycles.
     pub fn linked(&self) -> Option<Graph> {
         match self.generator.shape {
             Shape::Voxels(_) => None,
@@ -108,10 +100,7 @@ impl Spec {
         }
     }
 
-    /// Passes on every voxel of the scene once, always in the same order.
-    ///
-    /// File indices are 0 or more. A cyclic scene is walked through: at depth
-    /// 30 that takes years, so try [`Self::linked`] first.
+    /// Each voxel once, always in the same order. A cyclic scene is walked: at depth 30 that takes years.
     pub fn voxels(&self, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
         match self.generator.shape {
             Shape::Voxels(make) => make(&self.settings, sink, progress),
@@ -125,7 +114,6 @@ impl Spec {
     }
 }
 
-/// The finest voxels below a node that has no solid above the finest level.
 fn walk(
     graph: &GraphView<'_>,
     color: &[[u8; 3]],
@@ -151,7 +139,6 @@ fn walk(
     }
 }
 
-/// The canonical specification, with every key of the generator.
 impl fmt::Display for Spec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{PREFIX}{}", self.generator.name)?;

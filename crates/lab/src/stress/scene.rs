@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, PackedNormal, Silent, Voxel,
+    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, Silent, Voxel,
 };
 use shiftvox::scene::generate::Spec;
 use shiftvox::split_mix::SplitMix;

@@ -35,7 +35,6 @@ impl Palette {
         Self { rgba, given: 0 }
     }
 
-    /// The palette of a chunk `RGBA`; entries that it lacks stay MagicaVoxel's own.
     pub(super) fn read(chunk: &Chunk<'_>) -> Result<Self, Box<Fault>> {
         let (entries, rest) = chunk.content.as_chunks::<4>();
         if !rest.is_empty() || entries.len() > 256 {
@@ -55,14 +54,12 @@ impl Palette {
         Ok(palette)
     }
 
-    /// The colour of an index.
     #[inline]
     pub(super) fn color(&self, index: u8) -> [u8; 3] {
         let [r, g, b, _] = self.rgba[usize::from(index)];
         [r, g, b]
     }
 
-    /// The entries in the file that have an index.
     pub(super) fn entries(&self) -> &[[u8; 4]] {
         &self.rgba[1..=self.given.min(255)]
     }
