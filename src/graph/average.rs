@@ -103,18 +103,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_colours_keep_their_value() {
-        for value in 0..=255u8 {
-            let mut sum = Sum::default();
-            for _ in 0..5 {
-                sum.add_voxel([value; 3], PackedNormal::NONE);
-            }
-            assert_eq!(sum.color(), [value; 3]);
-            assert_eq!(sum.normal(), PackedNormal::NONE);
-        }
-    }
-
-    #[test]
     fn the_nearest_value_is_found_for_every_light() {
         // Between two values the nearer, on the middle the brighter; each step of both.
         for value in 0..255usize {

@@ -16,7 +16,6 @@ mod file;
 mod formats;
 pub mod generate;
 mod input;
-mod memory;
 mod mesh;
 pub mod numbers;
 mod open;

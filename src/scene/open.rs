@@ -4,7 +4,6 @@ use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 
 use super::generate::Spec;
-use super::memory;
 use super::mesh::{MeshReader, MeshSummary, MeshVoxels};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
@@ -13,6 +12,9 @@ use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 
 /// The default limit. Of a larger file, only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 256 << 20;
+
+/// Least bytes per voxel: 20 while voxels are collected and sorted, 5 in the graph (`spec/graph.md`).
+const LEAST_BYTES: u64 = 25;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenOptions {
@@ -194,7 +196,7 @@ impl Default for Gathered {
         Self {
             builder: Builder::new(BuildOptions::default()),
             available,
-            most: available.map_or(u64::MAX, memory::most_voxels),
+            most: available.map_or(u64::MAX, |bytes| bytes / LEAST_BYTES),
             seen: 0,
         }
     }
@@ -217,7 +219,7 @@ impl Gathered {
             Some(available) if voxels > self.most => Err(OpenError::TooMany {
                 source_name: source.to_owned(),
                 voxels,
-                needed: memory::least_bytes(voxels),
+                needed: voxels.saturating_mul(LEAST_BYTES),
                 available,
             }),
             _ => Ok(()),

@@ -55,31 +55,3 @@ pub(super) fn color(record: u128) -> [u8; 3] {
 pub(super) fn normal(record: u128) -> PackedNormal {
     PackedNormal(record as u16)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_come_back_and_the_last_pushed_is_first() {
-        let voxel = Voxel {
-            index: [-5, 7, i32::MIN + 3],
-            color: [1, 200, 255],
-            normal: Some(PackedNormal(0xabcd)),
-        };
-        let corner = [-6, 7, i32::MIN];
-        let record = placed(pushed(&voxel, 17), corner);
-        assert_eq!(morton::at(key(record)), [1, 0, 3]);
-        assert_eq!(
-            (color(record), normal(record)),
-            ([1, 200, 255], PackedNormal(0xabcd))
-        );
-        assert!(placed(pushed(&voxel, 18), corner) < record);
-        assert!(placed(pushed(&voxel, MAX_RUN - 1), corner) < record);
-        let other = [-60, -7, i32::MIN];
-        assert_eq!(
-            moved(record, corner, other),
-            placed(pushed(&voxel, 17), other)
-        );
-    }
-}

@@ -1,6 +1,6 @@
 //! The table of generators and their keys.
 
-use super::{maze, shapes, sierpinski, terrain};
+use super::{maze, shapes, terrain};
 use crate::graph::{Graph, Progress, Voxel};
 
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +79,7 @@ pub const GENERATORS: &[Generator] = &[
     Generator {
         name: "sierpinski",
         keys: &[depth(30, 1, 30)],
-        shape: Shape::Linked(sierpinski::graph),
+        shape: Shape::Linked(shapes::sierpinski),
     },
     voxels("sphere", &[depth(7, 1, 10)], shapes::sphere),
     voxels("terrain", &[depth(10, 5, 16), SEED], terrain::voxels),

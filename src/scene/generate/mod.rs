@@ -4,7 +4,6 @@
 mod list;
 mod maze;
 mod shapes;
-mod sierpinski;
 mod spec;
 mod terrain;
 
