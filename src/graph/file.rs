@@ -74,8 +74,9 @@ impl FileError {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
 
-    pub fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
-        Self::Io {
+    /// For errors of the operating system.
+    fn refused(path: &Path, doing: &'static str) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Io {
             file: path.to_owned(),
             doing,
             source,
@@ -83,20 +84,18 @@ impl FileError {
     }
 }
 
-pub struct Refused {
-    pub doing: &'static str,
-    pub source: io::Error,
-}
-
-pub struct Opened {
-    pub file: File,
+/// An open file, of which only the header was read.
+pub struct Opened<'p> {
+    file: File,
+    path: &'p Path,
     pub bytes: u64,
+    /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
 }
 
 /// Opens a regular file and reads its header. Callers check the length before they map the file.
-pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
-    let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
+pub fn open(path: &Path, header_bytes: usize) -> Result<Opened<'_>, FileError> {
+    let refused = |doing| FileError::refused(path, doing);
     let mut file = bounded::open(path).map_err(refused("open it"))?;
     let metadata = file.metadata().map_err(refused("ask for its length"))?;
     let mut beginning = Vec::with_capacity(header_bytes);
@@ -106,15 +105,15 @@ pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
         .map_err(refused("read its header"))?;
     Ok(Opened {
         file,
+        path,
         bytes: metadata.len(),
         beginning,
     })
 }
 
-impl Opened {
-    pub fn map(&self) -> Result<Arc<Mmap>, Refused> {
-        let doing = "map it into memory";
-        map(&self.file).map_err(|source| Refused { doing, source })
+impl Opened<'_> {
+    pub fn map(&self) -> Result<Arc<Mmap>, FileError> {
+        map(&self.file).map_err(FileError::refused(self.path, "map it into memory"))
     }
 }
 

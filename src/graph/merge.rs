@@ -1,11 +1,9 @@
 //! Merging equal subtrees: a tree becomes a directed acyclic graph.
 //!
-//! Two nodes are equal if their children are equal octant by octant, and so are their colours, normals and opacities.
 //! In a graph stored level by level, levels are merged from the finest up, and equal nodes of different levels stay
 //! apart. In any other graph, nodes start out equal and are distinguished by their children until no class splits.
-//!
-//! Nodes of the result are numbered in breadth-first order. A graph stored level by level stays so, unless some finest
-//! levels had no reachable nodes.
+//! The result is numbered in breadth-first order. A graph stored level by level stays so, unless some finest levels had
+//! no reachable nodes.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};

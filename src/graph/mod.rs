@@ -88,8 +88,7 @@ pub struct Graph {
     pub normal: Store<PackedNormal>,
     /// Opacity of each node; empty where all are opaque.
     pub opacity: Store<Opacity>,
-    /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; otherwise
-    /// empty.
+    /// The first node of each level and the end, `depth + 2` entries; empty unless stored level by level.
     pub level_start: Vec<u32>,
     /// Voxels of the finest level, counted with repetition; saturates.
     pub voxels: u64,

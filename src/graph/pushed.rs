@@ -23,7 +23,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece; a reserved one may have more. 40 MB: allocators return blocks of that size to the system at once.
+/// Voxels per piece, 40 MB; a reserved one may have more. Allocators return such blocks to the system at once.
 const PIECE: usize = 1 << 21;
 
 const VOXELS: &str = "voxels that are sorted";

@@ -32,14 +32,13 @@ fn check(
 }
 
 impl Graph {
-    /// Checks every invariant, reading every entry.
-    ///
+    /// Checks every invariant, reading every entry:
     /// - `depth` at most [`MAX_DEPTH`]; placement finite, voxel size above 0;
-    /// - 1 to `u32::MAX - 1` colours, as many normals, as many opacities or none; no more masks than nodes; an entry of
-    ///   `first` per mask; the root among the nodes;
+    /// - 1 to `u32::MAX - 1` colours, as many normals, as many opacities or none, at most as many masks, as many `first`
+    ///   as masks, the root among the nodes;
     /// - child lists within `links`, or within the nodes where there are no links; links within the nodes;
-    /// - stored level by level: no level is empty, the root is the only node of its level, the finest level has no
-    ///   masks, children are of the level below; in a tree, each node is the child of exactly one, in order;
+    /// - where stored level by level, no level is empty, the root is alone on its level, the finest level has no masks;
+    /// - children there are of the level below, and in a tree each node is the child of exactly one, in order;
     /// - `voxels` is the counted number.
     pub fn validate(&self) -> Result<(), Invalid> {
         self.validate_shape()?;

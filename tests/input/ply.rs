@@ -214,59 +214,58 @@ fn messages_say_where_and_what() {
             cut,
             "vertex 0 at byte 127: expected as many elements as the header says, found the end of the file",
         ),
-        (header(xyz), "vertex 0 at byte"),
+    ]);
+    let body = |row: &str| String::from_utf8(header(xyz)).unwrap() + row;
+    let types = "types char to double";
+    let long = "ply\n".to_owned() + &"x".repeat(5_000);
+    for (text, part) in [
+        (body(""), "vertex 0 at byte"),
         (
-            [header(xyz), b"1 2 3\n1 2\n".to_vec()].concat(),
+            body("1 2 3\n1 2\n"),
             "vertex 1 at byte 100: expected a number for property z, found the end of the line",
         ),
-        ([header(xyz), b"1 2 x\n".to_vec()].concat(), "found \"x\""),
+        (body("1 2 x\n"), "found \"x\""),
+        (body("1 2 3 4\n"), "found \"4\" after them"),
+        ("ply\nend_header\n".into(), "a line \"format ... 1.0\""),
         (
-            [header(xyz), b"1 2 3 4\n".to_vec()].concat(),
-            "found \"4\" after them",
-        ),
-        (
-            header("element vertex many\n"),
-            "header at byte 21: expected \"element NAME COUNT\" with a whole number, found \"element vertex m",
-        ),
-        (
-            header("property int x\n"),
-            "a line \"element\" before the first property",
-        ),
-        (
-            header("element vertex 1\nproperty word x\n"),
-            "types char to double",
-        ),
-        (
-            header("element vertex 1\nproperty list float int x\n"),
-            "types char to double",
-        ),
-        (header("element face 0\n"), "expected an element \"vertex\""),
-        (
-            header("element vertex 1\nproperty int x\n"),
-            "the properties x, y and z",
-        ),
-        (
-            header("elephant\n"),
-            "format, element, property, comment or end_header",
-        ),
-        (b"ply\nend_header\n".to_vec(), "a line \"format ... 1.0\""),
-        (
-            b"ply\nformat ascii 2.0\n".to_vec(),
+            "ply\nformat ascii 2.0\n".into(),
             "found \"format ascii 2.0\"",
         ),
         (
-            b"ply\nformat utf8 1.0\n".to_vec(),
+            "ply\nformat utf8 1.0\n".into(),
             "binary_little_endian or binary_big_endian",
         ),
         (
-            b"ply\nformat ascii 1.0\n".to_vec(),
+            "ply\nformat ascii 1.0\n".into(),
             "the line \"end_header\", found the end of the file",
         ),
+        (long, "lines of at most 4096 bytes"),
+    ] {
+        refused([(text.into_bytes(), part)]);
+    }
+    for (lines, part) in [
         (
-            [b"ply\n".to_vec(), vec![b'x'; 5_000]].concat(),
-            "lines of at most 4096 bytes",
+            "element vertex many\n",
+            "header at byte 21: expected \"element NAME COUNT\" with a whole number, found \"element vertex m",
         ),
-    ]);
+        (
+            "property int x\n",
+            "a line \"element\" before the first property",
+        ),
+        ("element vertex 1\nproperty word x\n", types),
+        ("element vertex 1\nproperty list float int x\n", types),
+        ("element face 0\n", "expected an element \"vertex\""),
+        (
+            "element vertex 1\nproperty int x\n",
+            "the properties x, y and z",
+        ),
+        (
+            "elephant\n",
+            "format, element, property, comment or end_header",
+        ),
+    ] {
+        refused([(header(lines), part)]);
+    }
 }
 
 #[test]

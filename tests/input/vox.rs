@@ -386,7 +386,7 @@ fn truncations_are_errors_and_damage_never_panics() {
         .bytes();
     cut_and_damaged(&file, file.len(), 40_000);
     for length in 20..file.len() {
-        // The main chunk is made to fit, so that what it holds is cut and not the chunk itself.
+        // The main chunk is made to fit, so its contents are cut and not the chunk itself.
         let mut bytes = file[..length].to_vec();
         bytes[16..20].copy_from_slice(&(length as u32 - 20).to_le_bytes());
         let _ = read(&bytes, &ReadOptions::default());

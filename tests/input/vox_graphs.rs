@@ -1,6 +1,5 @@
-//! `.vox` scene graphs that share nodes: random ones against a reader that knows nothing of sharing (it goes down every
-//! path, places every voxel by the format's rule, and the last at an index counts), and small files that place a model
-//! very often.
+//! `.vox` scene graphs that share nodes. Random ones are compared with a reader that goes down every path, places every
+//! voxel by the format's rule, and keeps the last at an index. Small files place a model very often.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};

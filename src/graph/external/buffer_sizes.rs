@@ -18,8 +18,8 @@ fn block_bytes(shift: u32) -> u64 {
 
 /// Sizes of the buffers of an external build.
 ///
-/// First two buffers of voxels exist (one filled, one sorted); later the readers of the merge and the halo's buffer;
-/// later the halo's readers, a block and a chunk. Each stage stays within the limit.
+/// Each stage stays within the limit. First there are two buffers of voxels, one filled and one sorted. Then come the
+/// readers of the merge and the halo's buffer, and last the halo's readers, a block and a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct BufferSizes {
     pub(super) run_records: usize,

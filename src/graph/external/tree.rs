@@ -1,8 +1,7 @@
 //! The tree's levels, each written as its nodes are closed.
 //!
-//! Clusters come in Morton order, so one node per level above them is open. Nodes of a level are opened, closed and
-//! written in one order, so their numbers are known when they are opened: only the first node of the level is added at
-//! the end.
+//! Clusters come in Morton order, so one node per level above them is open. Nodes of a level are opened and written in
+//! one order, so their numbers within the level are known when they are opened.
 
 use std::io;
 use std::sync::Arc;

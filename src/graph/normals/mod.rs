@@ -1,16 +1,11 @@
 //! Normals of voxels that have none, from the surface around them.
 //!
 //! Each voxel's 5 x 5 x 5 neighbourhood is a heap of mass (weights 1 2 2 2 1 along each axis). Where the heap lies to
-//! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. Elsewhere,
-//! as in a wall one voxel thick, the normal is the direction in which the heap is thinnest (the least axis of its
-//! covariance), turned away from the middle of the object. A wall that thin has two sides, so a viewer may turn such a
-//! normal towards the eye.
+//! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. In a thin
+//! wall it is the least axis of the heap's covariance, turned away from the middle of the object. A voxel alone has no
+//! normal. Neither has one whose six faces are covered, because it cannot be seen.
 //!
-//! A voxel alone in its neighbourhood has no normal. Neither has one whose six faces are covered: it cannot be seen,
-//! and does not count in the normals of coarser nodes.
-//!
-//! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest. Its 26 neighbours are
-//! found on the way down the tree, since a child's neighbours are children of its parent's neighbours.
+//! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest.
 
 pub(super) mod cluster;
 mod moments;

@@ -45,10 +45,9 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
 }
 
 fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError> {
-    let refused = |refused| VxgError::refused(path, refused);
-    let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+    let opened = file::open(path, HEADER_BYTES)?;
     let header = Header::read(&opened.beginning, opened.bytes, path)?;
-    let map = opened.map().map_err(refused)?;
+    let map = opened.map()?;
     // The file may have changed since its length was read.
     if map.len() as u64 != opened.bytes {
         let expected = format!("a file of {} bytes, not {}", opened.bytes, map.len());

@@ -26,7 +26,7 @@ pub(super) const DETECT_BYTES: usize = 4096;
 #[non_exhaustive]
 pub enum FileKind {
     Vox,
-    /// A cloud; for [`detect`] also a mesh, which [`SceneFile`](super::SceneFile) tells apart by the header.
+    /// A cloud. [`detect`] returns this for a mesh, too.
     /// [`SceneFile`](super::SceneFile) reads the header and distinguishes the two.
     Ply,
     Npy,

@@ -20,7 +20,7 @@ impl Transform {
         translation: [0; 3],
     };
 
-    /// Bits 0-1 and 2-3: the columns of the first and the second row's entry; bits 4 to 6: which rows are negative. The third
+    /// Bits 0-1 and 2-3 are the columns of the first and the second row's entry, bits 4 to 6 negative rows. The third
     /// row takes the column that is left. `None` where two rows claim one column, or a column does not exist.
     pub(super) fn from_rotation_byte(byte: u8) -> Option<Self> {
         let first = byte & 3;
