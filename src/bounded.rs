@@ -23,7 +23,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// The bytes of a regular file of at most `most` bytes. Fails also if it is longer, or with
 /// [`OutOfMemory`](io::ErrorKind::OutOfMemory).
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let mut file = open(path)?;
+    let file = open(path)?;
     let bytes = file.metadata()?.len();
     let too_long = |bytes| {
         let message = format!("it has {bytes} bytes or more, and at most {most} are read");
@@ -32,18 +32,23 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if bytes > most {
         return Err(too_long(bytes));
     }
-    let what = "a file that is read whole";
-    let mut content = crate::budget::check(what, bytes)
-        .and_then(|()| crate::budget::room(what, bytes as usize))
-        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
     // It may have grown.
-    (&mut file)
-        .take(bytes.saturating_add(1))
-        .read_to_end(&mut content)?;
+    let content = rest(&mut { file }.take(bytes.saturating_add(1)), bytes)?;
     match content.len() as u64 {
         read if read > most => Err(too_long(read)),
         _ => Ok(content),
     }
+}
+
+/// The rest of a file, about `bytes` long; [`OutOfMemory`](io::ErrorKind::OutOfMemory) if it does not fit in memory.
+pub(crate) fn rest(reader: &mut impl Read, bytes: u64) -> io::Result<Vec<u8>> {
+    let what = "a file that is read whole";
+    let length = usize::try_from(bytes).unwrap_or(usize::MAX);
+    let mut content = crate::budget::check(what, bytes)
+        .and_then(|()| crate::budget::room(what, length))
+        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
+    reader.read_to_end(&mut content)?;
+    Ok(content)
 }
 
 /// The text of a file of settings, which must be UTF-8.

@@ -256,16 +256,11 @@ impl Drawable for GraphDrawing<'_> {
         let Some(last) = &self.last else {
             return Ok(None);
         };
-        let mut counters: Figures = last
+        let counters: Figures = last
             .stats
             .iter()
             .map(|&(name, count)| (name, count.into()))
             .collect();
-        // Of a mapped graph: all pages, and those in memory.
-        if let Some(pages) = self.graph.mapped_pages() {
-            counters.push(("pages_mapped", pages.mapped.into()));
-            counters.push(("pages_resident", pages.resident.into()));
-        }
         let word = json!({
             "bits": last.setup.format.bits(),
             "screen_fraction_bits": last.setup.format.frac(),

@@ -10,12 +10,9 @@ use glam::DVec3;
 use super::PackedNormal;
 use crate::srgb::to_linear;
 
-/// Linear light of full intensity.
 const FULL: f64 = 16_777_215.0;
-/// A unit normal's length in the sum.
 const UNIT_NORMAL: f64 = 1_048_576.0;
 
-/// Linear light of each sRGB value, rounded.
 static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|value| {
         let linear = to_linear(value as f64 / 255.0);
@@ -35,7 +32,6 @@ static DARKER: LazyLock<Vec<u8>> = LazyLock::new(|| {
     (0..1 << BEGINNING_BITS).map(darker).collect()
 });
 
-/// The sRGB value whose linear light is nearest.
 fn encode(linear: u64) -> u8 {
     let table: &[u32; 256] = &LINEAR;
     let beginning = (linear >> (24 - BEGINNING_BITS)) as usize;
@@ -54,7 +50,6 @@ fn encode(linear: u64) -> u8 {
     }
     let to_above = u64::from(table[above]) - linear;
     let to_below = linear - u64::from(table[above - 1]);
-    // 1 to 255.
     (above - usize::from(to_above > to_below)) as u8
 }
 
@@ -88,7 +83,6 @@ impl Sum {
         }
     }
 
-    /// The average colour; black without voxels.
     pub(super) fn color(&self) -> [u8; 3] {
         let count = self.count.max(1);
         let mut color = [0; 3];
@@ -98,7 +92,6 @@ impl Sum {
         color
     }
 
-    /// The average direction; none where the normals cancel or there are none.
     pub(super) fn normal(&self) -> PackedNormal {
         let [x, y, z] = self.normal.map(|part| part as f64);
         PackedNormal::encode(DVec3::new(x, y, z))
@@ -108,18 +101,6 @@ impl Sum {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn equal_colours_keep_their_value() {
-        for value in 0..=255u8 {
-            let mut sum = Sum::default();
-            for _ in 0..5 {
-                sum.add_voxel([value; 3], PackedNormal::NONE);
-            }
-            assert_eq!(sum.color(), [value; 3]);
-            assert_eq!(sum.normal(), PackedNormal::NONE);
-        }
-    }
 
     #[test]
     fn the_nearest_value_is_found_for_every_light() {

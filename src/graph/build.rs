@@ -20,7 +20,6 @@ pub enum Normals {
     None,
 }
 
-/// How a graph is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct BuildOptions {
     pub normals: Normals,
@@ -36,7 +35,6 @@ pub struct Builder {
     records: PushedVoxels,
     min: [i32; 3],
     max: [i32; 3],
-    /// Voxels pushed; above `u32::MAX` no more are kept.
     pushed: u64,
     /// Set when memory was refused; then no voxels are kept.
     short: Option<Shortage>,
@@ -54,22 +52,19 @@ impl Builder {
         }
     }
 
-    /// Reserves memory for more voxels, which are then not moved before they are sorted.
+    /// Reserved voxels are not moved before they are sorted.
     pub fn reserve(&mut self, voxels: usize) {
         self.records.reserve(voxels);
     }
 
-    /// Voxels pushed so far, including repeated ones.
     pub fn len(&self) -> u64 {
         self.pushed
     }
 
-    /// Whether no voxel was pushed.
     pub fn is_empty(&self) -> bool {
         self.pushed == 0
     }
 
-    /// Adds a voxel; it replaces an earlier one at the same index.
     pub fn push(&mut self, voxel: Voxel) {
         if self.pushed < u64::from(u32::MAX) && self.short.is_none() {
             for axis in 0..3 {
@@ -81,7 +76,6 @@ impl Builder {
             let sequence = self.pushed as u32;
             let record = PushedVoxel::new(voxel.index, sequence, voxel.color, normal);
             if let Err(short) = self.records.push(record) {
-                // The graph cannot be built: free the memory. `finish` reports it.
                 self.records = PushedVoxels::default();
                 self.short.get_or_insert(short);
             }
@@ -181,10 +175,8 @@ impl Extend<Voxel> for Builder {
     }
 }
 
-/// The arrays' name in errors.
 const THE_GRAPH: &str = "a graph of all voxels";
 
-/// The graph's arrays while they are made.
 struct Tree {
     depth: u32,
     mask: Vec<u8>,
@@ -276,7 +268,6 @@ pub(super) fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 
     }
 }
 
-/// The first node of each level, and the end.
 fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildError> {
     let begun = records
         .par_windows(2)
@@ -307,24 +298,18 @@ fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildEr
     Ok(starts.into_iter().map(|start| start as u32).collect())
 }
 
-/// Longest side of the bounding box of a set of voxels.
-pub(in crate::graph) const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
-
-/// Why no graph was built.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BuildError {
-    /// No voxel was pushed.
     #[error("there are no voxels, so there is nothing to build")]
     Empty,
     #[error(
-        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
-         are there stray voxels far from the object?"
+        "the voxels span {extent} along axis {axis}, more than {}; \
+         are there stray voxels far from the object?",
+        morton::MAX_SIDE
     )]
     TooLarge { axis: char, extent: u64 },
-    /// More voxels or nodes than 32 bits number.
     #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
     TooMany(u64),
-    /// The system refuses the memory.
     #[error(transparent)]
     Memory(#[from] Shortage),
     #[error(

@@ -2,7 +2,6 @@
 
 use super::Graph;
 
-/// A finest voxel, or a solid leaf above the finest level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
     /// Lowest corner in object coordinates, finest voxels.
@@ -68,8 +67,8 @@ impl Graph {
 
     /// Lowest corner, in finest voxels, and level of the one voxel that shows a node.
     ///
-    /// Searches upwards by the node's number, one binary search per level. None in graphs whose nodes may be in several
-    /// places or are not stored level by level, and for leaves above the finest level.
+    /// One binary search per level. None in graphs whose nodes may be in several places or are not stored level by level,
+    /// and for leaves above the finest level.
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -133,8 +132,7 @@ impl Graph {
         !self.level_start.is_empty()
     }
 
-    /// Counts the finest voxels, including those inside solid leaves, and repeated parts as often as they occur;
-    /// saturates. Takes time in proportion to the nodes (times the levels, if they are not stored level by level).
+    /// Counts the finest voxels, also those inside solid leaves, repeated parts as often as they occur; saturates.
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {
@@ -144,33 +142,19 @@ impl Graph {
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
             let level = (self.depth - height) as usize;
-            let nodes = if ordered {
-                let start = |l: usize| self.level_start.get(l).map_or(0, |&n| n as usize);
-                start(level)..start(level + 1).min(self.len())
-            } else {
-                0..self.len()
+            let start = |l: usize| self.level_start.get(l).map_or(0, |&n| n as usize);
+            let nodes = match ordered {
+                true => start(level).min(self.len())..start(level + 1).min(self.len()),
+                false => 0..self.len(),
             };
-            let count = |node: usize, below: &[u64]| {
-                let mut total = 0u64;
-                let mut leaf = true;
-                for child in self.children(node as u32).into_iter().flatten() {
-                    leaf = false;
-                    total = total.saturating_add(below[child as usize]);
-                }
-                if leaf {
-                    1u64.checked_shl(3 * height).unwrap_or(u64::MAX)
-                } else {
-                    total
-                }
+            let count = |node: usize| {
+                let children = self.children(node as u32).into_iter().flatten();
+                let each = children.map(|child| below[child as usize]);
+                let leaf = 1u64.checked_shl(3 * height).unwrap_or(u64::MAX);
+                each.reduce(u64::saturating_add).unwrap_or(leaf)
             };
-            if ordered {
-                // Children are of the level below, which is done.
-                for node in nodes {
-                    below[node] = count(node, &below);
-                }
-            } else {
-                below = nodes.map(|node| count(node, &below)).collect();
-            }
+            let counted: Vec<u64> = nodes.clone().map(count).collect();
+            below[nodes.start..nodes.start + counted.len()].copy_from_slice(&counted);
         }
         below.get(self.root as usize).copied().unwrap_or(0)
     }

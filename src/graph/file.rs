@@ -14,17 +14,13 @@ use super::Invalid;
 use super::map::map;
 use crate::bounded;
 
-/// Sections begin at multiples of this.
 pub const ALIGNMENT: u64 = 64;
 
-/// Why a file was not read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The operating system refused.
     #[error("{}: cannot {doing}: {source}", file.display())]
     Io {
         file: PathBuf,
-        /// A verb and its object.
         doing: &'static str,
         source: io::Error,
     },
@@ -35,15 +31,11 @@ pub enum FileError {
     )]
     Malformed {
         file: PathBuf,
-        /// `header`, `padding`, or the name of a section.
         section: &'static str,
-        /// Bytes from the beginning of the file.
         offset: u64,
-        /// The expected contents, and the found ones.
         expected: String,
         advice: &'static str,
     },
-    /// This computer stores the highest byte first.
     #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
     ByteOrder { file: PathBuf, ending: &'static str },
     /// The graph to be written breaks an invariant.
@@ -78,13 +70,13 @@ impl FileError {
         }
     }
 
-    /// Whether the file is sound and only too large for the available memory.
     pub fn is_limit(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
 
-    pub fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
-        Self::Io {
+    /// For errors of the operating system.
+    fn refused(path: &Path, doing: &'static str) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Io {
             file: path.to_owned(),
             doing,
             source,
@@ -92,23 +84,18 @@ impl FileError {
     }
 }
 
-/// A refusal of the operating system.
-pub struct Refused {
-    pub doing: &'static str,
-    pub source: io::Error,
-}
-
 /// An open file, of which only the header was read.
-pub struct Opened {
-    pub file: File,
+pub struct Opened<'p> {
+    file: File,
+    path: &'p Path,
     pub bytes: u64,
     /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
 }
 
 /// Opens a regular file and reads its header. Callers check the length before they map the file.
-pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
-    let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
+pub fn open(path: &Path, header_bytes: usize) -> Result<Opened<'_>, FileError> {
+    let refused = |doing| FileError::refused(path, doing);
     let mut file = bounded::open(path).map_err(refused("open it"))?;
     let metadata = file.metadata().map_err(refused("ask for its length"))?;
     let mut beginning = Vec::with_capacity(header_bytes);
@@ -118,15 +105,15 @@ pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
         .map_err(refused("read its header"))?;
     Ok(Opened {
         file,
+        path,
         bytes: metadata.len(),
         beginning,
     })
 }
 
-impl Opened {
-    pub fn map(&self) -> Result<Arc<Mmap>, Refused> {
-        let doing = "map it into memory";
-        map(&self.file).map_err(|source| Refused { doing, source })
+impl Opened<'_> {
+    pub fn map(&self) -> Result<Arc<Mmap>, FileError> {
+        map(&self.file).map_err(FileError::refused(self.path, "map it into memory"))
     }
 }
 
@@ -170,24 +157,20 @@ pub struct Format {
     pub ending: &'static str,
     pub magic: [u8; 8],
     pub version: u32,
-    /// The expected beginning, for messages.
     pub signature: &'static str,
-    /// Advice for a file of another format.
     pub not_ours: &'static str,
 }
 
 /// Bytes of a header, except that of `.vxg`.
 pub const HEADER_BYTES: usize = 128;
 
-/// Offsets in the header of every format.
-mod at {
-    pub(super) const VERSION: usize = 8;
+pub(super) mod at {
+    pub(in crate::graph) const VERSION: usize = 8;
     pub(super) const HEADER_BYTES: usize = 12;
-    pub(super) const FILE_BYTES: usize = 16;
+    pub(in crate::graph) const FILE_BYTES: usize = 16;
 }
 
 impl Format {
-    /// Rejects computers whose byte order does not allow to use a file in place.
     pub fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
         if cfg!(target_endian = "big") {
             return Err(FileError::ByteOrder {
@@ -207,7 +190,6 @@ impl Format {
         self.header_of(self.version, file_bytes, fields)
     }
 
-    /// A header of any version and length.
     pub(super) fn header_of<const N: usize>(
         &self,
         version: u32,
@@ -307,7 +289,6 @@ impl Fields<'_> {
         u64::from_le_bytes(self.bytes_at(offset))
     }
 
-    /// `N` numbers of double precision, one after the other.
     pub fn f64s_at<const N: usize>(&self, offset: usize) -> [f64; N] {
         std::array::from_fn(|k| f64::from_bits(self.u64_at(offset + 8 * k)))
     }
@@ -334,7 +315,7 @@ impl Fields<'_> {
     }
 }
 
-/// Checks that there are only zeros between header and sections, which come in the order of the file and lie within it.
+/// Checks that there are only zeros between header and sections, which come in order and lie within the file.
 pub fn check_padding(
     all: &[u8],
     sections: impl Iterator<Item = [u64; 2]>,
@@ -343,7 +324,6 @@ pub fn check_padding(
     padding_after(HEADER_BYTES as u64, all, sections, path)
 }
 
-/// The same after a header of any length.
 pub(super) fn padding_after(
     mut end: u64,
     all: &[u8],
@@ -359,8 +339,6 @@ pub(super) fn padding_after(
     Ok(())
 }
 
-/// Writes header and sections, in the order of the file, with zeros between. Errors: the writer's; a computer that
-/// stores the highest byte first.
 pub fn write<'s>(
     format: &Format,
     header: &[u8],

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::GraphView;
 
-/// The layout of nodes in the memory of hardware. A node is a word: its children, which of them are leaves, and where
-/// they begin. A *brick* is a node two levels above the finest voxels, in two words (see [`Self::brick_words`]). Its
-/// children are not read: the voxels of a brick lie side by side, so their places follow from the brick's bits.
+/// A node is a word: its children, which of them are leaves, and where they begin. A *brick* is a node two levels above
+/// the finest voxels, in two words (see [`Self::brick_words`]). Its children are not read, because the places of its
+/// voxels follow from its bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
     /// Whether a node says which of its children are leaves, so that leaves need not be read.
@@ -25,7 +25,6 @@ struct Bricks {
 const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
-    /// The layout of a graph. Only trees stored level by level have bricks.
     pub fn new(graph: &GraphView<'_>, leaf_masks: bool, bricks: bool) -> Self {
         let level = graph.depth.checked_sub(2).filter(|_| bricks);
         let found = level.filter(|_| is_by_level(graph)).and_then(|level| {
@@ -112,7 +111,7 @@ fn first_of_level(graph: &GraphView<'_>, level: u32) -> Option<u32> {
 mod tests {
     use super::*;
 
-    /// A root with two children; the second one has three, of which one has two voxels: depth 3.
+    /// Depth 3: a root with two children, of which one has three, of which one has two voxels.
     #[test]
     fn words_by_hand() {
         let graph = GraphView {

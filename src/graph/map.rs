@@ -17,12 +17,10 @@ pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
     Ok(Arc::new(map))
 }
 
-/// Order in which a mapped file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::graph) enum Access {
     /// A missing page is read alone.
     Scattered,
-    /// From the beginning to the end.
     Whole,
 }
 
@@ -34,7 +32,6 @@ pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
             Access::Scattered => memmap2::Advice::Random,
             Access::Whole => memmap2::Advice::Sequential,
         };
-        // Refused advice only costs speed.
         let _ = map.advise(advice);
     }
     #[cfg(not(unix))]

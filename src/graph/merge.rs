@@ -1,11 +1,9 @@
 //! Merging equal subtrees: a tree becomes a directed acyclic graph.
 //!
-//! Two nodes are equal if their children are equal octant by octant, and so are their colours, normals and opacities.
 //! In a graph stored level by level, levels are merged from the finest up, and equal nodes of different levels stay
 //! apart. In any other graph, nodes start out equal and are distinguished by their children until no class splits.
-//!
-//! Nodes of the result are numbered in breadth-first order. A graph stored level by level stays so, unless some finest
-//! levels had no reachable nodes.
+//! The result is numbered in breadth-first order. A graph stored level by level stays so, unless some finest levels had
+//! no reachable nodes.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
@@ -14,7 +12,6 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 use super::{Graph, Progress, Store};
 
-/// Compared properties of nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MergeBy {
     /// Same shape, colours, normals and opacities: the merged graph looks the same.
@@ -24,19 +21,13 @@ pub enum MergeBy {
     Shape,
 }
 
-/// Sizes before and after merging.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MergeReport {
     pub nodes_before: u64,
     pub nodes_after: u64,
-    /// [`Graph::bytes`].
-    pub bytes_before: u64,
-    /// The same, including the child lists.
-    pub bytes_after: u64,
 }
 
 impl MergeReport {
-    /// Nodes before per node after, at least 1.
     pub fn gain(&self) -> f64 {
         self.nodes_before as f64 / self.nodes_after.max(1) as f64
     }
@@ -60,7 +51,6 @@ impl Hasher for Parts {
 }
 
 type Map<K> = HashMap<K, u32, BuildHasherDefault<Parts>>;
-/// Number of a child that does not exist.
 const ABSENT: u32 = u32::MAX;
 
 /// Merges equal nodes. The cells of the result are those of `graph` one for one, with the same colours and normals
@@ -77,13 +67,10 @@ pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, Mer
     let report = MergeReport {
         nodes_before: graph.len() as u64,
         nodes_after: merged.len() as u64,
-        bytes_before: graph.bytes(),
-        bytes_after: merged.bytes(),
     };
     (merged, report)
 }
 
-/// Colour, normal and opacity in one number, or 0.
 fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
     if by == MergeBy::Shape {
         return 0;
@@ -106,7 +93,6 @@ fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
     *known.entry(key).or_insert(next)
 }
 
-/// The class of each node; levels have separate classes.
 fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let mut class = vec![0; graph.len()];
     for pair in graph.level_start.windows(2).rev() {
@@ -123,7 +109,6 @@ fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     class
 }
 
-/// The class of each node of any graph.
 fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let nodes = 0..graph.len() as u32;
     let mut class = vec![0; graph.len()];
@@ -146,7 +131,6 @@ fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
     }
 }
 
-/// A graph with one node per reachable class.
 fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     let ordered = graph.is_level_ordered();
     let classes = class.iter().max().map_or(0, |&most| most as usize + 1);

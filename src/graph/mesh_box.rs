@@ -3,7 +3,6 @@
 
 use super::place;
 
-/// Bevels are counted in this share of an edge.
 const PARTS: f64 = 512.0;
 
 /// The box around a mesh with bevelled corners, and its vertical axis.
@@ -19,7 +18,6 @@ pub struct MeshBox {
     pub high: [f64; 3],
     /// Bevels of the corners `x << 2 | y << 1 | z`, in 512ths of the edges.
     pub bevels: [u8; 8],
-    /// +Y is up; otherwise +Z.
     pub y_up: bool,
 }
 
@@ -37,7 +35,6 @@ impl MeshBox {
         }
     }
 
-    /// The box around points, bevelled as far as they allow.
     pub fn around(
         span: ([f64; 3], [f64; 3]),
         points: impl Iterator<Item = [f64; 3]>,

@@ -6,7 +6,7 @@ pub mod cells;
 pub mod external;
 pub mod file;
 mod layout;
-pub mod linked;
+mod linked;
 pub mod map;
 pub mod merge;
 mod mesh_box;
@@ -75,7 +75,6 @@ pub struct PackedNormal(pub u16);
 pub struct Graph {
     /// Levels below the root: the object is a cube of `2^depth` finest voxels a side.
     pub depth: u32,
-    /// The object's node.
     pub root: u32,
     /// Children of the inner nodes: bit `c` is set where child `c = x << 2 | y << 1 | z` exists. 0: a solid leaf.
     pub mask: Store<u8>,
@@ -85,14 +84,11 @@ pub struct Graph {
     /// Child lists of a linked graph. Empty in a tree, where a node's children are `first`, `first + 1`, ... in
     /// octant order.
     pub links: Store<u32>,
-    /// Average colour (sRGB) of each node.
     pub color: Store<[u8; 3]>,
-    /// Average normal of each node.
     pub normal: Store<PackedNormal>,
     /// Opacity of each node; empty where all are opaque.
     pub opacity: Store<Opacity>,
-    /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; otherwise
-    /// empty.
+    /// The first node of each level and the end, `depth + 2` entries; empty unless stored level by level.
     pub level_start: Vec<u32>,
     /// Voxels of the finest level, counted with repetition; saturates.
     pub voxels: u64,
@@ -100,23 +96,21 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// Number of nodes.
     pub fn len(&self) -> usize {
         self.color.len()
     }
 
-    /// Whether it has no nodes.
     pub fn is_empty(&self) -> bool {
         self.color.is_empty()
     }
 
-    /// Colour of a node; black for a node that does not exist.
+    /// Black for a node that does not exist.
     #[inline]
     pub fn color_of(&self, node: u32) -> [u8; 3] {
         self.color.get(node as usize).copied().unwrap_or_default()
     }
 
-    /// Normal of a node; none for a node that does not exist.
+    /// None for a node that does not exist.
     #[inline]
     pub fn normal_of(&self, node: u32) -> PackedNormal {
         self.normal.get(node as usize).copied().unwrap_or_default()
@@ -145,7 +139,6 @@ impl Graph {
         sizes.iter().map(|&size| size as u64).sum()
     }
 
-    /// The graph's arrays as slices.
     pub fn view(&self) -> GraphView<'_> {
         GraphView {
             depth: self.depth,
@@ -159,7 +152,6 @@ impl Graph {
     }
 }
 
-/// Borrowed shape of a graph, with opacities and light for rules that blend.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GraphView<'g> {
     pub depth: u32,
@@ -167,7 +159,6 @@ pub struct GraphView<'g> {
     pub mask: &'g [u8],
     pub first: &'g [u32],
     pub links: &'g [u32],
-    /// Empty: all are opaque.
     pub opacity: &'g [Opacity],
     /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11). Empty: white.
     pub light: &'g [[u16; 3]],
@@ -179,7 +170,6 @@ impl GraphView<'_> {
         self.mask.get(node as usize).copied().unwrap_or(0)
     }
 
-    /// The node's entry of `first`; 0 for a leaf.
     #[inline]
     pub fn first(&self, node: u32) -> u32 {
         self.first.get(node as usize).copied().unwrap_or(0)
@@ -218,12 +208,11 @@ impl GraphView<'_> {
     }
 }
 
-/// A voxel at a file index: it fills `[i, i+1) x [j, j+1) x [k, k+1)`.
+/// Fills `[i, i+1) x [j, j+1) x [k, k+1)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Voxel {
     /// File index, finest voxels; may be negative.
     pub index: [i32; 3],
-    /// sRGB colour.
     pub color: [u8; 3],
     /// None: the file has none.
     pub normal: Option<PackedNormal>,
@@ -234,7 +223,6 @@ pub trait Progress: Sync {
     /// A piece of work with `steps` steps begins (0: unknown).
     fn begin(&self, what: &str, steps: u64);
     fn advance(&self, steps: u64);
-    /// The piece of work is done.
     fn end(&self);
 }
 

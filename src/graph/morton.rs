@@ -3,7 +3,7 @@
 /// Most bits per coordinate: three fit 63 bits.
 pub(super) const MAX_BITS: u32 = 21;
 /// Longest side of a box of voxels.
-const MAX_SIDE: u64 = 1 << MAX_BITS;
+pub(super) const MAX_SIDE: u64 = 1 << MAX_BITS;
 
 /// Inserts two zeros after each of 21 bits.
 fn spread(value: u32) -> u64 {
@@ -20,7 +20,6 @@ pub(super) fn key(at: [u32; 3]) -> u64 {
     spread(at[0]) << 2 | spread(at[1]) << 1 | spread(at[2])
 }
 
-/// Inverse of [`spread`].
 fn gather(bits: u64) -> u32 {
     let mut value = bits & 0x1249_2492_4924_9249;
     value = (value | value >> 2) & 0x10c3_0c30_c30c_30c3;

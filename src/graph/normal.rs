@@ -9,16 +9,12 @@ use glam::DVec3;
 
 use super::PackedNormal;
 
-/// Grid steps from the middle of the square to its edge.
 const STEPS: f64 = 127.0;
-/// The byte of coordinate 0.
 const ZERO: u16 = 128;
 
 impl PackedNormal {
-    /// No normal.
     pub const NONE: Self = Self(0);
 
-    /// [`Self::encode`] of coordinates x, y, z.
     pub fn from_array(direction: [f64; 3]) -> Self {
         Self::encode(direction.into())
     }
@@ -75,7 +71,6 @@ fn fold(u: f64, v: f64) -> (f64, f64) {
     ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v))
 }
 
-/// The point of the octahedron of a grid point.
 fn unfold(u: f64, v: f64) -> DVec3 {
     let (mut u, mut v) = (u * (1.0 / STEPS), v * (1.0 / STEPS));
     let z = 1.0 - u.abs() - v.abs();
@@ -90,23 +85,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_are_exact() {
+    fn axes_and_none_are_exact() {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             for direction in [axis, -axis] {
-                assert_eq!(
-                    PackedNormal::encode(direction * 3.0).decode(),
-                    Some(direction)
-                );
+                let packed = PackedNormal::encode(direction * 3.0);
+                assert_eq!(packed.decode(), Some(direction));
             }
         }
-    }
-
-    #[test]
-    fn none_stays_none() {
-        assert_eq!(PackedNormal::encode(DVec3::ZERO), PackedNormal::NONE);
-        assert_eq!(PackedNormal::encode(DVec3::NAN), PackedNormal::NONE);
-        assert_eq!(PackedNormal::encode(DVec3::INFINITY), PackedNormal::NONE);
-        assert_eq!(PackedNormal::NONE.decode(), None);
+        for none in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
+            assert_eq!(PackedNormal::encode(none).decode(), None);
+        }
     }
 
     #[test]

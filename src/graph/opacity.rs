@@ -7,7 +7,6 @@
 #[repr(transparent)]
 pub struct Opacity(pub [u8; 3]);
 
-/// Opacity of an opaque voxel.
 pub const MOST_OPACITY: u8 = 15;
 
 impl Opacity {

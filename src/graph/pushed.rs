@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::build::{BuildError, MAX_SIDE};
+use super::build::BuildError;
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
@@ -13,7 +13,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
         let side = i64::from(max[axis]) - i64::from(min[axis]) + 1;
         extent[axis] = side.unsigned_abs();
-        if extent[axis] > MAX_SIDE {
+        if extent[axis] > morton::MAX_SIDE {
             return Err(BuildError::TooLarge {
                 axis: name,
                 extent: extent[axis],
@@ -23,10 +23,9 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece; a reserved one may have more. 40 MB: allocators return blocks of that size to the system at once.
+/// Voxels per piece, 40 MB; a reserved one may have more. Allocators return such blocks to the system at once.
 const PIECE: usize = 1 << 21;
 
-/// The voxels' name in errors.
 const VOXELS: &str = "voxels that are sorted";
 
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +55,6 @@ impl PushedVoxel {
         record.with_key(morton::pack(index))
     }
 
-    /// The Morton key, once sorted.
     pub(super) fn key(&self) -> u64 {
         u64::from(self.key_high) << 32 | u64::from(self.key_low)
     }
@@ -74,7 +72,6 @@ impl PushedVoxel {
         }
     }
 
-    /// With the Morton key from the lowest corner instead of the index.
     fn placed(&self, min: [i32; 3]) -> Self {
         self.with_key(morton::key_from(self.key(), min))
     }
@@ -121,8 +118,7 @@ impl PushedVoxels {
         Ok(())
     }
 
-    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays. Fails when the system
-    /// refuses memory for one array.
+    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays.
     pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         let mut sorted = self.in_one(min)?;
         sorted.par_sort_unstable_by_key(PushedVoxel::order);
@@ -159,34 +155,25 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_twenty_bytes() {
-        assert_eq!(size_of::<PushedVoxel>(), 20);
-    }
-
-    #[test]
     fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
+        assert_eq!(size_of::<PushedVoxel>(), 20);
         let count = 2 * PIECE + 1000;
         let mut grown = PushedVoxels::default();
         let mut reserved = PushedVoxels::default();
-        reserved.push(record(0)).unwrap();
-        reserved.reserve(count - 1);
         for i in 0..count as u32 {
             // The last of each thousand lies where the first does.
-            let index = if i % 1000 == 999 { i - 999 } else { i };
-            let mut pushed = record(index);
+            let mut pushed = record(if i % 1000 == 999 { i - 999 } else { i });
             pushed.sequence = i;
             grown.push(pushed).unwrap();
-            if i > 0 {
-                reserved.push(pushed).unwrap();
+            if i == 1 {
+                // A later, smaller one changes nothing.
+                reserved.reserve(count - 1);
             }
+            reserved.reserve(1);
+            reserved.push(pushed).unwrap();
             let room: usize = grown.pieces.iter().map(Vec::capacity).sum();
-            assert!(
-                room <= grown
-                    .len()
-                    .next_power_of_two()
-                    .min(grown.len() + PIECE)
-                    .max(4)
-            );
+            let first = grown.len().next_power_of_two().max(4);
+            assert!(room <= first.min(grown.len() + PIECE).max(4));
         }
         assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
         assert_eq!((reserved.len(), reserved.pieces.len()), (count, 2));
@@ -198,19 +185,5 @@ mod tests {
         assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
         // The last pushed stays.
         assert_eq!(grown[0].sequence, 999);
-    }
-
-    #[test]
-    fn small_reservations_leave_no_small_pieces() {
-        let mut records = PushedVoxels::default();
-        for i in 0..5000 {
-            records.reserve(1);
-            records.push(record(i)).unwrap();
-        }
-        assert_eq!((records.len(), records.pieces.len()), (5000, 1));
-        records.reserve(PIECE + 1);
-        records.reserve(PIECE + 2);
-        records.push(record(5000)).unwrap();
-        assert_eq!((records.len(), records.pieces.len()), (5001, 2));
     }
 }

@@ -18,7 +18,7 @@ impl Graph {
     /// assert_eq!(graph.mask[..], [0x81, 0x06, 0x81, 0x81, 0x06]);
     /// assert_eq!(graph.first[..], [1, 3, 1, 1, 3]);
     /// assert!(graph.links.is_empty() && graph.validate().is_ok());
-    /// # Ok::<(), shiftvox::graph::linked::LinkedError>(())
+    /// # Ok::<(), shiftvox::graph::Invalid>(())
     /// ```
     pub fn side_by_side(&self) -> Option<Self> {
         if self.links.is_empty() {

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use memmap2::Mmap;
 
-/// An array in memory or in a mapped file; derefs to a slice.
 pub enum Store<T: Pod> {
     Owned(Vec<T>),
     /// A range of bytes of a mapped file, aligned for `T`.

@@ -9,28 +9,20 @@ use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
 
-/// A `.vxg` file that was built.
 #[derive(Debug)]
 pub struct BuiltFile {
-    /// Voxels of the graph.
     pub voxels: u64,
-    /// Bytes of the file.
     pub bytes: u64,
-    /// Properties of the voxel file or mesh.
     pub info: Option<SceneInfo>,
-    /// Properties of the mesh, if it was one.
     pub mesh: Option<MeshSummary>,
     /// Cost of building; `None` for a cyclic scene, which has a few nodes.
     pub report: Option<ExternalReport>,
 }
 
-/// Builds a `.vxg` file of a scene within a limit of memory. The result is byte for byte the file that
+/// Builds a `.vxg` file of a scene within a limit of memory: byte for byte the file that
 /// [`open`](super::open()) and [`vxg::write`] make.
 ///
-/// A `.vox` file, of at most 4 GB, is held in memory in addition to the limit. A mesh counts towards the limit.
-///
-/// # Errors
-/// See [`OpenError`]. A `.vxg` file is rejected as input.
+/// In addition to the limit, a `.vox` file, of at most 4 GB, is held in memory. A `.vxg` file is rejected as input.
 pub fn build_file(
     source: Source,
     options: &OpenOptions,

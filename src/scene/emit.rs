@@ -7,15 +7,12 @@ use crate::graph::{PackedNormal, Progress, Voxel};
 /// Extent, in voxels, that a scene must stay below along every axis.
 pub const MAX_EXTENT: i64 = 1 << 21;
 
-/// Voxels between two calls of [`Progress::advance`].
 const PROGRESS_STEP: u64 = 1 << 16;
 
-/// Checks that voxels are within limits and passes them to a sink.
 pub(super) struct Emitter<'a> {
     sink: &'a mut dyn FnMut(Voxel),
     progress: &'a dyn Progress,
     count: u64,
-    /// Most voxels that are accepted.
     most: u64,
     low: [i32; 3],
     high: [i32; 3],
@@ -92,7 +89,6 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Records the number and bounds of the voxels.
     pub(super) fn finish(self, info: &mut SceneInfo) {
         self.progress.advance(self.count % PROGRESS_STEP);
         info.voxels = self.count;

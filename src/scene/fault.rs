@@ -4,14 +4,10 @@ use std::fmt;
 
 use super::SceneError;
 
-/// A position in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// A line, counted from 1.
     Line(u64),
-    /// A byte, counted from 0.
     Byte(u64),
-    /// The file as a whole.
     Whole,
 }
 
@@ -21,20 +17,14 @@ impl From<u64> for Place {
     }
 }
 
-/// A fault in a file: its place, the expected and the actual content, and a remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// The file, as the user named it.
     pub file: String,
     /// The chunk, section or element: "chunk XYZI", "header", "vertex 17".
     pub part: String,
-    /// Where that is.
     pub place: Place,
-    /// Content that the format, or this program, expects there.
     pub expected: String,
-    /// The actual content.
     pub found: String,
-    /// A remedy.
     pub advice: String,
 }
 
@@ -54,7 +44,6 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Fault {
-    /// A fault in a file whose name is filled in later.
     pub fn new(
         part: impl Into<String>,
         place: impl Into<Place>,
@@ -76,18 +65,9 @@ impl Fault {
 /// An error of a reader, which does not know the file's name.
 #[derive(Debug)]
 pub enum Problem {
-    /// See [`SceneError::Invalid`].
     Invalid(Box<Fault>),
-    /// See [`SceneError::Limit`].
     Limit(Box<Fault>),
-    /// See [`SceneError::TooMany`].
-    TooMany {
-        /// Least number of voxels.
-        voxels: u64,
-        /// The limit.
-        most: u64,
-    },
-    /// Reading failed.
+    TooMany { voxels: u64, most: u64 },
     Read(std::io::Error),
 }
 

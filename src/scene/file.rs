@@ -12,25 +12,18 @@ use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate, ply};
 use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
-/// A scene by its name: a generator's specification, or a file.
 #[derive(Debug)]
 pub enum Source {
-    /// A generator's specification, `gen:...`.
     Generated(String),
-    /// A file, open.
     File(SceneFile),
 }
 
 impl Source {
-    /// Whether a name is a generator's specification.
     pub fn is_generated(name: &str) -> bool {
         name.starts_with(generate::PREFIX)
     }
 
     /// Opens the file, unless the name is a generator's specification.
-    ///
-    /// # Errors
-    /// As [`SceneFile::open`].
     pub fn find(name: impl AsRef<Path>) -> Result<Self, SceneError> {
         let name = name.as_ref();
         match name.to_str() {
@@ -39,7 +32,6 @@ impl Source {
         }
     }
 
-    /// The scene's name in error messages.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Generated(spec) => spec.clone(),
@@ -47,7 +39,6 @@ impl Source {
         }
     }
 
-    /// The file's format; `None` for a generator and for an unknown format.
     pub fn kind(&self) -> Option<FileKind> {
         match self {
             Self::Generated(_) => None,
@@ -56,7 +47,6 @@ impl Source {
     }
 }
 
-/// An open file, to be read from its beginning.
 #[derive(Debug)]
 pub struct SceneFile<R = File> {
     path: PathBuf,
@@ -68,10 +58,7 @@ pub struct SceneFile<R = File> {
 }
 
 impl SceneFile<File> {
-    /// Opens a file and finds its format. A file of an unknown format can be opened, but not read.
-    ///
-    /// # Errors
-    /// [`SceneError::Io`].
+    /// Finds the format, too. A file of an unknown format can be opened, but not read.
     pub fn open(path: &Path) -> Result<Self, SceneError> {
         let refused = |action| {
             move |source| SceneError::Io {
@@ -119,7 +106,7 @@ impl<R: Read + Seek> SceneFile<R> {
                 }
                 self.stream.seek(SeekFrom::Start(0))?;
             }
-            // A truncated binary STL is recognised by its name only. Its reader reports what is missing.
+            // A truncated binary STL is known by its name only.
             None if self
                 .path
                 .extension()
@@ -132,30 +119,23 @@ impl<R: Read + Seek> SceneFile<R> {
         Ok(())
     }
 
-    /// The format, unless it is unknown.
     pub fn kind(&self) -> Option<FileKind> {
         self.kind
     }
 
-    /// The file's path, or the name of a file in memory.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The file's name in error messages.
     pub(super) fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// Bytes of the file.
     pub(super) fn length(&self) -> u64 {
         self.length
     }
 
     /// All of a mesh file; `folder` is where it finds other files.
-    ///
-    /// # Errors
-    /// If this is not a mesh, or it cannot be read.
     pub fn mesh_file(mut self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
         let name = self.name();
         let kind = match self.kind {
@@ -172,7 +152,6 @@ impl<R: Read + Seek> SceneFile<R> {
         })
     }
 
-    /// The error of a file that is of an unknown format, was built of a mesh, or holds something else.
     fn refused(&self, otherwise: impl FnOnce(String, FileKind) -> SceneError) -> SceneError {
         let file = self.name();
         let Some(kind) = self.kind else {
@@ -185,10 +164,6 @@ impl<R: Read + Seek> SceneFile<R> {
         }
     }
 
-    /// Passes each voxel of a voxel file to `sink`; see [`read_voxels`](super::read_voxels).
-    ///
-    /// # Errors
-    /// As [`read_voxels`](super::read_voxels).
     pub fn read_voxels(
         mut self,
         options: &ReadOptions,

@@ -1,7 +1,6 @@
 //! The interface to readers of triangle meshes, which are a crate of their own (`shiftvox-mesh`).
 //!
-//! This crate recognises mesh files and turns voxels into graphs. A [`MeshReader`] reads the triangles and turns them
-//! into voxels. [`NoMeshes`] rejects every mesh.
+//! A [`MeshReader`] reads triangles and turns them into voxels. [`NoMeshes`] rejects every mesh.
 
 use std::path::PathBuf;
 
@@ -10,25 +9,18 @@ use glam::DVec3;
 use super::{FileKind, OpenError, SceneInfo};
 use crate::graph::{Graph, MeshBox, Progress, Voxel};
 
-/// A mesh file, recognised and read whole.
 #[derive(Debug)]
 pub struct MeshFile {
-    /// The name that error messages use.
+    /// In error messages.
     pub name: String,
-    /// Its format, one of those for which [`FileKind::is_mesh`] holds.
     pub kind: FileKind,
-    /// Its contents.
     pub bytes: Vec<u8>,
-    /// The folder of the other files that the mesh names; `None` for a file that is held in memory.
+    /// Of the other files that the mesh names; `None` for a file in memory.
     pub folder: Option<PathBuf>,
 }
 
-/// Reads meshes for [`open`](super::open()) and [`build_file`](super::build_file()).
 pub trait MeshReader: Sync {
-    /// Reads a mesh and prepares its voxelisation.
-    ///
-    /// # Errors
-    /// [`OpenError::Mesh`] if the file is damaged or cannot be voxelised, [`OpenError::NoMeshes`] without a reader.
+    /// Fails if the file is damaged or cannot be voxelised, or without a reader.
     fn read(
         &self,
         file: MeshFile,
@@ -36,9 +28,7 @@ pub trait MeshReader: Sync {
     ) -> Result<Box<dyn MeshVoxels>, OpenError>;
 }
 
-/// A mesh that was read and can be voxelised.
 pub trait MeshVoxels {
-    /// Memory of the mesh, bytes.
     fn bytes(&self) -> u64;
 
     /// A low estimate of the number of voxels; `None` if finding them takes no longer than estimating.
@@ -71,18 +61,14 @@ impl MeshReader for NoMeshes {
     }
 }
 
-/// Properties of a mesh, and the cost of its voxelisation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSummary {
     /// Triangles of an area above zero.
     pub triangles: u64,
-    /// Vertex positions.
     pub positions: u64,
-    /// Materials.
     pub materials: u64,
     /// Lowest and highest corner of the box around it, world units.
     pub bounds: (DVec3, DVec3),
-    /// Memory of the mesh, bytes.
     pub bytes: u64,
     /// Octree levels below the root at which it was voxelised.
     pub depth: u32,

@@ -16,7 +16,6 @@ mod file;
 mod formats;
 pub mod generate;
 mod input;
-mod memory;
 mod mesh;
 pub mod numbers;
 mod open;
@@ -37,19 +36,12 @@ pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
 pub use open_error::{MeshFailure, OpenError};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 
-/// A tree of 30,000 voxels as a `.vox` file: the scene of the demo (`assets/ATTRIBUTION.md`).
 pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
 
 /// sRGB colour of voxels and triangles in files without colours.
 pub const DEFAULT_COLOR: [u8; 3] = [200; 3];
 
-/// Reads a voxel file and passes each voxel to `sink`.
-///
-/// After an error the caller must discard the voxels that it received.
-///
-/// # Errors
-/// [`SceneError`] if the file cannot be read, is of another format, breaks its format's rules, or exceeds
-/// [`MAX_EXTENT`] or the range of `i32`.
+/// Reads a voxel file and passes each voxel to `sink`. After an error the caller must discard what it received.
 pub fn read_voxels(
     path: &Path,
     options: &ReadOptions,
@@ -59,10 +51,7 @@ pub fn read_voxels(
     SceneFile::open(path)?.read_voxels(options, sink, progress)
 }
 
-/// Reads a voxel file that is held in memory; errors call it `name`. See [`read_voxels`].
-///
-/// # Errors
-/// As [`read_voxels`], except that reading cannot fail.
+/// [`read_voxels`] of bytes in memory; errors call them `name`.
 pub fn read_voxels_from(
     bytes: &[u8],
     name: &str,

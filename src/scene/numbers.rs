@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-/// The type of a stored number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scalar {
     I8,
@@ -18,7 +17,6 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Bytes of a number.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -28,7 +26,6 @@ impl Scalar {
         }
     }
 
-    /// Whether it holds whole numbers only.
     pub(super) fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }
@@ -58,7 +55,6 @@ impl Scalar {
     }
 }
 
-/// A number of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Number {
     /// Of an integer type, or written without a point.
@@ -80,7 +76,6 @@ impl Number {
         }
     }
 
-    /// As a real number.
     pub fn real(self) -> f64 {
         match self {
             Self::Whole(n) => n as f64,
@@ -98,7 +93,6 @@ impl Number {
         }
     }
 
-    /// A number written as text.
     pub(super) fn parse(word: &[u8]) -> Option<Self> {
         if let Some(whole) = parse_short(word) {
             return Some(Self::Whole(whole));

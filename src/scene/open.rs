@@ -4,7 +4,6 @@ use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 
 use super::generate::Spec;
-use super::memory;
 use super::mesh::{MeshReader, MeshSummary, MeshVoxels};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
@@ -14,13 +13,13 @@ use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 /// The default limit. Of a larger file, only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 256 << 20;
 
-/// How a scene is opened.
+/// Least bytes per voxel: 20 while voxels are collected and sorted, 5 in the graph (`spec/graph.md`).
+const LEAST_BYTES: u64 = 25;
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenOptions {
-    /// How voxel files are read.
     pub read: ReadOptions,
-    /// Graph files of up to this many bytes are checked in full. Of larger ones, only the header is. Callers that read
-    /// all of a file set the limit to its size or more.
+    /// Graph files of up to this many bytes are checked in full; of larger ones, only the header.
     pub verify_up_to: u64,
 }
 
@@ -33,18 +32,14 @@ impl Default for OpenOptions {
     }
 }
 
-/// An open scene.
 #[derive(Debug)]
 pub struct Opened {
     /// The voxels, at least one.
     pub graph: Graph,
-    /// The format in words, such as `.vox` or `.obj mesh`.
     pub format: String,
-    /// Properties of the voxel file or mesh.
     pub info: Option<SceneInfo>,
-    /// Properties of the mesh, if it was one.
     pub mesh: Option<MeshSummary>,
-    /// Whether all of the file was checked: `false` for a graph file larger than [`OpenOptions::verify_up_to`].
+    /// `false` for a graph file larger than [`OpenOptions::verify_up_to`].
     pub is_verified: bool,
 }
 
@@ -62,11 +57,8 @@ impl Opened {
 
 /// Opens a file, or makes the scene of a `gen:` specification.
 ///
-/// The graph is built in memory. Voxels that exceed the free memory are an error, which comes before they are read if
-/// the file states their number. [`build_file`](super::build_file()) builds such a scene on disk.
-///
-/// # Errors
-/// See [`OpenError`].
+/// The graph is built in memory. Too many voxels for it are an error, before they are read if the file states their
+/// number.
 pub fn open(
     source: &str,
     options: &OpenOptions,
@@ -76,10 +68,7 @@ pub fn open(
     open_source(Source::find(source)?, options, meshes, progress)
 }
 
-/// [`open`], given an open file or a specification.
-///
-/// # Errors
-/// See [`OpenError`].
+/// [`open`] for a source that was found.
 pub fn open_source(
     source: Source,
     options: &OpenOptions,
@@ -105,7 +94,6 @@ pub fn open_source(
     open_file(file, folder, options, meshes, progress)
 }
 
-/// Opens voxels or a mesh.
 fn open_file<R: Read + Seek>(
     file: SceneFile<R>,
     folder: Option<PathBuf>,
@@ -142,7 +130,6 @@ fn open_file<R: Read + Seek>(
 /// Voxels of side 1 from the origin: file indices are world coordinates.
 const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
 
-/// Voxelises a mesh that was read.
 fn open_mesh(
     mesh: &dyn MeshVoxels,
     format: String,
@@ -165,10 +152,7 @@ fn open_mesh(
     })
 }
 
-/// Opens a file that is held in memory. A mesh there has no other files.
-///
-/// # Errors
-/// See [`OpenError`].
+/// [`open`] for a file in memory. A mesh there has no other files.
 pub fn open_bytes(
     bytes: &[u8],
     name: &str,
@@ -197,14 +181,12 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
     Ok(Opened::of(graph, "generated"))
 }
 
-/// Collects voxels and builds their graph.
 struct Gathered {
     builder: Builder,
     /// Free memory at the beginning, where the system reports it.
     available: Option<u64>,
     /// Most voxels that fit it.
     most: u64,
-    /// Voxels counted, kept or not.
     seen: u64,
 }
 
@@ -214,7 +196,7 @@ impl Default for Gathered {
         Self {
             builder: Builder::new(BuildOptions::default()),
             available,
-            most: available.map_or(u64::MAX, memory::most_voxels),
+            most: available.map_or(u64::MAX, |bytes| bytes / LEAST_BYTES),
             seen: 0,
         }
     }
@@ -237,7 +219,7 @@ impl Gathered {
             Some(available) if voxels > self.most => Err(OpenError::TooMany {
                 source_name: source.to_owned(),
                 voxels,
-                needed: memory::least_bytes(voxels),
+                needed: voxels.saturating_mul(LEAST_BYTES),
                 available,
             }),
             _ => Ok(()),

@@ -93,6 +93,9 @@ fn generated_scenes_are_the_same_in_any_memory() {
                 let (file, report) = external(order, memory, Normals::FromSurface);
                 assert_eq!(difference(&file, &expected), None, "{scene}, {memory}");
                 runs.push(report.runs);
+                // A run's records take 16 bytes, and are written before the levels.
+                assert!(report.temporary_written >= report.temporary_bytes);
+                assert!(report.runs == 1 || report.temporary_bytes >= 16 * report.voxels);
             }
         }
         assert!(runs[0] > 50 && runs.ends_with(&[1, 1]), "{scene}: {runs:?}");

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod external;
-mod pages;
 mod properties;
 mod scale;
 mod vxg;

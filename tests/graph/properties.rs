@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use proptest::prelude::*;
-use shiftvox::graph::linked::LinkedError;
 use shiftvox::graph::{
     BuildError, BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Normals, PackedNormal, Silent,
     Voxel, merge,
@@ -398,20 +397,16 @@ fn a_full_cube_merges_to_a_node_a_level() {
 
 #[test]
 fn impossible_links_are_refused() {
-    let refused = |graph: &LinkedGraph| graph.build().unwrap_err();
+    let refused = |graph: &LinkedGraph| graph.build().unwrap_err().array;
     let mut graph = LinkedGraph::new(2);
-    assert_eq!(refused(&graph), LinkedError::Root { root: 0, nodes: 0 });
-    graph.add_node([0; 3], [None, Some(4), None, None, None, None, None, None]);
-    assert_eq!(
-        refused(&graph),
-        LinkedError::Child {
-            node: 0,
-            octant: 1,
-            child: 4,
-            nodes: 1
-        }
-    );
-    assert_eq!(refused(&LinkedGraph::new(31)), LinkedError::Depth(31));
+    assert_eq!(refused(&graph), "color");
+    graph.add_node([0; 3], [None, Some(1), None, None, None, None, None, None]);
+    assert_eq!(refused(&graph), "links");
+    assert_eq!(graph.add_node([0; 3], [None; 8]), 1);
+    assert!(graph.build().is_ok());
+    let mut deep = LinkedGraph::new(31);
+    deep.add_node([0; 3], [None; 8]);
+    assert_eq!(refused(&deep), "depth");
 }
 
 /// Each way to break a graph, and the array that `validate` must name.

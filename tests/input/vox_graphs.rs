@@ -1,13 +1,16 @@
-//! Random `.vox` scene graphs that share nodes, against a reader that knows nothing of sharing: it goes down every path,
-//! places every voxel by the format's rule, and the last at an index counts.
+//! `.vox` scene graphs that share nodes. Random ones are compared with a reader that goes down every path, places every
+//! voxel by the format's rule, and keeps the last at an index. Small files place a model very often.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use crate::input_support::{VoxFile, read};
 use shiftvox::graph::Silent;
-use shiftvox::scene::{NoMeshes, OpenOptions, ReadOptions, open_bytes};
+use shiftvox::scene::{
+    NoMeshes, OpenError, OpenOptions, Opened, ReadOptions, SceneError, open_bytes, read_voxels_from,
+};
 use shiftvox::split_mix::SplitMix;
+
+use crate::input_support::{VoxFile, read, refused};
 
 /// Numbers that depend on the seed alone.
 struct Dice(SplitMix);
@@ -45,11 +48,10 @@ fn rotation(dice: &mut Dice) -> u8 {
 impl Graph {
     fn random(seed: u64, inner: u32) -> Self {
         let mut dice = Dice(SplitMix::new(seed));
-        for _ in 0..4 {
-            dice.below(2);
-        }
+        // Small scenes overlap; large ones use all of a byte and of a translation.
+        let [side, span] = [[3, 4], [256, 10_000]][usize::from(seed.is_multiple_of(4))];
         let models = (0..1 + dice.below(3)).map(|_| {
-            let size = [0; 3].map(|_| 1 + dice.below(3));
+            let size = [0; 3].map(|_| 1 + dice.below(side));
             let voxels = (0..1 + dice.below(4)).map(|_| {
                 let [x, y, z] = size.map(|side| dice.below(side) as u8);
                 [x, y, z, dice.below(4) as u8]
@@ -64,7 +66,7 @@ impl Graph {
         for number in 0..inner {
             let below = |dice: &mut Dice| number + 1 + dice.below((end - number - 1).min(4));
             nodes.push(if dice.below(2) == 0 {
-                let by = [0; 3].map(|_| dice.below(4) as i32 - 2);
+                let by = [0; 3].map(|_| dice.below(span) as i32 - span as i32 / 2);
                 Kind::Moves(by, rotation(&mut dice), below(&mut dice))
             } else {
                 Kind::Groups((0..dice.below(4)).map(|_| below(&mut dice)).collect())
@@ -77,7 +79,7 @@ impl Graph {
         Self { models, nodes }
     }
 
-    fn bytes(&self) -> Vec<u8> {
+    fn file(&self) -> VoxFile {
         let mut file = VoxFile::new();
         for model in &self.models {
             file = file.model(model.size, &model.voxels);
@@ -102,7 +104,7 @@ impl Graph {
                 }
             };
         }
-        file.bytes()
+        file
     }
 
     /// The voxels below a node. `to` maps a centre, in half voxels, to its place.
@@ -151,16 +153,11 @@ impl Graph {
 #[test]
 fn shared_graphs_are_what_they_unfold_to() {
     let palette: Vec<[u8; 4]> = (1..=255).map(|i| [i, 0, 0, 255]).collect();
-    for seed in 0..300 {
+    for seed in 0..400 {
         let graph = Graph::random(seed, 1 + seed as u32 % 12);
         let mut expected = BTreeMap::new();
         graph.place(0, &|v| v, &mut expected);
-        let mut file = graph.bytes();
-        // The palette comes last, in the same chunk.
-        let chunk = VoxFile::new().palette(&palette).bytes();
-        file.extend(&chunk[20..]);
-        let length = (file.len() - 20) as u32;
-        file[16..20].copy_from_slice(&length.to_le_bytes());
+        let file = graph.file().palette(&palette).bytes();
         let (voxels, info) = read(&file, &ReadOptions::default()).unwrap();
         let found: BTreeMap<[i32; 3], u8> = voxels.iter().map(|v| (v.index, v.color[0])).collect();
         assert_eq!(found, expected, "seed {seed}");
@@ -168,20 +165,101 @@ fn shared_graphs_are_what_they_unfold_to() {
     }
 }
 
+fn open(file: &[u8]) -> Result<Opened, OpenError> {
+    open_bytes(file, "a.vox", &OpenOptions::default(), &NoMeshes, &Silent)
+}
+
 #[test]
 fn graphs_of_any_sharing_are_read_or_refused_in_time() {
     let started = Instant::now();
     for seed in 0..60 {
-        let file = Graph::random(1000 + seed, 30 + seed as u32 * 4).bytes();
+        let file = Graph::random(1000 + seed, 30 + seed as u32 * 4)
+            .file()
+            .bytes();
         // Some hold no voxels, and how much memory is free decides of others.
-        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &NoMeshes, &Silent)
-        {
+        if let Ok(opened) = open(&file) {
             assert!(opened.graph.voxels < 1 << 24);
         }
     }
+    let took = started.elapsed();
+    assert!(took < Duration::from_secs(30), "{took:?}");
+}
+
+/// One slab of 256 x 256, placed `2^levels` times: each level is a group whose children are twice the next one,
+/// moved by the two translations.
+fn slab(levels: u32, apart: [&str; 2]) -> Vec<u8> {
+    let voxels: Vec<[u8; 4]> = (0..=255u8)
+        .flat_map(|y| (0..=255).map(move |x| [x, y, 0, 1]))
+        .collect();
+    let mut file = VoxFile::new().model([256, 256, 1], &voxels);
+    file = file.transform(0, &[], 1, -1, &[&[]]);
+    for level in 0..levels {
+        let group = 1 + 3 * level;
+        file = file.group(group, &[group + 1, group + 2]);
+        for (side, by) in [(1, apart[0]), (2, apart[1])] {
+            let by = by.replace('N', &(1u64 << level).to_string());
+            file = file.transform(group + side, &[], group + 3, -1, &[&[("_t", &by)]]);
+        }
+    }
+    file.shape(1 + 3 * levels, &[(0, &[])]).bytes()
+}
+
+#[test]
+fn a_model_at_one_place_costs_once_however_often_it_is_placed_there() {
+    let file = slab(17, ["0 0 0", "0 0 0"]);
+    let (voxels, info) = read(&file, &ReadOptions::default()).unwrap();
+    assert_eq!((voxels.len(), info.instances), (65_536, 1 << 17));
+    let said = "131071 placements put a model where it is already";
+    assert!(info.warnings[0].starts_with(said), "{:?}", info.warnings);
+    assert_eq!(open(&file).unwrap().graph.voxels, 65_536);
+}
+
+#[test]
+fn more_voxels_than_are_wanted_are_refused_before_the_first() {
+    let file = slab(10, ["0 0 0", "0 0 N"]);
+    let all = 65_536 << 10;
+    let count = |most_voxels| {
+        let options = ReadOptions {
+            most_voxels,
+            ..ReadOptions::default()
+        };
+        let mut seen = 0u64;
+        let read = read_voxels_from(&file, "slab", &options, &mut |_| seen += 1, &Silent);
+        (read, seen)
+    };
+    let (refused, seen) = count(all - 1);
+    let refused = refused.unwrap_err();
+    assert!(matches!(refused, SceneError::TooMany { voxels, .. } if voxels == all));
+    assert!(refused.is_limit() && seen == 0, "{refused}");
+    let (read, seen) = count(all);
+    assert_eq!((read.unwrap().voxels, seen), (all, all));
+    // 2^17 places a voxel apart: 2^33 voxels.
+    let refused = open(&slab(17, ["0 0 0", "0 0 N"])).unwrap_err();
+    let told = refused.to_string();
     assert!(
-        started.elapsed() < Duration::from_secs(30),
-        "{:?}",
-        started.elapsed()
+        refused.is_limit() && told.starts_with("a.vox: 8589934592 voxels or more"),
+        "{told}"
+    );
+}
+
+#[test]
+fn shared_nodes_and_models_count_as_visits() {
+    // Groups one below the other, of twice the next one each.
+    let tower = |floors: u32, models: usize| {
+        let mut file = VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1]]);
+        for floor in 0..floors {
+            file = file.group(floor, &[floor + 1, floor + 1]);
+        }
+        file.shape(floors, &vec![(0, &[][..]); models]).bytes()
+    };
+    // All at one place, so that they are read once.
+    let (voxels, info) = read(&tower(5, 1), &ReadOptions::default()).unwrap();
+    assert_eq!((voxels.len(), info.instances), (1, 32));
+    let limit = "at most 1048576 placed nodes";
+    refused([(tower(40, 1), limit), (tower(17, 256), limit)]);
+    assert!(
+        read(&tower(40, 1), &ReadOptions::default())
+            .unwrap_err()
+            .is_limit()
     );
 }

@@ -15,28 +15,21 @@ use crate::graph::average::Sum;
 use crate::graph::normals::fill_cluster;
 use crate::graph::{Normals, PackedNormal, Progress, morton};
 
-/// Clusters per task of a thread.
 const PART: usize = 64;
-/// Voxels between two calls of [`Progress::advance`].
 const STEP: u64 = 1 << 16;
 
-/// All voxels in Morton order, and the clusters that they fill.
 #[derive(Debug)]
 pub(super) struct Finest {
-    /// Three bytes per voxel.
     pub(super) color: Spool,
     own_normal: Spool,
-    /// Morton key and Morton word of each cluster.
     clusters: Spool,
     /// Cluster copies for the blocks beside their own.
     halo: Sorter,
     pub(super) voxels: u64,
-    /// Whether a voxel has no normal of its own.
     lacking: bool,
 }
 
 impl Finest {
-    /// Reads all voxels from the merge.
     pub(super) fn take(
         mut sorted: Merge,
         depth: u32,
@@ -136,13 +129,11 @@ impl Finest {
     }
 }
 
-/// Clusters, read one block at a time.
 struct BlockReader {
     clusters: Spool,
     shift: u32,
     piece: Vec<[u64; 2]>,
     next: usize,
-    /// Byte at which the next piece begins.
     offset: u64,
     piece_clusters: usize,
 }
@@ -151,7 +142,6 @@ impl BlockReader {
     fn peek(&mut self) -> io::Result<Option<[u64; 2]>> {
         if self.next == self.piece.len() {
             let left = (self.clusters.len() - self.offset) / 16;
-            // At most a piece.
             let count = left.min(self.piece_clusters as u64) as usize;
             self.piece.resize(count, [0; 2]);
             self.next = 0;
@@ -162,7 +152,6 @@ impl BlockReader {
         Ok(self.piece.get(self.next).copied())
     }
 
-    /// Reads a block's clusters and returns its Morton key; none at the end.
     fn next(&mut self, block: &mut Vec<[u64; 2]>) -> io::Result<Option<u64>> {
         block.clear();
         let Some([first, _]) = self.peek()? else {
@@ -188,7 +177,6 @@ struct FinestInProgress {
     centre: [f64; 3],
 }
 
-/// A few clusters and their voxels.
 struct ClusterBatch<'c> {
     clusters: &'c [[u64; 2]],
     color: &'c [[u8; 3]],
@@ -196,7 +184,6 @@ struct ClusterBatch<'c> {
 }
 
 impl FinestInProgress {
-    /// Processes the next clusters and returns the number of their voxels.
     fn work(
         &mut self,
         clusters: &[[u64; 2]],
@@ -244,7 +231,6 @@ impl FinestInProgress {
 }
 
 impl ClusterBatch<'_> {
-    /// Estimates normals where there is a grid, and averages.
     fn nodes(self, grid: Option<&Grid>, centre: [f64; 3]) -> Vec<ClusterNodes> {
         let mut all = Vec::with_capacity(self.clusters.len());
         let (mut color, mut normal) = (self.color, self.normal);
@@ -264,7 +250,6 @@ impl ClusterBatch<'_> {
     }
 }
 
-/// The nodes of a cluster's octants and the sum of all its voxels.
 fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> ClusterNodes {
     let mut nodes = ClusterNodes {
         mask: 0,

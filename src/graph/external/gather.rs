@@ -15,10 +15,9 @@ use super::runs::{Merge, Runs};
 use super::scratch::Scratch;
 use crate::graph::{Progress, Voxel};
 
-/// The buffer and the runs, returned by the thread that sorts and writes a run.
+/// Of the thread that sorts and writes a run.
 type Sorted = io::Result<(Vec<u128>, Runs)>;
 
-/// Pushed voxels.
 #[derive(Debug)]
 pub(super) struct Gather {
     sizes: BufferSizes,
@@ -31,7 +30,6 @@ pub(super) struct Gather {
     pub(super) min: [i32; 3],
     pub(super) max: [i32; 3],
     pub(super) pushed: u64,
-    /// After a failure no more voxels are kept.
     failure: Option<io::Error>,
 }
 
@@ -50,7 +48,6 @@ impl Gather {
         }
     }
 
-    /// Adds a voxel; it replaces an earlier one at the same index.
     pub(super) fn push(&mut self, voxel: &Voxel) {
         self.pushed += 1;
         if self.failure.is_some() {
@@ -71,7 +68,6 @@ impl Gather {
         }
     }
 
-    /// Waits for the previous run, and starts a thread for this one.
     fn spill(&mut self) -> io::Result<()> {
         let (spare, mut runs) = self.waited()?;
         let mut records = std::mem::replace(&mut self.buffer, spare);

@@ -57,7 +57,6 @@ pub(super) fn hand_on(
 pub(super) struct Grid {
     shift: u32,
     words: Vec<u64>,
-    /// Places that are not 0.
     filled: Vec<u32>,
     halo: Merge,
     /// A copy that was read and belongs to a later block.
@@ -88,11 +87,9 @@ impl Grid {
 
     fn set(&mut self, place: usize, rows: u64) {
         self.words[place] = rows;
-        // At most 130^3 places.
         self.filled.push(place as u32);
     }
 
-    /// Reads the next block: its clusters with their Morton words, and the copies from other blocks.
     pub(super) fn fill(&mut self, block: u64, clusters: &[[u64; 2]]) -> io::Result<()> {
         for place in self.filled.drain(..) {
             self.words[place as usize] = 0;

@@ -7,23 +7,17 @@ use super::scratch::{Scratch, Spool};
 use super::tree::LevelArrays;
 use crate::graph::{BuildError, Graph, Placement, Store};
 
-/// The contents of the file, level by level.
 pub(super) struct Built {
     pub(super) depth: u32,
-    /// Sorted runs of voxels.
     pub(super) runs: u64,
     pub(super) levels: Vec<LevelArrays>,
-    /// Nodes per level.
     pub(super) counts: Vec<u64>,
-    /// Of the finest level.
     pub(super) color: Spool,
-    /// Of the finest level.
     pub(super) normal: Spool,
     pub(super) scratch: Arc<Scratch>,
 }
 
 impl Built {
-    /// The graph without its arrays.
     pub(super) fn outline(&self, placement: Placement) -> Result<Graph, BuildError> {
         let mut level_start = vec![0u32];
         let mut total = 0u64;

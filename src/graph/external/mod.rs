@@ -49,24 +49,18 @@ pub struct ExternalOptions {
     pub temporary: PathBuf,
 }
 
-/// Why no file was built.
 #[derive(Debug, thiserror::Error)]
 pub enum ExternalError {
-    /// The voxels make no graph.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// The voxels, or the graph, take more disk than is free.
     #[error(transparent)]
     Disk(#[from] DiskShortage),
-    /// A temporary file could not be made, written or read.
     #[error("{}: temporary files: {source}", folder.display())]
     Temporary { folder: PathBuf, source: io::Error },
-    /// The file could not be written.
     #[error(transparent)]
     Write(#[from] VxgError),
 }
 
-/// Sizes of a build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExternalReport {
     /// Voxels pushed, including repeated ones.
@@ -74,15 +68,12 @@ pub struct ExternalReport {
     pub voxels: u64,
     pub nodes: u64,
     pub bytes: u64,
-    /// Sorted runs of voxels.
     pub runs: u64,
     /// Most bytes that temporary files took at once, without the result.
     pub temporary_bytes: u64,
-    /// Bytes written to temporary files in total.
     pub temporary_written: u64,
 }
 
-/// Collects voxels and makes a `.vxg` file of them, within a limit of memory.
 #[derive(Debug)]
 pub struct ExternalBuilder {
     options: ExternalOptions,
@@ -93,7 +84,6 @@ pub struct ExternalBuilder {
 }
 
 impl ExternalBuilder {
-    /// A builder without voxels.
     pub fn new(options: ExternalOptions) -> Self {
         let sizes = BufferSizes::new(options.memory);
         let scratch = Scratch::new(options.temporary.clone());
@@ -106,7 +96,7 @@ impl ExternalBuilder {
         }
     }
 
-    /// Sets the box of the mesh that the voxels are made of, for fitted cameras.
+    /// The mesh of which the voxels are made, for fitted cameras.
     #[must_use]
     pub fn of_mesh(self, mesh: MeshBox) -> Self {
         Self {
@@ -115,17 +105,15 @@ impl ExternalBuilder {
         }
     }
 
-    /// Voxels pushed so far, including repeated ones.
     pub fn len(&self) -> u64 {
         self.gather.pushed
     }
 
-    /// Whether no voxel was pushed.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Fails where so many voxels, or their graph, take more disk than is free. To be called before they are pushed.
+    /// Fails where so many voxels, or their graph, take more disk than is free.
     pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
         budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
         let folder = path.parent().unwrap_or(path);
@@ -133,19 +121,17 @@ impl ExternalBuilder {
         Ok(())
     }
 
-    /// Most voxels that [`expect`](Self::expect) accepts, as far as temporary files go.
     pub fn most_voxels(&self) -> u64 {
         budget::free_disk(&self.options.temporary).map_or(u64::MAX, |free| free / RUN_BYTES)
     }
 
-    /// Adds a voxel; it replaces an earlier one at the same index. [`Self::finish`] returns errors of temporary files.
+    /// [`Self::finish`] returns errors of temporary files.
     pub fn push(&mut self, voxel: Voxel) {
         self.gather.push(&voxel);
     }
 
-    /// Builds the graph and writes it to `path`. `placement_world` is as in
-    /// [`Builder::finish`](super::Builder::finish). Fails when there are no voxels, too many, or too far apart, or when
-    /// `path` exists and `overwrite` is false. Temporary files are removed in any case.
+    /// As [`Builder::finish`](super::Builder::finish). Fails also when `path` exists and `overwrite` is false. Temporary
+    /// files are removed in any case.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),
@@ -198,7 +184,6 @@ impl ExternalBuilder {
         Ok(ExternalReport { bytes, ..report })
     }
 
-    /// Stages 1 to 4.
     fn build(self, extent: [u64; 3], progress: &dyn Progress) -> Result<Built, ExternalError> {
         let Self {
             options,

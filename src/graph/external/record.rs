@@ -6,10 +6,7 @@
 //! | 63..40 | all ones less the number within the run | the same |
 //! | 39..16 | colour | colour |
 //! | 15..0 | normal | normal |
-//!
-//! Of equal keys, the last pushed comes first.
 
-use crate::graph::build::MAX_SIDE;
 use crate::graph::{PackedNormal, Voxel, morton};
 
 /// Most records per run: their numbers take 24 bits.
@@ -24,7 +21,6 @@ pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
     u128::from(morton::pack(voxel.index)) << 64 | u128::from(rest)
 }
 
-/// With the Morton key from a corner instead of the index.
 pub(super) fn placed(record: u128, corner: [i32; 3]) -> u128 {
     with_key(record, morton::key_from(key(record), corner))
 }
@@ -34,7 +30,7 @@ pub(super) fn moved(record: u128, from: [i32; 3], to: [i32; 3]) -> u128 {
     let old = morton::at(key(record));
     let at = [0, 1, 2].map(|axis| {
         let further = (from[axis] as u32).wrapping_sub(to[axis] as u32);
-        old[axis].wrapping_add(further) & (MAX_SIDE as u32 - 1)
+        old[axis].wrapping_add(further) & (morton::MAX_SIDE as u32 - 1)
     });
     with_key(record, morton::key(at))
 }
@@ -58,32 +54,4 @@ pub(super) fn color(record: u128) -> [u8; 3] {
 
 pub(super) fn normal(record: u128) -> PackedNormal {
     PackedNormal(record as u16)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_come_back_and_the_last_pushed_is_first() {
-        let voxel = Voxel {
-            index: [-5, 7, i32::MIN + 3],
-            color: [1, 200, 255],
-            normal: Some(PackedNormal(0xabcd)),
-        };
-        let corner = [-6, 7, i32::MIN];
-        let record = placed(pushed(&voxel, 17), corner);
-        assert_eq!(morton::at(key(record)), [1, 0, 3]);
-        assert_eq!(
-            (color(record), normal(record)),
-            ([1, 200, 255], PackedNormal(0xabcd))
-        );
-        assert!(placed(pushed(&voxel, 18), corner) < record);
-        assert!(placed(pushed(&voxel, MAX_RUN - 1), corner) < record);
-        let other = [-60, -7, i32::MIN];
-        assert_eq!(
-            moved(record, corner, other),
-            placed(pushed(&voxel, 17), other)
-        );
-    }
 }

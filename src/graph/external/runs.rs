@@ -58,7 +58,6 @@ impl Runs {
     ) -> io::Result<()> {
         let Run { offset, records } = self.runs[run];
         buffer.clear();
-        // A run was in memory when it was added.
         buffer.resize(records as usize, 0);
         self.file.read(offset, bytemuck::cast_slice_mut(buffer))?;
         buffer
@@ -143,7 +142,6 @@ impl Merge {
         Ok(merge)
     }
 
-    /// Reads the next piece of a run; false at its end.
     fn refill(&mut self, number: u32) -> io::Result<bool> {
         let reader = &mut self.readers[number as usize];
         let records = reader.rest.records.min(self.reader_bytes / RECORD_BYTES);
@@ -160,7 +158,6 @@ impl Merge {
         Ok(true)
     }
 
-    /// The next record; none at the end.
     pub(super) fn next(&mut self) -> io::Result<Option<u128>> {
         loop {
             let Some(&Reverse((head, Reverse(number)))) = self.heads.peek() else {
@@ -186,7 +183,6 @@ impl Merge {
     }
 }
 
-/// Sorts records within a limit of memory.
 #[derive(Debug)]
 pub(super) struct Sorter {
     buffer: Vec<u128>,
@@ -218,7 +214,6 @@ impl Sorter {
         Ok(())
     }
 
-    /// All records in order.
     pub(super) fn merged(
         mut self,
         sizes: &BufferSizes,
@@ -227,47 +222,5 @@ impl Sorter {
         self.spill()?;
         drop(self.buffer);
         self.runs.merged(sizes, scratch)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A record of a key, marked with its run.
-    fn record(key: u64, run: u64) -> u128 {
-        u128::from(key) << 64 | u128::from(run)
-    }
-
-    #[test]
-    fn of_equal_keys_the_last_run_stays_in_any_number_of_passes() -> io::Result<()> {
-        let folder = tempfile::tempdir()?;
-        let scratch = Scratch::new(folder.path().to_owned());
-        for fan_in in [2, 3, 7, 100] {
-            let sizes = BufferSizes {
-                fan_in,
-                merge_bytes: 16 * fan_in,
-                ..BufferSizes::new(0)
-            };
-            let mut runs = Runs::new(&scratch)?;
-            let mut expected = std::collections::BTreeMap::new();
-            for run in 0..40 {
-                // Every key of the multiples of `step`.
-                let step = 1 + run * 7 % 11;
-                let keys = (0..100).filter(|key| key % step == 0);
-                let sorted: Vec<u128> = keys.map(|key| record(key, run)).collect();
-                runs.add(&sorted)?;
-                expected.extend(sorted.iter().map(|&record| (key(record), record)));
-            }
-            runs.add(&[])?;
-            assert_eq!(runs.len(), 41);
-            let mut merge = runs.merged(&sizes, &scratch)?;
-            for (_, record) in expected {
-                assert_eq!(merge.next()?, Some(record), "{fan_in}");
-            }
-            assert_eq!(merge.next()?, None);
-            assert_eq!(merge.next()?, None);
-        }
-        Ok(())
     }
 }

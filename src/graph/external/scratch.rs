@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Folder and sizes of temporary files.
 #[derive(Debug)]
 pub(super) struct Scratch {
     folder: PathBuf,
@@ -42,7 +41,6 @@ impl Scratch {
     }
 }
 
-/// A temporary file, removed when dropped.
 #[derive(Debug)]
 pub(super) struct ScratchFile {
     file: File,
@@ -55,7 +53,6 @@ impl ScratchFile {
         self.bytes
     }
 
-    /// Writes at the end.
     pub(super) fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(self.bytes))?;
         self.file.write_all(bytes)?;
@@ -67,7 +64,6 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Overwrites existing bytes.
     pub(super) fn replace(&mut self, offset: u64, bytes: &[u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.write_all(bytes)?;
@@ -76,7 +72,6 @@ impl ScratchFile {
         Ok(())
     }
 
-    /// Reads existing bytes.
     pub(super) fn read(&mut self, offset: u64, into: &mut [u8]) -> io::Result<()> {
         self.file.seek(SeekFrom::Start(offset))?;
         self.file.read_exact(into)
@@ -93,7 +88,6 @@ impl Drop for ScratchFile {
 #[derive(Debug)]
 pub(super) struct Spool {
     buffer: Vec<u8>,
-    /// Capacity of the buffer, bytes.
     room: usize,
     file: Option<ScratchFile>,
     scratch: Arc<Scratch>,
@@ -109,7 +103,6 @@ impl Spool {
         }
     }
 
-    /// Writes at the end.
     pub(super) fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
         if self.buffer.len() + bytes.len() > self.room {
             self.flush()?;
@@ -144,7 +137,6 @@ impl Spool {
         self.file.as_ref().map_or(0, ScratchFile::len) + self.buffer.len() as u64
     }
 
-    /// Reads bytes that were written.
     pub(super) fn read(&mut self, offset: u64, into: &mut [u8]) -> io::Result<()> {
         let in_file = self.file.as_ref().map_or(0, ScratchFile::len);
         let from_file = in_file.saturating_sub(offset).min(into.len() as u64) as usize;
@@ -174,43 +166,6 @@ impl Spool {
             each(&mut piece[..count])?;
             offset += count as u64;
         }
-        Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_spool_gives_back_what_it_was_given() -> io::Result<()> {
-        let folder = tempfile::tempdir()?;
-        let scratch = Scratch::new(folder.path().to_owned());
-        let mut spool = Spool::new(&scratch, 48);
-        let mut all = Vec::new();
-        for length in [1usize, 47, 48, 49, 3, 200, 0, 5] {
-            let bytes: Vec<u8> = (0..length).map(|i| (i + length) as u8).collect();
-            spool.push(&bytes)?;
-            all.extend(bytes);
-        }
-        assert_eq!(spool.len(), all.len() as u64);
-        for offset in 0..all.len() {
-            for end in [offset, offset + 1, (offset + 60).min(all.len()), all.len()] {
-                let mut found = vec![0; end - offset];
-                spool.read(offset as u64, &mut found)?;
-                assert_eq!(found, all[offset..end]);
-            }
-        }
-        assert!(spool.read(all.len() as u64 - 1, &mut [0; 2]).is_err());
-        assert!(scratch.peak() >= 300);
-        let mut found = Vec::new();
-        spool.drain(|piece| {
-            found.extend_from_slice(piece);
-            Ok(())
-        })?;
-        assert_eq!(found, all);
-        assert_eq!(scratch.in_use.load(Ordering::Relaxed), 0);
-        assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
         Ok(())
     }
 }

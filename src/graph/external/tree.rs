@@ -1,8 +1,7 @@
 //! The tree's levels, each written as its nodes are closed.
 //!
-//! Clusters come in Morton order, so one node per level above them is open. Nodes of a level are opened, closed and
-//! written in one order, so their numbers are known when they are opened: only the first node of the level is added at
-//! the end.
+//! Clusters come in Morton order, so one node per level above them is open. Nodes of a level are opened and written in
+//! one order, so their numbers within the level are known when they are opened.
 
 use std::io;
 use std::sync::Arc;
@@ -20,7 +19,6 @@ pub(super) struct FinishedNode {
 }
 
 impl FinishedNode {
-    /// A node that shows the average of a sum.
     pub(super) fn new(mask: u8, sum: &Sum) -> Self {
         Self {
             mask,
@@ -32,7 +30,6 @@ impl FinishedNode {
 
 #[derive(Debug, Clone)]
 pub(super) struct ClusterNodes {
-    /// Octants that contain voxels.
     pub(super) mask: u8,
     pub(super) octants: Vec<FinishedNode>,
     pub(super) sum: Sum,
@@ -47,7 +44,6 @@ pub(super) struct LevelArrays {
     pub(super) normal: Spool,
 }
 
-/// A node that may receive more children.
 #[derive(Debug, Clone, Copy, Default)]
 struct Open {
     mask: u8,
@@ -55,14 +51,11 @@ struct Open {
     sum: Sum,
 }
 
-/// Writes the levels above the finest.
 #[derive(Debug)]
 pub(super) struct TreeWriter {
     depth: u32,
     levels: Vec<LevelArrays>,
-    /// Nodes begun per level, including the finest.
     begun: Vec<u64>,
-    /// The open node of each level above the clusters.
     open: Vec<Open>,
     before: Option<u64>,
 }
@@ -160,7 +153,6 @@ impl TreeWriter {
     fn write(&mut self, level: usize, node: FinishedNode, first: u64) -> io::Result<()> {
         let to = &mut self.levels[level];
         to.mask.push(&[node.mask])?;
-        // More than 32 bits are rejected at the end.
         to.first.push(&(first as u32).to_ne_bytes())?;
         to.color.push(&node.color)?;
         to.normal.push(&node.normal.0.to_le_bytes())

@@ -6,7 +6,6 @@ pub(in crate::graph) type Surroundings = [[u8; 8]; 8];
 /// Occupancy of 4^3 voxels, in two orders.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::graph) struct Cluster {
-    /// Bits in Morton order.
     pub(in crate::graph) morton: u64,
     /// Bit `z * 16 + y * 4 + x`.
     pub(in crate::graph) by_rows: u64,
@@ -21,7 +20,6 @@ impl From<u64> for Cluster {
     }
 }
 
-/// Place in the cluster of each bit of its Morton word.
 pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     let mut table = [[0; 3]; 64];
     let mut bit = 0;
@@ -36,7 +34,6 @@ pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     table
 };
 
-/// Converts a cluster's bits from Morton order to rows.
 fn to_rows(word: u64) -> u64 {
     let mut rows = 0u64;
     let mut left = word;

@@ -1,16 +1,11 @@
 //! Normals of voxels that have none, from the surface around them.
 //!
 //! Each voxel's 5 x 5 x 5 neighbourhood is a heap of mass (weights 1 2 2 2 1 along each axis). Where the heap lies to
-//! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. Elsewhere,
-//! as in a wall one voxel thick, the normal is the direction in which the heap is thinnest (the least axis of its
-//! covariance), turned away from the middle of the object. A wall that thin has two sides, so a viewer may turn such a
-//! normal towards the eye.
+//! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. In a thin
+//! wall it is the least axis of the heap's covariance, turned away from the middle of the object. A voxel alone has no
+//! normal. Neither has one whose six faces are covered, because it cannot be seen.
 //!
-//! A voxel alone in its neighbourhood has no normal. Neither has one whose six faces are covered: it cannot be seen,
-//! and does not count in the normals of coarser nodes.
-//!
-//! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest. Its 26 neighbours are
-//! found on the way down the tree, since a child's neighbours are children of its parent's neighbours.
+//! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest.
 
 pub(super) mod cluster;
 mod moments;
@@ -22,7 +17,6 @@ use super::{PackedNormal, Progress};
 use cluster::{Cluster, MORTON_TO_XYZ, Surroundings, enclosed, put};
 use moments::Moments;
 
-/// Entry of `Neighbours` without a node.
 const ABSENT: u32 = u32::MAX;
 /// Nodes of one level in and around a node: `(x * 3 + y) * 3 + z`.
 type Neighbours = [u32; 27];
@@ -31,13 +25,11 @@ const SELF: usize = 13;
 /// Most pieces that the work is split into.
 const MAX_PIECES: usize = 4096;
 
-/// A tree stored level by level, whose normals are estimated.
 pub(super) struct Estimate<'t> {
     pub(super) mask: &'t [u8],
     pub(super) first: &'t [u32],
     pub(super) level_start: &'t [u32],
     pub(super) depth: u32,
-    /// Middle of the object, finest voxels.
     pub(super) centre: [f64; 3],
 }
 
@@ -48,7 +40,6 @@ struct Piece {
 }
 
 impl Estimate<'_> {
-    /// Writes the normals of those finest voxels that have none.
     pub(super) fn fill(&self, normals: &mut [PackedNormal], progress: &dyn Progress) {
         if normals.iter().all(|normal| !normal.is_none()) {
             return;
@@ -150,7 +141,6 @@ impl Estimate<'_> {
         (first_voxel(node + 1) - first_voxel(node)) as usize
     }
 
-    /// Calls `call` with the corner and the neighbours of each child of a node.
     #[inline]
     fn for_children(
         &self,

@@ -9,7 +9,6 @@ use crate::graph::PackedNormal;
 const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
 /// Mass of half a neighbourhood. A wall of two voxels has it; a flat face has five eighths of a full one.
 const HALF_MASS: i32 = 8 * 8 * 8 / 2;
-/// Mass of a voxel alone.
 const LONE_MASS: i32 = 2 * 2 * 2;
 /// Least distance of the centre of mass, in voxels, at which it determines the normal: 0.8 is a flat face, 0.5 a wall
 /// of two.
@@ -51,7 +50,6 @@ fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
     ]
 }
 
-/// Unpacks three moments.
 #[inline(always)]
 fn fields(sum: i64) -> [i32; 3] {
     let low = |sum: i64| sum << (64 - FIELD) >> (64 - FIELD);
@@ -75,7 +73,6 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Of the voxel at a place of the cluster, 0 to 3 along each axis.
     #[inline]
     pub(super) fn around(rows: &Surroundings, [x, y, z]: [usize; 3]) -> Self {
         // Along x by the table, then along y in each plane, then along z.

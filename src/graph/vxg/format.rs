@@ -7,9 +7,7 @@ use crate::graph::file::{Format, section_after};
 
 /// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
 pub(crate) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
-/// Version of the layout with five sections.
 pub(super) const VERSION: u32 = 1;
-/// Version of the layout with opacities as a sixth section.
 pub(super) const VERSION_WITH_OPACITY: u32 = 2;
 pub(super) const FORMAT: Format = Format {
     ending: ".vxg",
@@ -19,12 +17,11 @@ pub(super) const FORMAT: Format = Format {
     not_ours: "is this a .vxg file? Convert other formats with `convert`",
 };
 pub(super) const HEADER_BYTES: usize = 512;
-/// Sections that every file has.
 pub(super) const SECTIONS: usize = 5;
 
 /// Offsets in the header, in addition to those of every format.
 pub(super) mod at {
-    pub(in super::super) const FILE_BYTES: usize = 16;
+    pub(in super::super) use crate::graph::file::at::{FILE_BYTES, VERSION};
     pub(in super::super) const DEPTH: usize = 24;
     pub(in super::super) const ROOT: usize = 28;
     pub(in super::super) const VOXELS: usize = 32;
@@ -49,7 +46,6 @@ pub(super) const MESH_Z_UP: u8 = 1;
 pub(super) const MESH_Y_UP: u8 = 2;
 
 const SECTION_ENTRY_BYTES: usize = 32;
-/// Most entries of the level table.
 pub(super) const MAX_LEVEL_STARTS: usize = MAX_DEPTH as usize + 2;
 
 /// The sections in the order of the file: name and tag, field of the graph, bytes per item. The last may be missing.
@@ -75,13 +71,11 @@ pub(super) const fn entry_at(i: usize) -> usize {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Section {
     pub(super) offset: u64,
-    /// Bytes, without the padding that follows.
     pub(super) bytes: u64,
     pub(super) checksum: u64,
 }
 
 impl Section {
-    /// Begin and end.
     pub(super) fn place(&self) -> [u64; 2] {
         [self.offset, self.offset.saturating_add(self.bytes)]
     }

@@ -6,13 +6,11 @@
 //! gives a wrong picture at worst. [`verify`] reads everything and finds every damage that a 64-bit checksum can.
 
 mod format;
-mod pages;
 mod read;
 mod write;
 
 pub use super::file::FileError as VxgError;
 pub(crate) use format::MAGIC;
-pub use pages::MappedPages;
 pub use read::{from_bytes, open, verify};
 pub(in crate::graph) use write::{check_free, write_pieces};
 pub use write::{write, write_to};

@@ -45,10 +45,9 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
 }
 
 fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError> {
-    let refused = |refused| VxgError::refused(path, refused);
-    let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+    let opened = file::open(path, HEADER_BYTES)?;
     let header = Header::read(&opened.beginning, opened.bytes, path)?;
-    let map = opened.map().map_err(refused)?;
+    let map = opened.map()?;
     // The file may have changed since its length was read.
     if map.len() as u64 != opened.bytes {
         let expected = format!("a file of {} bytes, not {}", opened.bytes, map.len());
@@ -67,7 +66,6 @@ enum Source<'f> {
 }
 
 impl Source<'_> {
-    /// The array of a section, which lies within the file and has whole items.
     fn array<T: Pod>(&self, section: &Section) -> Store<T> {
         let place = range(section.place());
         match self {
@@ -81,14 +79,12 @@ impl Source<'_> {
     }
 }
 
-/// The header, decoded and checked.
 struct Header {
     depth: u32,
     root: u32,
     voxels: u64,
     placement: Placement,
     level_start: Vec<u32>,
-    /// Five, or six with opacities.
     sections: Vec<Section>,
 }
 
@@ -173,7 +169,6 @@ impl Header {
         VxgError::damaged(path, section, offset, invalid.expected)
     }
 
-    /// Checks everything that [`open`] leaves unread.
     fn verify_sections(&self, graph: &Graph, bytes: &[u8], path: &Path) -> Result<(), VxgError> {
         let places = self.sections.iter().map(Section::place);
         padding_after(HEADER_BYTES as u64, bytes, places, path)?;
@@ -194,8 +189,7 @@ impl Header {
 
 /// The section table: kinds, and the one layout that lengths allow.
 fn read_sections(fields: &Fields<'_>, file_bytes: u64) -> Result<Vec<Section>, VxgError> {
-    // The version says whether there are opacities.
-    let expected = match fields.u32_at(8) {
+    let expected = match fields.u32_at(at::VERSION) {
         VERSION => SECTIONS,
         _ => KINDS.len(),
     };

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::Xxh3;
 
 use super::VxgError;
 use super::format::{
@@ -12,7 +12,7 @@ use super::format::{
     VERSION_WITH_OPACITY, at, entry_at, layout,
 };
 use crate::graph::Graph;
-use crate::graph::file::{self, ALIGNMENT};
+use crate::graph::file::ALIGNMENT;
 use crate::whole::{self, WholeError};
 
 /// Writes a graph to a file.
@@ -21,10 +21,12 @@ use crate::whole::{self, WholeError};
 /// invariant, when `path` exists and `overwrite` is false, or when the system refuses.
 pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
     graph.validate()?;
-    replace(path, overwrite, |file| {
+    FORMAT.check_byte_order(path)?;
+    let fill = |file: &mut File| {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_unchecked(graph, &mut out).and_then(|()| out.flush())
-    })
+    };
+    whole::write_with(path, overwrite, fill).map_err(refused)
 }
 
 /// Fails where a file exists that may not be replaced.
@@ -45,14 +47,6 @@ fn refused(error: WholeError) -> VxgError {
     }
 }
 
-fn replace(
-    path: &Path,
-    overwrite: bool,
-    fill: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<(), VxgError> {
-    whole::write_with(path, overwrite, fill).map_err(refused)
-}
-
 /// Writes a file whose arrays do not exist as a whole, and returns its length in bytes.
 ///
 /// `outline` is the graph without its arrays; `lengths` are the bytes of the sections. `hand_on` is called once per
@@ -62,48 +56,65 @@ pub(in crate::graph) fn write_pieces(
     lengths: [u64; SECTIONS],
     path: &Path,
     overwrite: bool,
-    mut hand_on: impl FnMut(usize, &mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()>,
+    hand_on: impl FnMut(usize, Put<'_>) -> io::Result<()>,
 ) -> Result<u64, VxgError> {
-    let (offsets, file_bytes) = layout(lengths);
-    replace(path, overwrite, |file| {
+    let (_, file_bytes) = layout(lengths);
+    let fill = |file: &mut File| {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         // The header comes last: it holds the checksums.
         out.write_all(&[0; HEADER_BYTES])?;
-        let mut written = HEADER_BYTES as u64;
-        let mut table = [Section::default(); SECTIONS];
-        for (i, section) in table.iter_mut().enumerate() {
-            // Less than the alignment.
-            out.write_all(&[0; ALIGNMENT as usize][..(offsets[i] - written) as usize])?;
-            let mut checksum = Xxh3::new();
-            let mut bytes = 0;
-            hand_on(i, &mut |piece| {
-                checksum.update(piece);
-                bytes += piece.len() as u64;
-                out.write_all(piece)
-            })?;
-            if bytes != lengths[i] {
-                return Err(io::Error::other("a section's length was foretold wrongly"));
-            }
-            *section = Section {
-                offset: offsets[i],
-                bytes,
-                checksum: checksum.digest(),
-            };
-            written = offsets[i] + bytes;
-        }
+        let table = put_sections(&lengths, &mut out, hand_on)?;
         out.seek(SeekFrom::Start(0))?;
         out.write_all(&header(outline, &table, file_bytes))?;
         out.flush()
-    })?;
+    };
+    whole::write_with(path, overwrite, fill).map_err(refused)?;
     Ok(file_bytes)
+}
+
+type Put<'p> = &'p mut dyn FnMut(&[u8]) -> io::Result<()>;
+
+/// Writes all that follows the header.
+fn put_sections(
+    lengths: &[u64],
+    out: &mut dyn Write,
+    mut hand_on: impl FnMut(usize, Put<'_>) -> io::Result<()>,
+) -> io::Result<Vec<Section>> {
+    let (offsets, _) = layout(lengths.iter().copied());
+    let mut written = HEADER_BYTES as u64;
+    let mut table = Vec::new();
+    for (i, (&length, offset)) in lengths.iter().zip(offsets).enumerate() {
+        // Less than the alignment.
+        out.write_all(&[0; ALIGNMENT as usize][..(offset - written) as usize])?;
+        let mut checksum = Xxh3::new();
+        let mut bytes = 0;
+        hand_on(i, &mut |piece| {
+            checksum.update(piece);
+            bytes += piece.len() as u64;
+            out.write_all(piece)
+        })?;
+        if bytes != length {
+            return Err(io::Error::other("a section's length was foretold wrongly"));
+        }
+        let checksum = checksum.digest();
+        table.push(Section {
+            offset,
+            bytes,
+            checksum,
+        });
+        written = offset + bytes;
+    }
+    Ok(table)
 }
 
 /// Writes a graph to anything that takes bytes. Fails when the graph breaks an invariant, or the writer fails (errors
 /// name the file `(output)`).
 pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
+    let file = Path::new("(output)");
     graph.validate()?;
+    FORMAT.check_byte_order(file)?;
     write_unchecked(graph, out).map_err(|source| VxgError::Io {
-        file: "(output)".into(),
+        file: file.into(),
         doing: "write",
         source,
     })
@@ -120,16 +131,13 @@ fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
     if !graph.opacity.is_empty() {
         contents.push(bytemuck::cast_slice(&graph.opacity));
     }
-    let (offsets, file_bytes) = layout(contents.iter().map(|bytes| bytes.len() as u64));
-    let section = |(bytes, offset): (&&[u8], u64)| Section {
-        offset,
-        bytes: bytes.len() as u64,
-        checksum: xxh3_64(bytes),
-    };
-    let table: Vec<Section> = contents.iter().zip(offsets).map(section).collect();
-    let header = header(graph, &table, file_bytes);
-    let places = table.iter().map(Section::place);
-    file::write(&FORMAT, &header, places.zip(contents), out)
+    let lengths: Vec<u64> = contents.iter().map(|bytes| bytes.len() as u64).collect();
+    let (_, file_bytes) = layout(lengths.iter().copied());
+    // Once for the checksums, which come before the sections.
+    let table = put_sections(&lengths, &mut io::sink(), |i, put| put(contents[i]))?;
+    out.write_all(&header(graph, &table, file_bytes))?;
+    put_sections(&lengths, out, |i, put| put(contents[i]))?;
+    Ok(())
 }
 
 fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTES] {

@@ -20,67 +20,47 @@ use crate::graph::vxg;
 pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};
 
-/// Bytes of a file that [`detect`] examines; all of a shorter file.
 pub(super) const DETECT_BYTES: usize = 4096;
 
-/// The formats that are recognised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileKind {
-    /// MagicaVoxel or VoxelShop scene.
     Vox,
-    /// PLY: a cloud of voxel indices. [`detect`] returns this for a mesh, too.
+    /// A cloud. [`detect`] returns this for a mesh, too.
     /// [`SceneFile`](super::SceneFile) reads the header and distinguishes the two.
     Ply,
-    /// NumPy array of voxel indices.
     Npy,
-    /// Grid of the program binvox.
     Binvox,
-    /// Voxel graph of this program.
     Vxg,
-    /// Wavefront mesh (text).
     Obj,
-    /// PLY with faces: a mesh.
     PlyMesh,
-    /// glTF mesh (JSON).
     Gltf,
-    /// glTF mesh (binary).
     Glb,
-    /// Stereolithography mesh (text or binary).
     Stl,
-    /// Far voxels, built of a mesh.
     Far,
-    /// Textured voxels, built of a mesh.
     Tvx,
 }
 
-/// Reads the voxels of a file and passes them to an emitter.
 pub(super) type Reader =
     fn(&mut Input<'_>, &ReadOptions, &mut Emitter<'_>) -> Result<SceneInfo, Problem>;
 
-/// The contents of a format's files.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Contents {
     Voxels(Reader),
-    /// A voxel graph, ready to be drawn.
     Graph,
-    /// Triangles.
     Mesh,
     /// Data built of a mesh for one method, which alone draws it.
     BuiltOfMesh,
 }
 
-/// A file format.
 #[derive(Debug)]
 pub struct Format {
     kind: FileKind,
-    /// The ending of its files, with the dot.
     pub ending: &'static str,
-    /// Its name in the help text.
     pub name: &'static str,
     /// Its files begin with one of these.
     marks: &'static [&'static [u8]],
-    /// Whether a file without a mark is of this format, by its first bytes and its length.
+    /// Tells files without a mark by their first bytes and length.
     accepts: fn(&[u8], u64) -> bool,
     contents: Contents,
 }
@@ -115,7 +95,7 @@ pub static FORMATS: [Format; 12] = {
 };
 
 impl Format {
-    /// The beginnings of its files, if they hold voxels: for tests of all readers of voxels.
+    /// For tests of all readers of voxels.
     pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
         match self.contents {
             Contents::Voxels(_) => self.marks,
@@ -144,32 +124,27 @@ impl FileKind {
         self.format().contents
     }
 
-    /// Whether files of this kind hold triangles.
     pub fn is_mesh(self) -> bool {
         matches!(self.contents(), Contents::Mesh)
     }
 }
 
-/// The ending of such files.
 impl fmt::Display for FileKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.format().ending)
     }
 }
 
-/// The endings of some formats, such as `.far, .tvx`.
 fn endings(are_meant: fn(&Contents) -> bool) -> String {
     let meant = FORMATS.iter().filter(|format| are_meant(&format.contents));
     let endings: Vec<_> = meant.map(|format| format.ending).collect();
     endings.join(", ")
 }
 
-/// The endings of meshes.
 pub(super) fn mesh_endings() -> String {
     endings(|contents| matches!(contents, Contents::Mesh))
 }
 
-/// All formats by their endings, for an error message.
 pub(super) fn all_endings() -> String {
     format!(
         "voxels ({}), a voxel graph ({}), a mesh ({}) or a file built of a mesh ({})",
@@ -180,9 +155,7 @@ pub(super) fn all_endings() -> String {
     )
 }
 
-/// Recognises a format by a file's first 4096 bytes (all of a shorter file) and its length in bytes.
-///
-/// `None` if it is no known format.
+/// Recognises a format by the first 4096 bytes of a file (all of a shorter one) and its length in bytes.
 pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
     let begins = |mark: &&[u8]| beginning.starts_with(mark);
     let marked = FORMATS.iter().find(|f| f.marks.iter().any(begins));
@@ -190,17 +163,15 @@ pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
     found.map(|format| format.kind)
 }
 
-/// Accepts no file, for formats with a mark.
 fn no(_: &[u8], _: u64) -> bool {
     false
 }
 
-/// Whether a file is an STL mesh, text or binary. A binary one may begin with the same word as a text.
 fn is_stl(beginning: &[u8], length: u64) -> bool {
     beginning.starts_with(b"solid") || is_binary_stl(beginning, length)
 }
 
-/// Whether a file with this beginning and length, bytes, is a binary STL mesh: 84 bytes of header, of which the last
+/// 84 bytes of header, of which the last four count the triangles, and 50 bytes per triangle.
 /// four count the triangles, and 50 bytes per triangle.
 pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
     let count = beginning
@@ -214,7 +185,7 @@ fn text(beginning: &[u8]) -> &[u8] {
     beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning)
 }
 
-/// Whether a file is JSON with one of the keys of glTF. Some exporters write the longer lists before `asset`.
+/// JSON with a key of glTF. Some exporters write the longer lists before `asset`.
 fn is_gltf(beginning: &[u8], _: u64) -> bool {
     let text = text(beginning);
     let has = |key: &&[u8]| text.windows(key.len()).any(|window| window == *key);
@@ -222,7 +193,7 @@ fn is_gltf(beginning: &[u8], _: u64) -> bool {
     text.trim_ascii_start().starts_with(b"{") && keys.iter().any(has)
 }
 
-/// Whether the first line that is neither blank nor a comment begins with a Wavefront keyword.
+/// The first line that is neither blank nor a comment begins with a Wavefront keyword.
 fn is_obj(beginning: &[u8], _: u64) -> bool {
     const KEYWORDS: [&[u8]; 11] = [
         b"v", b"vn", b"vt", b"vp", b"f", b"l", b"o", b"g", b"s", b"mtllib", b"usemtl",

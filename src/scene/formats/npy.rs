@@ -1,7 +1,7 @@
 //! NumPy arrays of voxel indices: N x 3, or N x 6 and N x 7 with colours.
 //!
-//! Arrays are read block by block, so memory does not depend on the file. In Fortran order each column is contiguous,
-//! and a block is collected by seeking.
+//! Memory does not depend on the file. In Fortran order each column is contiguous, and a block is collected by
+//! seeking.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -11,7 +11,6 @@ use crate::scene::input::Input;
 use crate::scene::numbers::{Number, Scalar};
 use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
-/// Rows that are read at a time.
 const BLOCK_ROWS: u64 = 4096;
 /// Longest header, bytes; NumPy's own is below 200.
 const MAX_HEADER: u64 = 1 << 16;
@@ -20,7 +19,6 @@ const SAVE_AGAIN: &str =
     "save it with numpy.save(file, indices), where indices is an N x 3 array of whole numbers";
 const FLOOR: &str = "divide the positions by the voxel's size and round them down first: numpy.floor(p / size).astype(int)";
 
-/// An array's description.
 struct Layout {
     scalar: Scalar,
     big_endian: bool,
@@ -28,7 +26,6 @@ struct Layout {
     fortran: bool,
     rows: u64,
     columns: u64,
-    /// Where the numbers begin.
     data: u64,
 }
 
@@ -37,7 +34,7 @@ impl Layout {
         self.scalar.size() as u64
     }
 
-    /// Place of a number among the numbers of `rows` rows.
+    /// Place of a number among those of `rows` rows.
     fn slot(&self, rows: u64, row: u64, column: u64) -> u64 {
         match self.fortran {
             true => column * rows + row,
@@ -46,7 +43,6 @@ impl Layout {
     }
 }
 
-/// Passes on the voxels of an array.
 pub(super) fn read(
     Input { reader, length }: &mut Input<'_>,
     _: &ReadOptions,
@@ -84,7 +80,6 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// Reads the numbers of some rows into `block`, in the file's order.
 fn read_block<R: Read + Seek>(
     reader: &mut R,
     layout: &Layout,
@@ -104,7 +99,6 @@ fn read_block<R: Read + Seek>(
     Ok(())
 }
 
-/// Turns one row of a block into a voxel.
 fn pass_on(
     layout: &Layout,
     block: &[u8],
@@ -182,7 +176,6 @@ fn fault(offset: u64, expected: impl Into<String>, found: impl Into<String>) -> 
     Fault::new("header", offset, expected, found, SAVE_AGAIN)
 }
 
-/// Interprets the header's dictionary.
 fn parse_header(text: &[u8], start: u64) -> Result<Layout, Box<Fault>> {
     let value = |key: &str| {
         let missing = || fault(start, format!("an entry '{key}'"), printable(text));
@@ -226,7 +219,6 @@ fn value<'t>(text: &'t [u8], key: &[u8]) -> Option<&'t [u8]> {
     Some(rest.strip_prefix(b":")?.trim_ascii_start())
 }
 
-/// The type that a description such as `'<i4'` names, and whether its highest byte comes first.
 fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
     let [
         b'\'',
@@ -255,7 +247,6 @@ fn element_type(descr: &[u8]) -> Option<(Scalar, bool)> {
     Some((scalar, *order == b'>'))
 }
 
-/// The two numbers of a shape `(rows, columns)`.
 fn rows_and_columns(shape: &[u8]) -> Option<(u64, u64)> {
     let inside = shape.strip_prefix(b"(")?;
     let end = inside.iter().position(|b| *b == b')')?;

@@ -10,7 +10,6 @@ use crate::scene::numbers::Number;
 use crate::scene::ply::PlyFile;
 use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
-/// Passes on the voxels of a PLY cloud.
 pub(super) fn read(
     input: &mut Input<'_>,
     _: &ReadOptions,

@@ -4,17 +4,12 @@ use std::io::{self, Seek, SeekFrom, Write};
 
 use crate::graph::{PackedNormal, Voxel};
 
-/// Digits of the largest count.
 const COUNT_DIGITS: usize = 20;
 
 /// Writes voxels in the given order and returns their number.
 ///
-/// Positions are the voxels' indices (`int`), colours `uchar`. With `normals`,
-/// `float` normals follow, zero for a voxel without one. The number of vertices
-/// is written into the header last, so `out` must be at its beginning.
-///
-/// # Errors
-/// Errors of `out`.
+/// Positions are the indices (`int`), colours `uchar`. With `normals`, `float` normals follow, zero for none. The
+/// count is written into the header last, so `out` must be at its beginning.
 pub fn write_ply<W: Write + Seek>(
     out: &mut W,
     voxels: impl IntoIterator<Item = Voxel>,
@@ -63,7 +58,7 @@ pub fn write_ply<W: Write + Seek>(
     Ok(count)
 }
 
-/// The line with the number of vertices, and a comment that makes the two equally long for every count.
+/// Equally long for every count.
 fn count_lines(count: u64) -> Vec<u8> {
     let count = count.to_string();
     let filler = "-".repeat(COUNT_DIGITS - count.len());

@@ -1,18 +1,13 @@
 //! The table of generators and their keys.
 
-use super::{maze, shapes, sierpinski, terrain};
+use super::{maze, shapes, terrain};
 use crate::graph::{Graph, Progress, Voxel};
 
-/// The range and default of a generator's key.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyRange {
-    /// The key: `depth`, `density` or `seed`.
     pub key: &'static str,
-    /// Its default value.
     pub default: u32,
-    /// Least value.
     pub least: u32,
-    /// Greatest value.
     pub most: u32,
 }
 
@@ -21,14 +16,12 @@ pub struct KeyRange {
 pub struct Settings {
     /// Levels of the scene: it fits a cube of `2^depth` voxels per side. For `menger`, its iterations.
     pub depth: u32,
-    /// Seed of a random scene.
     pub seed: u32,
     /// Filled voxels, percent.
     pub density: u32,
 }
 
 impl Settings {
-    /// The number of a key of [`KeyRange`].
     pub(super) fn of(&mut self, key: &str) -> &mut u32 {
         match key {
             "depth" => &mut self.depth,
@@ -38,22 +31,16 @@ impl Settings {
     }
 }
 
-/// One kind of scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Generator {
-    /// Its name in a spec.
     pub name: &'static str,
-    /// The keys it takes, in the order in which a spec is written.
     pub keys: &'static [KeyRange],
     pub(super) shape: Shape,
 }
 
-/// A generator's function, which makes the scene.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Shape {
-    /// Voxel by voxel.
     Voxels(fn(&Settings, &mut dyn FnMut(Voxel), &dyn Progress)),
-    /// As a graph with cycles.
     Linked(fn(&Settings) -> Graph),
 }
 
@@ -92,7 +79,7 @@ pub const GENERATORS: &[Generator] = &[
     Generator {
         name: "sierpinski",
         keys: &[depth(30, 1, 30)],
-        shape: Shape::Linked(sierpinski::graph),
+        shape: Shape::Linked(shapes::sierpinski),
     },
     voxels("sphere", &[depth(7, 1, 10)], shapes::sphere),
     voxels("terrain", &[depth(10, 5, 16), SEED], terrain::voxels),

@@ -4,9 +4,9 @@ use super::list::Settings;
 use super::{gradient, hash, palette};
 use crate::graph::{Progress, Voxel};
 
-/// A floor with walls of `max(2, side / 16)` voxels on it. The plan is a grid
-/// of `2^depth - 1` squares a side: those with two odd coordinates are rooms,
-/// those with one may be doors. There is exactly one way between any two rooms.
+/// A floor with walls of `max(2, side / 16)` voxels. Squares of the plan with two odd coordinates are rooms, those with
+/// one may be doors.
+/// There is exactly one way between any two rooms.
 pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
     let side = (1i32 << settings.depth) - 1;
     let top = ((side + 1) / 16).max(2);
@@ -35,8 +35,6 @@ pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress:
     progress.end();
 }
 
-/// The open squares of the plan, row by row: from room to random
-/// unvisited neighbour, and back where there is none.
 fn plan(depth: u32, seed: u32) -> Vec<bool> {
     let side = (1i32 << depth) - 1;
     let square = |x: i32, y: i32| (y * side + x) as usize;

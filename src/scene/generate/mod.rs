@@ -4,14 +4,12 @@
 mod list;
 mod maze;
 mod shapes;
-mod sierpinski;
 mod spec;
 mod terrain;
 
 pub use list::{GENERATORS, Generator, KeyRange, Settings};
 pub use spec::{PREFIX, Spec, SpecError};
 
-/// A few colours (sRGB) that go together.
 const PALETTE: [[u8; 3]; 8] = [
     [214, 96, 77],
     [244, 165, 96],
@@ -23,7 +21,6 @@ const PALETTE: [[u8; 3]; 8] = [
     [190, 110, 150],
 ];
 
-/// A colour of the palette, repeating.
 fn palette(which: u32) -> [u8; 3] {
     PALETTE[which as usize % PALETTE.len()]
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::list::Settings;
 use super::{gradient, hash, palette};
-use crate::graph::{Progress, Voxel};
+use crate::graph::{Graph, PackedNormal, Placement, Progress, Store, Voxel};
 
 /// Cells of the truss along a side.
 const CELLS: i32 = 8;
@@ -37,7 +37,6 @@ fn rows(
     progress.end();
 }
 
-/// Every voxel whose coordinates have an even sum, in two colours by blocks of an eighth of the side.
 pub(super) fn checker(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     let block_log2 = settings.depth.saturating_sub(3);
@@ -70,7 +69,6 @@ pub(super) fn menger(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
     });
 }
 
-/// Each voxel of the cube by itself with a chance of `density` percent.
 pub(super) fn random(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     // Of 2^32 hash values, those below are filled; all at 100 percent.
@@ -99,7 +97,6 @@ fn half_chord(side: i32, y: i32, z: i32) -> i32 {
     ((rest.max(0).isqrt() + 1) / 2) as i32
 }
 
-/// All voxels whose centre is in the ball.
 pub(super) fn sphere(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     rows("sphere", side, sink, progress, |y, z, put| {
@@ -117,7 +114,6 @@ pub(super) fn shell(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
     let middle = side / 2;
     rows("shell", side, sink, progress, |y, z, put| {
         let outer = half_chord(side, y, z);
-        // Inside: one voxel less than the shortest of the nine columns around.
         let inner = (-1..=1)
             .flat_map(|dz| (-1..=1).map(move |dy| half_chord(side, y + dy, z + dz)))
             .min()
@@ -179,4 +175,21 @@ pub(super) fn wires(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
         progress.advance(1);
     }
     progress.end();
+}
+
+/// Sierpinski's tetrahedron: one node whose children 0, 3, 5 and 6, of which no two share a face, are itself.
+pub(super) fn sierpinski(settings: &Settings) -> Graph {
+    Graph {
+        depth: settings.depth,
+        root: 0,
+        mask: vec![0b0110_1001].into(),
+        first: vec![0].into(),
+        links: vec![0; 4].into(),
+        color: vec![[226, 174, 88]].into(),
+        normal: vec![PackedNormal::NONE].into(),
+        opacity: Store::default(),
+        level_start: Vec::new(),
+        voxels: 4u64.saturating_pow(settings.depth),
+        placement: Placement::default(),
+    }
 }

@@ -1,10 +1,8 @@
 //! Hills under floating balls, hollow: the benchmark's large scene.
 //!
-//! The benchmark's generator fills a grid of bits. Here a column is a short
-//! list of solid spans, and three rows of columns are held at a time. So depths
-//! work for which a grid would exceed memory. Its axes are x right, y up, z forward;
-//! `row` is its z and our y, `height` its y and our z. For seed 1 all voxels
-//! and colours are the benchmark's.
+//! A column is a list of solid spans, and three rows of columns are held at a time, so depths work for which a grid of
+//! bits would exceed memory. The axes are the benchmark's: `row` is its z and our y, `height` its y and our z. For seed 1
+//! all voxels and colours are its.
 
 use super::hash;
 use super::list::Settings;
@@ -17,7 +15,6 @@ const BALLS: u32 = 48;
 type Span = (i32, i32);
 
 struct Ball {
-    /// Column, height and row of the centre.
     center: [i32; 3],
     radius: i32,
 }
@@ -25,7 +22,7 @@ struct Ball {
 struct Terrain {
     depth: u32,
     side: i32,
-    /// Bits to change the seeds of the hashes with: none for seed 1, different ones for every other.
+    /// Changes the seeds of the hashes; 0 for seed 1.
     variation: u32,
     balls: Vec<Ball>,
 }
@@ -34,12 +31,11 @@ struct Terrain {
 #[derive(Default)]
 struct RowSpans {
     spans: Vec<Span>,
-    /// Where each column's spans begin, and the end; empty for a row outside.
+    /// Where each column begins, and the end; empty for a row outside.
     start: Vec<u32>,
 }
 
 impl RowSpans {
-    /// Spans of a column, growing and apart from each other; none outside.
     fn column(&self, x: i32) -> &[Span] {
         let x = x as usize;
         match (self.start.get(x), self.start.get(x.wrapping_add(1))) {
@@ -91,7 +87,6 @@ pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress:
     progress.end();
 }
 
-/// Heights that are in spans of both lists.
 fn common(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
     out.clear();
     for &(a_from, a_to) in a {
@@ -104,8 +99,7 @@ fn common(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
     }
 }
 
-/// Heights of `column` that are not in `inside`, growing; the spans of
-/// `inside` are growing, and each lies in one of `column`.
+/// Heights of `column` that are not in `inside`, whose spans are growing and each within one of `column`.
 fn outside(column: &[Span], inside: &[Span], mut each: impl FnMut(i32)) {
     let mut inside = inside.iter().peekable();
     for &(from, to) in column {

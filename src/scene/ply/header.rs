@@ -11,39 +11,28 @@ const MAX_LINE: usize = 1 << 12;
 
 const BROKEN: &str = "the header is damaged or not PLY 1.0; export the file again";
 
-/// One property of an element.
 #[derive(Debug, Clone)]
 pub struct Property {
-    /// Its name.
     pub name: Vec<u8>,
-    /// Type of its numbers.
     pub scalar: Scalar,
     /// Type of the number of numbers, where it is a list.
     pub(super) list: Option<Scalar>,
 }
 
-/// One kind of element.
 #[derive(Debug, Clone)]
 pub struct Element {
-    /// Its name.
     pub name: Vec<u8>,
-    /// The stated number of them.
     pub count: u64,
-    /// Their properties.
     pub properties: Vec<Property>,
 }
 
-/// A whole header.
 #[derive(Debug)]
 pub struct Header {
-    /// Encoding of the body.
     pub(super) encoding: Encoding,
-    /// The elements in the order of the body.
     pub elements: Vec<Element>,
 }
 
 impl Header {
-    /// The elements of a name.
     pub fn element(&self, name: &str) -> Option<&Element> {
         let mut elements = self.elements.iter();
         elements.find(|element| element.name == name.as_bytes())
@@ -51,12 +40,12 @@ impl Header {
 }
 
 impl Element {
-    /// The number of the first property of one of these names that is not a list.
+    /// Number of the first property of one of these names, no list.
     pub fn scalar(&self, names: &[&str]) -> Option<usize> {
         self.position(|p| p.list.is_none() && names.iter().any(|n| p.name == n.as_bytes()))
     }
 
-    /// The number of the first list of one of these names.
+    /// Number of the first list of one of these names.
     pub fn list(&self, names: &[&str]) -> Option<usize> {
         self.position(|p| p.list.is_some() && names.iter().any(|n| p.name == n.as_bytes()))
     }
@@ -65,10 +54,7 @@ impl Element {
         self.properties.iter().position(is_meant)
     }
 
-    /// The numbers of x, y and z.
-    ///
-    /// # Errors
-    /// If one is missing.
+    /// Numbers of the properties x, y and z.
     pub fn positions(&self, offset: u64) -> Result<[usize; 3], Box<Fault>> {
         self.triple([&["x"], &["y"], &["z"]]).ok_or_else(|| {
             Fault::new(
@@ -81,12 +67,10 @@ impl Element {
         })
     }
 
-    /// The numbers of the normal's parts.
     pub fn normals(&self) -> Option<[usize; 3]> {
         self.triple([&["nx"], &["ny"], &["nz"]])
     }
 
-    /// The numbers of red, green and blue.
     pub fn colors(&self) -> Option<[usize; 3]> {
         self.triple([
             &["red", "r", "diffuse_red"],
@@ -101,7 +85,6 @@ impl Element {
     }
 }
 
-/// Reads a header up to and with `end_header`.
 pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Problem> {
     let mut line = Vec::new();
     let mut encoding = None;

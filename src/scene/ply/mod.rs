@@ -17,7 +17,6 @@ const MAX_LINE: usize = 1 << 20;
 
 const CUT: &str = "the file is cut short; export or copy it again";
 
-/// How the body is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Encoding {
     /// One element per line.
@@ -27,19 +26,14 @@ enum Encoding {
     },
 }
 
-/// A file whose header was read.
 pub struct PlyFile<'a, R> {
-    /// The elements in the order of the body.
     pub header: Header,
     source: Source<'a, R>,
     scratch: Vec<u8>,
 }
 
-/// One element of the body.
 pub struct Row<'r> {
-    /// Number among the elements of its kind.
     pub number: u64,
-    /// Byte offset in the file.
     pub offset: u64,
     /// One number per property; 0 for a list.
     pub values: &'r [Number],
@@ -54,10 +48,6 @@ pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
 }
 
 impl<'a, R: BufRead> PlyFile<'a, R> {
-    /// Reads the header.
-    ///
-    /// # Errors
-    /// If it breaks the format's rules.
     pub fn open(reader: &'a mut R) -> Result<Self, Problem> {
         let mut source = Source::new(reader);
         let header = header::read(&mut source)?;
@@ -68,15 +58,11 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         })
     }
 
-    /// Bytes read so far.
     pub fn offset(&self) -> u64 {
         self.source.offset
     }
 
     /// Skips all elements of the next kind.
-    ///
-    /// # Errors
-    /// If the file ends first.
     pub fn skip(&mut self, element: &Element) -> Result<(), Problem> {
         let is_list = |property: &Property| property.list.is_some();
         let is_text = self.header.encoding == Encoding::Ascii;
@@ -91,10 +77,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         }
     }
 
-    /// Reads all elements of the next kind. `list` is the number of the property whose list is kept.
-    ///
-    /// # Errors
-    /// If the file ends first or an element breaks the format's rules, and errors of `visit`.
+    /// Reads all elements of the next kind. `list`: number of the property whose list is kept.
     pub fn rows(
         &mut self,
         element: &Element,
@@ -159,7 +142,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         Ok(())
     }
 
-    /// Reads the next line that is not blank into `scratch`; returns its offset.
     fn text_line(&mut self) -> Result<Option<u64>, Problem> {
         loop {
             let begin = self.source.offset;
@@ -211,7 +193,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
 }
 
 impl Problem {
-    /// Names the part of a fault that has no name yet.
     fn at_part(mut self, part: impl FnOnce() -> String) -> Self {
         if let Self::Invalid(fault) = &mut self
             && fault.part.is_empty()
@@ -237,7 +218,6 @@ fn cut(element: &Element, number: u64, offset: u64) -> Box<Fault> {
     )
 }
 
-/// Reads the numbers of a line.
 fn parse_row(
     line: &[u8],
     element: &Element,
@@ -288,7 +268,6 @@ fn parse_row(
 }
 
 impl Scalar {
-    /// The type that a PLY header names.
     fn from_ply(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"char" | b"int8" => Self::I8,

@@ -5,10 +5,8 @@ use std::io::{BufRead, ErrorKind, Read};
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::numbers::{Number, Scalar};
 
-/// A stream that knows its position.
 pub(super) struct Source<'a, R> {
     reader: &'a mut R,
-    /// Bytes read so far.
     pub(super) offset: u64,
 }
 
@@ -63,8 +61,7 @@ impl<'a, R: BufRead> Source<'a, R> {
         Ok(true)
     }
 
-    /// Reads so many bytes; `None` if the file ends first. `scratch` holds those that do not lie side by side in the
-    /// reader's buffer.
+    /// Reads `count` bytes; `None` if the file ends first. `scratch` holds those that the reader's buffer cuts.
     #[inline]
     pub(super) fn bytes<T>(
         &mut self,
@@ -89,7 +86,6 @@ impl<'a, R: BufRead> Source<'a, R> {
         Ok(Some(decoded))
     }
 
-    /// Reads a binary number; `None` if the file ends first.
     pub(super) fn number(&mut self, scalar: Scalar, big: bool) -> Result<Option<Number>, Problem> {
         self.bytes(scalar.size(), &mut Vec::new(), |bytes| {
             scalar.decode(big, bytes)

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, PackedNormal, Silent, Voxel,
+    BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, Silent, Voxel,
 };
 use shiftvox::scene::generate::Spec;
 use shiftvox::split_mix::SplitMix;
@@ -293,7 +293,7 @@ fn cyclic(depth: u32, seed: u64) -> Result<Graph, String> {
             exists.then(|| numbers.below(nodes) as u32)
         });
         let shade = (node * 30) as u8;
-        graph.add_node_with_normal([255 - shade, shade, 120], PackedNormal::NONE, children);
+        graph.add_node([255 - shade, shade, 120], children);
     }
     graph.build().map_err(|e| e.to_string())
 }

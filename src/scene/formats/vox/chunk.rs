@@ -2,25 +2,19 @@
 //!
 //! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the size of
 //! its content, the size of its children, the content, and the children. Numbers are little endian. Every size is
-//! compared with the bytes left before it is used. So reads stay within bounds, and no allocation depends on a number
-//! alone.
+//! compared with the bytes left before use: no allocation depends on a number alone.
 
 use super::DAMAGED;
 use crate::scene::fault::{Fault, printable};
 
-/// Bytes of a chunk's header.
 const HEADER: usize = 12;
 
 const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
 
-/// One child of `MAIN`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk<'a> {
-    /// Its id.
     pub id: [u8; 4],
-    /// Where its header begins in the file.
     pub offset: usize,
-    /// Its content, which begins 12 bytes after its header.
     pub content: &'a [u8],
 }
 
@@ -63,7 +57,6 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
 }
 
 impl Chunks<'_> {
-    /// Bytes of the file after the end of `MAIN`, which are ignored.
     pub(super) fn left_over(&self) -> usize {
         self.bytes.len() - self.end
     }
@@ -125,11 +118,10 @@ fn header(
             TRUNCATED,
         ));
     }
-    // Both fit in `left`, which is a `usize`.
     Ok((id, content as usize, children as usize))
 }
 
-/// A dictionary of strings, as scene nodes have them. Keys and values are kept as bytes.
+/// Attributes of scene nodes, as bytes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Dict<'a> {
     entries: Vec<(&'a [u8], &'a [u8])>,
@@ -191,7 +183,6 @@ impl<'a> Dict<'a> {
     }
 }
 
-/// Reads the fields of one chunk in order.
 pub(super) struct Fields<'a> {
     part: String,
     content: &'a [u8],
@@ -209,7 +200,6 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The chunk's name in error messages.
     pub(super) fn part(&self) -> &str {
         &self.part
     }
@@ -219,7 +209,6 @@ impl<'a> Fields<'a> {
         (self.base + self.at) as u64
     }
 
-    /// The unread rest.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.content[self.at..]
     }
@@ -245,7 +234,6 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A number of 4 bytes.
     pub(super) fn u32(&mut self, what: &str) -> Result<u32, Box<Fault>> {
         let bytes = self.bytes(4, what)?;
         Ok(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
@@ -265,7 +253,6 @@ impl<'a> Fields<'a> {
         Ok(count)
     }
 
-    /// A dictionary.
     pub(super) fn dict(&mut self) -> Result<Dict<'a>, Box<Fault>> {
         let offset = self.offset();
         let count = self.count("attributes", 8)?;

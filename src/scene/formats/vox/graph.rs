@@ -12,41 +12,32 @@ use super::{AGAIN, DAMAGED};
 use crate::scene::SceneInfo;
 use crate::scene::fault::{Fault, Problem};
 
-/// Most visits of nodes and models. A scene graph is meant to be a tree. But a file can name one node as the child of
-/// many, and then the number of visits is not bounded by the file's length.
+/// Most visits of nodes and models, which the file's length does not bound: many nodes may name one as their child.
 const MAX_VISITS: u64 = 1 << 20;
 
 struct Node {
-    /// Its name in error messages.
     part: String,
-    /// Offset of its chunk.
     offset: u64,
-    /// Whether the editor hides it.
     hidden: bool,
     kind: NodeKind,
 }
 
 enum NodeKind {
-    /// Moves its child.
     Transform {
         child: u32,
         layer: Option<u32>,
         transform: Transform,
     },
-    /// Holds other nodes, by id.
     Group(Vec<u32>),
-    /// Shows models, by number.
     Shape(Vec<u32>),
 }
 
-/// All nodes of a file by their ids, and the hidden layers.
 #[derive(Default)]
 pub(super) struct SceneGraph {
     nodes: BTreeMap<u32, Node>,
     hidden_layers: BTreeSet<u32>,
 }
 
-/// A step of the way through the graph.
 enum Step<'g> {
     Enter {
         id: u32,
@@ -58,17 +49,14 @@ enum Step<'g> {
 }
 
 impl SceneGraph {
-    /// Whether the file has no scene graph.
     pub(super) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Number of nodes.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Reads a chunk `LAYR`.
     pub(super) fn add_layer(&mut self, chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
         let mut fields = Fields::new(chunk);
         let id = fields.u32("layer id")?;
@@ -78,7 +66,6 @@ impl SceneGraph {
         Ok(())
     }
 
-    /// Reads a chunk `nTRN`, `nGRP` or `nSHP`.
     pub(super) fn add_node(&mut self, chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
         let mut fields = Fields::new(chunk);
         let id = fields.u32("node id")?;
@@ -253,7 +240,6 @@ impl SceneGraph {
     }
 }
 
-/// The rest of a chunk `nTRN`.
 fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<Fault>> {
     let child = fields.u32("child id")?;
     fields.u32("reserved field")?;
@@ -285,14 +271,12 @@ fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<F
     })
 }
 
-/// The key frame that attributes belong to, if they have one.
 fn frame_of(attributes: &Dict<'_>, part: &str) -> Result<Option<u32>, Box<Fault>> {
     let frame = attributes.numbers::<1>("_f", part, "a frame number")?;
     // Frames before the first count as the first.
     Ok(frame.map(|[frame]| u32::try_from(frame).unwrap_or(0)))
 }
 
-/// Keeps the items of the first key frame.
 struct FirstKeyFrame<T> {
     key: u32,
     items: Vec<T>,

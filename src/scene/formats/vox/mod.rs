@@ -25,24 +25,20 @@ const AGAIN: &str = "open the file in MagicaVoxel and save it again";
 const DAMAGED: &str =
     "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
 
-/// A model as the file stores it.
 struct Model<'a> {
     /// `SIZE`, voxels.
     size: [u32; 3],
-    /// x, y, z, colour index of each voxel.
     voxels: &'a [[u8; 4]],
     /// Where the first voxel lies in the file.
     offset: u64,
 }
 
-/// The contents of the file's chunks.
 struct Contents<'a> {
     models: Vec<Model<'a>>,
     graph: SceneGraph,
     palette: Palette,
 }
 
-/// Passes on the voxels of a `.vox` file.
 pub(super) fn read(
     input: &mut Input<'_>,
     options: &ReadOptions,
@@ -84,7 +80,6 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// Reads all chunks of voxels, placements and colours.
 fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'a>, Problem> {
     let mut contents = Contents {
         models: Vec::new(),
@@ -129,10 +124,9 @@ fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'
                 contents.palette = Palette::read(&chunk)?;
                 contents.palette.entries().clone_into(&mut info.palette);
             }
-            b"IMAP" => palette::check_index_map(&chunk)?,
             b"nTRN" | b"nGRP" | b"nSHP" => contents.graph.add_node(&chunk)?,
             b"LAYR" => contents.graph.add_layer(&chunk)?,
-            // Materials, cameras, notes, render settings, and chunks of later versions.
+            // Materials, the editor's order of the palette, cameras, notes, and chunks of later versions.
             _ => {}
         }
     }
@@ -152,7 +146,7 @@ fn lonely_size(chunk: &Chunk<'_>) -> Box<Fault> {
     Fault::new("chunk SIZE", chunk.offset as u64, expected, found, DAMAGED)
 }
 
-/// Counts the voxels of all models, each model once, and rejects those that the options reject.
+/// Counts voxels, each model once, and rejects those that the options reject.
 fn survey(
     contents: &Contents<'_>,
     options: &ReadOptions,
@@ -208,7 +202,7 @@ fn survey(
     Ok(())
 }
 
-/// Passes on the voxels of one placement of a model, at their own coordinates without a transform.
+/// One placement of a model, at its own coordinates without a transform.
 fn place(
     model: &Model<'_>,
     transform: Option<Transform>,
@@ -230,7 +224,6 @@ fn place(
 }
 
 impl Model<'_> {
-    /// Voxels that are not empty.
     fn visible(&self) -> u64 {
         self.voxels.iter().filter(|voxel| voxel[3] != 0).count() as u64
     }
@@ -252,9 +245,9 @@ fn position(stored: [u8; 3], size: [u32; 3], rule: OutOfBounds) -> Option<[i64; 
 
 /// The coordinate of a stored byte.
 ///
-/// Inside `SIZE` it is the byte. Outside, it is the number congruent to it modulo 256 that is nearest to the middle of
-/// `SIZE`: one of the 256 numbers from `floor(SIZE / 2) - 128` on. Numbers inside `SIZE` are all among these (`SIZE` is
-/// below 256 where a byte can be outside it), so the rule has no seam.
+/// Outside `SIZE` it is the number congruent to it modulo 256 that is nearest to the middle of `SIZE`: one of the 256
+/// numbers from `floor(SIZE / 2) - 128` on. Numbers inside `SIZE` are all among these (`SIZE` is below 256 where a byte
+/// can be outside it), so the rule has no seam.
 fn unwrap(byte: u8, size: u32) -> i64 {
     let byte = u32::from(byte);
     let is_wrapped = byte >= size && byte >= size / 2 + 128;

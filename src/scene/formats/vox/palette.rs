@@ -35,7 +35,6 @@ impl Palette {
         Self { rgba, given: 0 }
     }
 
-    /// The palette of a chunk `RGBA`; entries that it lacks stay MagicaVoxel's own.
     pub(super) fn read(chunk: &Chunk<'_>) -> Result<Self, Box<Fault>> {
         let (entries, rest) = chunk.content.as_chunks::<4>();
         if !rest.is_empty() || entries.len() > 256 {
@@ -55,48 +54,13 @@ impl Palette {
         Ok(palette)
     }
 
-    /// The colour of an index.
     #[inline]
     pub(super) fn color(&self, index: u8) -> [u8; 3] {
         let [r, g, b, _] = self.rgba[usize::from(index)];
         [r, g, b]
     }
 
-    /// The entries in the file that have an index.
     pub(super) fn entries(&self) -> &[[u8; 4]] {
         &self.rgba[1..=self.given.min(255)]
-    }
-}
-
-/// Checks a chunk `IMAP`, which changes no colour.
-pub(super) fn check_index_map(chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
-    if chunk.content.len() == 256 {
-        return Ok(());
-    }
-    Err(Fault::new(
-        "chunk IMAP",
-        chunk.offset as u64,
-        "256 bytes",
-        format!("{} bytes", chunk.content.len()),
-        AGAIN,
-    ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn default_palette_is_magicavoxels() {
-        let ours = Palette::default_colors();
-        // dot_vox keeps the published table without its unused entry 0.
-        for (i, color) in dot_vox::DEFAULT_PALETTE.iter().take(255).enumerate() {
-            assert_eq!(
-                ours.rgba[i + 1],
-                [color.r, color.g, color.b, color.a],
-                "index {}",
-                i + 1
-            );
-        }
     }
 }

@@ -41,7 +41,6 @@ pub(super) fn palette(histogram: &BTreeMap<[u8; 3], u64>) -> (Vec<[u8; 3]>, BTre
     let mut index_of = BTreeMap::new();
     for (i, (_, colors)) in means.iter().enumerate() {
         for (color, _) in colors {
-            // At most 255 boxes.
             index_of.insert(*color, (i + 1) as u8);
         }
     }
@@ -76,7 +75,6 @@ fn split(colors: &mut Vec<Counted>) -> Vec<Counted> {
     colors.split_off(at.clamp(1, last))
 }
 
-/// The mean colour, weighted by numbers of voxels, rounded to nearest.
 fn mean(colors: &[Counted]) -> [u8; 3] {
     let total: u128 = colors
         .iter()
@@ -88,24 +86,6 @@ fn mean(colors: &[Counted]) -> [u8; 3] {
             .iter()
             .map(|(color, n)| u128::from(color[channel]) * u128::from(*n))
             .sum();
-        // A mean of bytes is a byte.
         ((sum + total / 2) / total) as u8
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn few_colors_are_kept_exactly() {
-        let histogram = (0..255u8)
-            .map(|i| ([i, 255 - i, 7], 1 + u64::from(i)))
-            .collect();
-        let (palette, index_of) = palette(&histogram);
-        assert_eq!(palette.len(), 255);
-        for color in histogram.keys() {
-            assert_eq!(palette[usize::from(index_of[color]) - 1], *color);
-        }
-    }
 }

@@ -10,7 +10,6 @@ pub(super) struct Transform {
     source: [u8; 3],
     /// 1 or -1 for each row.
     sign: [i64; 3],
-    /// Voxels.
     translation: [i64; 3],
 }
 
@@ -21,10 +20,8 @@ impl Transform {
         translation: [0; 3],
     };
 
-    /// The matrix of a rotation byte: bits 0-1 and 2-3 say in which column the first
-    /// and the second row have their entry, bits 4 to 6 which rows are negative.
-    /// The third row takes the column that is left. `None` where two rows claim one
-    /// column, or a column does not exist.
+    /// Bits 0-1 and 2-3 are the columns of the first and the second row's entry, bits 4 to 6 negative rows. The third
+    /// row takes the column that is left. `None` where two rows claim one column, or a column does not exist.
     pub(super) fn from_rotation_byte(byte: u8) -> Option<Self> {
         let first = byte & 3;
         let second = byte >> 2 & 3;
@@ -46,7 +43,6 @@ impl Transform {
         }
     }
 
-    /// Rotates, without translating.
     #[inline]
     fn rotate(&self, v: [i64; 3]) -> [i64; 3] {
         std::array::from_fn(|row| self.sign[row] * v[usize::from(self.source[row])])
@@ -87,7 +83,6 @@ impl Transform {
     }
 }
 
-/// The fault of an invalid rotation byte.
 pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
     Fault::new(
         format!("{part}, attribute _r"),
@@ -96,29 +91,4 @@ pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
         value.to_string(),
         DAMAGED,
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn all() -> Vec<(u8, Transform)> {
-        (0..=255)
-            .filter_map(|byte| Some((byte, Transform::from_rotation_byte(byte)?)))
-            .collect()
-    }
-
-    #[test]
-    fn matrices_agree_with_dot_vox() {
-        assert_eq!(all().len(), 48);
-        for (byte, ours) in all() {
-            let columns = dot_vox::Rotation::from_byte(byte).to_cols_array_2d();
-            for (axis, column) in columns.iter().enumerate() {
-                let mut unit = [0i64; 3];
-                unit[axis] = 1;
-                let ours = ours.rotate(unit);
-                assert_eq!(ours.map(|c| c as f32), *column, "byte {byte}, axis {axis}");
-            }
-        }
-    }
 }

@@ -9,7 +9,6 @@ use crate::graph::Voxel;
 /// Largest side of a model; a voxel's coordinate is one byte.
 const MODEL_SIDE: i32 = 256;
 
-/// Position inside a block, then colour.
 type Stored = ([u8; 3], [u8; 3]);
 
 /// Collects voxels and writes them as `.vox`.
@@ -25,29 +24,22 @@ pub struct VoxWriter {
     blocks: BTreeMap<[i32; 3], Vec<Stored>>,
 }
 
-/// The result of a [`VoxWriter`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VoxWritten {
-    /// Voxels in the file.
     pub voxels: u64,
-    /// Models in the file.
     pub models: u32,
-    /// Different colours of the voxels.
     pub colors_given: usize,
     /// Colours in the palette, at most 255.
     pub colors_kept: usize,
 }
 
 impl VoxWriter {
-    /// A writer without voxels.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds one voxel.
     pub fn add(&mut self, voxel: Voxel) {
         let block = voxel.index.map(|i| i.div_euclid(MODEL_SIDE));
-        // The remainder by 256 is a byte.
         let local = voxel.index.map(|i| i.rem_euclid(MODEL_SIDE) as u8);
         self.blocks
             .entry(block)
@@ -55,14 +47,9 @@ impl VoxWriter {
             .push((local, voxel.color));
     }
 
-    /// Writes all voxels.
-    ///
-    /// # Errors
-    /// Errors of `out`, and [`io::ErrorKind::InvalidInput`] if the file
-    /// would exceed the 4 GiB that the format can count.
+    /// Fails also if the file would exceed the 4 GiB that the format can count.
     pub fn write(mut self, out: &mut dyn Write) -> io::Result<VoxWritten> {
         if self.blocks.is_empty() {
-            // MagicaVoxel expects a model, even if there is nothing in it.
             self.blocks.insert([0; 3], Vec::new());
         }
         let mut histogram = BTreeMap::new();
@@ -114,14 +101,13 @@ impl VoxWriter {
     }
 }
 
-/// Sorts by position and keeps the last of several voxels at one.
 fn keep_last(stored: &mut Vec<Stored>) {
     stored.reverse();
     stored.sort_by_key(|([x, y, z], _)| [*z, *y, *x]);
     stored.dedup_by_key(|(position, _)| *position);
 }
 
-/// Lowest position of a block's voxels, and the size that holds them; 1 where there are none.
+/// Lowest position, and the size from there; 1 without voxels.
 fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
     let mut low = [u8::MAX; 3];
     let mut high = [0u8; 3];
@@ -184,13 +170,11 @@ fn transform_node(
     chunk(out, b"nTRN", &node.content)
 }
 
-/// The content of a scene node, as it grows.
 struct Node {
     content: Vec<u8>,
 }
 
 impl Node {
-    /// A node without attributes.
     fn new(id: u32) -> Self {
         let mut node = Self {
             content: Vec::new(),
@@ -205,7 +189,6 @@ impl Node {
     }
 
     fn string(&mut self, text: &str) {
-        // Texts here are a few dozen bytes.
         self.number(text.len() as u32);
         self.content.extend(text.as_bytes());
     }

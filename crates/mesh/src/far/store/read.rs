@@ -45,10 +45,9 @@ impl FarFile {
     /// # Errors
     /// When it cannot be read, or a field of header or hierarchy is not as it should be.
     pub fn open(path: &Path) -> Result<Self, FarError> {
-        let refused = |refused| FarError::refused(path, refused);
-        let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+        let opened = file::open(path, HEADER_BYTES)?;
         read_header(&opened.beginning, opened.bytes, path)?;
-        Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
+        Self::of(Bytes::Mapped(opened.map()?), path)
     }
 
     /// Opens a file of which at most so many bytes of nodes' data are in memory, unpacked, at a time (a larger node is

@@ -40,10 +40,9 @@ impl TexturedFile {
     /// # Errors
     /// When it cannot be read, is something else, is truncated, or a field is not as it should be.
     pub fn open(path: &Path) -> Result<Self, TexturedError> {
-        let refused = |refused| TexturedError::refused(path, refused);
-        let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+        let opened = file::open(path, HEADER_BYTES)?;
         read_header(&opened.beginning, opened.bytes, path)?;
-        Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
+        Self::of(Bytes::Mapped(opened.map()?), path)
     }
 
     /// A file that is held in memory; it is named `(memory)` in errors.
