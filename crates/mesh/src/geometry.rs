@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-/// The box around points: its lowest and highest corner.
 pub(crate) fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points
@@ -10,12 +9,10 @@ pub(crate) fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) 
         .fold(start, |(low, high), p| (low.min(p), high.max(p)))
 }
 
-/// A point in double precision.
 pub(crate) fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
     DVec3::from_array(position.map(Into::into))
 }
 
-/// Area of a triangle.
 pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / 2.0
 }

@@ -28,7 +28,6 @@ const LEAST_POINTS: u32 = 16;
 /// Levels whose nodes are handed to threads.
 const PARALLEL_LEVELS: u32 = 4;
 
-/// The opacities of all nodes.
 pub(super) fn opacities(graph: GraphView<'_>, covered: Vec<Covered>) -> Vec<Opacity> {
     let nodes = covered.len();
     let columns = Columns {
@@ -89,7 +88,6 @@ impl Columns<'_> {
         }
     }
 
-    /// The node of a level at a place.
     fn node_at(&self, place: [u32; 3], level: u32) -> Option<u32> {
         if place.iter().any(|&p| p >> level != 0) {
             return None;
@@ -100,7 +98,6 @@ impl Columns<'_> {
         })
     }
 
-    /// Whether a node is opaque along an axis.
     fn is_opaque(&self, node: u32, axis: usize) -> bool {
         self.found[node as usize].load(Ordering::Relaxed) >> (8 * axis) & 255 == 255
     }
@@ -183,7 +180,6 @@ impl Columns<'_> {
         column
     }
 
-    /// The points that a node covers.
     fn masks(&self, node: u32) -> Masks {
         let masks = &self.covered[node as usize].masks;
         [0, 1, 2].map(|axis| masks[axis].load(Ordering::Relaxed))

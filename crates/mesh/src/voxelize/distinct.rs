@@ -19,7 +19,6 @@ type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
 /// The sum of equal triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Repeated {
-    /// How many they are.
     pub(super) times: u32,
     /// Colours of the corners, averaged by opacity.
     pub(super) colors: [DVec3; 3],

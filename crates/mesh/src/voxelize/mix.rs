@@ -24,7 +24,6 @@ pub(super) struct Painted {
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
-    /// The number of equal triangles.
     pub(super) times: u32,
 }
 

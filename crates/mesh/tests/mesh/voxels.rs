@@ -28,7 +28,6 @@ fn cells(voxels: &[Voxel]) -> HashSet<[i32; 3]> {
     set
 }
 
-/// A square of side 1 at some height.
 fn square(z: f32) -> Mesh {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, z]), 0))

@@ -23,7 +23,6 @@ fn small() -> TexturedData {
     build(&mesh.unwrap(), &options(&[4, 2], 2, Element::Cube), &Silent).unwrap()
 }
 
-/// Reads and verifies a file.
 fn verified(bytes: &[u8]) -> Result<(), TexturedError> {
     TexturedFile::from_bytes(bytes).and_then(|file| file.verify())
 }

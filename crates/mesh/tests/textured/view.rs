@@ -29,7 +29,6 @@ pub(super) fn shown(detail: Detail) -> ViewOptions {
     }
 }
 
-/// A level of the first grid.
 fn drawn(file: &TexturedFile, view: &RasterCamera, level: u32) -> (RasterPicture, TexturedCounts) {
     draw(file, view, &shown(Detail::Level { grid: 0, level })).unwrap()
 }

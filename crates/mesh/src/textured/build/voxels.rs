@@ -23,7 +23,6 @@ impl Filled {
     }
 }
 
-/// The cell of a number.
 pub(super) fn cell_of(number: u32, cells: u32) -> [u32; 3] {
     [
         number % cells,

@@ -48,7 +48,6 @@ pub(super) struct GridEntry {
     pub(super) spare: u32,
     pub(super) voxels: u64,
     pub(super) listed: u64,
-    /// Sub-textures.
     pub(super) textures: u64,
     pub(super) projected: u64,
     pub(super) projected_afresh: u64,
@@ -57,7 +56,6 @@ pub(super) struct GridEntry {
     pub(super) textures_checksum: u64,
 }
 
-/// Bytes of a [`GridEntry`].
 pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
 
 /// Where a grid's sections lie: begin and end.
@@ -101,14 +99,12 @@ impl Layout {
         }
     }
 
-    /// Bytes of the file.
     pub(super) fn end(&self) -> u64 {
         self.grids
             .last()
             .map_or(self.primitives[1], |g| g.textures[1])
     }
 
-    /// All sections, in order.
     pub(super) fn sections(&self) -> impl Iterator<Item = [u64; 2]> + '_ {
         let of_grids = self
             .grids

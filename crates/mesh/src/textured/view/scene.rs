@@ -60,17 +60,14 @@ impl<'f> Shown<'f> {
         }
     }
 
-    /// Number of primitives.
     pub(super) fn primitives(&self) -> usize {
         self.primitives.len()
     }
 
-    /// Number of surfels.
     pub(super) fn surfels(&self) -> usize {
         self.faces.len()
     }
 
-    /// The surfel of a textured triangle.
     fn face(&self, number: usize) -> &Face<'f> {
         &self.faces[(number - self.primitives.len()) / 2]
     }
