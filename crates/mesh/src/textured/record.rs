@@ -21,20 +21,15 @@ pub struct Primitive {
     pub spare: u8,
 }
 
-/// Bytes of a [`Primitive`].
-pub const PRIMITIVE_BYTES: usize = size_of::<Primitive>();
-
 impl Primitive {
     /// The record of a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
         let normal = |n: DVec3| {
             // Normals of a file are in single precision.
-            let is_plane = n.distance_squared(plane) < 1e-12;
-            if is_plane {
-                PackedNormal::NONE.0
-            } else {
-                PackedNormal::encode(n).0
+            match n.distance_squared(plane) < 1e-12 {
+                true => PackedNormal::NONE.0,
+                false => PackedNormal::encode(n).0,
             }
         };
         Self {
@@ -45,7 +40,7 @@ impl Primitive {
         }
     }
 
-    /// Positions of the corners.
+    /// The corners.
     pub fn positions(&self) -> [DVec3; 3] {
         self.corners.map(point)
     }
@@ -76,15 +71,19 @@ pub struct VoxelRecord {
     pub depth: u16,
     /// The first entry of its list; the list ends where the next voxel's begins.
     pub first: u32,
-    /// For the face on the outer side along each axis: the number of its
-    /// sub-texture, [`CLEAR`] or [`NEVER`].
+    /// For the outer face along each axis: the number of its sub-texture, [`CLEAR`] or [`NEVER`].
     pub textures: [u32; 3],
 }
 
-/// Bytes of a [`VoxelRecord`].
-pub const VOXEL_BYTES: usize = size_of::<VoxelRecord>();
+/// The primitives of voxel `number`, rising.
+pub(super) fn list_of<'l>(voxels: &[VoxelRecord], lists: &'l [u32], number: usize) -> &'l [u32] {
+    let end = voxels
+        .get(number + 1)
+        .map_or(lists.len(), |v| v.first as usize);
+    &lists[voxels[number].first as usize..end]
+}
 
-/// A face that is a surfel at some level, but nothing is projected on any of its texels.
+/// A face that some level shows, but nothing projects on it.
 pub const CLEAR: u32 = u32::MAX - 1;
 /// A face that no level shows.
 pub const NEVER: u32 = u32::MAX;
@@ -100,9 +99,6 @@ pub struct Texel {
     /// Normal, packed, on the outer side.
     pub normal: u16,
 }
-
-/// Bytes of a [`Texel`].
-pub const TEXEL_BYTES: usize = size_of::<Texel>();
 
 impl Texel {
     /// Whether nothing projects on it.

@@ -1,33 +1,17 @@
 //! The points of a voxel's faces that a mesh covers, and the opacities that they come to.
 //!
-//! A voxel's face is sampled at 64 points; a point is covered where a triangle within the voxel meets the line through
-//! it. The covered points are stored, not only their number. So coverage is combined by position: two halves of a
-//! slanted wall, one in front of the other, make a whole wall. A face of a coarser voxel has the points of four columns
-//! of two voxels, and four points become one. The remainder of each block is carried to the next one, so that a face
-//! keeps its share.
-//!
-//! Triangles have two sides, so what the mesh covers along an axis it covers from both ends of it.
-
-use std::sync::atomic::{AtomicU8, AtomicU64};
+//! A face has 64 points; one is covered where a triangle within the voxel meets the line through it. The points are
+//! stored, not only their number, so two halves of a slanted wall, one before the other, make a whole wall. Triangles
+//! have two sides: what is covered along an axis is covered from both ends of it.
 
 use super::touch::{OTHERS, Prepared};
 
 /// Points along a side of a face.
 const POINTS: usize = 8;
-/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u`
-/// and `v` the axes after it.
+/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
-/// The coverage of a node.
-#[derive(Debug, Default)]
-pub(super) struct Covered {
-    /// The points of its faces.
-    pub(super) masks: [AtomicU64; 3],
-    /// The coarsest level at which a large object is in it.
-    pub(super) large_from: AtomicU8,
-}
-
-/// A pseudo-random number, computed from the coverage masks of a node.
+/// A number that looks random, of the masks of a node.
 pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)
@@ -37,8 +21,7 @@ pub(super) fn dither(masks: &Masks) -> u32 {
     (mixed.wrapping_mul(0xd6e8_feb8_6659_fd93) >> 32) as u32
 }
 
-/// The opacity of a face of which so many of the 64 points are covered: in
-/// sixteenths, rounded up or down as the dither has it, all and nothing apart.
+/// The opacity of a face of so many covered points: in sixteenths, rounded up or down as the dither has it.
 pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     let sixteenths = ((points * 16 + (dither & 63)) / 64) as u8;
     match sixteenths {
@@ -49,8 +32,8 @@ pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     }
 }
 
-/// Where in the eighths of a cell point (u, v) lies: over a row, or a column,
-/// every eighth once, so that a line along an axis is measured to a 64th.
+/// Where in the eighths of a cell point (u, v) lies: over a row, or a column, every eighth once, so that a line along an
+/// axis is measured to a 64th.
 fn offsets(u: usize, v: usize) -> [i64; 2] {
     const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
     [SPREAD[(v + 3 * u) & 7], SPREAD[(u + 5 * v) & 7]]
@@ -58,8 +41,7 @@ fn offsets(u: usize, v: usize) -> [i64; 2] {
 
 /// Adds the points that a triangle covers within a voxel.
 ///
-/// Sizes: corners and points stay below 2^31, so an edge times a distance is below 2^62. The normal is below 2^61, and
-/// its products are `i128`.
+/// Corners and points stay below 2^31, so an edge times a distance is below 2^62.
 pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
     let cell = side / POINTS as i64;
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -76,8 +58,8 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
             let high = flat.iter().map(|p| p[axis]).max().unwrap_or(0);
             low.max(0) / cell..=high.min(side - 1) / cell
         };
-        // For each corner, the normal's other components times the offset to it, and the bounds of the voxel along the
-        // axis.
+        // The triangle is within the voxel where the normal's other components times the way from the first corner
+        // are within these bounds.
         let [first, ..] = flat;
         let at = i128::from(triangle.corners[0][k] - corner[k]);
         let along = i128::from(normal[k]) * i128::from(turn);
@@ -115,8 +97,8 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
 
 /// The coverage of a node's eight children together, by octant.
 ///
-/// Of four points one is left. The remainder of a block of four points is carried to the next block with a covered
-/// point, so that a face covers as many points as its children do.
+/// Four points become one. The remainder of a block of four is carried to the next block with a covered point, so that
+/// a face keeps its share.
 pub(super) fn joined(children: &[Masks]) -> Masks {
     let mut masks = Masks::default();
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -124,7 +106,7 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
             let octant = (column & 1) << (2 - u) | (column >> 1) << (2 - v);
             children[octant][k] | children[octant | 1 << (2 - k)][k]
         });
-        // The last remainder is rounded by a dither value from the contents.
+        // The first remainder is random, so that the last is rounded without bias.
         let mut points = dither(&[columns[0] ^ columns[3], columns[1], columns[2]]) & 3;
         for (column, covered) in columns.into_iter().enumerate() {
             let (cu, cv) = (column & 1, column >> 1);
@@ -148,7 +130,6 @@ mod tests {
     use super::super::touch::child;
     use super::*;
 
-    /// Lattice units of a voxel's side in these tests.
     const SIDE: i64 = 1 << 10;
 
     fn masks(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> Masks {
@@ -172,12 +153,11 @@ mod tests {
         };
         assert_eq!(covered(-9, 3000, [0; 3]), [64, 0, 0]);
         assert_eq!(covered(-9, 512, [0; 3]), [32, 0, 0]);
-        // A strip of an eighth of the side, anywhere: an eighth of the points, to a 64th of the side.
+        // A strip of an eighth of the side, anywhere.
         for low in (0..896).step_by(37) {
             let [points, ..] = covered(low, low + 128, [0; 3]);
             assert!((7..=9).contains(&points), "{low}: {points}");
         }
-        // In the next voxel.
         assert_eq!(covered(-9, 3000, [-SIDE, 0, 0]), [0; 3]);
     }
 
@@ -188,7 +168,6 @@ mod tests {
         let [high, low] = [reach + far, reach - far];
         let slant = quad([[-far, high, -far], [far, low, -far], [far, low, far]]);
         let near = masks(&slant, [0; 3])[0].count_ones();
-        // One voxel alone has seven tenths; both, one before the other, are whole.
         assert!((40..=50).contains(&near), "{near}");
         let octants = [0, 1, 2, 3, 4, 5, 6, 7].map(|o| masks(&slant, child([0; 3], SIDE, o)));
         let lower_half = 0x0f0f_0f0f_0f0f_0f0f;

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
+use super::walk::Cube;
 use crate::Surface;
 
 /// Levels by default: at most 512 voxels a side.
 pub const DEFAULT_DEPTH: u32 = 9;
 /// Most levels.
 pub const MAX_DEPTH: u32 = 20;
-/// Most pairs of a voxel and a triangle that are looked at, by [`least_looked_at`](super::least_looked_at): 2^32 voxels,
-/// the most of a graph, are a smaller area.
+/// Most pairs of a voxel and a triangle, by [`least_looked_at`](super::least_looked_at).
 pub const MOST_LOOKED_AT: u64 = 1 << 33;
 /// Bits of a coordinate on the lattice; `touch.rs` counts on it.
-pub(super) const BITS: u32 = 30;
+const BITS: u32 = 30;
 
 /// Why there is no grid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -26,7 +26,7 @@ pub enum GridError {
     /// More triangles than 32 bits number.
     #[error("{0} triangles are more than 32 bits can number; split the mesh")]
     TooMany(usize),
-    /// Voxels and triangles that are compared without end.
+    /// More pairs of a voxel and a triangle than are looked at.
     #[error(
         "at {depth} levels its triangles cross voxels {least} times or more, and at most {MOST_LOOKED_AT} are \
          looked at: ask for fewer levels, or cut the mesh into parts"
@@ -34,10 +34,10 @@ pub enum GridError {
     TooMuch {
         /// Levels that were asked for.
         depth: u32,
-        /// How often a triangle crosses a voxel, at the least.
+        /// Pairs, at the least.
         least: u64,
     },
-    /// Coordinates beyond what numbers hold, or all but equal far from the origin.
+    /// Coordinates that are infinite, or nearly equal far from the origin.
     #[error(
         "the mesh spans {extent} units {distance} units from the origin: too little for its \
          coordinates; move it to the origin"
@@ -50,12 +50,9 @@ pub enum GridError {
     },
 }
 
-/// Where voxels lie in the world: cubes of one size, `2^depth` a side, in the
-/// axes of the mesh.
+/// Where voxels lie in the world: `2^depth` cubes a side, in the axes of the mesh.
 ///
-/// The longest side of the mesh's box spans `2^depth - 1` voxels, from the
-/// middle of the first layer to the middle of the last. So the mesh's outermost
-/// planes lie within a layer and not between two, which would both be touched.
+/// The mesh's outermost planes lie in the middle of a layer, and not between two, which would both be touched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     depth: u32,
@@ -64,7 +61,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The grid of so many levels around a surface.
+    /// The grid of 1 to [`MAX_DEPTH`] levels around a surface.
     ///
     /// # Errors
     /// See [`GridError`].
@@ -82,7 +79,6 @@ impl Grid {
         }
         let distance = low.abs().max(high.abs()).max_element();
         let voxel_size = extent / ((1u64 << depth) - 1) as f64;
-        // The origin must be distinct from a neighbouring voxel's.
         if !(extent.is_finite() && voxel_size.is_normal() && voxel_size > distance * 1e-12) {
             return Err(GridError::Coordinates { extent, distance });
         }
@@ -125,8 +121,12 @@ impl Grid {
         })
     }
 
-    /// Side of a cube of a level on the lattice.
-    pub(super) fn side(&self, level: u32) -> i64 {
-        1 << (BITS - level)
+    /// All of it.
+    pub(super) fn cube(&self) -> Cube {
+        Cube {
+            corner: [0; 3],
+            voxel: 1 << (BITS - self.depth),
+            depth: self.depth,
+        }
     }
 }

@@ -1,12 +1,10 @@
 //! The layout of a `.tvx` file: `spec/textured.md`.
 //!
-//! A header of 128 bytes, an entry for each grid, primitives; then for each grid
-//! its voxels, lists and sub-textures. Sections are aligned to 64 bytes with
-//! zeros between. All numbers are little-endian.
+//! A header, an entry for each grid, primitives; then for each grid its voxels, lists and sub-textures.
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
+use crate::textured::record::{Primitive, Texel, VoxelRecord};
 use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
 
 /// How files begin.
@@ -58,39 +56,33 @@ pub(super) struct GridEntry {
 
 pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
 
-/// Where a grid's sections lie: begin and end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct GridPlaces {
-    pub(super) voxels: [u64; 2],
-    pub(super) lists: [u64; 2],
-    pub(super) textures: [u64; 2],
-}
-
-/// Where the sections lie.
+/// Begin and end of the sections.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) entries: [u64; 2],
     pub(super) primitives: [u64; 2],
-    pub(super) grids: Vec<GridPlaces>,
+    /// Of each grid its voxels, lists and sub-textures.
+    pub(super) grids: Vec<[[u64; 2]; 3]>,
 }
 
 impl Layout {
     /// There is only one. Saturates.
     pub(super) fn of(primitives: u64, grids: &[GridEntry]) -> Self {
         let entries = section_after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
-        let primitives = section_after(entries[1], primitives, PRIMITIVE_BYTES);
+        let primitives = section_after(entries[1], primitives, size_of::<Primitive>());
         let mut end = primitives[1];
         let places = grids.iter().map(|grid| {
-            let voxels = section_after(end, grid.voxels, VOXEL_BYTES);
-            let lists = section_after(voxels[1], grid.listed, size_of::<u32>());
             let face = u64::from(grid.texels).saturating_mul(u64::from(grid.texels));
-            let textures = section_after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
-            end = textures[1];
-            GridPlaces {
-                voxels,
-                lists,
-                textures,
-            }
+            [
+                (grid.voxels, size_of::<VoxelRecord>()),
+                (grid.listed, size_of::<u32>()),
+                (grid.textures.saturating_mul(face), size_of::<Texel>()),
+            ]
+            .map(|(count, item_bytes)| {
+                let section = section_after(end, count, item_bytes);
+                end = section[1];
+                section
+            })
         });
         Self {
             entries,
@@ -100,16 +92,11 @@ impl Layout {
     }
 
     pub(super) fn end(&self) -> u64 {
-        self.grids
-            .last()
-            .map_or(self.primitives[1], |g| g.textures[1])
+        self.sections().fold(0, |_, [_, end]| end)
     }
 
     pub(super) fn sections(&self) -> impl Iterator<Item = [u64; 2]> + '_ {
-        let of_grids = self
-            .grids
-            .iter()
-            .flat_map(|g| [g.voxels, g.lists, g.textures]);
+        let of_grids = self.grids.iter().flatten().copied();
         [self.entries, self.primitives].into_iter().chain(of_grids)
     }
 }

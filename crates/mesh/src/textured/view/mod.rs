@@ -1,8 +1,7 @@
 //! Textured voxels to a picture.
 //!
-//! The primitives of eroded voxels and the surfels of those that are left go
-//! to the rasteriser as triangles: one depth buffer, any camera. A surfel is
-//! two textured triangles; where a texel is transparent, what is behind shows.
+//! The primitives of eroded voxels and the surfels of those that are left go to the rasteriser as triangles: one depth
+//! buffer, any camera. Where a texel is transparent, what is behind shows.
 
 mod choose;
 mod scene;
@@ -64,10 +63,10 @@ pub enum ViewError {
     TexelSize(f64),
 }
 
-/// Counts and work of one frame.
+/// Counts of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedCounts {
-    /// The grid and level that are drawn, and the size of its texels.
+    /// The grid and level that are drawn.
     pub choice: Choice,
     /// Primitives given to the rasteriser.
     pub primitives: u64,
@@ -96,19 +95,19 @@ pub fn draw(
     };
     let grid = file.grid(choice.grid);
     grid.ensure()?;
-    let levels = grid.levels();
-    let shown = Shown::new(file, grid, choice.level);
     let raster_options = RasterOptions {
         samples: options.samples,
         light: options.light,
         background: options.background,
     };
+    let shown = Shown::new(file, grid, choice.level);
     let picture = raster::draw(&shown, view, &raster_options, &Silent)?;
+    let row = grid.levels().row(choice.level);
     let counts = TexturedCounts {
         choice,
-        primitives: shown.primitives() as u64,
-        surfels: shown.surfels() as u64,
-        voxels: (grid.voxels().len() - levels.eroded(choice.level)) as u64,
+        primitives: row.primitives,
+        surfels: row.surfels,
+        voxels: row.voxels,
     };
     Ok((picture, counts))
 }

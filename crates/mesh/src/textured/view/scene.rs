@@ -2,17 +2,16 @@
 
 use glam::DVec3;
 
-use crate::textured::cell_grid::ACROSS;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
 use crate::textured::store::{Grid, TexturedFile};
+use crate::voxelize::OTHERS;
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
 /// A surfel and its geometry.
 struct Face<'f> {
     axis: usize,
-    /// Unit vector to the outer side.
     outwards: DVec3,
     /// The corner from which texels are counted.
     corner: DVec3,
@@ -60,14 +59,6 @@ impl<'f> Shown<'f> {
         }
     }
 
-    pub(super) fn primitives(&self) -> usize {
-        self.primitives.len()
-    }
-
-    pub(super) fn surfels(&self) -> usize {
-        self.faces.len()
-    }
-
     fn face(&self, number: usize) -> &Face<'f> {
         &self.faces[(number - self.primitives.len()) / 2]
     }
@@ -83,7 +74,7 @@ impl Surface for Shown<'_> {
             return self.stored[primitive as usize].positions();
         }
         let face = self.face(number);
-        let [across, down] = ACROSS[face.axis];
+        let [across, down] = OTHERS[face.axis];
         let right = DVec3::AXES[across] * face.size[across];
         let below = DVec3::AXES[down] * face.size[down];
         let is_second = (number - self.primitives.len()) % 2 == 1;
@@ -116,7 +107,7 @@ impl Surface for Shown<'_> {
         let face = self.face(number);
         let place = (point - face.corner) / face.size * self.side as f64;
         // A negative number becomes 0: points on an edge may lie beyond it by rounding.
-        let [across, down] = ACROSS[face.axis].map(|k| (place[k] as usize).min(self.side - 1));
+        let [across, down] = OTHERS[face.axis].map(|k| (place[k] as usize).min(self.side - 1));
         let texel = &face.texels[down * self.side + across];
         if texel.is_clear() {
             return None;
