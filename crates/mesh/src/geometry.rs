@@ -17,8 +17,7 @@ pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / 2.0
 }
 
-/// The unit normal of a triangle's plane, on the side from which its corners are counter-clockwise; +Z if they are on a
-/// line.
+/// The unit normal of a triangle's plane, towards who sees it counter-clockwise; +Z if its corners are on a line.
 pub(crate) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or(DVec3::Z)
 }
@@ -60,7 +59,6 @@ impl Polygon {
         Self { corners, count: 3 }
     }
 
-    /// The corners, in order.
     pub(crate) fn corners(&self) -> &[DVec3] {
         &self.corners[..self.count]
     }
@@ -110,7 +108,6 @@ impl Polygon {
 pub(crate) struct Sets(Vec<u32>);
 
 impl Sets {
-    /// So many sets of one number.
     pub(crate) fn new(count: u32) -> Self {
         Self((0..count).collect())
     }

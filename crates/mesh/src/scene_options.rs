@@ -1,4 +1,4 @@
-//! How scenes are opened, where the defaults are not meant.
+//! Settings for opening scenes.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// The defaults, which are those of [`Scene::open`].
+    /// The defaults.
     pub fn new() -> Self {
         Self::default()
     }

@@ -1,8 +1,7 @@
 //! Levels of detail: what each shows, by erosion depths alone.
 //!
-//! Level 0 has all voxels. Each erosion replaces the voxels of the next depth by their primitives, down to primitives
-//! alone. Voxels are sorted by depth, so a level's voxels are a tail of the list. Its primitives are a beginning of a
-//! list, sorted by the level at which they first appear.
+//! Each erosion replaces the voxels of the next depth by their primitives, down to primitives alone. Voxels are sorted
+//! by depth and primitives by their first level, so a level has a tail of the former and a beginning of the latter.
 
 use super::record::{CLEAR, VoxelRecord, list_of};
 use crate::voxelize::OTHERS;
@@ -10,13 +9,9 @@ use crate::voxelize::OTHERS;
 /// A face of a voxel that some levels show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Surfel {
-    /// Number of its voxel.
     pub voxel: u32,
-    /// The axis it stands on, 0 to 2.
     pub axis: u8,
-    /// Whether it looks along the positive axis.
     pub is_positive: bool,
-    /// First level that shows it.
     pub from: u16,
     /// Last level that shows it.
     pub to: u16,
@@ -24,11 +19,9 @@ pub struct Surfel {
     pub reach: u16,
 }
 
-/// The faces that levels show: of each column of cells and each half of it the first voxel from outside that is left at
-/// a level.
+/// The faces that levels show: of each half of a column of cells the first voxel from outside that is left.
 pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
     let mut surfels = Vec::new();
-    // At most 128.
     let cells = cells as u16;
     for (axis, [across, down]) in OTHERS.into_iter().enumerate() {
         let mut keyed: Vec<((u16, u16, bool), u16, u32)> = (0..)
@@ -72,13 +65,10 @@ pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
 /// The counts of a level: a row of Tellier and Baroud 2003, Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LevelRow {
-    /// Erosions.
     pub level: u32,
     /// Faces that are drawn: primitives and surfels.
     pub faces: u64,
-    /// Primitives among them.
     pub primitives: u64,
-    /// Voxels that are left.
     pub voxels: u64,
     /// Textured surfels that are drawn: those with anything on them.
     pub surfels: u64,
@@ -88,10 +78,8 @@ pub struct LevelRow {
     pub reach: [u32; 3],
 }
 
-/// The contents of all levels of a grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Levels {
-    voxels: usize,
     /// Primitives, by the level that first shows them.
     order: Vec<u32>,
     /// Surfels with anything on them.
@@ -103,7 +91,6 @@ impl Levels {
     /// Of voxels sorted by depth and their lists. Entries of lists must be below `primitives`.
     pub fn of(voxels: &[VoxelRecord], lists: &[u32], primitives: usize, cells: u32) -> Self {
         let mut levels = Self {
-            voxels: voxels.len(),
             order: Vec::with_capacity(primitives),
             surfels: surfels(voxels, cells),
             rows: Vec::new(),
@@ -154,9 +141,7 @@ impl Levels {
         levels
     }
 
-    /// The last level, which shows primitives alone.
     pub fn last(&self) -> u32 {
-        // At most 2^16 levels.
         self.rows.len() as u32 - 1
     }
 
@@ -165,22 +150,14 @@ impl Levels {
         &self.rows[level.min(self.last()) as usize]
     }
 
-    /// All levels.
     pub fn rows(&self) -> &[LevelRow] {
         &self.rows
     }
 
-    /// Number of voxels that a level has eroded: those from there on are left.
-    pub fn eroded(&self, level: u32) -> usize {
-        self.voxels - self.row(level).voxels as usize
-    }
-
-    /// The primitives that a level shows.
     pub fn primitives(&self, level: u32) -> &[u32] {
         &self.order[..self.row(level).primitives as usize]
     }
 
-    /// The surfels that a level shows: those with anything on them.
     pub fn surfels(&self, level: u32) -> impl Iterator<Item = &Surfel> {
         let shows = move |s: &&Surfel| (u32::from(s.from)..=u32::from(s.to)).contains(&level);
         self.surfels.iter().filter(shows)

@@ -2,7 +2,7 @@
 //!
 //! [`build()`] makes voxels with their primitives, erosion depths and six textures of half the scene. [`store`] is the
 //! `.tvx` file, [`levels`] what a level of detail shows, and [`view`] draws it. Rules, and where Tellier and Baroud 2003
-//! leaves a choice: `spec/textured.md`. What a texel sees is decided in integers.
+//! leaves a choice: `spec/textured.md`. Visibility of texels is decided in integers.
 
 pub mod build;
 pub mod cell_grid;
@@ -31,33 +31,25 @@ pub enum Element {
     Sides,
 }
 
-/// Textured voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
+/// Textured voxels in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TexturedData {
-    /// Lowest corner of the box around all primitives, world units.
     pub low: DVec3,
-    /// Highest corner of that box.
     pub high: DVec3,
     /// Whether +Y is up, for fitted cameras; else +Z.
     pub y_up: bool,
-    /// For fitted cameras: [`MeshBox::bevels`](shiftvox::graph::MeshBox::bevels).
     pub bevels: [u8; 8],
-    /// The primitives, in the mesh's order.
     pub primitives: Vec<Primitive>,
     /// The grids, coarse before fine, each of another number of cells.
     pub grids: Vec<GridData>,
 }
 
-/// One grid of voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridData {
-    /// Cells along each axis: even.
     pub cells: u32,
-    /// Texels along the side of a voxel's face.
     pub texels: u32,
-    /// The structuring element of the erosion.
     pub element: Element,
-    /// Voxels that are not empty, by erosion depth and then by cell.
+    /// By erosion depth and then by cell.
     pub voxels: Vec<VoxelRecord>,
     /// The primitives of each voxel in rising order, voxel after voxel.
     pub lists: Vec<u32>,

@@ -7,22 +7,17 @@ use crate::geometry::{plane_normal, point};
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
-/// A triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Primitive {
-    /// Corners, world units.
     pub corners: [[f32; 3]; 3],
     /// Normals of the corners, packed; 0 where it is the plane's.
     pub normals: [u16; 3],
-    /// Colours of the corners, sRGB.
     pub colors: [[u8; 3]; 3],
-    /// Zero.
     pub spare: u8,
 }
 
 impl Primitive {
-    /// The record of a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
         let normal = |n: DVec3| {
@@ -40,12 +35,10 @@ impl Primitive {
         }
     }
 
-    /// The corners.
     pub fn positions(&self) -> [DVec3; 3] {
         self.corners.map(point)
     }
 
-    /// The triangle, ready to be drawn.
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
@@ -65,7 +58,6 @@ impl Primitive {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct VoxelRecord {
-    /// Its cell, along x, y, z.
     pub cell: [u16; 3],
     /// Erosions that it survives.
     pub depth: u16,
@@ -101,12 +93,10 @@ pub struct Texel {
 }
 
 impl Texel {
-    /// Whether nothing projects on it.
     pub fn is_clear(&self) -> bool {
         self.opacity == 0
     }
 
-    /// Whether its fields agree with each other.
     pub fn is_sound(&self) -> bool {
         match self.opacity {
             0 => *self == Self::default(),

@@ -10,14 +10,12 @@ use super::Grid;
 use crate::Surface;
 use shiftvox::split_mix::mix;
 
-/// Corners on the lattice, and the bits of the normals.
 type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
 
 /// The sum of equal triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Repeated {
     pub(super) times: u32,
-    /// Colours of the corners, averaged by opacity.
     pub(super) colors: [DVec3; 3],
     pub(super) alpha: f64,
 }
@@ -26,7 +24,6 @@ pub(super) struct Repeated {
 pub(super) struct Distinct {
     /// Numbers of all triangles that repeat no earlier one, rising.
     pub(super) numbers: Vec<u32>,
-    /// Of those that are repeated, the sums.
     pub(super) repeated: HashMap<u32, Repeated>,
 }
 
@@ -83,7 +80,6 @@ impl Distinct {
     }
 }
 
-/// A hash of numbers on the lattice.
 pub(super) fn hash_of(numbers: &[i64]) -> u64 {
     numbers.iter().fold(0, |hash, &c| mix(hash ^ c as u64))
 }

@@ -1,7 +1,7 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
-//! The weight of a triangle is its opacity times the area of its part within the cube, in faces of the cube, plus 2^-20
-//! of a face. So triangles that only touch the cube count, too.
+//! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
+//! triangles that only touch the cube count, too.
 
 use glam::DVec3;
 
@@ -17,7 +17,6 @@ const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 /// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
 
-/// Colours and normals of a triangle and of those equal to it.
 #[derive(Debug)]
 pub(super) struct Painted {
     colors: [DVec3; 3],
@@ -37,7 +36,6 @@ impl Painted {
     }
 }
 
-/// Colours and normals of a voxel, added up.
 #[derive(Debug, Default)]
 pub(super) struct Mix {
     weight: f64,

@@ -1,8 +1,7 @@
 //! Triangles to voxels: every voxel whose closed cube a triangle touches. Rules: `spec/mesh.md`.
 //!
-//! Corners are rounded to one lattice of 2^30 points a side, so neighbours stay joined. There a triangle and a cube are
-//! told apart exactly, in integers: a thin triangle loses no voxel and a closed mesh has no hole. Memory grows with the
-//! triangles and not with the voxels.
+//! Corners are rounded to one lattice of 2^30 points a side, where touching is decided exactly, in integers: a thin
+//! triangle loses no voxel and a closed mesh has no hole. Memory grows with the triangles and not with the voxels.
 
 mod coverage;
 mod distinct;
@@ -25,10 +24,8 @@ use shiftvox::graph::{Progress, Voxel};
 pub(crate) use touch::{OTHERS, Prepared, child};
 use walk::{Subtree, walk};
 
-/// Counts of one voxelisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct VoxelizeReport {
-    /// Voxels handed on, each once.
     pub voxels: u64,
     /// Pairs of a voxel and a triangle that touches it.
     pub touches: u64,
@@ -36,9 +33,8 @@ pub struct VoxelizeReport {
     pub looked_at: u64,
 }
 
-/// Hands every voxel that a triangle touches to `sink`, once, in Morton order.
-///
-/// The same voxels in the same order on any number of threads. Indices run from 0 to `2^depth - 1`.
+/// Hands every voxel that a triangle touches to `sink`, once, in Morton order, on any number of threads. Indices run
+/// from 0 to `2^depth - 1`.
 pub fn voxelize<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,
@@ -67,7 +63,6 @@ pub fn voxelize<S: Surface + ?Sized>(
             report.voxels += 1;
             let (color, normal) = mix.finish();
             voxels.push(Voxel {
-                // Below 2^20.
                 index: corner.map(|c| (c / cube.voxel) as i32),
                 color,
                 normal,
@@ -94,10 +89,8 @@ pub fn voxelize<S: Surface + ?Sized>(
     total
 }
 
-/// Pairs of a voxel and a triangle that touches it: as many as this or more.
-///
-/// Of each triangle as many as its area, or its longest side, is faces of voxels. Equal triangles count each, but as one
-/// where there are more than [`MOST_LOOKED_AT`] pairs.
+/// Pairs of a voxel and a triangle that touches it, at the least: of each triangle its area, or its longest side, in
+/// faces of voxels. Equal triangles count as one where there are more than [`MOST_LOOKED_AT`] pairs.
 pub fn least_looked_at<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> u64 {
     let side = grid.cube().voxel as f64;
     let least = |number: u32| {

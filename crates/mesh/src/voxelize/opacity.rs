@@ -1,9 +1,8 @@
 //! Opacities of a mesh's voxels from six sides (`spec/mesh.md`, "Opacities").
 //!
 //! An engine blends the voxels of a ray as if each covered its part by chance, which is right for leaves. But the parts
-//! of one surface fill neighbouring voxels side by side, and the back of a tube is behind its front. So the nodes of
-//! large objects are combined along their columns: a wall that is cut into two parts is whole in both, and of a tube
-//! that lies in two voxels the second adds nothing.
+//! of one surface fill neighbouring voxels side by side. So the nodes of large objects are combined along their columns:
+//! a wall that is cut into two parts is whole in both.
 
 use std::ops::Range;
 
@@ -17,15 +16,13 @@ use super::{Grid, parts};
 use crate::Surface;
 use shiftvox::graph::{Graph, GraphView, Opacity, Progress};
 
-/// All points of a face, and all four columns of children.
 const ALL: u64 = u64::MAX;
-const ALL_COLUMNS: u32 = 0b1111;
-/// How many nodes before a node count: a wall along which an axis is steeper is seen by another axis.
+const ALL_COLUMNS: u8 = 0b1111;
+/// Nodes before a node that count: steeper walls are seen along another axis.
 const REACH: u32 = 3;
-/// Points of 64 that a node has at least to be opaque with its column: with fewer, walls would grow by a voxel.
+/// Points of a node that is opaque with its column: with fewer, walls would grow by a voxel.
 const LEAST_POINTS: u32 = 16;
 
-/// What a node contains.
 #[derive(Clone, Copy)]
 struct Inside {
     masks: Masks,
@@ -38,10 +35,11 @@ const NOTHING: Inside = Inside {
     large_from: u8::MAX,
 };
 
-/// The opacities of a graph's nodes, one each. The graph is the tree, level by level, of the voxels that
-/// [`voxelize`](super::voxelize()) made of the same surface on the same grid.
+/// The opacities of a graph's nodes, one each, the same on any number of threads.
 ///
-/// The same on any number of threads.
+/// # Panics
+/// Unless the graph is the tree, level by level, of the voxels that [`voxelize`](super::voxelize()) made of the same
+/// surface on the same grid.
 pub fn opacities<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,
@@ -75,7 +73,7 @@ pub fn opacities<S: Surface + ?Sized>(
         });
         leaves
     };
-    // The nodes of the finest level are in Morton order too.
+    // The finest nodes are in Morton order too.
     let mut inside = Vec::with_capacity(graph.len());
     inside.resize(graph.mask.len(), NOTHING);
     let mut take = |leaves: Vec<Inside>| inside.extend(leaves);
@@ -92,8 +90,8 @@ pub fn opacities<S: Surface + ?Sized>(
     let mut columns = Columns {
         graph: graph.view(),
         places: places(graph),
-        closed: vec![0; inside.len()],
-        found: vec![0; inside.len()],
+        closed: vec![[0; 3]; inside.len()],
+        found: vec![Opacity([0; 3]); inside.len()],
         inside,
     };
     for level in (0..graph.depth).rev() {
@@ -101,24 +99,14 @@ pub fn opacities<S: Surface + ?Sized>(
     }
     for level in (0..=graph.depth).rev() {
         let nodes = nodes(graph, level);
-        let closed: Vec<u32> = nodes
-            .clone()
-            .into_par_iter()
-            .map(|n| columns.close(n, level))
-            .collect();
-        columns.closed[nodes.start as usize..nodes.end as usize].copy_from_slice(&closed);
-        let found: Vec<u32> = nodes
-            .clone()
-            .into_par_iter()
-            .map(|n| columns.settle(n, level))
-            .collect();
-        columns.found[nodes.start as usize..nodes.end as usize].copy_from_slice(&found);
+        let range = nodes.start as usize..nodes.end as usize;
+        let all = nodes.into_par_iter();
+        let closed: Vec<[u8; 3]> = all.clone().map(|n| columns.close(n, level)).collect();
+        columns.closed[range.clone()].copy_from_slice(&closed);
+        let found: Vec<Opacity> = all.map(|n| columns.settle(n, level)).collect();
+        columns.found[range].copy_from_slice(&found);
     }
-    let opacity = |bits: u32| {
-        let [x, y, z, _] = bits.to_le_bytes();
-        Opacity([x, y, z])
-    };
-    columns.found.into_iter().map(opacity).collect()
+    columns.found
 }
 
 fn nodes(graph: &Graph, level: u32) -> Range<u32> {
@@ -126,7 +114,6 @@ fn nodes(graph: &Graph, level: u32) -> Range<u32> {
     graph.level_start[level]..graph.level_start[level + 1]
 }
 
-/// Where each node is among those of its level.
 fn places(graph: &Graph) -> Vec<[u32; 3]> {
     let mut places = vec![[0; 3]; graph.len()];
     for node in 0..graph.mask.len() as u32 {
@@ -145,14 +132,12 @@ struct Columns<'g> {
     graph: GraphView<'g>,
     places: Vec<[u32; 3]>,
     inside: Vec<Inside>,
-    /// By node, four bits for each axis, from `8 * axis` on: of its four columns of children those with a child that
-    /// is opaque.
-    closed: Vec<u32>,
-    found: Vec<u32>,
+    /// By node and axis, a bit for each of its four columns of children that has an opaque child.
+    closed: Vec<[u8; 3]>,
+    found: Vec<Opacity>,
 }
 
 impl Columns<'_> {
-    /// Finds the contents of a level's nodes from those of the next.
     fn combine(&mut self, nodes: Range<u32>) {
         let (upper, lower) = self.inside.split_at_mut(nodes.end as usize);
         let level = &mut upper[nodes.start as usize..];
@@ -170,35 +155,32 @@ impl Columns<'_> {
             });
     }
 
-    /// Which columns of a node are closed; its children are settled.
-    fn close(&self, node: u32, level: u32) -> u32 {
-        let mut closed = 0;
-        for (axis, [u, v]) in OTHERS.into_iter().enumerate() {
-            let mut columns = 0;
-            if level == self.graph.depth {
-                if self.inside[node as usize].masks[axis] == ALL {
-                    columns = ALL_COLUMNS;
-                }
-            } else {
-                for octant in 0..8u8 {
-                    let is_opaque =
-                        |child: u32| self.found[child as usize] >> (8 * axis) & 255 == 255;
-                    if self.graph.child(node, octant).is_some_and(is_opaque) {
-                        columns |= 1 << (octant >> (2 - u) & 1 | (octant >> (2 - v) & 1) << 1);
-                    }
+    /// The closed columns of a node; its children are settled.
+    fn close(&self, node: u32, level: u32) -> [u8; 3] {
+        if level == self.graph.depth {
+            let masks = self.inside[node as usize].masks;
+            return masks.map(|mask| if mask == ALL { ALL_COLUMNS } else { 0 });
+        }
+        let mut closed = [0; 3];
+        for octant in 0..8u8 {
+            let Some(child) = self.graph.child(node, octant) else {
+                continue;
+            };
+            for (axis, [u, v]) in OTHERS.into_iter().enumerate() {
+                if self.found[child as usize].0[axis] == u8::MAX {
+                    let column = octant >> (2 - u) & 1 | (octant >> (2 - v) & 1) << 1;
+                    closed[axis] |= 1 << column;
                 }
             }
-            closed |= columns << (8 * axis);
         }
         closed
     }
 
     /// A node's opacities; the columns of its level are known.
-    fn settle(&self, node: u32, level: u32) -> u32 {
+    fn settle(&self, node: u32, level: u32) -> Opacity {
         let is_large = self.is_large(node, level);
         let dither = dither(&self.inside[node as usize].masks);
-        let mut bits = 0;
-        for axis in 0..3 {
+        Opacity([0, 1, 2].map(|axis| {
             let own = self.column(node, axis);
             let sides = [0, 1].map(|side| match is_large {
                 true => self.before(node, level, axis, side),
@@ -209,15 +191,12 @@ impl Columns<'_> {
                 || is_large
                     && own.covered.count_ones() >= LEAST_POINTS
                     && (all.covered == ALL || all.closed == ALL_COLUMNS);
-            for (side, before) in sides.into_iter().enumerate() {
-                let points = match is_whole {
-                    true => 64,
-                    false => (own.covered & !before.covered).count_ones(),
-                };
-                bits |= u32::from(opacity_of(points, dither)) << (8 * axis + 4 * side);
-            }
-        }
-        bits
+            let [low, high] = sides.map(|before| {
+                let open = own.covered & !before.covered;
+                opacity_of(if is_whole { 64 } else { open.count_ones() }, dither)
+            });
+            low | high << 4
+        }))
     }
 
     /// The coverage of the nodes before a node, seen from a side of an axis. Only nodes of large objects count, up to
@@ -257,18 +236,17 @@ impl Columns<'_> {
     fn column(&self, node: u32, axis: usize) -> Column {
         Column {
             covered: self.inside[node as usize].masks[axis],
-            closed: self.closed[node as usize] >> (8 * axis) & ALL_COLUMNS,
+            closed: self.closed[node as usize][axis],
         }
     }
 }
 
-/// The coverage of a column's nodes along an axis.
 #[derive(Clone, Copy, Default)]
 struct Column {
     /// Points of their faces.
     covered: u64,
     /// Columns of their children that are closed.
-    closed: u32,
+    closed: u8,
 }
 
 impl Column {

@@ -11,7 +11,6 @@ use super::walk::Cube;
 use crate::Surface;
 use crate::geometry::Sets;
 
-/// Least length of a large object, sides of nodes.
 const LEAST_CLOSED: i64 = 2;
 const LEAST_OPEN: i64 = 16;
 
@@ -30,7 +29,6 @@ pub(super) fn coarsest_levels<S: Surface + ?Sized>(
         objects.join(a, b);
         objects.join(b, c);
     }
-    // By root: the lowest and the highest corner.
     let mut spans = vec![[[i64::MAX; 3], [i64::MIN; 3]]; count as usize];
     for (&number, &[corner, ..]) in numbers.iter().zip(&triangles) {
         let [low, high] = &mut spans[objects.root(corner) as usize];
@@ -45,7 +43,6 @@ pub(super) fn coarsest_levels<S: Surface + ?Sized>(
     for corner in open_edges(&triangles) {
         is_open[objects.root(corner) as usize] = true;
     }
-    // At most 20 levels.
     let mut levels = vec![cube.depth as u8 + 1; surface.len()];
     for (&number, &[corner, ..]) in numbers.iter().zip(&triangles) {
         let root = objects.root(corner) as usize;

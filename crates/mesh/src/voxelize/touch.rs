@@ -1,16 +1,14 @@
 //! Does a triangle touch a cube? Exactly, in integers.
 //!
-//! Two convex bodies are apart if and only if one of finitely many directions separates them: here the cube's three
-//! axes, the triangle's normal, and the nine products of an edge and an axis. Of a segment or a point the normal is zero
-//! and separates nothing; the other directions suffice.
+//! They are apart if and only if one of these directions separates them: the cube's three axes, the nine products of an
+//! edge and an axis, and the triangle's normal, which is zero and separates nothing for a segment or a point.
 //!
-//! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61.
-//! The normal is below 2^61, and dotted with a corner below 2^93: that one is `i128`.
+//! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61,
+//! as the normal is. Dotted with a corner that is below 2^93: `i128`.
 
 /// A direction that lies in the plane of two axes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Flat {
-    /// Parts along the two axes.
     parts: [i64; 2],
     /// Least and greatest value over the triangle.
     low: i64,
@@ -37,10 +35,8 @@ impl Flat {
     }
 }
 
-/// A triangle with its directions.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
-    /// Corners on the lattice.
     pub(crate) corners: [[i64; 3]; 3],
     pub(crate) low: [i64; 3],
     pub(crate) high: [i64; 3],
@@ -113,7 +109,6 @@ impl Prepared {
     }
 }
 
-/// The corner of a child of side `half`.
 #[inline]
 pub(crate) fn child(corner: [i64; 3], half: i64, octant: u8) -> [i64; 3] {
     std::array::from_fn(|k| corner[k] + half * i64::from(octant >> (2 - k) & 1))

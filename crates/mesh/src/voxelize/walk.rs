@@ -7,25 +7,21 @@ use super::touch::{Prepared, child};
 use crate::Surface;
 use shiftvox::graph::Progress;
 
-/// Levels of a subtree that one thread does at a time.
 const SUBTREE_LEVELS: u32 = 5;
 /// Subtrees, and triangles of them together, that are done between two calls of the sink.
 const BATCH_SUBTREES: usize = 512;
 const BATCH_TRIANGLES: usize = 1 << 18;
-/// Level whose nodes the progress counts.
 const PROGRESS_LEVEL: u32 = 4;
 
 /// A cube of `2^depth` voxels a side on the lattice.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cube {
     pub(super) corner: [i64; 3],
-    /// Side of a voxel.
     pub(super) voxel: i64,
     pub(super) depth: u32,
 }
 
 impl Cube {
-    /// Side of a node of a level.
     pub(super) fn side(&self, level: u32) -> i64 {
         self.voxel << (self.depth - level)
     }
@@ -40,7 +36,7 @@ pub(super) struct Subtree<'w> {
 }
 
 impl Subtree<'_> {
-    /// Calls for each voxel, in Morton order, with the places in [`Subtree::numbers`] of its triangles, and its corner.
+    /// Visits each voxel, in Morton order: the places in [`Subtree::numbers`] of its triangles, and its corner.
     pub(super) fn leaves(&self, cube: Cube, mut visit: impl FnMut(&[u32], [i64; 3])) {
         let mut list = (0..self.numbers.len() as u32).collect();
         self.node(cube, &mut list, 0, self.corner, self.level, &mut visit);
@@ -78,8 +74,7 @@ impl Subtree<'_> {
     }
 }
 
-/// Finds the subtrees of a cube from the root down. Does them on all threads, batch by batch, and hands on their results
-/// in Morton order. `progress` has a name.
+/// Finds the subtrees of a cube from the root down, does them on all threads and hands on their results in Morton order.
 pub(super) fn walk<S: Surface + ?Sized, T: Send>(
     surface: &S,
     grid: &Grid,
@@ -110,7 +105,6 @@ struct Walk<'w, T> {
     of_subtree: &'w (dyn Fn(Subtree<'_>) -> T + Sync),
     sink: &'w mut dyn FnMut(T),
     progress: &'w dyn Progress,
-    /// Triangles, corner and level of subtrees to be done.
     batch: Vec<(Vec<u32>, [i64; 3], u32)>,
     batch_triangles: usize,
 }

@@ -23,9 +23,7 @@ pub(super) fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> Ra
 pub(super) fn shown(detail: Detail) -> ViewOptions {
     ViewOptions {
         detail,
-        samples: plain(1).samples,
-        light: None,
-        background: None,
+        raster: plain(1),
     }
 }
 

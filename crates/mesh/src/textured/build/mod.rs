@@ -1,6 +1,4 @@
-//! Triangles into textured voxels: cells, erosion depths, textures.
-//!
-//! The same triangles and options give the same bytes on any number of threads.
+//! Triangles into textured voxels, with the same bytes on any number of threads.
 
 mod project;
 mod voxels;
@@ -21,14 +19,12 @@ use shiftvox::graph::Progress;
 pub(super) use voxels::depths;
 use voxels::{cell_of, fill};
 
-/// How textured voxels are built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// Cells along each axis, one number for each grid: even, 2 to [`MOST_CELLS`].
+    /// Cells along each axis, of each grid: even, 2 to [`MOST_CELLS`].
     pub grids: Vec<u32>,
     /// Texels along the side of a voxel's face, 1 to [`MOST_TEXELS`].
     pub texels: u32,
-    /// The structuring element of the erosion.
     pub element: Element,
 }
 
@@ -43,42 +39,26 @@ impl Default for BuildOptions {
     }
 }
 
-/// Most grids of a file.
 pub const MOST_GRIDS: usize = 16;
 
-/// Why nothing was built.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
-    /// No triangles.
     #[error("there are no triangles to build textured voxels of")]
     Empty,
-    /// More triangles, or primitives of voxels, than 32 bits number.
     #[error("{0} are more than 32 bits can number")]
     TooMany(&'static str),
-    /// Numbers of cells or texels that there are not.
     #[error(
         "a grid has an even number of cells from 2 to {MOST_CELLS}, since its middle plane parts \
          it into halves, 1 to {MOST_TEXELS} texels a cell and at most {MOST_ACROSS} texels in all; \
          not {cells} cells of {texels} texels"
     )]
-    Grid {
-        /// Cells along each axis.
-        cells: u32,
-        /// Texels along a face.
-        texels: u32,
-    },
-    /// No grids, too many, or one twice.
+    Grid { cells: u32, texels: u32 },
     #[error("there are 1 to {MOST_GRIDS} grids, each of another number of cells")]
     Grids,
-    /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
 }
 
-/// Builds textured voxels of a surface.
-///
-/// # Errors
-/// See [`BuildError`].
 pub fn build<S: Surface + ?Sized>(
     surface: &S,
     options: &BuildOptions,
@@ -129,7 +109,6 @@ pub fn build<S: Surface + ?Sized>(
     })
 }
 
-/// The box around the corners as they are stored.
 pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
     geometry::bounds(primitives.iter().flat_map(Primitive::positions))
 }
@@ -207,7 +186,7 @@ fn build_grid<S: Surface + ?Sized>(
     Ok(grid)
 }
 
-/// The columns of which levels show faces, in one order.
+/// The columns of which levels show faces.
 fn columns(voxels: &[VoxelRecord], lists: &[u32], cells: u32) -> Vec<Column> {
     let mut columns: Vec<Column> = Vec::new();
     let mut places: HashMap<(usize, [u16; 2]), usize> = HashMap::new();

@@ -1,8 +1,7 @@
 //! The textures of one column of cells, slice by slice from the inside out.
 //!
-//! The positive half of a column is seen from the positive end of its axis, the negative half from the negative end. A
-//! texel of a triangle belongs to the slice in which it lies, so each triangle is projected once along an axis, for both
-//! halves and all slices. A texture is then the one before with one more slice laid over it.
+//! Each half of a column is seen from its own end. A texel of a triangle belongs to the slice in which it lies, so each
+//! triangle is projected once along an axis. A texture is then the one before with one more slice laid over it.
 
 use glam::DVec3;
 
@@ -14,13 +13,12 @@ use crate::voxelize::{OTHERS, Prepared};
 use crate::{Surface, Triangle, linear_to_srgb};
 use shiftvox::graph::PackedNormal;
 
-/// A column of cells along an axis.
 #[derive(Debug)]
 pub(super) struct Column {
     pub(super) axis: usize,
     /// Where it is along the other two axes.
     pub(super) at: [u32; 2],
-    /// Primitives of its cells, rising, each once.
+    /// Rising, each once.
     pub(super) primitives: Vec<u32>,
     /// Slices whose outer face is a surfel at some level, and the voxel there.
     pub(super) wanted: Vec<(u32, u32)>,
@@ -30,13 +28,11 @@ pub(super) struct Column {
 pub(super) struct Projected {
     /// Voxels and their sub-textures; `None` where nothing projects on any texel.
     pub(super) textures: Vec<(u32, Option<Vec<Texel>>)>,
-    /// Texels that primitives were projected on.
     pub(super) texels: u64,
-    /// The same, had each volume been projected afresh.
     pub(super) texels_afresh: u64,
 }
 
-/// What a texel sees: how far along the axis, in lattice steps, and the primitive.
+/// The nearest point behind a texel: how far along the axis, in lattice steps, and its primitive.
 #[derive(Debug, Clone, Copy)]
 struct Hit {
     along: i64,
@@ -110,8 +106,7 @@ pub(super) fn project<S: Surface + ?Sized>(
     projected
 }
 
-/// Calls for each texel of the column whose middle the triangle covers: its number, and how far along the axis the
-/// triangle is there, rounded down.
+/// Calls for each texel whose middle the triangle covers: its number, and the place along the axis, rounded down.
 fn each_texel(
     triangle: &Prepared,
     column: &Column,
@@ -125,7 +120,6 @@ fn each_texel(
     let step = lattice.texel_steps();
     let texels = i64::from(lattice.texels());
     let first = column.at.map(|c| i64::from(c) * texels);
-    // Texels whose middles are not outside the triangle's box.
     let [columns, rows] = [0, 1].map(|k| {
         let begin = (triangle.low[axes[k]] + step / 2 - 1).div_euclid(step);
         let last = (triangle.high[axes[k]] - step / 2).div_euclid(step);
@@ -147,7 +141,7 @@ fn each_texel(
     }
 }
 
-/// Where the middle of a texel meets what it sees.
+/// The point, `along` the axis, behind the middle of a texel.
 fn world(column: &Column, lattice: &CellGrid, texel: usize, along: i64) -> DVec3 {
     let texels = lattice.texels() as usize;
     let step = lattice.texel_steps();
@@ -160,7 +154,6 @@ fn world(column: &Column, lattice: &CellGrid, texel: usize, along: i64) -> DVec3
     lattice.world(point)
 }
 
-/// Colour and normal of a triangle at a point, as seen from outside.
 fn paint(triangle: &Triangle, point: DVec3, outwards: DVec3) -> Texel {
     let share = barycentric(&triangle.corners, point);
     let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };

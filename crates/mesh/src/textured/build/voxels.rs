@@ -46,7 +46,6 @@ fn descend(
     }
     if side == 1 {
         let [x, y, z] = corner;
-        // Below 2^21.
         touched.push(((z * cells + y) * cells + x) as u32);
         return;
     }
@@ -65,7 +64,6 @@ pub(in crate::textured) fn depths(
     cells: u32,
     element: Element,
 ) -> Vec<u16> {
-    // A border of empty cells on every side.
     let side = cells as usize + 2;
     let at = |cell: [u32; 3]| {
         let [x, y, z] = cell.map(|c| c as usize + 1);

@@ -5,7 +5,6 @@ use crate::textured::CellGrid;
 use crate::textured::levels::surfels;
 use crate::textured::record::{CLEAR, NEVER, Primitive, VoxelRecord};
 
-/// Checks a grid's entry, before any of the grid is read.
 pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
     let cells = u64::from(entry.cells).pow(3);
     for (holds, expected) in [
@@ -29,8 +28,7 @@ pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// Checks voxels and lists against each other and the number of primitives. An error is the section, the number of the
-/// record in it and what was expected.
+/// Checks voxels and lists against each other and the number of primitives. Errors: section, record, expected value.
 pub(super) fn check(
     entry: &GridEntry,
     voxels: &[VoxelRecord],
@@ -93,10 +91,10 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Checks the primitives: within the box, which is no larger than they are. An error is a number and what was expected.
+/// Checks the primitives, and that the box is no larger than they are. Errors: record, expected value.
 pub(super) fn check_primitives(
     primitives: &[Primitive],
-    [low, high]: [glam::DVec3; 2],
+    (low, high): (glam::DVec3, glam::DVec3),
 ) -> Result<(), (usize, &'static str)> {
     let is_sound =
         |p: &Primitive| p.spare == 0 && p.corners.as_flattened().iter().all(|c| c.is_finite());

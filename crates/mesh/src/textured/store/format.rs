@@ -7,7 +7,6 @@ use bytemuck::{Pod, Zeroable};
 use crate::textured::record::{Primitive, Texel, VoxelRecord};
 use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
 
-/// How files begin.
 pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
     // As in PNG, they show a transfer that changes line ends or bit 7.
@@ -20,7 +19,6 @@ pub(super) const FORMAT: Format = Format {
 /// Where [`Fields`] begin in the header.
 pub(super) const FIELDS: usize = 24;
 
-/// The fields of the header, beside those of every header.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Fields {
@@ -35,7 +33,6 @@ pub(super) struct Fields {
     pub(super) grids_checksum: u64,
 }
 
-/// A grid's entry in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct GridEntry {
@@ -56,7 +53,6 @@ pub(super) struct GridEntry {
 
 pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
 
-/// Begin and end of the sections.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) entries: [u64; 2],

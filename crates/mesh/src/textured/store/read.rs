@@ -19,7 +19,6 @@ use shiftvox::graph::MeshBox;
 use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
-/// An open `.tvx` file.
 #[derive(Debug)]
 pub struct TexturedFile {
     path: PathBuf,
@@ -34,9 +33,6 @@ pub struct TexturedFile {
 
 impl TexturedFile {
     /// Opens a file: maps it and checks all but the texels.
-    ///
-    /// # Errors
-    /// When it cannot be read, is something else, is truncated, or a field is not as it should be.
     pub fn open(path: &Path) -> Result<Self, TexturedError> {
         let refused = |refused| TexturedError::refused(path, refused);
         let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
@@ -45,9 +41,6 @@ impl TexturedFile {
     }
 
     /// A file that is held in memory; it is named `(memory)` in errors.
-    ///
-    /// # Errors
-    /// As [`TexturedFile::open`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TexturedError> {
         Self::of(Bytes::held(bytes), Path::new("(memory)"))
     }
@@ -85,38 +78,38 @@ impl TexturedFile {
 
     fn check_primitives(&self) -> Result<(), TexturedError> {
         let place = self.layout.primitives;
-        let checksum = self.header.primitives_checksum;
-        if xxh3_64(&self.bytes.get()[range(place)]) != checksum {
-            let expected = format!("checksum {checksum:016x}");
-            return Err(self.damaged("primitives", place[0], expected));
-        }
-        let (low, high) = self.bounds();
-        check_primitives(self.primitives(), [low, high]).map_err(|(number, expected)| {
+        self.check_sum("primitives", place, self.header.primitives_checksum)?;
+        check_primitives(self.primitives(), self.bounds()).map_err(|(number, expected)| {
             let offset = place[0] + (number * size_of::<Primitive>()) as u64;
             self.damaged("primitives", offset, expected)
         })
     }
 
     fn check_grid(&self, number: usize) -> Result<(), TexturedError> {
-        let (entry, places) = (&self.entries[number], &self.layout.grids[number]);
-        for (section, place, checksum) in [
-            ("voxels", places[0], entry.voxels_checksum),
-            ("lists", places[1], entry.lists_checksum),
-        ] {
-            if xxh3_64(&self.bytes.get()[range(place)]) != checksum {
-                let expected = format!("checksum {checksum:016x} of grid {number}");
-                return Err(self.damaged(section, place[0], expected));
-            }
-        }
+        let (entry, [voxels, lists, _]) = (&self.entries[number], self.layout.grids[number]);
+        self.check_sum("voxels", voxels, entry.voxels_checksum)?;
+        self.check_sum("lists", lists, entry.lists_checksum)?;
         let (grid, primitives) = (self.grid(number), self.primitives().len());
         let checked = check(entry, grid.voxels(), grid.lists(), primitives);
         checked.map_err(|(section, record, expected)| {
             let offset = match section {
-                "voxels" => places[0][0] + (record * size_of::<VoxelRecord>()) as u64,
-                _ => places[1][0] + (record * size_of::<u32>()) as u64,
+                "voxels" => voxels[0] + (record * size_of::<VoxelRecord>()) as u64,
+                _ => lists[0] + (record * size_of::<u32>()) as u64,
             };
             self.damaged(section, offset, format!("{expected} in grid {number}"))
         })
+    }
+
+    fn check_sum(
+        &self,
+        section: &'static str,
+        place: [u64; 2],
+        checksum: u64,
+    ) -> Result<(), TexturedError> {
+        if xxh3_64(self.section(place)) == checksum {
+            return Ok(());
+        }
+        Err(self.damaged(section, place[0], format!("checksum {checksum:016x}")))
     }
 
     fn damaged(
@@ -132,23 +125,19 @@ impl TexturedFile {
         cast_slice(&self.bytes.get()[range(place)])
     }
 
-    /// Lowest and highest corner of the box around all primitives, world units.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.header.low.into(), self.header.high.into())
     }
 
-    /// The box for fitted cameras.
     pub fn mesh_box(&self) -> MeshBox {
         let span = (self.header.low, self.header.high);
         MeshBox::new(span, self.header.bevels, self.header.y_up == 1)
     }
 
-    /// The primitives, in the mesh's order.
     pub fn primitives(&self) -> &[Primitive] {
         self.section(self.layout.primitives)
     }
 
-    /// Bytes of the file.
     pub fn len(&self) -> u64 {
         self.layout.end()
     }
@@ -158,7 +147,6 @@ impl TexturedFile {
         false
     }
 
-    /// Number of grids, at least one.
     pub fn grids(&self) -> usize {
         self.entries.len()
     }
@@ -169,9 +157,6 @@ impl TexturedFile {
     }
 
     /// Checks everything, also texels and erosion depths.
-    ///
-    /// # Errors
-    /// At the first that is not as it should be.
     pub fn verify(&self) -> Result<(), TexturedError> {
         for number in 0..self.grids() {
             let grid = self.grid(number);
@@ -193,7 +178,6 @@ impl TexturedFile {
     }
 }
 
-/// One grid of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Grid<'f> {
     file: &'f TexturedFile,
@@ -209,13 +193,11 @@ impl<'f> Grid<'f> {
         &self.file.layout.grids[self.number]
     }
 
-    /// Where its cells and texels lie.
     pub fn cell_grid(&self) -> CellGrid {
         let (low, high) = self.file.bounds();
         CellGrid::around(low, high, self.entry().cells, self.entry().texels)
     }
 
-    /// The structuring element of the erosion.
     pub fn element(&self) -> Element {
         match self.entry().element {
             0 => Element::Cube,
@@ -223,7 +205,6 @@ impl<'f> Grid<'f> {
         }
     }
 
-    /// The voxels, by erosion depth and then by cell.
     pub fn voxels(&self) -> &'f [VoxelRecord] {
         self.file.section(self.places()[0])
     }
@@ -232,22 +213,18 @@ impl<'f> Grid<'f> {
         self.file.section(self.places()[1])
     }
 
-    /// The primitives of a voxel, rising.
     pub fn list(&self, voxel: usize) -> &'f [u32] {
         list_of(self.voxels(), self.lists(), voxel)
     }
 
-    /// Entries of all lists.
     pub fn listed(&self) -> u64 {
         self.entry().listed
     }
 
-    /// The contents of its levels.
     pub fn levels(&self) -> &'f Levels {
         &self.file.levels[self.number]
     }
 
-    /// Number of sub-textures.
     pub fn textures(&self) -> u64 {
         self.entry().textures
     }
@@ -274,27 +251,22 @@ impl<'f> Grid<'f> {
     }
 
     /// Checks the texels, the first time.
-    ///
-    /// # Errors
-    /// When they are not as they were written.
     pub fn ensure(&self) -> Result<(), TexturedError> {
         let is_checked = &self.file.is_checked[self.number];
         if is_checked.load(Ordering::Relaxed) {
             return Ok(());
         }
+        let place = self.places()[2];
         let checksum = self.entry().textures_checksum;
-        let texels = self.texels();
-        if xxh3_64(cast_slice(texels)) != checksum || !texels.iter().all(Texel::is_sound) {
-            let expected = format!("sound texels with checksum {checksum:016x}");
-            let begin = self.places()[2][0];
-            return Err(self.file.damaged("textures", begin, expected));
+        self.file.check_sum("textures", place, checksum)?;
+        if !self.texels().iter().all(Texel::is_sound) {
+            return Err(self.file.damaged("textures", place[0], "sound texels"));
         }
         is_checked.store(true, Ordering::Relaxed);
         Ok(())
     }
 }
 
-/// Reads and checks a header from the beginning of a file of `file_bytes`.
 fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, TexturedError> {
     let header = FORMAT.read(beginning, file_bytes, path)?;
     let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
@@ -327,7 +299,6 @@ fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields,
     Ok(fields)
 }
 
-/// The entries of the grids, which follow the header.
 fn read_entries(header: &Fields, all: &[u8], path: &Path) -> Result<Vec<GridEntry>, TexturedError> {
     let damaged = |number: usize, expected: String| {
         let offset = (HEADER_BYTES + number * ENTRY_BYTES) as u64;

@@ -9,10 +9,6 @@ use super::format::{FIELDS, FORMAT, Fields, GridEntry, Layout};
 use crate::textured::{Element, GridData, TexturedData};
 use shiftvox::graph::file;
 
-/// Writes textured voxels.
-///
-/// # Errors
-/// The writer's; a machine that stores the highest byte first.
 pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     let entries: Vec<GridEntry> = data.grids.iter().map(entry).collect();
     let layout = Layout::of(data.primitives.len() as u64, &entries);
@@ -26,7 +22,6 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         primitives: data.primitives.len() as u64,
         low: data.low.to_array(),
         high: data.high.to_array(),
-        // At most 16.
         grids: entries.len() as u32,
         y_up: u8::from(data.y_up),
         spare: [0; 11],
@@ -38,10 +33,6 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     file::write(&FORMAT, &header, layout.sections().zip(sections), out)
 }
 
-/// The bytes of a whole file.
-///
-/// # Errors
-/// As [`write_to`].
 pub fn encode(data: &TexturedData) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_to(data, &mut bytes)?;

@@ -1,21 +1,19 @@
-//! The choice of grid and level for a camera, which is future work in Tellier and Baroud 2003.
+//! The choice of grid and level for a camera, future work in Tellier and Baroud 2003.
 
 use glam::DVec3;
 
 use crate::raster::RasterCamera;
 use crate::textured::store::TexturedFile;
 
-/// A grid and a level, and how large its texels are on the picture.
+/// A grid and a level, and the size of its texels in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// Number of the grid.
     pub grid: usize,
-    /// Erosions.
     pub level: u32,
     /// The size of the largest texel, pixels, at the nearest point of the box around the voxels that are left. 0 without
     /// voxels, infinite from within the box.
     pub texel_px: f64,
-    /// How far behind a face lies what it shows, pixels, at the most, seen so.
+    /// The farthest way from a face to what it shows, seen so.
     pub behind_px: f64,
 }
 
@@ -44,7 +42,7 @@ impl Choice {
 }
 
 /// The level of fewest faces, a surfel counting as two, of all grids, whose texels are at most so many pixels, and which
-/// shows nothing farther behind a face than that. Primitives alone always are.
+/// shows nothing farther behind a face; or primitives alone.
 pub fn choose(file: &TexturedFile, view: &RasterCamera, most_px: f64) -> Choice {
     let mut best = (u64::MAX, Choice::of(file, view, 0, u32::MAX));
     for grid in 0..file.grids() {

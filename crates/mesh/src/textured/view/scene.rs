@@ -15,12 +15,10 @@ struct Face<'f> {
     outwards: DVec3,
     /// The corner from which texels are counted.
     corner: DVec3,
-    /// Sides of the cell.
     size: DVec3,
     texels: &'f [Texel],
 }
 
-/// The contents of a level.
 pub(super) struct Shown<'f> {
     file: &'f TexturedFile,
     stored: &'f [Primitive],
