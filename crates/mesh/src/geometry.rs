@@ -63,8 +63,7 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    /// The part in which `inside` is not negative. An edge is cut at the same point as that of the neighbour which has it
-    /// the other way round.
+    /// The part in which `inside` is not negative. An edge is cut at the same point in both directions.
     pub(crate) fn cut(&self, inside: impl Fn(DVec3) -> f64) -> Self {
         self.cut_at(inside, true)
     }

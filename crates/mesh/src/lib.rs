@@ -86,12 +86,12 @@ impl Mesh {
         &self.vertex_colors
     }
 
-    /// Lowest and highest corner of the box around all triangles.
+    /// Lowest and highest corner of all triangles.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
     }
 
-    /// Warnings about a file that could be read, one sentence each.
+    /// Warnings about the file, one sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -23,8 +23,7 @@ pub struct Material {
     pub name: String,
     /// Diffuse colour, linear light, 0 to 1.
     pub diffuse: [f32; 3],
-    /// Opacity, 0 to 1. Triangles of opacity 0 are left out; all others are drawn opaque, and count by their opacity where
-    /// colours are averaged.
+    /// Opacity, 0 to 1: the weight where colours are averaged. Triangles of opacity 0 are left out.
     pub alpha: f32,
 }
 
@@ -43,7 +42,7 @@ impl Material {
         Self::of_srgb("no material", DEFAULT_COLOR)
     }
 
-    /// A material from three numbers of a file; what is not a number from 0 to 1 is made one.
+    /// A material from numbers of a file, which are clamped to 0 to 1.
     pub fn of_numbers(
         name: impl Into<String>,
         color: [f32; 3],

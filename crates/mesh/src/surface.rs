@@ -36,11 +36,10 @@ pub trait Surface: Sync {
     /// All attributes of a triangle.
     fn triangle(&self, number: usize) -> Triangle;
 
-    /// Lowest and highest corner of the box around all triangles.
+    /// Lowest and highest corner.
     fn bounds(&self) -> (DVec3, DVec3);
 
-    /// The material of a triangle whose colour is the mean of its texture: between triangles of one material it changes
-    /// without an edge.
+    /// The material of a triangle whose colour is the mean of its texture.
     fn tinted_material(&self, _number: usize) -> Option<u32> {
         None
     }
@@ -56,7 +55,7 @@ pub trait Surface: Sync {
     }
 }
 
-/// The box for fitted cameras. It is the same for all files made of a surface.
+/// The box for fitted cameras, the same for all files made of a surface.
 pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
     let (low, high) = surface.bounds();
     let span = (low.to_array(), high.to_array());

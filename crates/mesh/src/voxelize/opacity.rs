@@ -1,8 +1,8 @@
 //! Opacities of a mesh's voxels from six sides (`spec/mesh.md`, "Opacities").
 //!
-//! An engine blends the voxels of a ray as if each covered its part by chance, which is right for leaves. But the parts
-//! of one surface fill neighbouring voxels side by side. So the nodes of large objects are combined along their columns:
-//! a wall that is cut into two parts is whole in both.
+//! An engine blends the voxels of a ray as if each covered its part by chance. But the parts of one surface fill
+//! neighbouring voxels side by side. So nodes of large objects are combined along their columns: a wall that is cut into
+//! two parts is whole in both.
 
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! Triangles that belong to large objects (Wagner et al. 2007, Fig. 3b: parts of large objects stay opaque).
 //!
-//! Triangles that share corners are one object. It is large at a level of the tree if it is closed and longer than two
-//! nodes, or open and longer than sixteen: such a surface crosses several nodes.
+//! Triangles that share corners are one object. It is large at a level if it is closed and longer than two nodes, or
+//! open and longer than sixteen.
 
 use rayon::prelude::*;
 
@@ -14,8 +14,7 @@ use crate::geometry::Sets;
 const LEAST_CLOSED: i64 = 2;
 const LEAST_OPEN: i64 = 16;
 
-/// By number of a triangle, the coarsest level of the cube at which it is part of a large object; more than there are
-/// levels where it never is.
+/// By triangle, the coarsest level at which it is part of a large object; one more than there are where it never is.
 pub(super) fn coarsest_levels<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,

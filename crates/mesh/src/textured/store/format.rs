@@ -35,20 +35,20 @@ pub(super) struct Fields {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct GridEntry {
-    pub(super) cells: u32,
-    pub(super) texels: u32,
+pub struct GridEntry {
+    pub cells: u32,
+    pub texels: u32,
     /// 0 is the cube, 1 the six sides.
-    pub(super) element: u32,
-    pub(super) spare: u32,
-    pub(super) voxels: u64,
-    pub(super) listed: u64,
-    pub(super) textures: u64,
-    pub(super) projected: u64,
-    pub(super) projected_afresh: u64,
-    pub(super) voxels_checksum: u64,
-    pub(super) lists_checksum: u64,
-    pub(super) textures_checksum: u64,
+    pub element: u32,
+    pub spare: u32,
+    pub voxels: u64,
+    pub listed: u64,
+    pub textures: u64,
+    pub projected: u64,
+    pub projected_afresh: u64,
+    pub voxels_checksum: u64,
+    pub lists_checksum: u64,
+    pub textures_checksum: u64,
 }
 
 pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();

@@ -8,6 +8,7 @@ mod format;
 mod read;
 mod write;
 
+pub use format::GridEntry;
 pub use read::{Grid, TexturedFile};
 pub use shiftvox::graph::file::FileError as TexturedError;
 pub use write::{encode, write_to};

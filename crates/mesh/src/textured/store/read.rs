@@ -185,7 +185,7 @@ pub struct Grid<'f> {
 }
 
 impl<'f> Grid<'f> {
-    fn entry(&self) -> &'f GridEntry {
+    pub fn entry(&self) -> &'f GridEntry {
         &self.file.entries[self.number]
     }
 
@@ -217,21 +217,8 @@ impl<'f> Grid<'f> {
         list_of(self.voxels(), self.lists(), voxel)
     }
 
-    pub fn listed(&self) -> u64 {
-        self.entry().listed
-    }
-
     pub fn levels(&self) -> &'f Levels {
         &self.file.levels[self.number]
-    }
-
-    pub fn textures(&self) -> u64 {
-        self.entry().textures
-    }
-
-    /// Texels that primitives were projected on; and the same, had each volume been projected afresh.
-    pub fn projected(&self) -> [u64; 2] {
-        [self.entry().projected, self.entry().projected_afresh]
     }
 
     /// Bytes of its voxels, lists and texels.
@@ -239,7 +226,7 @@ impl<'f> Grid<'f> {
         self.places().map(|[begin, end]| end - begin)
     }
 
-    /// A sub-texture, row after row; `number` is below [`Grid::textures`].
+    /// A sub-texture, row after row; `number` is below the entry's.
     /// Texels are as they are in the file: [`Grid::ensure`] checks them.
     pub fn texture(&self, number: u32) -> &'f [Texel] {
         let face = (self.entry().texels * self.entry().texels) as usize;
