@@ -72,7 +72,7 @@ fn describe(file: &TexturedFile, name: &str) -> Value {
 fn describe_grid(grid: &Grid<'_>) -> Value {
     let lattice = grid.cell_grid();
     let [voxels, lists, textures] = grid.bytes();
-    let [projected, afresh] = grid.projected();
+    let entry = grid.entry();
     let row = |row: &LevelRow| {
         json!({
             "level": row.level,
@@ -88,10 +88,10 @@ fn describe_grid(grid: &Grid<'_>) -> Value {
         "element": element_name(grid.element()),
         "cell_size_world": lattice.cell_size().to_array(),
         "voxels": grid.voxels().len(),
-        "listed_primitives": grid.listed(),
-        "textures": grid.textures(),
-        "texels_projected": projected,
-        "texels_projected_afresh": afresh,
+        "listed_primitives": entry.listed,
+        "textures": entry.textures,
+        "texels_projected": entry.projected,
+        "texels_projected_afresh": entry.projected_afresh,
         "voxel_bytes": voxels,
         "list_bytes": lists,
         "texture_bytes": textures,

@@ -201,7 +201,6 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Gives the triangles so far their planes' normals.
     fn fill_normals(&mut self) {
         let mesh = &mut self.mesh;
         let positions = &mesh.positions;
@@ -215,7 +214,6 @@ impl MeshBuilder {
             .collect();
     }
 
-    /// Shows triangles of opacity 0 where there are no others.
     fn show_hidden(&mut self) {
         let hidden = std::mem::take(&mut self.hidden);
         if hidden.is_empty() {

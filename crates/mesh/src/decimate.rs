@@ -45,7 +45,6 @@ const ATTRIBUTES: usize = 6;
 /// The identity of a vertex: position, material, colour.
 type Key = (Place, u32, [u8; 3]);
 
-/// The bits of a position.
 type Place = [u64; 3];
 
 /// Decimates a mesh; `None` where no triangle is left.

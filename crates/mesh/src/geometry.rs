@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-/// The box around points: its lowest and highest corner.
 pub(crate) fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points
@@ -10,18 +9,15 @@ pub(crate) fn bounds(points: impl IntoIterator<Item = DVec3>) -> (DVec3, DVec3) 
         .fold(start, |(low, high), p| (low.min(p), high.max(p)))
 }
 
-/// A point in double precision.
 pub(crate) fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
     DVec3::from_array(position.map(Into::into))
 }
 
-/// Area of a triangle.
 pub(crate) fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / 2.0
 }
 
-/// The unit normal of a triangle's plane, on the side from which its corners are counter-clockwise; +Z if they are on a
-/// line.
+/// The unit normal of a triangle's plane, towards who sees it counter-clockwise; +Z if its corners are on a line.
 pub(crate) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or(DVec3::Z)
 }
@@ -63,13 +59,11 @@ impl Polygon {
         Self { corners, count: 3 }
     }
 
-    /// The corners, in order.
     pub(crate) fn corners(&self) -> &[DVec3] {
         &self.corners[..self.count]
     }
 
-    /// The part in which `inside` is not negative. An edge is cut at the same point as that of the neighbour which has it
-    /// the other way round.
+    /// The part in which `inside` is not negative. An edge is cut at the same point in both directions.
     pub(crate) fn cut(&self, inside: impl Fn(DVec3) -> f64) -> Self {
         self.cut_at(inside, true)
     }
@@ -113,7 +107,6 @@ impl Polygon {
 pub(crate) struct Sets(Vec<u32>);
 
 impl Sets {
-    /// So many sets of one number.
     pub(crate) fn new(count: u32) -> Self {
         Self((0..count).collect())
     }

@@ -1,10 +1,8 @@
 //! Meshes: read from files, drawn as triangles, turned into voxels.
 //!
-//! A [`Mesh`] is triangles with materials. [`read`] makes one of an OBJ, PLY,
-//! STL or glTF file; [`raster`] draws it with a depth buffer at 1 to 256
-//! samples a pixel, the reference picture of a mesh; [`voxelize`] finds every
-//! voxel that a triangle touches, so that the engines draw it too. Rules:
-//! `spec/mesh.md`.
+//! [`read`] makes a [`Mesh`] of an OBJ, PLY, STL or glTF file. [`raster`] draws it with a depth buffer, as a reference.
+//! [`voxelize`] finds every voxel that a triangle touches. [`far`] and [`textured`] voxels replace it at a distance.
+//! Rules: `spec/mesh.md`.
 
 mod builder;
 pub mod decimate;
@@ -18,7 +16,9 @@ pub mod open;
 pub mod raster;
 mod scene_options;
 mod surface;
+#[doc(hidden)]
 pub mod textured;
+#[doc(hidden)]
 pub mod voxelize;
 
 #[cfg(test)]
@@ -39,8 +39,7 @@ pub use surface::{Instances, Surface, Triangle, mesh_box};
 
 /// Triangles with materials, in the file's own coordinates.
 ///
-/// Made by a [`MeshBuilder`], which sees to it that every index is in range,
-/// every coordinate finite and every triangle of an area above zero.
+/// A [`MeshBuilder`] makes sure that every index is in range, every coordinate finite and every area above zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     pub(crate) positions: Vec<[f64; 3]>,
@@ -49,7 +48,7 @@ pub struct Mesh {
     pub(crate) materials: Vec<Material>,
     pub(crate) corner_normals: Vec<[[f32; 3]; 3]>,
     pub(crate) vertex_colors: Vec<[u8; 3]>,
-    /// Mean colour of each triangle's texture, linear light, or nothing where there are none.
+    /// Mean colour of each triangle's texture, linear light, or nothing.
     pub(crate) tints: Vec<[f32; 3]>,
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
@@ -77,24 +76,22 @@ impl Mesh {
         &self.materials
     }
 
-    /// Unit normals of each triangle's corners, or nothing where the file has
-    /// none: then a triangle has its plane's.
+    /// Unit normals of each triangle's corners, or nothing: then a triangle has its plane's.
     pub fn corner_normals(&self) -> &[[[f32; 3]; 3]] {
         &self.corner_normals
     }
 
-    /// sRGB colour of each position, which multiplies the material's, or
-    /// nothing where the file has none.
+    /// sRGB colour of each position, which multiplies the material's, or nothing.
     pub fn vertex_colors(&self) -> &[[u8; 3]] {
         &self.vertex_colors
     }
 
-    /// Lowest and highest corner of the box around all triangles.
+    /// Lowest and highest corner of all triangles.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
     }
 
-    /// Warnings about a file that could be read, one sentence each.
+    /// Warnings about the file, one sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

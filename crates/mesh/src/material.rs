@@ -23,8 +23,7 @@ pub struct Material {
     pub name: String,
     /// Diffuse colour, linear light, 0 to 1.
     pub diffuse: [f32; 3],
-    /// Opacity, 0 to 1. Triangles of opacity 0 are not there; all others are
-    /// drawn opaque, and count by their opacity where colours are averaged.
+    /// Opacity, 0 to 1: the weight where colours are averaged. Triangles of opacity 0 are left out.
     pub alpha: f32,
 }
 
@@ -43,7 +42,7 @@ impl Material {
         Self::of_srgb("no material", DEFAULT_COLOR)
     }
 
-    /// A material from three numbers of a file; what is not a number from 0 to 1 is made one.
+    /// A material from numbers of a file, which are clamped to 0 to 1.
     pub fn of_numbers(
         name: impl Into<String>,
         color: [f32; 3],
@@ -62,7 +61,6 @@ impl Material {
     }
 }
 
-/// Linear light of each sRGB byte.
 static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| to_linear(byte as f64 / 255.0) as f32));
 
@@ -71,14 +69,13 @@ pub fn srgb_to_linear(byte: u8) -> f32 {
     LINEAR[usize::from(byte)]
 }
 
-/// Steps of [`FIRST`]: bytes are no nearer to each other than this, but near black.
+/// Steps of [`FIRST`].
 const SLOTS: usize = 4096;
 
-/// For each slot of linear light the first byte whose light is not below the slot's.
+/// For each step of light the first byte whose light is not below it.
 static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
     std::array::from_fn(|slot| {
         let light = slot as f64 / SLOTS as f64;
-        // At most 255: the last entry is 1, which no slot exceeds.
         LINEAR.partition_point(|&entry| f64::from(entry) < light) as u8
     })
 });
@@ -86,12 +83,9 @@ static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
 /// The sRGB byte whose linear light is nearest; of two the brighter.
 pub fn linear_to_srgb(light: f64) -> u8 {
     let table: &[f32; 256] = &LINEAR;
-    // NaN becomes 0.
+    // NaN becomes 0, which is black.
     let slot = ((light * SLOTS as f64) as usize).min(SLOTS - 1);
     let mut above = usize::from(FIRST[slot]);
-    if light.is_nan() {
-        above = 0;
-    }
     while above < 256 && f64::from(table[above]) < light {
         above += 1;
     }
@@ -101,12 +95,7 @@ pub fn linear_to_srgb(light: f64) -> u8 {
         _ => {
             let to_above = f64::from(table[above]) - light;
             let to_below = light - f64::from(table[above - 1]);
-            // `above` is 1 to 255 here.
-            (if to_above <= to_below {
-                above
-            } else {
-                above - 1
-            }) as u8
+            above as u8 - u8::from(to_above > to_below)
         }
     }
 }

@@ -140,7 +140,6 @@ fn read(
     .map_err(OpenError::from)
 }
 
-/// A mesh that is ready to be voxelised.
 struct Ready {
     mesh: Mesh,
     y_up: bool,
@@ -150,7 +149,6 @@ struct Ready {
 }
 
 impl Ready {
-    /// Reads a mesh and lays the grid around it.
     fn read(
         file: &MeshFile,
         options: &MeshOptions,

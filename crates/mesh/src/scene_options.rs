@@ -1,4 +1,4 @@
-//! How scenes are opened, where the defaults are not meant.
+//! Settings for opening scenes.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// The defaults, which are those of [`Scene::open`].
+    /// The defaults.
     pub fn new() -> Self {
         Self::default()
     }
@@ -42,15 +42,14 @@ impl SceneOptions {
         self
     }
 
-    /// Whether the voxels of meshes get opacities, which [`Coverage::Alpha`](shiftvox::Coverage::Alpha) blends; no by
-    /// default.
+    /// Whether voxels of meshes get opacities for [`Coverage::Alpha`](shiftvox::Coverage::Alpha); no by default.
     #[must_use]
     pub fn opacities(mut self, opacities: bool) -> Self {
         self.options.mesh.opacities = opacities;
         self
     }
 
-    /// The axis that points up. It replaces the default of the file's format.
+    /// The axis that points up, by default that of the file's format.
     #[must_use]
     pub fn up(mut self, up: Up) -> Self {
         self.up = Some(up);
@@ -69,7 +68,7 @@ impl SceneOptions {
         self.placed(opened)
     }
 
-    /// Opens a file that is held in memory: [`Scene::from_bytes`].
+    /// Opens a file in memory: [`Scene::from_bytes`].
     ///
     /// # Errors
     /// As [`SceneOptions::open`].

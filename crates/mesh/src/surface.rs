@@ -2,25 +2,25 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::Mesh;
 use super::geometry::{bounds, plane_normal, point};
 use super::material::srgb_to_linear;
-use super::{Material, Mesh};
 use shiftvox::graph::MeshBox;
 
-/// One triangle, ready to be drawn.
+/// One triangle, ready to be drawn: attributes of its corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangle {
-    /// Positions of its corners.
+    /// Positions.
     pub corners: [DVec3; 3],
-    /// Unit normals of its corners.
+    /// Unit normals.
     pub normals: [DVec3; 3],
-    /// Colours of its corners, linear light.
+    /// Colours, linear light.
     pub colors: [DVec3; 3],
     /// Opacity, above 0.
     pub alpha: f64,
 }
 
-/// Triangles, accessed by number.
+/// Triangles, accessed by a number below [`Surface::len`].
 pub trait Surface: Sync {
     /// Number of triangles.
     fn len(&self) -> usize;
@@ -30,35 +30,32 @@ pub trait Surface: Sync {
         self.len() == 0
     }
 
-    /// Positions of the corners of triangle `number`, which is below [`Surface::len`].
+    /// Positions of a triangle's corners.
     fn corners(&self, number: usize) -> [DVec3; 3];
 
-    /// All attributes of triangle `number`, which is below [`Surface::len`].
+    /// All attributes of a triangle.
     fn triangle(&self, number: usize) -> Triangle;
 
-    /// Lowest and highest corner of the box around all triangles.
+    /// Lowest and highest corner.
     fn bounds(&self) -> (DVec3, DVec3);
 
-    /// The material of triangle `number`, if its colour is the mean of its texture there: between
-    /// triangles of one material it changes without an edge.
+    /// The material of a triangle whose colour is the mean of its texture.
     fn tinted_material(&self, _number: usize) -> Option<u32> {
         None
     }
 
-    /// Whether triangle `number` is textured: then the rasteriser calls
-    /// [`Surface::texture`] at each point of it. No triangle of a mesh is.
+    /// Whether the rasteriser calls [`Surface::texture`] at each point of a triangle. No triangle of a mesh is textured.
     fn is_textured(&self, _number: usize) -> bool {
         false
     }
 
-    /// Colour (linear light) and unit normal of a textured triangle at a point
-    /// of it; `None` where it is transparent.
+    /// Colour (linear light) and unit normal of a textured triangle at a point; `None` where it is transparent.
     fn texture(&self, _number: usize, _point: DVec3) -> Option<(DVec3, DVec3)> {
         None
     }
 }
 
-/// The box for fitted cameras. It is the same for all files made of a surface.
+/// The box for fitted cameras, the same for all files made of a surface.
 pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
     let (low, high) = surface.bounds();
     let span = (low.to_array(), high.to_array());
@@ -81,23 +78,18 @@ impl Surface for Mesh {
             Some(normals) => normals.map(point),
             None => [plane_normal(corners); 3],
         };
-        let material: Option<&Material> = self.materials.get(self.material_of[number] as usize);
-        let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
+        let material = &self.materials[self.material_of[number] as usize];
         let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
-        let diffuse = point(diffuse) * point(tint);
-        let colors = if self.vertex_colors.is_empty() {
-            [diffuse; 3]
-        } else {
-            self.triangles[number].map(|i| {
-                let color = self.vertex_colors[i as usize];
-                diffuse * point(color.map(srgb_to_linear))
-            })
+        let diffuse = point(material.diffuse) * point(tint);
+        let color = |i: u32| match self.vertex_colors.get(i as usize) {
+            Some(color) => diffuse * point(color.map(srgb_to_linear)),
+            None => diffuse,
         };
         Triangle {
             corners,
             normals,
-            colors,
-            alpha: f64::from(alpha),
+            colors: self.triangles[number].map(color),
+            alpha: f64::from(material.alpha),
         }
     }
 
@@ -110,7 +102,7 @@ impl Surface for Mesh {
     }
 }
 
-/// One mesh at many places. Costs 96 bytes a place and no triangles.
+/// One mesh at many places, 96 bytes each.
 #[derive(Debug, Clone)]
 pub struct Instances {
     mesh: Mesh,
@@ -120,19 +112,16 @@ pub struct Instances {
 }
 
 impl Instances {
-    /// A mesh at places. A place must have an inverse; those that have none,
-    /// or are not finite, are left out.
+    /// Places that are not finite, or have no inverse, are left out.
     pub fn new(mesh: Mesh, places: Vec<DAffine3>) -> Self {
         let places: Vec<DAffine3> = places
             .into_iter()
             .filter(|place| place.is_finite() && place.matrix3.determinant() != 0.0)
             .collect();
-        let mut is_used = vec![false; mesh.positions.len()];
-        for &corner in mesh.triangles.iter().flatten() {
-            is_used[corner as usize] = true;
-        }
-        let used = mesh.positions.iter().zip(&is_used);
-        let used = used.filter(|(_, used)| **used).map(|(p, _)| point(*p));
+        let mut used = mesh.triangles.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let used = used.into_iter().map(|i| point(mesh.positions[i as usize]));
         let used: Vec<DVec3> = used.collect();
         // Of the points and not of their box, whose corners may end up farther out.
         let points = places
@@ -145,16 +134,6 @@ impl Instances {
             low,
             high,
         }
-    }
-
-    /// The mesh.
-    pub fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
-    /// Where it stands.
-    pub fn places(&self) -> &[DAffine3] {
-        &self.places
     }
 }
 

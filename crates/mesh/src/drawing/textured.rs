@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles};
 use super::{Drawn, Method, MethodDrawing, MethodError};
-use crate::raster::{Pattern, RasterCamera, Samples};
+use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
 use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
 use shiftvox::drawing::Figures;
@@ -91,9 +91,11 @@ impl Method for TexturedMethod<'_> {
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = ViewOptions {
             detail: self.detail(view)?,
-            samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
-            light: light_of(view, self.style.shading),
-            background: self.style.background.color(),
+            raster: RasterOptions {
+                samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
+                light: light_of(view, self.style.shading),
+                background: self.style.background.color(),
+            },
         };
         let (mut drawn, counts) = draw(self.file, view, &options)?;
         Ok(Drawn {

@@ -87,7 +87,6 @@ pub(super) fn machine(maker: &mut Maker) {
     }
 }
 
-/// A tyre, a rim, a hub and crossed spokes.
 pub(super) fn wheel(maker: &mut Maker) {
     let rubber = maker.material([30, 30, 32]);
     let steel = maker.material([200, 203, 208]);
@@ -280,7 +279,6 @@ fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
     maker.block(chimney[0], chimney[1], wall);
 }
 
-/// Six by six houses of different sizes.
 pub(super) fn village(maker: &mut Maker) {
     let ground = maker.material([120, 130, 90]);
     maker.block(
@@ -304,7 +302,6 @@ pub(super) fn village(maker: &mut Maker) {
     }
 }
 
-/// A house, trees around it, a fence of pickets.
 pub(super) fn garden(maker: &mut Maker) {
     let ground = maker.material([110, 135, 80]);
     let wood = maker.material([225, 220, 210]);

@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::{Material, Mesh, MeshBuilder};
 use shiftvox::split_mix::SplitMix;
 
-/// A collector of triangles.
 pub(crate) struct Maker {
     builder: MeshBuilder,
     pub(super) lot: SplitMix,
@@ -27,7 +26,6 @@ impl Maker {
         self.builder.finish("generated").unwrap_or_default()
     }
 
-    /// A number between two.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.lot.unit()
     }
@@ -55,7 +53,6 @@ impl Maker {
         self.triangle([a, c, d], None, material);
     }
 
-    /// A box with sides along the axes.
     pub(crate) fn block(&mut self, low: DVec3, high: DVec3, material: u32) {
         let corner = |bits: u32| {
             let pick = |k: u32| if bits >> k & 1 == 1 { high } else { low };
@@ -93,7 +90,6 @@ impl Maker {
         }
     }
 
-    /// A ring about an axis through a centre.
     pub(super) fn ring(&mut self, centre: DVec3, radii: [f64; 2], steps: [u32; 2], material: u32) {
         let at = |i: u32, j: u32| {
             let angle = |i: u32, of: u32| TURN * f64::from(i % of) / f64::from(of);

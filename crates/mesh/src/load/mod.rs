@@ -82,7 +82,6 @@ impl Beside for Nothing {
 /// Most corners of a face. It is cut into a fan of triangles, and of a long fan each crosses the whole face.
 const MOST_CORNERS: usize = 1 << 16;
 
-/// Refuses a face of more corners than may be.
 fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {
     if corners <= MOST_CORNERS {
         return Ok(());

@@ -99,7 +99,6 @@ fn file_name(rest: &str) -> Option<String> {
     (!rest.is_empty()).then(|| rest.to_owned())
 }
 
-/// A material of which more lines may follow.
 struct Open {
     name: String,
     color: Option<[f32; 3]>,

@@ -14,7 +14,6 @@ use crate::{Material, MeshBuilder};
 /// A corner without texture coordinate or normal, or a position that no triangle used yet.
 const NONE: u32 = u32::MAX;
 
-/// Reads a file that is in memory.
 pub(super) fn read(
     bytes: &[u8],
     beside: &dyn Beside,
@@ -169,7 +168,6 @@ impl File {
         ]
     }
 
-    /// Adds the materials of a library.
     fn library(
         &mut self,
         name: &str,

@@ -9,7 +9,6 @@ use shiftvox::scene::ply::{PlyFile, Row};
 use super::{Fault, Place, Problem, check_corners};
 use crate::{Material, MeshBuilder};
 
-/// Reads a file that is in memory.
 pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
     let mut file = PlyFile::open(&mut bytes)?;
     let elements = file.header.elements.clone();
@@ -53,7 +52,6 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
     Ok(())
 }
 
-/// A colour channel of a vertex.
 fn channel(row: &Row<'_>, at: usize, is_wide: bool) -> Result<u8, Problem> {
     let value = match row.values[at] {
         Number::Whole(n) if is_wide => Number::Whole(n >> 8),
@@ -72,7 +70,6 @@ fn fault(kind: &str, row: &Row<'_>, expected: String, found: Number) -> Problem 
     Fault::new(part, row.offset, expected, found.to_string(), advice).into()
 }
 
-/// Adds a polygon as a fan.
 fn add_face(
     row: &Row<'_>,
     normals: &[[f32; 3]],

@@ -12,11 +12,9 @@ use crate::MeshBuilder;
 use shiftvox::picture::png;
 use shiftvox::srgb::to_linear;
 
-/// Most texels of a side.
 const MOST_ACROSS: u32 = 16_384;
 /// Most bytes of all textures of a mesh once they are decoded.
 const MOST_BYTES: u64 = 1 << 30;
-/// Most samples along a side of a triangle.
 const MOST_SAMPLES: u32 = 48;
 
 /// A decoded picture, repeated in all directions.
@@ -29,7 +27,6 @@ pub(super) struct Texture {
 }
 
 impl Texture {
-    /// Decodes a PNG or JPEG file.
     fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
         if let Some((width, height)) = png::size(bytes) {
             check_size(width, height, most_bytes)?;
@@ -157,7 +154,6 @@ impl Textures {
         texture
     }
 
-    /// Warns of those that could not be read.
     pub(super) fn tell(&self, builder: &mut MeshBuilder) {
         for (name, reason) in &self.failed {
             builder.warn(format!(

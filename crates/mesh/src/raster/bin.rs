@@ -20,7 +20,6 @@ struct Pixel {
     triangle: u32,
 }
 
-/// A finished bin.
 pub(super) struct Bin {
     corner: [u32; 2],
     columns: u32,
@@ -72,7 +71,6 @@ impl Bin {
         }
     }
 
-    /// Copies the bin to its place.
     pub(super) fn store(&self, picture: &mut RasterPicture) {
         for (i, pixel) in self.pixels.iter().enumerate() {
             let (column, row) = (i as u32 % self.columns, i as u32 / self.columns);

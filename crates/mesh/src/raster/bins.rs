@@ -60,12 +60,10 @@ impl Bins {
         }
     }
 
-    /// Number of bins.
     pub(super) fn len(&self) -> usize {
         (self.columns * self.rows) as usize
     }
 
-    /// The first pixel of a bin.
     pub(super) fn corner(&self, bin: usize) -> [u32; 2] {
         let bin = bin as u32;
         [bin % self.columns * BIN, bin / self.columns * BIN]

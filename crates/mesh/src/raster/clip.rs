@@ -59,7 +59,6 @@ impl Outline {
         Some(outline)
     }
 
-    /// The corners, in order.
     pub(super) fn points(&self) -> &[[i64; 2]] {
         &self.points[..self.count]
     }

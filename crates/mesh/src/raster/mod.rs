@@ -66,7 +66,6 @@ impl RasterCamera {
         ]
     }
 
-    /// Rejects sizes and numbers that cannot be drawn.
     pub(crate) fn check(&self) -> Result<(), RasterError> {
         let side = 1..=MAX_SIDE;
         if !side.contains(&self.width) || !side.contains(&self.height) {

@@ -2,21 +2,17 @@
 
 use glam::DVec3;
 
-/// Most cells along an axis.
 pub const MOST_CELLS: u32 = 128;
-/// Most texels along the side of a face.
 pub const MOST_TEXELS: u32 = 64;
 /// Most texels along the side of a whole texture.
 pub const MOST_ACROSS: u32 = 4096;
-/// Bits of a coordinate on the lattice: edge functions and the test whether a
-/// triangle touches a cube have room for one more.
+/// Bits of a coordinate on the lattice: one fewer than edge functions and `voxelize::Prepared` have room for.
 const BITS: u32 = 29;
 
-/// A grid of equal cells around a box, with a lattice of whole numbers on which
-/// cells and the middles of texels lie exactly.
+/// Equal cells around a box, as many along each axis, as in the paper, so cells are cubes only on the lattice. On it lie
+/// cells and the middles of texels exactly.
 ///
-/// The box has the same number of cells along each axis, as in the paper, so cells are not cubes. A mesh thinner than a
-/// cell's longest side along an axis gets that extent, with the mesh in its middle. On the lattice cells are cubes.
+/// A mesh thinner than a cell's longest side along an axis gets that extent, with the mesh in its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellGrid {
     cells: u32,
@@ -28,9 +24,7 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// The grid of `cells` (even, 2 to [`MOST_CELLS`]) with `texels` (1 to
-    /// [`MOST_TEXELS`]) a face around a box. Other numbers give a grid that
-    /// makes no sense, so callers check them with [`CellGrid::is_possible`].
+    /// A grid around a box, of numbers that [`CellGrid::is_possible`].
     pub fn around(low: DVec3, high: DVec3, cells: u32, texels: u32) -> Self {
         let extent = high - low;
         let least = extent.max_element() / f64::from(cells);
@@ -46,7 +40,6 @@ impl CellGrid {
         }
     }
 
-    /// Whether there is a grid of so many cells and texels.
     pub fn is_possible(cells: u32, texels: u32) -> bool {
         (2..=MOST_CELLS).contains(&cells)
             && cells.is_multiple_of(2)
@@ -54,17 +47,14 @@ impl CellGrid {
             && cells * texels <= MOST_ACROSS
     }
 
-    /// Cells along each axis.
     pub fn cells(&self) -> u32 {
         self.cells
     }
 
-    /// Texels along the side of a face.
     pub fn texels(&self) -> u32 {
         self.texels
     }
 
-    /// Sides of a cell, world units.
     pub fn cell_size(&self) -> DVec3 {
         self.span / f64::from(self.cells)
     }
@@ -74,19 +64,14 @@ impl CellGrid {
         self.cell_size().max_element() / f64::from(self.texels)
     }
 
-    /// Lowest corner of a cell, world units.
     pub fn corner(&self, cell: [u32; 3]) -> DVec3 {
-        // Not from the cell's size: the last cell ends where the box ends.
-        let share = DVec3::from_array(cell.map(|c| f64::from(c) / f64::from(self.cells)));
-        self.origin + self.span * share
+        self.world(cell.map(|c| i64::from(c) * self.cell_steps()))
     }
 
-    /// Lattice steps along the side of a texel.
     pub fn texel_steps(&self) -> i64 {
         self.texel
     }
 
-    /// Lattice steps along the side of a cell.
     pub fn cell_steps(&self) -> i64 {
         self.texel * i64::from(self.texels)
     }
@@ -96,7 +81,6 @@ impl CellGrid {
         self.cell_steps() * i64::from(self.cells)
     }
 
-    /// The nearest point of the lattice.
     pub fn point(&self, world: DVec3) -> [i64; 3] {
         let most = self.steps() as f64;
         let at = (world - self.origin) / self.span * most;
@@ -104,17 +88,8 @@ impl CellGrid {
             .map(|c| libm::round(c.clamp(0.0, most)) as i64)
     }
 
-    /// Where a point of the lattice is in the world.
     pub fn world(&self, point: [i64; 3]) -> DVec3 {
         let share = DVec3::from_array(point.map(|c| c as f64)) / self.steps() as f64;
         self.origin + self.span * share
     }
-}
-
-/// The axes of a face: along its columns and along its rows, for the axis it stands on.
-pub const ACROSS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
-
-/// Whether a cell is in the half from which an axis is seen from its positive end.
-pub fn is_positive_half(slice: u32, cells: u32) -> bool {
-    slice >= cells / 2
 }

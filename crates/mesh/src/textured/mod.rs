@@ -1,11 +1,8 @@
-//! Textured voxels: a mesh as an approximate core of textured voxels, and true
-//! geometry around it.
+//! Textured voxels: a mesh as an approximate core of textured voxels, and true geometry around it.
 //!
-//! [`build()`] makes textured voxels of triangles: voxels with their primitives and erosion depths, and six textures of
-//! half the scene, computed slice by slice. [`store`] is the `.tvx` file, and [`view`] draws it. [`store`] is the
-//! `.tvx` file; [`levels`] computes what a level of detail shows; [`view`] draws it. Rules, and where Tellier and
-//! Baroud 2003 leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a texel sees is decided in
-//! integers.
+//! [`build()`] makes voxels with their primitives, erosion depths and six textures of half the scene. [`store`] is the
+//! `.tvx` file, [`levels`] what a level of detail shows, and [`view`] draws it. Rules, and where Tellier and Baroud 2003
+//! leaves a choice: `spec/textured.md`. Visibility of texels is decided in integers.
 
 pub mod build;
 pub mod cell_grid;
@@ -26,45 +23,33 @@ use record::{Primitive, Texel, VoxelRecord};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Element {
-    /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
-    ///
-    /// The structuring element of the text of Tellier and Baroud 2003.
+    /// Those with an empty cell among the 26 around them.
     Cube,
-    /// Those with an empty cell at one of their six sides.
-    ///
-    /// the text of Tellier and Baroud 2003 has this one too, and its table must have been made with it
+    /// Those with an empty cell at one of their six sides, as in the table of Tellier and Baroud 2003
     /// (`spec/textured.md`).
     #[default]
     Sides,
 }
 
-/// Textured voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
+/// Textured voxels in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TexturedData {
-    /// Lowest corner of the box around all primitives, world units.
     pub low: DVec3,
-    /// Highest corner of that box.
     pub high: DVec3,
     /// Whether +Y is up, for fitted cameras; else +Z.
     pub y_up: bool,
-    /// For fitted cameras too: [`MeshBox::bevels`](shiftvox::graph::MeshBox::bevels).
     pub bevels: [u8; 8],
-    /// The primitives, in the mesh's order.
     pub primitives: Vec<Primitive>,
     /// The grids, coarse before fine, each of another number of cells.
     pub grids: Vec<GridData>,
 }
 
-/// One grid of voxels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridData {
-    /// Cells along each axis: even.
     pub cells: u32,
-    /// Texels along the side of a voxel's face.
     pub texels: u32,
-    /// The structuring element of the erosion.
     pub element: Element,
-    /// Voxels that are not empty, by erosion depth and then by cell.
+    /// By erosion depth and then by cell.
     pub voxels: Vec<VoxelRecord>,
     /// The primitives of each voxel in rising order, voxel after voxel.
     pub lists: Vec<u32>,
@@ -72,6 +57,6 @@ pub struct GridData {
     pub textures: Vec<Texel>,
     /// Texels that primitives were projected on, once along each axis.
     pub projected: u64,
-    /// Texels that they would have been projected on, had each volume been projected afresh.
+    /// The same, had each volume been projected afresh.
     pub projected_afresh: u64,
 }

@@ -7,34 +7,24 @@ use crate::geometry::{plane_normal, point};
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
-/// A triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Primitive {
-    /// Corners, world units.
     pub corners: [[f32; 3]; 3],
     /// Normals of the corners, packed; 0 where it is the plane's.
     pub normals: [u16; 3],
-    /// Colours of the corners, sRGB.
     pub colors: [[u8; 3]; 3],
-    /// Zero.
     pub spare: u8,
 }
 
-/// Bytes of a [`Primitive`].
-pub const PRIMITIVE_BYTES: usize = size_of::<Primitive>();
-
 impl Primitive {
-    /// The record of a triangle.
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
         let normal = |n: DVec3| {
             // Normals of a file are in single precision.
-            let is_plane = n.distance_squared(plane) < 1e-12;
-            if is_plane {
-                PackedNormal::NONE.0
-            } else {
-                PackedNormal::encode(n).0
+            match n.distance_squared(plane) < 1e-12 {
+                true => PackedNormal::NONE.0,
+                false => PackedNormal::encode(n).0,
             }
         };
         Self {
@@ -45,12 +35,10 @@ impl Primitive {
         }
     }
 
-    /// Positions of the corners.
     pub fn positions(&self) -> [DVec3; 3] {
         self.corners.map(point)
     }
 
-    /// The triangle, ready to be drawn.
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
@@ -70,21 +58,24 @@ impl Primitive {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct VoxelRecord {
-    /// Its cell, along x, y, z.
     pub cell: [u16; 3],
     /// Erosions that it survives.
     pub depth: u16,
     /// The first entry of its list; the list ends where the next voxel's begins.
     pub first: u32,
-    /// For the face on the outer side along each axis: the number of its
-    /// sub-texture, [`CLEAR`] or [`NEVER`].
+    /// For the outer face along each axis: the number of its sub-texture, [`CLEAR`] or [`NEVER`].
     pub textures: [u32; 3],
 }
 
-/// Bytes of a [`VoxelRecord`].
-pub const VOXEL_BYTES: usize = size_of::<VoxelRecord>();
+/// The primitives of voxel `number`, rising.
+pub(super) fn list_of<'l>(voxels: &[VoxelRecord], lists: &'l [u32], number: usize) -> &'l [u32] {
+    let end = voxels
+        .get(number + 1)
+        .map_or(lists.len(), |v| v.first as usize);
+    &lists[voxels[number].first as usize..end]
+}
 
-/// A face that is a surfel at some level, but nothing is projected on any of its texels.
+/// A face that some level shows, but nothing projects on it.
 pub const CLEAR: u32 = u32::MAX - 1;
 /// A face that no level shows.
 pub const NEVER: u32 = u32::MAX;
@@ -101,16 +92,11 @@ pub struct Texel {
     pub normal: u16,
 }
 
-/// Bytes of a [`Texel`].
-pub const TEXEL_BYTES: usize = size_of::<Texel>();
-
 impl Texel {
-    /// Whether nothing projects on it.
     pub fn is_clear(&self) -> bool {
         self.opacity == 0
     }
 
-    /// Whether its fields agree with each other.
     pub fn is_sound(&self) -> bool {
         match self.opacity {
             0 => *self == Self::default(),

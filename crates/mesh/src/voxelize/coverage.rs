@@ -1,33 +1,14 @@
 //! The points of a voxel's faces that a mesh covers, and the opacities that they come to.
 //!
-//! A voxel's face is sampled at 64 points; a point is covered where a triangle within the voxel meets the line through
-//! it. The covered points are stored, not only their number. So coverage is combined by position: two halves of a
-//! slanted wall, one in front of the other, make a whole wall. A face of a coarser voxel has the points of four columns
-//! of two voxels, and four points become one. The remainder of each block is carried to the next one, so that a face
-//! keeps its share.
-//!
-//! Triangles have two sides, so what the mesh covers along an axis it covers from both ends of it.
-
-use std::sync::atomic::{AtomicU8, AtomicU64};
+//! Points are stored, not only their number, so two halves of a slanted wall, one before the other, make a whole wall.
 
 use super::touch::{OTHERS, Prepared};
 
-/// Points along a side of a face.
 const POINTS: usize = 8;
-/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u`
-/// and `v` the axes after it.
+/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
-/// The coverage of a node.
-#[derive(Debug, Default)]
-pub(super) struct Covered {
-    /// The points of its faces.
-    pub(super) masks: [AtomicU64; 3],
-    /// The coarsest level at which a large object is in it.
-    pub(super) large_from: AtomicU8,
-}
-
-/// A pseudo-random number, computed from the coverage masks of a node.
+/// A number that looks random, of the masks of a node.
 pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)
@@ -37,8 +18,7 @@ pub(super) fn dither(masks: &Masks) -> u32 {
     (mixed.wrapping_mul(0xd6e8_feb8_6659_fd93) >> 32) as u32
 }
 
-/// The opacity of a face of which so many of the 64 points are covered: in
-/// sixteenths, rounded up or down as the dither has it, all and nothing apart.
+/// The opacity of a face of so many covered points: in sixteenths, rounded up or down as the dither has it.
 pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     let sixteenths = ((points * 16 + (dither & 63)) / 64) as u8;
     match sixteenths {
@@ -49,17 +29,15 @@ pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     }
 }
 
-/// Where in the eighths of a cell point (u, v) lies: over a row, or a column,
-/// every eighth once, so that a line along an axis is measured to a 64th.
+/// The place of point (u, v) in eighths of its cell: in each row and column every eighth once.
 fn offsets(u: usize, v: usize) -> [i64; 2] {
     const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
     [SPREAD[(v + 3 * u) & 7], SPREAD[(u + 5 * v) & 7]]
 }
 
-/// Adds the points that a triangle covers within a voxel.
+/// Adds the points that a triangle covers: those whose line along the axis it meets within the voxel.
 ///
-/// Sizes: corners and points stay below 2^31, so an edge times a distance is below 2^62. The normal is below 2^61, and
-/// its products are `i128`.
+/// Corners and points stay below 2^31, so an edge times a distance is below 2^62.
 pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
     let cell = side / POINTS as i64;
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -76,8 +54,7 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
             let high = flat.iter().map(|p| p[axis]).max().unwrap_or(0);
             low.max(0) / cell..=high.min(side - 1) / cell
         };
-        // For each corner, the normal's other components times the offset to it, and the bounds of the voxel along the
-        // axis.
+        // Bounds, within the voxel, of the normal's other components times the way from the first corner.
         let [first, ..] = flat;
         let at = i128::from(triangle.corners[0][k] - corner[k]);
         let along = i128::from(normal[k]) * i128::from(turn);
@@ -113,10 +90,8 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
     }
 }
 
-/// The coverage of a node's eight children together, by octant.
-///
-/// Of four points one is left. The remainder of a block of four points is carried to the next block with a covered
-/// point, so that a face covers as many points as its children do.
+/// The coverage of a node's eight children together, by octant. Four points become one. The remainder is carried to the
+/// next block with a covered point, so that a face keeps its share.
 pub(super) fn joined(children: &[Masks]) -> Masks {
     let mut masks = Masks::default();
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
@@ -124,7 +99,7 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
             let octant = (column & 1) << (2 - u) | (column >> 1) << (2 - v);
             children[octant][k] | children[octant | 1 << (2 - k)][k]
         });
-        // The last remainder is rounded by a dither value from the contents.
+        // The first remainder is random, so that the last is rounded without bias.
         let mut points = dither(&[columns[0] ^ columns[3], columns[1], columns[2]]) & 3;
         for (column, covered) in columns.into_iter().enumerate() {
             let (cu, cv) = (column & 1, column >> 1);
@@ -145,54 +120,33 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
 
 #[cfg(test)]
 mod tests {
-    use super::super::touch::child;
     use super::*;
 
-    /// Lattice units of a voxel's side in these tests.
     const SIDE: i64 = 1 << 10;
-
-    fn masks(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> Masks {
-        let mut masks = Masks::default();
-        for &triangle in triangles {
-            cover(&Prepared::new(triangle), corner, SIDE, &mut masks);
-        }
-        masks
-    }
-
-    /// The two triangles of a parallelogram with the corners a, b and c.
-    fn quad([a, b, c]: [[i64; 3]; 3]) -> [[[i64; 3]; 3]; 2] {
-        [[a, b, c], [a, c, [0, 1, 2].map(|k| a[k] + c[k] - b[k])]]
-    }
 
     #[test]
     fn a_wall_covers_its_face_and_no_other() {
-        let covered = |low: i64, high: i64, corner| {
-            let wall = quad([[500, low, -100], [500, high, -100], [500, high, 3000]]);
-            masks(&wall, corner).map(u64::count_ones)
+        let covered = |low: i64, high: i64, x: i64| {
+            let corners = [
+                [500, low, -100],
+                [500, high, -100],
+                [500, high, 3000],
+                [500, low, 3000],
+            ];
+            let mut masks = Masks::default();
+            for [b, c] in [[1, 2], [2, 3]] {
+                let triangle = Prepared::new([corners[0], corners[b], corners[c]]);
+                cover(&triangle, [x, 0, 0], SIDE, &mut masks);
+            }
+            masks.map(u64::count_ones)
         };
-        assert_eq!(covered(-9, 3000, [0; 3]), [64, 0, 0]);
-        assert_eq!(covered(-9, 512, [0; 3]), [32, 0, 0]);
-        // A strip of an eighth of the side, anywhere: an eighth of the points, to a 64th of the side.
+        assert_eq!(covered(-9, 3000, 0), [64, 0, 0]);
+        assert_eq!(covered(-9, 512, 0), [32, 0, 0]);
         for low in (0..896).step_by(37) {
-            let [points, ..] = covered(low, low + 128, [0; 3]);
+            let [points, ..] = covered(low, low + 128, 0);
             assert!((7..=9).contains(&points), "{low}: {points}");
         }
-        // In the next voxel.
-        assert_eq!(covered(-9, 3000, [-SIDE, 0, 0]), [0; 3]);
-    }
-
-    #[test]
-    fn two_halves_of_a_slanted_wall_make_a_whole_one() {
-        // The plane x + y = 1.3 sides, in the voxel (0, 0) and the next along x.
-        let (far, reach) = (4000, 1331);
-        let [high, low] = [reach + far, reach - far];
-        let slant = quad([[-far, high, -far], [far, low, -far], [far, low, far]]);
-        let near = masks(&slant, [0; 3])[0].count_ones();
-        // One voxel alone has seven tenths; both, one before the other, are whole.
-        assert!((40..=50).contains(&near), "{near}");
-        let octants = [0, 1, 2, 3, 4, 5, 6, 7].map(|o| masks(&slant, child([0; 3], SIDE, o)));
-        let lower_half = 0x0f0f_0f0f_0f0f_0f0f;
-        assert_eq!(joined(&octants)[0] & lower_half, lower_half);
+        assert_eq!(covered(-9, 3000, -SIDE), [0; 3]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
-//! The weight of a triangle is its opacity times the area of its part within the cube, in faces of the cube, plus 2^-20
-//! of a face. So triangles that only touch the cube count, too.
+//! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
+//! triangles that only touch the cube count, too.
 
 use glam::DVec3;
 
@@ -17,25 +17,17 @@ const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 /// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
 
-/// A triangle on the lattice with its colour and normal.
 #[derive(Debug)]
 pub(super) struct Painted {
-    pub(super) prepared: Prepared,
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
-    /// The number of equal triangles.
     pub(super) times: u32,
 }
 
 impl Painted {
-    pub(super) fn new(
-        prepared: Prepared,
-        triangle: &Triangle,
-        repeated: Option<&Repeated>,
-    ) -> Self {
+    pub(super) fn new(triangle: &Triangle, repeated: Option<&Repeated>) -> Self {
         Self {
-            prepared,
             colors: repeated.map_or(triangle.colors, |all| all.colors),
             normals: triangle.normals,
             alpha: repeated.map_or(triangle.alpha, |all| all.alpha),
@@ -44,85 +36,77 @@ impl Painted {
     }
 }
 
-/// Colours and normals of a voxel, added up.
 #[derive(Debug, Default)]
 pub(super) struct Mix {
     weight: f64,
     light: DVec3,
     normal: DVec3,
-    /// The normals once more, each turned to the side of the first.
+    /// The normals once more, each turned to the side of the sum so far.
     turned: DVec3,
-    normal_weight: f64,
 }
 
 impl Mix {
-    /// Adds the part of a triangle that lies in the cube. The order of adding
-    /// counts, in the last bit; callers add in the order of the triangles.
-    pub(super) fn add(&mut self, painted: &Painted, corner: [i64; 3], side: i64) {
+    /// Adds the part of a triangle that lies in the cube. The order of adding counts, in the last bit.
+    pub(super) fn add(
+        &mut self,
+        painted: &Painted,
+        prepared: &Prepared,
+        corner: [i64; 3],
+        side: i64,
+    ) {
         // Exact: differences on the lattice are below 2^31, the side a power of two.
         let scale = 1.0 / side as f64;
-        let points = painted
-            .prepared
+        let points = prepared
             .corners
             .map(|p| DVec3::from_array(std::array::from_fn(|k| (p[k] - corner[k]) as f64 * scale)));
-        let (area, centre) = if painted.prepared.is_inside(corner, side) {
+        let (area, centre) = if prepared.is_inside(corner, side) {
             (area_of(&points), (points[0] + points[1] + points[2]) / 3.0)
         } else {
             part_in_unit_cube(&points)
         };
         let weight = (area + TOUCH) * painted.alpha;
         let share = barycentric(&points, centre);
-        let light = blend(&painted.colors, share) * weight;
         let normal = blend(&painted.normals, share).normalize_or(painted.normals[0]) * weight;
         self.weight += weight;
-        self.light += light;
-        let is_turned = self.turned.dot(normal) < 0.0;
+        self.light += blend(&painted.colors, share) * weight;
         self.normal += normal;
+        let is_turned = self.turned.dot(normal) < 0.0;
         self.turned += if is_turned { -normal } else { normal };
-        self.normal_weight += weight;
     }
 
-    /// The voxel's colour (sRGB) and normal.
-    ///
-    /// The normal is the average unless normals cancel; where normals
-    /// cancel, as in a thin wall with both its sides, it is that of one side,
-    /// the first triangle's.
+    /// The voxel's colour (sRGB) and normal: the average, or where normals cancel, as in a thin wall with both its
+    /// sides, that of the first triangle's side.
     pub(super) fn finish(&self) -> ([u8; 3], Option<PackedNormal>) {
         let light = self.light / self.weight.max(f64::MIN_POSITIVE);
         let color = light.to_array().map(linear_to_srgb);
-        let said = self.normal.length() >= CANCELLED * self.normal_weight;
-        let normal = if said { self.normal } else { self.turned };
+        let is_clear = self.normal.length() >= CANCELLED * self.weight;
+        let normal = if is_clear { self.normal } else { self.turned };
         let packed = PackedNormal::encode(normal);
         (color, (!packed.is_none()).then_some(packed))
     }
 }
 
 fn area_of(corners: &[DVec3]) -> f64 {
-    area_vector(corners).length() / 2.0
-}
-
-/// Twice the area of a plane polygon, as a vector along its normal.
-fn area_vector(corners: &[DVec3]) -> DVec3 {
-    let mut sum = DVec3::ZERO;
+    let mut twice = DVec3::ZERO;
     for pair in corners.windows(2).skip(1) {
-        sum += (pair[0] - corners[0]).cross(pair[1] - corners[0]);
+        twice += (pair[0] - corners[0]).cross(pair[1] - corners[0]);
     }
-    sum
+    twice.length() / 2.0
 }
 
-/// Area of the part of a triangle in the unit cube, and the mean of its
-/// corners; where they only touch, 0 and a point of the cube nearby.
+/// Area of the part of a triangle in the unit cube, and the mean of its corners; where they only touch, 0 and a point
+/// of the cube nearby.
 fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
     let mut part = Polygon::of(triangle);
-    for plane in 0..6 {
-        let (axis, far) = (plane / 2, plane % 2 == 1);
-        part = part.cut_in_order(|p| if far { 1.0 - p[axis] } else { p[axis] });
-        if part.corners().is_empty() {
-            let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-            return (0.0, middle.clamp(DVec3::ZERO, DVec3::ONE));
-        }
+    for axis in 0..3 {
+        part = part.cut_in_order(|p| p[axis]);
+        part = part.cut_in_order(|p| 1.0 - p[axis]);
     }
     let corners = part.corners();
+    if corners.is_empty() {
+        let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+        return (0.0, middle.clamp(DVec3::ZERO, DVec3::ONE));
+    }
     let mean = corners.iter().copied().sum::<DVec3>() / corners.len() as f64;
     (area_of(corners), mean)
 }

@@ -1,22 +1,16 @@
-//! Triangles to voxels: every voxel whose closed cube a triangle touches.
+//! Triangles to voxels: every voxel whose closed cube a triangle touches. Rules: `spec/mesh.md`.
 //!
-//! Corners are rounded to a lattice of 2^30 points a side, the same for all
-//! triangles, so that neighbours stay joined. On the lattice a triangle and a
-//! cube are distinguished exactly, in integers: there is no tolerance, a thin
-//! triangle loses no voxel and a closed mesh has no hole. The cubes of the
-//! octree are descended with the triangles that touch them. Work is cut into
-//! subtrees of 32 voxels a side, some at a time; memory grows with the
-//! triangles and not with the voxels. Rules: `spec/mesh.md`.
+//! Corners are rounded to one lattice of 2^30 points a side, where touching is decided exactly, in integers: a thin
+//! triangle loses no voxel and a closed mesh has no hole. Memory grows with the triangles and not with the voxels.
 
-mod columns;
 mod coverage;
 mod distinct;
 mod grid;
 mod mix;
 mod opacity;
 mod parts;
-mod subtree;
 mod touch;
+mod walk;
 
 use rayon::prelude::*;
 
@@ -25,23 +19,13 @@ pub use opacity::opacities;
 
 use super::Surface;
 use distinct::Distinct;
+use mix::{Mix, Painted};
 use shiftvox::graph::{Progress, Voxel};
-use subtree::Subtree;
-pub(crate) use touch::{Prepared, child};
+pub(crate) use touch::{OTHERS, Prepared, child};
+use walk::{Subtree, walk};
 
-/// Levels of a subtree that one thread does at a time.
-const SUBTREE_LEVELS: u32 = 5;
-/// Subtrees that are done between two calls of the sink, at the most.
-const BATCH_SUBTREES: usize = 512;
-/// Triangles of those subtrees together, after which no more are added.
-const BATCH_TRIANGLES: usize = 1 << 18;
-/// Level whose nodes the progress counts.
-const PROGRESS_LEVEL: u32 = 4;
-
-/// Counts of one voxelisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct VoxelizeReport {
-    /// Voxels handed on, each once.
     pub voxels: u64,
     /// Pairs of a voxel and a triangle that touches it.
     pub touches: u64,
@@ -49,9 +33,7 @@ pub struct VoxelizeReport {
     pub looked_at: u64,
 }
 
-/// Hands every voxel that a triangle touches to `sink`, once, in Morton order.
-///
-/// The same voxels in the same order on any number of threads. Indices run
+/// Hands every voxel that a triangle touches to `sink`, once, in Morton order, on any number of threads. Indices run
 /// from 0 to `2^depth - 1`.
 pub fn voxelize<S: Surface + ?Sized>(
     surface: &S,
@@ -59,31 +41,58 @@ pub fn voxelize<S: Surface + ?Sized>(
     sink: &mut dyn FnMut(Voxel),
     progress: &dyn Progress,
 ) -> VoxelizeReport {
-    let mut distinct = Distinct::of(surface, grid);
-    let all = std::mem::take(&mut distinct.numbers);
-    let mut voxelizer = Voxelizer {
+    let Distinct { numbers, repeated } = Distinct::of(surface, grid);
+    let cube = grid.cube();
+    let voxels = |subtree: Subtree<'_>| {
+        let painted = |&number: &u32| {
+            let triangle = surface.triangle(number as usize);
+            Painted::new(&triangle, repeated.get(&number))
+        };
+        let painted: Vec<Painted> = subtree.numbers.iter().map(painted).collect();
+        let mut voxels = Vec::new();
+        let mut report = VoxelizeReport::default();
+        subtree.leaves(cube, |triangles, corner| {
+            let mut mix = Mix::default();
+            for &triangle in triangles {
+                let painted = &painted[triangle as usize];
+                let prepared = &subtree.prepared[triangle as usize];
+                mix.add(painted, prepared, corner, cube.voxel);
+                report.touches += u64::from(painted.times);
+            }
+            report.looked_at += triangles.len() as u64;
+            report.voxels += 1;
+            let (color, normal) = mix.finish();
+            voxels.push(Voxel {
+                index: corner.map(|c| (c / cube.voxel) as i32),
+                color,
+                normal,
+            });
+        });
+        (voxels, report)
+    };
+    let mut total = VoxelizeReport::default();
+    let mut take = |(voxels, report): (Vec<Voxel>, VoxelizeReport)| {
+        total.voxels += report.voxels;
+        total.touches += report.touches;
+        total.looked_at += report.looked_at;
+        voxels.into_iter().for_each(&mut *sink);
+    };
+    walk(
         surface,
         grid,
-        distinct: &distinct,
-        sink,
-        progress,
-        batch: Vec::new(),
-        batch_triangles: 0,
-        report: VoxelizeReport::default(),
-    };
-    progress.begin("voxelise", 1 << (3 * PROGRESS_LEVEL));
-    voxelizer.node(all, [0; 3], 0);
-    voxelizer.flush();
-    progress.end();
-    voxelizer.report
+        cube,
+        numbers,
+        &voxels,
+        &mut take,
+        ("voxelise", progress),
+    );
+    total
 }
 
-/// Pairs of a voxel and a triangle that touches it: as many as this or more.
-///
-/// Of each triangle as many as its area, or its longest side, is faces of voxels. Equal triangles count each, but as one
-/// where there are more than [`MOST_LOOKED_AT`] pairs.
+/// Pairs of a voxel and a triangle that touches it, at the least: of each triangle its area, or its longest side, in
+/// faces of voxels. Equal triangles count as one where there are more than [`MOST_LOOKED_AT`] pairs.
 pub fn least_looked_at<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> u64 {
-    let side = grid.side(grid.depth()) as f64;
+    let side = grid.cube().voxel as f64;
     let least = |number: u32| {
         let prepared = Prepared::new(grid.corners(surface, number));
         let largest = |of: [i64; 3]| of.iter().fold(0.0f64, |most, &c| most.max(c.abs() as f64));
@@ -95,83 +104,6 @@ pub fn least_looked_at<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> u64 {
     let all: Vec<u32> = (0..surface.len() as u32).collect();
     match sum(&all) {
         few if few <= MOST_LOOKED_AT => few,
-        // Of equal ones one is looked at.
         _ => sum(&Distinct::of(surface, grid).numbers),
-    }
-}
-
-/// Finds the subtrees, from the root down, and voxelises them in batches.
-struct Voxelizer<'w, S: ?Sized> {
-    surface: &'w S,
-    grid: &'w Grid,
-    distinct: &'w Distinct,
-    sink: &'w mut dyn FnMut(Voxel),
-    progress: &'w dyn Progress,
-    batch: Vec<Subtree>,
-    batch_triangles: usize,
-    report: VoxelizeReport,
-}
-
-impl<S: Surface + ?Sized> Voxelizer<'_, S> {
-    /// A node with the triangles that touch it; its corner on the lattice.
-    fn node(&mut self, triangles: Vec<u32>, corner: [i64; 3], level: u32) {
-        let is_leaf = self.grid.depth() - level <= SUBTREE_LEVELS || triangles.is_empty();
-        if is_leaf && !triangles.is_empty() {
-            self.batch_triangles += triangles.len();
-            self.batch.push(Subtree {
-                triangles,
-                corner,
-                level,
-            });
-            if self.batch.len() >= BATCH_SUBTREES || self.batch_triangles >= BATCH_TRIANGLES {
-                self.flush();
-            }
-        } else if !is_leaf {
-            self.children(&triangles, corner, level);
-        }
-        // Each node of the level is counted once, those below it not at all.
-        if level == PROGRESS_LEVEL || is_leaf && level < PROGRESS_LEVEL {
-            self.progress.advance(1 << (3 * (PROGRESS_LEVEL - level)));
-        }
-    }
-
-    fn children(&mut self, triangles: &[u32], corner: [i64; 3], level: u32) {
-        let half = self.grid.side(level + 1);
-        let masks: Vec<u8> = triangles
-            .par_iter()
-            .map(|&number| {
-                let prepared = Prepared::new(self.grid.corners(self.surface, number));
-                prepared.children(corner, half)
-            })
-            .collect();
-        for octant in 0..8u8 {
-            let touching = triangles
-                .iter()
-                .zip(&masks)
-                .filter(|(_, mask)| **mask >> octant & 1 == 1)
-                .map(|(number, _)| *number)
-                .collect();
-            self.node(touching, child(corner, half, octant), level + 1);
-        }
-    }
-
-    /// Does the subtrees that were gathered and hands on their voxels.
-    fn flush(&mut self) {
-        let (surface, grid, distinct) = (self.surface, self.grid, self.distinct);
-        let done: Vec<(Vec<Voxel>, VoxelizeReport)> = self
-            .batch
-            .par_iter()
-            .map(|subtree| subtree.voxels(surface, grid, distinct))
-            .collect();
-        self.batch.clear();
-        self.batch_triangles = 0;
-        for (voxels, report) in done {
-            self.report.voxels += report.voxels;
-            self.report.touches += report.touches;
-            self.report.looked_at += report.looked_at;
-            for voxel in voxels {
-                (self.sink)(voxel);
-            }
-        }
     }
 }

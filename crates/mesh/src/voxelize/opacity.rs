@@ -1,172 +1,259 @@
-//! Opacities of a mesh's voxels from six sides (`spec/mesh.md`, "Opacities"). The coverage of the finest level comes
-//! from the triangles. Coarser levels combine it.
+//! Opacities of a mesh's voxels from six sides (`spec/mesh.md`, "Opacities").
+//!
+//! An engine blends the voxels of a ray as if each covered its part by chance. But the parts of one surface fill
+//! neighbouring voxels side by side. So nodes of large objects are combined along their columns: a wall that is cut into
+//! two parts is whole in both.
 
-use std::sync::atomic::Ordering;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::coverage::{Covered, Masks, cover, joined};
+use super::coverage::{Masks, cover, dither, joined, opacity_of};
 use super::distinct::Distinct;
-use super::touch::{Prepared, child};
-use super::{Grid, SUBTREE_LEVELS, columns, parts};
+use super::touch::OTHERS;
+use super::walk::{Cube, Subtree, walk};
+use super::{Grid, parts};
 use crate::Surface;
 use shiftvox::graph::{Graph, GraphView, Opacity, Progress};
 
-/// The opacities of a graph's nodes, one each. The graph is the tree of the
-/// voxels that [`voxelize`](super::voxelize()) made of the same surface on the same grid.
+const ALL: u64 = u64::MAX;
+const ALL_COLUMNS: u8 = 0b1111;
+/// Nodes before a node that count: steeper walls are seen along another axis.
+const REACH: u32 = 3;
+/// Points of a node that is opaque with its column: with fewer, walls would grow by a voxel.
+const LEAST_POINTS: u32 = 16;
+
+#[derive(Clone, Copy)]
+struct Inside {
+    masks: Masks,
+    /// The coarsest level at which a large object is in it.
+    large_from: u8,
+}
+
+const NOTHING: Inside = Inside {
+    masks: [0; 3],
+    large_from: u8::MAX,
+};
+
+/// The opacities of a graph's nodes, one each, the same on any number of threads.
 ///
-/// The same on any number of threads.
+/// # Panics
+/// Unless the graph is the tree, level by level, of the voxels that [`voxelize`](super::voxelize()) made of the same
+/// surface on the same grid.
 pub fn opacities<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,
     graph: &Graph,
     progress: &dyn Progress,
 ) -> Vec<Opacity> {
-    let side = grid.side(grid.depth());
-    let origin = graph.placement.origin_index.map(|index| index * side);
-    let covered: Vec<Covered> = (0..graph.len()).map(|_| Covered::default()).collect();
+    let voxel = grid.cube().voxel;
+    let cube = Cube {
+        corner: graph.placement.origin_index.map(|index| index * voxel),
+        voxel,
+        depth: graph.depth,
+    };
     // Equal triangles cover what one of them covers.
-    let distinct = Distinct::of(surface, grid).numbers;
-    let sides: Vec<i64> = (0..=graph.depth)
-        .map(|level| side << (graph.depth - level))
-        .collect();
-    let finder = CoverageFinder {
+    let numbers = Distinct::of(surface, grid).numbers;
+    let large_from = parts::coarsest_levels(surface, grid, &numbers, cube);
+    let leaves = |subtree: Subtree<'_>| {
+        let mut leaves = Vec::new();
+        subtree.leaves(cube, |triangles, corner| {
+            let mut leaf = NOTHING;
+            for &triangle in triangles {
+                let number = subtree.numbers[triangle as usize];
+                leaf.large_from = leaf.large_from.min(large_from[number as usize]);
+                cover(
+                    &subtree.prepared[triangle as usize],
+                    corner,
+                    voxel,
+                    &mut leaf.masks,
+                );
+            }
+            leaves.push(leaf);
+        });
+        leaves
+    };
+    // The finest nodes are in Morton order too.
+    let mut inside = Vec::with_capacity(graph.len());
+    inside.resize(graph.mask.len(), NOTHING);
+    let mut take = |leaves: Vec<Inside>| inside.extend(leaves);
+    walk(
         surface,
         grid,
+        cube,
+        numbers,
+        &leaves,
+        &mut take,
+        ("find opacities", progress),
+    );
+    assert_eq!(inside.len(), graph.len(), "the tree is not this surface's");
+    let mut columns = Columns {
         graph: graph.view(),
-        found: &covered,
-        large_from: parts::coarsest_levels(surface, grid, &distinct, &sides),
-        progress,
+        places: places(graph),
+        closed: vec![[0; 3]; inside.len()],
+        found: vec![Opacity([0; 3]); inside.len()],
+        inside,
     };
-    let voxels = graph.len() as u64;
-    progress.begin("find opacities", voxels);
-    finder.node(graph.root, &distinct, origin, 0);
-    progress.end();
-    columns::opacities(graph.view(), covered)
+    for level in (0..graph.depth).rev() {
+        columns.combine(nodes(graph, level));
+    }
+    for level in (0..=graph.depth).rev() {
+        let nodes = nodes(graph, level);
+        let range = nodes.start as usize..nodes.end as usize;
+        let all = nodes.into_par_iter();
+        let closed: Vec<[u8; 3]> = all.clone().map(|n| columns.close(n, level)).collect();
+        columns.closed[range.clone()].copy_from_slice(&closed);
+        let found: Vec<Opacity> = all.map(|n| columns.settle(n, level)).collect();
+        columns.found[range].copy_from_slice(&found);
+    }
+    columns.found
 }
 
-struct CoverageFinder<'w, S: ?Sized> {
-    surface: &'w S,
-    grid: &'w Grid,
-    graph: GraphView<'w>,
-    found: &'w [Covered],
-    /// By triangle, the coarsest level at which it is part of a large object.
-    large_from: Vec<u8>,
-    progress: &'w dyn Progress,
+fn nodes(graph: &Graph, level: u32) -> Range<u32> {
+    let level = level as usize;
+    graph.level_start[level]..graph.level_start[level + 1]
 }
 
-impl<S: Surface + ?Sized> CoverageFinder<'_, S> {
-    /// Side on the lattice of a node of a level of the graph, which may have
-    /// fewer levels than the grid.
-    fn side(&self, level: u32) -> i64 {
-        self.grid.side(self.grid.depth()) << (self.graph.depth - level)
-    }
-
-    /// A node, of which these triangles may be a part. Deep down, threads are
-    /// of no use and triangles are few enough to be prepared.
-    fn node(&self, node: u32, triangles: &[u32], corner: [i64; 3], level: u32) -> Inside {
-        if self.graph.depth - level <= SUBTREE_LEVELS {
-            let prepared: Vec<(Prepared, u8)> = triangles
-                .iter()
-                .map(|&number| {
-                    let corners = self.grid.corners(self.surface, number);
-                    (Prepared::new(corners), self.large_from[number as usize])
-                })
-                .collect();
-            let mut list: Vec<u32> = (0..triangles.len() as u32).collect();
-            let before = self.below(node, level);
-            let masks = self.descend(node, &prepared, &mut list, 0, corner, level);
-            self.progress.advance(before);
-            return masks;
-        }
-        let half = self.side(level + 1);
-        let inside: Vec<Inside> = (0..8u8)
-            .into_par_iter()
-            .map(|octant| {
-                let Some(inner) = self.graph.child(node, octant) else {
-                    return NOTHING;
-                };
-                let at = child(corner, half, octant);
-                let touching: Vec<u32> = triangles
-                    .iter()
-                    .copied()
-                    .filter(|&number| {
-                        let corners = self.grid.corners(self.surface, number);
-                        Prepared::new(corners).touches(at, half)
-                    })
-                    .collect();
-                self.node(inner, &touching, at, level + 1)
-            })
-            .collect();
-        self.store(node, together(&inside))
-    }
-
-    /// Nodes of a subtree, for the progress: those of its two upper levels.
-    fn below(&self, node: u32, level: u32) -> u64 {
-        if level == self.graph.depth {
-            return 1;
-        }
-        1 + u64::from(self.graph.mask(node).count_ones())
-    }
-
-    /// A node whose triangles are those from `begin` to the list's end.
-    fn descend(
-        &self,
-        node: u32,
-        prepared: &[(Prepared, u8)],
-        list: &mut Vec<u32>,
-        begin: usize,
-        corner: [i64; 3],
-        level: u32,
-    ) -> Inside {
-        if level == self.graph.depth {
-            let side = self.side(level);
-            let (mut masks, mut large_from) = (Masks::default(), u8::MAX);
-            for &triangle in &list[begin..] {
-                let (triangle, from) = &prepared[triangle as usize];
-                cover(triangle, corner, side, &mut masks);
-                large_from = large_from.min(*from);
-            }
-            return self.store(node, (masks, large_from));
-        }
-        let half = self.side(level + 1);
-        let end = list.len();
-        let mut inside = [NOTHING; 8];
+fn places(graph: &Graph) -> Vec<[u32; 3]> {
+    let mut places = vec![[0; 3]; graph.len()];
+    for node in 0..graph.mask.len() as u32 {
+        let place: [u32; 3] = places[node as usize];
         for octant in 0..8u8 {
-            let Some(inner) = self.graph.child(node, octant) else {
+            if let Some(child) = graph.view().child(node, octant) {
+                let bit = |k: usize| u32::from(octant >> (2 - k) & 1);
+                places[child as usize] = [0, 1, 2].map(|k| place[k] << 1 | bit(k));
+            }
+        }
+    }
+    places
+}
+
+struct Columns<'g> {
+    graph: GraphView<'g>,
+    places: Vec<[u32; 3]>,
+    inside: Vec<Inside>,
+    /// By node and axis, a bit for each of its four columns of children that has an opaque child.
+    closed: Vec<[u8; 3]>,
+    found: Vec<Opacity>,
+}
+
+impl Columns<'_> {
+    fn combine(&mut self, nodes: Range<u32>) {
+        let (upper, lower) = self.inside.split_at_mut(nodes.end as usize);
+        let level = &mut upper[nodes.start as usize..];
+        level
+            .par_iter_mut()
+            .zip(nodes.clone())
+            .for_each(|(inside, node)| {
+                let children: [Inside; 8] = std::array::from_fn(|octant| {
+                    let child = self.graph.child(node, octant as u8);
+                    child.map_or(NOTHING, |child| lower[(child - nodes.end) as usize])
+                });
+                inside.masks = joined(&children.map(|child| child.masks));
+                let large_from = children.iter().map(|child| child.large_from);
+                inside.large_from = large_from.fold(u8::MAX, u8::min);
+            });
+    }
+
+    /// The closed columns of a node; its children are settled.
+    fn close(&self, node: u32, level: u32) -> [u8; 3] {
+        if level == self.graph.depth {
+            let masks = self.inside[node as usize].masks;
+            return masks.map(|mask| if mask == ALL { ALL_COLUMNS } else { 0 });
+        }
+        let mut closed = [0; 3];
+        for octant in 0..8u8 {
+            let Some(child) = self.graph.child(node, octant) else {
                 continue;
             };
-            let at = child(corner, half, octant);
-            for i in begin..end {
-                let triangle = list[i];
-                if prepared[triangle as usize].0.touches(at, half) {
-                    list.push(triangle);
+            for (axis, [u, v]) in OTHERS.into_iter().enumerate() {
+                if self.found[child as usize].0[axis] == u8::MAX {
+                    let column = octant >> (2 - u) & 1 | (octant >> (2 - v) & 1) << 1;
+                    closed[axis] |= 1 << column;
                 }
             }
-            inside[usize::from(octant)] = self.descend(inner, prepared, list, end, at, level + 1);
-            list.truncate(end);
         }
-        self.store(node, together(&inside))
+        closed
     }
 
-    fn store(&self, node: u32, inside: Inside) -> Inside {
-        let found = &self.found[node as usize];
-        for (found, mask) in found.masks.iter().zip(inside.0) {
-            found.store(mask, Ordering::Relaxed);
+    /// A node's opacities; the columns of its level are known.
+    fn settle(&self, node: u32, level: u32) -> Opacity {
+        let is_large = self.is_large(node, level);
+        let dither = dither(&self.inside[node as usize].masks);
+        Opacity([0, 1, 2].map(|axis| {
+            let own = self.column(node, axis);
+            let sides = [0, 1].map(|side| match is_large {
+                true => self.before(node, level, axis, side),
+                false => Column::default(),
+            });
+            let all = sides[0].and(sides[1]).and(own);
+            let is_whole = own.closed == ALL_COLUMNS
+                || is_large
+                    && own.covered.count_ones() >= LEAST_POINTS
+                    && (all.covered == ALL || all.closed == ALL_COLUMNS);
+            let [low, high] = sides.map(|before| {
+                let open = own.covered & !before.covered;
+                opacity_of(if is_whole { 64 } else { open.count_ones() }, dither)
+            });
+            low | high << 4
+        }))
+    }
+
+    /// The coverage of the nodes before a node, seen from a side of an axis. Only nodes of large objects count, up to
+    /// the first empty place.
+    fn before(&self, node: u32, level: u32, axis: usize, side: u32) -> Column {
+        let mut column = Column::default();
+        let mut next = self.places[node as usize];
+        for _ in 0..REACH {
+            next[axis] = match side {
+                0 => next[axis].wrapping_sub(1),
+                _ => next[axis] + 1,
+            };
+            let Some(other) = self.node_at(next, level) else {
+                break;
+            };
+            if self.is_large(other, level) {
+                column = column.and(self.column(other, axis));
+            }
         }
-        found.large_from.store(inside.1, Ordering::Relaxed);
-        inside
+        column
+    }
+
+    fn node_at(&self, place: [u32; 3], level: u32) -> Option<u32> {
+        if place.iter().any(|&p| p >> level != 0) {
+            return None;
+        }
+        (0..level).rev().try_fold(self.graph.root, |node, bit| {
+            let [x, y, z] = place.map(|p| p >> bit & 1);
+            self.graph.child(node, (x << 2 | y << 1 | z) as u8)
+        })
+    }
+
+    fn is_large(&self, node: u32, level: u32) -> bool {
+        u32::from(self.inside[node as usize].large_from) <= level
+    }
+
+    fn column(&self, node: u32, axis: usize) -> Column {
+        Column {
+            covered: self.inside[node as usize].masks[axis],
+            closed: self.closed[node as usize][axis],
+        }
     }
 }
 
-/// The points that a node covers, and the coarsest level at which a large object is in it.
-type Inside = (Masks, u8);
+#[derive(Clone, Copy, Default)]
+struct Column {
+    /// Points of their faces.
+    covered: u64,
+    /// Columns of their children that are closed.
+    closed: u8,
+}
 
-const NOTHING: Inside = ([0; 3], u8::MAX);
-
-/// The combination of eight children, by octant.
-fn together(children: &[Inside]) -> Inside {
-    let masks: Vec<Masks> = children.iter().map(|child| child.0).collect();
-    let large_from = children.iter().map(|child| child.1).min();
-    (joined(&masks), large_from.unwrap_or(u8::MAX))
+impl Column {
+    fn and(self, other: Self) -> Self {
+        Self {
+            covered: self.covered | other.covered,
+            closed: self.closed | other.closed,
+        }
+    }
 }

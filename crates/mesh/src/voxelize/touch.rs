@@ -1,18 +1,14 @@
 //! Does a triangle touch a cube? Exactly, in integers.
 //!
-//! Two convex bodies are apart if and only if one of finitely many directions separates them. For a triangle and a cube
-//! these are the cube's three axes, the triangle's normal and the nine products of an edge and an axis. Bodies that
-//! meet in a point touch. Where all corners lie on a line or in a point, the normal is zero and separates nothing. The
-//! other directions are then those of a segment or a point.
+//! They are apart if and only if one of these directions separates them: the cube's three axes, the nine products of an
+//! edge and an axis, and the triangle's normal, which is zero and separates nothing for a segment or a point.
 //!
-//! Bits: coordinates of triangles and corners of cubes are below 2^30, edges below 2^30 in size, so a product of
-//! an edge and an axis dotted with a corner stays below 2^61. The normal is
-//! below 2^61, and dotted with a corner below 2^93: that one is `i128`.
+//! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61,
+//! as the normal is. Dotted with a corner that is below 2^93: `i128`.
 
 /// A direction that lies in the plane of two axes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Flat {
-    /// Parts along the two axes.
     parts: [i64; 2],
     /// Least and greatest value over the triangle.
     low: i64,
@@ -29,7 +25,6 @@ impl Flat {
         }
     }
 
-    /// Whether the direction separates the triangle from a square.
     #[inline]
     fn separates(&self, corner: [i64; 2], side: i64) -> bool {
         let [a, b] = self.parts;
@@ -40,22 +35,20 @@ impl Flat {
     }
 }
 
-/// A triangle with its directions.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
-    /// Corners on the lattice.
-    pub(super) corners: [[i64; 3]; 3],
-    pub(super) low: [i64; 3],
-    pub(super) high: [i64; 3],
-    pub(super) normal: [i64; 3],
+    pub(crate) corners: [[i64; 3]; 3],
+    pub(crate) low: [i64; 3],
+    pub(crate) high: [i64; 3],
+    pub(crate) normal: [i64; 3],
     /// The normal dotted with any corner.
-    offset: i128,
+    pub(crate) offset: i128,
     /// For each axis the directions of the three edges in the plane of the others.
     flats: [[Flat; 3]; 3],
 }
 
-/// The other two axes.
-pub(super) const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+/// The other two axes, so that the three are in cyclic order.
+pub(crate) const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 impl Prepared {
     pub(crate) fn new(corners: [[i64; 3]; 3]) -> Self {
@@ -80,7 +73,6 @@ impl Prepared {
         }
     }
 
-    /// Whether the triangle touches the closed cube.
     #[inline]
     pub(crate) fn touches(&self, corner: [i64; 3], side: i64) -> bool {
         for k in 0..3 {
@@ -94,7 +86,6 @@ impl Prepared {
                 return false;
             }
         }
-        // The cube's least and greatest value along the normal.
         let (mut low, mut high) = (0i128, 0i128);
         for k in 0..3 {
             let n = i128::from(self.normal[k]);
@@ -113,13 +104,11 @@ impl Prepared {
             .fold(0, |mask, octant| mask | 1 << octant)
     }
 
-    /// Whether the triangle lies within the closed cube.
     pub(super) fn is_inside(&self, corner: [i64; 3], side: i64) -> bool {
         (0..3).all(|k| corner[k] <= self.low[k] && self.high[k] <= corner[k] + side)
     }
 }
 
-/// The corner of a child, given its side.
 #[inline]
 pub(crate) fn child(corner: [i64; 3], half: i64, octant: u8) -> [i64; 3] {
     std::array::from_fn(|k| corner[k] + half * i64::from(octant >> (2 - k) & 1))

@@ -68,7 +68,6 @@ const NO_FACES: &[u8] =
     b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\
     property float z\nend_header\n0 0 0";
 
-/// The file of a row's kind and content.
 fn file(kind: &str, content: &str) -> (MeshFormat, Vec<u8>) {
     let text = content.replace("\\n", "\n");
     match kind {
@@ -143,7 +142,6 @@ fn every_beginning_of_a_file_is_read_or_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
-    /// Bytes are replaced, inserted and removed.
     #[test]
     fn damaged_files_are_read_or_refused(
         which in 0usize..8,

@@ -9,7 +9,6 @@ use shiftvox_mesh::{Beside, ColorSpace, LoadOptions, Mesh, MeshFormat, SameFolde
 use super::shapes::{load, squares};
 use super::shared::{has, soup};
 
-/// Files by name.
 struct Shelf(HashMap<&'static str, Vec<u8>>);
 
 impl Beside for Shelf {
@@ -26,7 +25,6 @@ fn obj(text: &str, mtl: &str, options: &LoadOptions) -> Mesh {
     read(text, MeshFormat::Obj, "a file", &shelf, options, &Silent).unwrap()
 }
 
-/// The name of a triangle's material.
 fn material(mesh: &Mesh, triangle: usize) -> &str {
     &mesh.materials()[mesh.material_of()[triangle] as usize].name
 }

@@ -69,7 +69,6 @@ const TURNS: [([f64; 4], [DVec3; 3]); 4] = [
     ([0.0, 0.0, 0.0, 0.0], DVec3::AXES),
 ];
 
-/// A document in the making.
 #[derive(Default)]
 struct Composer {
     buffers: Vec<Vec<u8>>,
@@ -77,7 +76,6 @@ struct Composer {
     accessors: Vec<Value>,
 }
 
-/// Vertices in a buffer.
 struct Vertices {
     positions: Vec<DVec3>,
     attributes: Map<String, Value>,

@@ -22,7 +22,6 @@ fn halves(left: [u8; 3], right: [u8; 3], format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Checks the mean colour of some triangles.
 #[track_caller]
 fn check(mesh: &Mesh, triangles: &[usize], expected: [f64; 3], within: f64) {
     for k in 0..3 {

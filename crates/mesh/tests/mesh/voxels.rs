@@ -28,7 +28,6 @@ fn cells(voxels: &[Voxel]) -> HashSet<[i32; 3]> {
     set
 }
 
-/// A square of side 1 at some height.
 fn square(z: f32) -> Mesh {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, z]), 0))
@@ -68,8 +67,8 @@ fn simple_shapes_have_known_voxels_and_normals() {
         }
     }
     // A flat mesh lies in the middle of its layer.
-    let grid = Grid::around(&square(5.0), 4).unwrap();
-    let layer = (5.0 - grid.origin().z) / grid.voxel_size();
+    let (origin, voxel_size) = Grid::around(&square(5.0), 4).unwrap().placement();
+    let layer = (5.0 - origin[2]) / voxel_size;
     assert!((layer - 0.5).abs() < 1e-9);
 }
 

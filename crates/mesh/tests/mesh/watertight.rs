@@ -16,7 +16,6 @@ const STEPS: i32 = 8;
 /// A point of the lattice, right and down.
 type Point = [i32; 2];
 
-/// Twice the area of a triangle, with its sign.
 fn area([a, b, c]: [Point; 3]) -> i32 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

@@ -19,7 +19,6 @@ fn work(mesh: &Mesh, depth: u32) -> (Vec<Voxel>, VoxelizeReport) {
     (found, report)
 }
 
-/// Triangles anywhere in a cube.
 fn random(seed: u64, count: u32) -> Mesh {
     let mut dice = SplitMix::new(seed);
     shape(|builder| {

@@ -15,7 +15,6 @@ use shiftvox_mesh::raster::{
 };
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 
-/// The corners of a triangle.
 pub type Corners = [[f32; 3]; 3];
 
 /// A camera at `eye` that looks at `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
@@ -86,7 +85,6 @@ pub fn triangles<S: Surface + ?Sized>(
     raster::draw(surface, view, &options, &Silent).unwrap()
 }
 
-/// The sum of a picture's coverage, in pixels.
 pub fn area(coverage: &[f32]) -> f64 {
     coverage.iter().map(|&share| f64::from(share)).sum()
 }
@@ -120,19 +118,16 @@ pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     })
 }
 
-/// The corners of all triangles of a mesh.
 pub fn soup(mesh: &Mesh) -> Vec<Corners> {
     let corner = |i: u32| mesh.positions()[i as usize].map(|c| c as f32);
     mesh.triangles().iter().map(|t| t.map(corner)).collect()
 }
 
-/// Adds one triangle.
 pub fn triangle(builder: &mut MeshBuilder, corners: Corners, material: u32) {
     let corners = corners.map(|p| builder.position(p));
     builder.triangle(corners, None, material).unwrap();
 }
 
-/// Adds two triangles.
 pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [[f32; 3]; 4], material: u32) {
     triangle(builder, [a, b, c], material);
     triangle(builder, [a, c, d], material);
@@ -187,7 +182,6 @@ pub fn turned(
     });
 }
 
-/// Adds a sphere.
 pub fn sphere(
     builder: &mut MeshBuilder,
     middle: DVec3,
@@ -209,7 +203,6 @@ pub fn ball(rows: u32) -> Mesh {
     shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [rows, 2 * rows], 0))
 }
 
-/// A box.
 pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
@@ -224,7 +217,6 @@ pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
     one
 }
 
-/// Whether a text has all parts.
 #[track_caller]
 pub fn has(text: impl Debug, parts: &[&str]) {
     let text = format!("{text:?}");

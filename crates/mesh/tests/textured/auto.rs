@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::generate::{Kind, generate};
-use shiftvox_mesh::textured::view::{Detail, ViewOptions, draw};
+use shiftvox_mesh::textured::view::{Detail, draw};
 use shiftvox_mesh::textured::{Element, build};
 
 use super::scenes::{file_of, options};
@@ -35,10 +35,8 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
                 let picture = |samples| triangles(&mesh, &view, samples, None, BACKGROUND).rgba;
                 let reference = picture(256);
                 let drawn = |detail| {
-                    let options = ViewOptions {
-                        background: BACKGROUND,
-                        ..shown(detail)
-                    };
+                    let mut options = shown(detail);
+                    options.raster.background = BACKGROUND;
                     let (picture, counts) = draw(&file, &view, &options).unwrap();
                     (psnr(&reference, &picture.rgba), counts.choice.texel_px)
                 };

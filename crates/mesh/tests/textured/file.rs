@@ -23,7 +23,6 @@ fn small() -> TexturedData {
     build(&mesh.unwrap(), &options(&[4, 2], 2, Element::Cube), &Silent).unwrap()
 }
 
-/// Reads and verifies a file.
 fn verified(bytes: &[u8]) -> Result<(), TexturedError> {
     TexturedFile::from_bytes(bytes).and_then(|file| file.verify())
 }
@@ -40,8 +39,9 @@ fn files_hold_the_data_that_was_built() {
         let grid = file.grid(number);
         assert_eq!(grid.voxels(), built.voxels);
         assert_eq!(grid.cell_grid().cells(), [2, 4][number]);
-        assert_eq!(grid.projected(), [built.projected, built.projected_afresh]);
-        let textures = (0..grid.textures()).flat_map(|texture| grid.texture(texture as u32));
+        let projected = [grid.entry().projected, grid.entry().projected_afresh];
+        assert_eq!(projected, [built.projected, built.projected_afresh]);
+        let textures = (0..grid.entry().textures).flat_map(|texture| grid.texture(texture as u32));
         assert!(textures.eq(&built.textures));
     }
     // Mapped into memory.

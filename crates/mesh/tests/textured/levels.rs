@@ -33,13 +33,13 @@ fn check(file: &TexturedFile) -> u32 {
     assert_eq!(expected.len(), voxels.len());
     let middle = grid.cell_grid().cells() as i32 / 2;
     for level in 0..=levels.last() {
-        let left = levels.eroded(level)..voxels.len();
+        let gone = voxels.len() - levels.row(level).voxels as usize;
+        let left = gone..voxels.len();
         let cells: Cells = left.clone().map(cell).collect();
         assert_eq!(cells, expected, "level {level}");
         expected = eroded(&expected, grid.element());
         // Primitives of the voxels that are gone.
-        let gone = 0..levels.eroded(level);
-        let shown: BTreeSet<u32> = gone.flat_map(|v| grid.list(v)).copied().collect();
+        let shown: BTreeSet<u32> = (0..gone).flat_map(|v| grid.list(v)).copied().collect();
         let found = levels.primitives(level);
         assert_eq!(found.len(), shown.len());
         assert_eq!(found.iter().copied().collect::<BTreeSet<_>>(), shown);

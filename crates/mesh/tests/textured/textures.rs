@@ -14,7 +14,6 @@ type Point = [i128; 2];
 /// The axes across and down a face that stands on an axis.
 const FACE: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// Twice the area of a triangle, with its sign.
 fn area([a, b, c]: [Point; 3]) -> i128 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

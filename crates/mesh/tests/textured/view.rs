@@ -23,13 +23,10 @@ pub(super) fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> Ra
 pub(super) fn shown(detail: Detail) -> ViewOptions {
     ViewOptions {
         detail,
-        samples: plain(1).samples,
-        light: None,
-        background: None,
+        raster: plain(1),
     }
 }
 
-/// A level of the first grid.
 fn drawn(file: &TexturedFile, view: &RasterCamera, level: u32) -> (RasterPicture, TexturedCounts) {
     draw(file, view, &shown(Detail::Level { grid: 0, level })).unwrap()
 }

@@ -17,7 +17,6 @@ pub(super) struct Numbers<'b> {
 }
 
 impl<'b> Numbers<'b> {
-    /// Finds the numbers of an accessor.
     pub(super) fn find(
         document: &Document,
         buffers: &'b Buffers,
@@ -120,7 +119,6 @@ impl<'b> Numbers<'b> {
         }
     }
 
-    /// The first three numbers of an element.
     pub(super) fn triple(&self, element: usize) -> [f32; 3] {
         std::array::from_fn(|k| self.real(element, k))
     }
@@ -133,7 +131,6 @@ impl<'b> Numbers<'b> {
         }
     }
 
-    /// The bits of a number.
     fn raw(&self, element: usize, k: usize) -> Option<u32> {
         if element >= self.count || k >= self.width {
             return None;

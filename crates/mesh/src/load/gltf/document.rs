@@ -172,7 +172,6 @@ pub(super) struct Buffer {
 }
 
 impl Document {
-    /// Refuses versions and extensions that cannot be read.
     pub(super) fn check(&self) -> Result<(), Problem> {
         let wrong = |part, expected, found, advice| -> Problem {
             Fault::new(part, Place::Whole, expected, found, advice).into()

@@ -21,12 +21,9 @@ use document::Document;
 
 const BROKEN: &str = "the file is damaged or cut short; export the mesh again";
 
-/// The word that a JSON chunk is marked with.
 const JSON: u32 = 0x4e4f_534a;
-/// The word that a binary chunk is marked with.
 const BIN: u32 = 0x004e_4942;
 
-/// Reads a `.gltf` file.
 pub(super) fn read_json(
     bytes: &[u8],
     beside: &dyn Beside,
@@ -36,7 +33,6 @@ pub(super) fn read_json(
     read_document(bytes, 0, None, beside, builder)
 }
 
-/// Reads a `.glb` file.
 pub(super) fn read_binary(
     bytes: &[u8],
     beside: &dyn Beside,

@@ -23,7 +23,6 @@ struct Sizes<'d> {
     triangles: usize,
 }
 
-/// Walks a document.
 pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers,
@@ -174,7 +173,6 @@ impl<'d> Reader<'d> {
         room.map_err(|short| fault("memory for all triangles".to_owned(), short.to_string()))
     }
 
-    /// Positions and triangles of a mesh.
     fn size_of(&self, mesh: &FileMesh) -> Result<(u64, u64), Problem> {
         let (mut positions, mut triangles) = (0, 0);
         for primitive in &mesh.primitives {

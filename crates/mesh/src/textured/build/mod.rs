@@ -1,6 +1,4 @@
-//! Triangles into textured voxels: cells, erosion depths, textures.
-//!
-//! The same triangles and options give the same bytes on any number of threads.
+//! Triangles into textured voxels, with the same bytes on any number of threads.
 
 mod project;
 mod voxels;
@@ -10,23 +8,23 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cell_grid::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
+use super::cell_grid::{MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
-use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
+use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord, list_of};
 use super::{CellGrid, Element, GridData, TexturedData};
+use crate::voxelize::OTHERS;
 use crate::{Surface, geometry, mesh_box};
 use project::{Column, Projected, project};
 use shiftvox::graph::Progress;
-use voxels::{Filled, cell_of, depths, fill};
+pub(super) use voxels::depths;
+use voxels::{cell_of, fill};
 
-/// How textured voxels are built.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// Cells along each axis, one number for each grid: even, 2 to [`MOST_CELLS`].
+    /// Cells along each axis, of each grid: even, 2 to [`MOST_CELLS`].
     pub grids: Vec<u32>,
     /// Texels along the side of a voxel's face, 1 to [`MOST_TEXELS`].
     pub texels: u32,
-    /// The structuring element of the erosion.
     pub element: Element,
 }
 
@@ -41,42 +39,26 @@ impl Default for BuildOptions {
     }
 }
 
-/// Most grids of a file.
 pub const MOST_GRIDS: usize = 16;
 
-/// Why nothing was built.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
-    /// No triangles.
     #[error("there are no triangles to build textured voxels of")]
     Empty,
-    /// More than 32 bits number.
     #[error("{0} are more than 32 bits can number")]
     TooMany(&'static str),
-    /// Numbers of cells or texels that there are not.
     #[error(
         "a grid has an even number of cells from 2 to {MOST_CELLS}, since its middle plane parts \
          it into halves, 1 to {MOST_TEXELS} texels a cell and at most {MOST_ACROSS} texels in all; \
          not {cells} cells of {texels} texels"
     )]
-    Grid {
-        /// Cells along each axis.
-        cells: u32,
-        /// Texels along a face.
-        texels: u32,
-    },
-    /// No grids, too many, or one twice.
+    Grid { cells: u32, texels: u32 },
     #[error("there are 1 to {MOST_GRIDS} grids, each of another number of cells")]
     Grids,
-    /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
 }
 
-/// Builds textured voxels of a surface.
-///
-/// # Errors
-/// See [`BuildError`].
 pub fn build<S: Surface + ?Sized>(
     surface: &S,
     options: &BuildOptions,
@@ -106,7 +88,7 @@ pub fn build<S: Surface + ?Sized>(
     if !(rounded_low.is_finite() && rounded_high.is_finite()) {
         return Err(BuildError::Range);
     }
-    // The mesh's own box: what is made of a mesh is seen from one place.
+    // Of the mesh and not of the rounded corners: all that is made of a mesh is seen from one place.
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
     if !(low.is_finite() && high.is_finite() && extent > 0.0) {
@@ -127,7 +109,6 @@ pub fn build<S: Surface + ?Sized>(
     })
 }
 
-/// The box around the corners as they are stored.
 pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
     geometry::bounds(primitives.iter().flat_map(Primitive::positions))
 }
@@ -139,154 +120,104 @@ fn build_grid<S: Surface + ?Sized>(
     element: Element,
     progress: &dyn Progress,
 ) -> Result<GridData, BuildError> {
+    let (cells, texels) = (lattice.cells(), lattice.texels());
     progress.begin("find voxels", 0);
     let corners: Vec<[[i64; 3]; 3]> = primitives
         .par_iter()
         .map(|primitive| primitive.positions().map(|p| lattice.point(p)))
         .collect();
-    let filled = fill(&corners, lattice);
-    let depths = depths(&filled.cells, lattice.cells(), element);
+    let pairs = fill(&corners, lattice);
+    let mut grid = GridData {
+        cells,
+        texels,
+        element,
+        voxels: Vec::new(),
+        lists: Vec::with_capacity(pairs.len()),
+        textures: Vec::new(),
+        projected: 0,
+        projected_afresh: 0,
+    };
+    let filled: Vec<&[u64]> = pairs.chunk_by(|a, b| a >> 32 == b >> 32).collect();
+    let cell = |pairs: &[u64]| cell_of((pairs[0] >> 32) as u32, cells);
+    let depths = depths(filled.iter().map(|pairs| cell(pairs)), cells, element);
+    let mut sorted: Vec<(u16, &[u64])> = depths.into_iter().zip(filled).collect();
+    sorted.sort_by_key(|(depth, _)| *depth);
+    for (depth, pairs) in sorted {
+        grid.voxels.push(VoxelRecord {
+            cell: cell(pairs).map(|c| c as u16),
+            depth,
+            first: grid.lists.len() as u32,
+            textures: [NEVER; 3],
+        });
+        grid.lists.extend(pairs.iter().map(|&pair| pair as u32));
+    }
     progress.end();
-    if filled.lists.len() >= NEVER as usize {
+    if pairs.len() >= NEVER as usize {
         return Err(BuildError::TooMany("primitives of all voxels"));
     }
-    let (mut voxels, lists) = sorted(&filled, &depths, lattice.cells());
-    let columns = columns(&voxels, &lists, lattice.cells());
+    let columns = columns(&grid.voxels, &grid.lists, cells);
     progress.begin("project textures", columns.len() as u64);
     let projected: Vec<Projected> = columns
         .par_iter()
-        .map(|(axis, column)| {
-            debug_assert_eq!(*axis, column.axis);
+        .map(|column| {
             let projected = project(column, surface, &corners, lattice);
             progress.advance(1);
             projected
         })
         .collect();
     progress.end();
-    let mut grid = GridData {
-        cells: lattice.cells(),
-        texels: lattice.texels(),
-        element,
-        voxels: Vec::new(),
-        lists,
-        textures: Vec::new(),
-        projected: projected.iter().map(|p| p.texels).sum(),
-        projected_afresh: projected.iter().map(|p| p.texels_afresh).sum(),
-    };
-    let mut pool = Pool::default();
-    for ((axis, _), projected) in columns.iter().zip(projected) {
+    // Equal sub-textures have one number.
+    let mut numbers: HashMap<Vec<Texel>, u32> = HashMap::new();
+    for (column, projected) in columns.iter().zip(projected) {
+        grid.projected += projected.texels;
+        grid.projected_afresh += projected.texels_afresh;
         for (voxel, texture) in projected.textures {
-            voxels[voxel as usize].textures[*axis] = match texture {
-                Some(texture) => pool.number(texture, &mut grid.textures)?,
+            // No more than three faces of each of 2^21 cells.
+            let next = numbers.len() as u32;
+            grid.voxels[voxel as usize].textures[column.axis] = match texture {
                 None => CLEAR,
+                Some(texture) => *numbers.entry(texture).or_insert_with_key(|texture| {
+                    grid.textures.extend_from_slice(texture);
+                    next
+                }),
             };
         }
     }
-    grid.voxels = voxels;
     Ok(grid)
 }
 
-/// The erosion depths of voxels, computed from their cells alone.
-pub(super) fn depths_of(voxels: &[VoxelRecord], cells: u32, element: Element) -> Vec<u16> {
-    let number = |voxel: &VoxelRecord| {
-        let [x, y, z] = voxel.cell.map(u32::from);
-        (z * cells + y) * cells + x
-    };
-    let mut places: Vec<(u32, usize)> = voxels.iter().map(number).zip(0..).collect();
-    places.sort_unstable();
-    let filled: Vec<u32> = places.iter().map(|(number, _)| *number).collect();
-    let mut found = vec![0; voxels.len()];
-    for ((_, place), depth) in places.iter().zip(depths(&filled, cells, element)) {
-        found[*place] = depth;
-    }
-    found
-}
-
-/// Voxels by depth and then by cell, without textures yet, and their lists.
-fn sorted(filled: &Filled, depths: &[u16], cells: u32) -> (Vec<VoxelRecord>, Vec<u32>) {
-    let mut places: Vec<usize> = (0..filled.cells.len()).collect();
-    places.sort_by_key(|&place| depths[place]);
-    let mut lists = Vec::with_capacity(filled.lists.len());
-    let voxels = places
-        .into_iter()
-        .map(|place| {
-            // Fewer than 2^32: the caller made sure.
-            let first = lists.len() as u32;
-            lists.extend_from_slice(filled.list(place));
-            VoxelRecord {
-                cell: cell_of(filled.cells[place], cells).map(|c| c as u16),
-                depth: depths[place],
-                first,
-                textures: [NEVER; 3],
-            }
-        })
-        .collect();
-    (voxels, lists)
-}
-
-/// The columns of which levels show faces, in one order.
-fn columns(voxels: &[VoxelRecord], lists: &[u32], cells: u32) -> Vec<(usize, Column)> {
-    let list = |number: usize| {
-        let end = voxels
-            .get(number + 1)
-            .map_or(lists.len(), |v| v.first as usize);
-        &lists[voxels[number].first as usize..end]
-    };
-    let column_of = |voxel: &VoxelRecord, axis: usize| {
-        let [across, down] = ACROSS[axis];
-        [voxel.cell[across], voxel.cell[down]].map(u32::from)
-    };
-    let mut columns: Vec<(usize, Column)> = Vec::new();
-    let mut places: HashMap<(usize, [u32; 2]), usize> = HashMap::new();
+/// The columns of which levels show faces.
+fn columns(voxels: &[VoxelRecord], lists: &[u32], cells: u32) -> Vec<Column> {
+    let mut columns: Vec<Column> = Vec::new();
+    let mut places: HashMap<(usize, [u16; 2]), usize> = HashMap::new();
+    let key = |voxel: &VoxelRecord, axis: usize| (axis, OTHERS[axis].map(|k| voxel.cell[k]));
     for surfel in surfels(voxels, cells) {
         let axis = usize::from(surfel.axis);
         let voxel = &voxels[surfel.voxel as usize];
-        let at = column_of(voxel, axis);
-        let place = *places.entry((axis, at)).or_insert_with(|| {
-            let column = Column {
+        let key = key(voxel, axis);
+        let place = *places.entry(key).or_insert(columns.len());
+        if place == columns.len() {
+            columns.push(Column {
                 axis,
-                at,
+                at: key.1.map(u32::from),
                 primitives: Vec::new(),
                 wanted: Vec::new(),
-            };
-            columns.push((axis, column));
-            columns.len() - 1
-        });
-        let wanted = &mut columns[place].1.wanted;
-        wanted.push((u32::from(voxel.cell[axis]), surfel.voxel));
+            });
+        }
+        let slice = u32::from(voxel.cell[axis]);
+        columns[place].wanted.push((slice, surfel.voxel));
     }
-    for number in 0..voxels.len() {
+    for (number, voxel) in voxels.iter().enumerate() {
         for axis in 0..3 {
-            if let Some(&place) = places.get(&(axis, column_of(&voxels[number], axis))) {
-                columns[place].1.primitives.extend_from_slice(list(number));
+            if let Some(&place) = places.get(&key(voxel, axis)) {
+                let list = list_of(voxels, lists, number);
+                columns[place].primitives.extend_from_slice(list);
             }
         }
     }
-    columns.par_iter_mut().for_each(|(_, column)| {
+    columns.par_iter_mut().for_each(|column| {
         column.primitives.sort_unstable();
         column.primitives.dedup();
     });
     columns
-}
-
-/// Gives equal sub-textures one number.
-#[derive(Default)]
-struct Pool {
-    numbers: HashMap<Vec<Texel>, u32>,
-}
-
-impl Pool {
-    fn number(&mut self, texture: Vec<Texel>, all: &mut Vec<Texel>) -> Result<u32, BuildError> {
-        let next = self.numbers.len();
-        if next >= CLEAR as usize {
-            return Err(BuildError::TooMany("sub-textures"));
-        }
-        if let Some(&number) = self.numbers.get(&texture) {
-            return Ok(number);
-        }
-        all.extend_from_slice(&texture);
-        // Below `CLEAR`.
-        self.numbers.insert(texture, next as u32);
-        Ok(next as u32)
-    }
 }

@@ -5,25 +5,6 @@ use rayon::prelude::*;
 use crate::textured::{CellGrid, Element};
 use crate::voxelize::{Prepared, child};
 
-/// Cells that are not empty, with the primitives that touch them.
-#[derive(Debug, Default)]
-pub(super) struct Filled {
-    /// Numbers of cells, `(z * cells + y) * cells + x`, rising.
-    pub(super) cells: Vec<u32>,
-    /// The first of each cell's entries in `lists`; one more than cells.
-    pub(super) firsts: Vec<usize>,
-    /// Primitives of each cell, rising.
-    pub(super) lists: Vec<u32>,
-}
-
-impl Filled {
-    /// The primitives of a cell by its place among those that are not empty.
-    pub(super) fn list(&self, place: usize) -> &[u32] {
-        &self.lists[self.firsts[place]..self.firsts[place + 1]]
-    }
-}
-
-/// The cell of a number.
 pub(super) fn cell_of(number: u32, cells: u32) -> [u32; 3] {
     [
         number % cells,
@@ -32,104 +13,85 @@ pub(super) fn cell_of(number: u32, cells: u32) -> [u32; 3] {
     ]
 }
 
-/// Finds the cells that triangles touch: closed cells, decided exactly on the lattice.
-pub(super) fn fill(corners: &[[[i64; 3]; 3]], lattice: &CellGrid) -> Filled {
+/// Pairs of a cell, `(z * cells + y) * cells + x`, in the upper half, and a primitive that touches it when closed, in the
+/// lower half; rising.
+pub(super) fn fill(corners: &[[[i64; 3]; 3]], lattice: &CellGrid) -> Vec<u64> {
     let mut pairs: Vec<u64> = corners
         .par_iter()
         .enumerate()
         .flat_map_iter(|(primitive, &corners)| {
+            let side = i64::from(lattice.cells().next_power_of_two());
             let mut touched = Vec::new();
-            let descent = Descent {
-                prepared: Prepared::new(corners),
-                cells: i64::from(lattice.cells()),
-                step: lattice.cell_steps(),
-            };
-            let side = lattice.cells().next_power_of_two();
-            descent.node([0; 3], i64::from(side), &mut touched);
-            touched
-                .into_iter()
-                .map(move |cell| u64::from(cell) << 32 | primitive as u64)
+            descend(&Prepared::new(corners), lattice, [0; 3], side, &mut touched);
+            let pair = move |cell| u64::from(cell) << 32 | primitive as u64;
+            touched.into_iter().map(pair)
         })
         .collect();
     pairs.par_sort_unstable();
-    let mut filled = Filled::default();
-    for (place, pair) in pairs.iter().enumerate() {
-        let cell = (pair >> 32) as u32;
-        if filled.cells.last() != Some(&cell) {
-            filled.cells.push(cell);
-            filled.firsts.push(place);
-        }
-        filled.lists.push(*pair as u32);
+    pairs
+}
+
+/// Finds the cells that a triangle touches in a cube of `side` cells, a power of two.
+fn descend(
+    triangle: &Prepared,
+    lattice: &CellGrid,
+    corner: [i64; 3],
+    side: i64,
+    touched: &mut Vec<u32>,
+) {
+    let (cells, step) = (i64::from(lattice.cells()), lattice.cell_steps());
+    let is_beyond = corner.iter().any(|&c| c >= cells);
+    if is_beyond || !triangle.touches(corner.map(|c| c * step), side * step) {
+        return;
     }
-    filled.firsts.push(pairs.len());
-    filled
-}
-
-struct Descent {
-    prepared: Prepared,
-    cells: i64,
-    step: i64,
-}
-
-impl Descent {
-    /// A cube of `side` cells, a power of two, that the triangle may touch.
-    fn node(&self, corner: [i64; 3], side: i64, touched: &mut Vec<u32>) {
-        if corner.iter().any(|&c| c >= self.cells) {
-            return;
-        }
-        let at = corner.map(|c| c * self.step);
-        if !self.prepared.touches(at, side * self.step) {
-            return;
-        }
-        if side == 1 {
-            let [x, y, z] = corner;
-            // Below 2^21.
-            touched.push(((z * self.cells + y) * self.cells + x) as u32);
-            return;
-        }
-        for octant in 0..8 {
-            self.node(child(corner, side / 2, octant), side / 2, touched);
-        }
+    if side == 1 {
+        let [x, y, z] = corner;
+        touched.push(((z * cells + y) * cells + x) as u32);
+        return;
+    }
+    for octant in 0..8 {
+        let corner = child(corner, side / 2, octant);
+        descend(triangle, lattice, corner, side / 2, touched);
     }
 }
 
 /// Erosions that each of some cells survives. Beyond the grid all is empty.
 ///
-/// A cell survives as many erosions as it is steps away from the nearest empty
-/// cell, less one, in the steps of the structuring element. Two passes over
-/// the grid find that exactly, for this element as for that.
-pub(super) fn depths(filled: &[u32], cells: u32, element: Element) -> Vec<u16> {
-    // A border of empty cells on every side.
+/// A cell survives as many as it is steps of the structuring element away from the nearest empty cell, less one. Two
+/// passes over the grid find that exactly, for both elements.
+pub(in crate::textured) fn depths(
+    filled: impl Iterator<Item = [u32; 3]>,
+    cells: u32,
+    element: Element,
+) -> Vec<u16> {
     let side = cells as usize + 2;
-    let at = |number: u32| {
-        let [x, y, z] = cell_of(number, cells).map(|c| c as usize + 1);
+    let at = |cell: [u32; 3]| {
+        let [x, y, z] = cell.map(|c| c as usize + 1);
         (z * side + y) * side + x
     };
+    let places: Vec<usize> = filled.map(at).collect();
     let mut steps = vec![0u16; side * side * side];
-    for &number in filled {
-        steps[at(number)] = u16::MAX;
+    for &here in &places {
+        steps[here] = u16::MAX;
     }
-    let offsets = preceding(element).map(|[x, y, z]| (z * side as i64 + y) * side as i64 + x);
-    let offsets: Vec<usize> = offsets.map(|offset| (-offset) as usize).collect();
-    for &number in filled {
-        let here = at(number);
+    // Of the neighbours before a cell, how far before.
+    let offsets: Vec<usize> = (0..13usize)
+        .map(|i| [i % 3, i / 3 % 3, i / 9])
+        .filter(|cell| {
+            let axes = cell.iter().filter(|&&c| c != 1).count();
+            element == Element::Cube || axes == 1
+        })
+        .map(|[x, y, z]| at([0; 3]) - ((z * side + y) * side + x))
+        .collect();
+    let mut rising = places.clone();
+    rising.sort_unstable();
+    for &here in &rising {
         let least = offsets.iter().map(|&back| steps[here - back]).min();
         steps[here] = least.unwrap_or(0).saturating_add(1).min(steps[here]);
     }
-    for &number in filled.iter().rev() {
-        let here = at(number);
+    for &here in rising.iter().rev() {
         let least = offsets.iter().map(|&ahead| steps[here + ahead]).min();
         steps[here] = least.unwrap_or(0).saturating_add(1).min(steps[here]);
     }
-    filled.iter().map(|&number| steps[at(number)] - 1).collect()
-}
-
-/// The neighbours of a cell that come before it in the order of numbers.
-fn preceding(element: Element) -> impl Iterator<Item = [i64; 3]> {
-    (0..13i64)
-        .map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1])
-        .filter(move |offset| {
-            let axes = offset.iter().filter(|&&c| c != 0).count();
-            element == Element::Cube || axes == 1
-        })
+    places.into_iter().map(|here| steps[here] - 1).collect()
 }

@@ -1,15 +1,12 @@
 //! The layout of a `.tvx` file: `spec/textured.md`.
 //!
-//! A header of 128 bytes, an entry for each grid, primitives; then for each grid
-//! its voxels, lists and sub-textures. Sections are aligned to 64 bytes with
-//! zeros between. All numbers are little-endian.
+//! A header, an entry for each grid, primitives; then for each grid its voxels, lists and sub-textures.
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
+use crate::textured::record::{Primitive, Texel, VoxelRecord};
 use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
 
-/// How files begin.
 pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
     // As in PNG, they show a transfer that changes line ends or bit 7.
@@ -22,7 +19,6 @@ pub(super) const FORMAT: Format = Format {
 /// Where [`Fields`] begin in the header.
 pub(super) const FIELDS: usize = 24;
 
-/// The fields of the header, beside those of every header.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Fields {
@@ -37,62 +33,52 @@ pub(super) struct Fields {
     pub(super) grids_checksum: u64,
 }
 
-/// A grid's entry in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct GridEntry {
-    pub(super) cells: u32,
-    pub(super) texels: u32,
+pub struct GridEntry {
+    pub cells: u32,
+    pub texels: u32,
     /// 0 is the cube, 1 the six sides.
-    pub(super) element: u32,
-    pub(super) spare: u32,
-    pub(super) voxels: u64,
-    pub(super) listed: u64,
-    /// Sub-textures.
-    pub(super) textures: u64,
-    pub(super) projected: u64,
-    pub(super) projected_afresh: u64,
-    pub(super) voxels_checksum: u64,
-    pub(super) lists_checksum: u64,
-    pub(super) textures_checksum: u64,
+    pub element: u32,
+    pub spare: u32,
+    pub voxels: u64,
+    pub listed: u64,
+    pub textures: u64,
+    pub projected: u64,
+    pub projected_afresh: u64,
+    pub voxels_checksum: u64,
+    pub lists_checksum: u64,
+    pub textures_checksum: u64,
 }
 
-/// Bytes of a [`GridEntry`].
 pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
 
-/// Where a grid's sections lie: begin and end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct GridPlaces {
-    pub(super) voxels: [u64; 2],
-    pub(super) lists: [u64; 2],
-    pub(super) textures: [u64; 2],
-}
-
-/// Where the sections lie.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) entries: [u64; 2],
     pub(super) primitives: [u64; 2],
-    pub(super) grids: Vec<GridPlaces>,
+    /// Of each grid its voxels, lists and sub-textures.
+    pub(super) grids: Vec<[[u64; 2]; 3]>,
 }
 
 impl Layout {
     /// There is only one. Saturates.
     pub(super) fn of(primitives: u64, grids: &[GridEntry]) -> Self {
         let entries = section_after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
-        let primitives = section_after(entries[1], primitives, PRIMITIVE_BYTES);
+        let primitives = section_after(entries[1], primitives, size_of::<Primitive>());
         let mut end = primitives[1];
         let places = grids.iter().map(|grid| {
-            let voxels = section_after(end, grid.voxels, VOXEL_BYTES);
-            let lists = section_after(voxels[1], grid.listed, size_of::<u32>());
             let face = u64::from(grid.texels).saturating_mul(u64::from(grid.texels));
-            let textures = section_after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
-            end = textures[1];
-            GridPlaces {
-                voxels,
-                lists,
-                textures,
-            }
+            [
+                (grid.voxels, size_of::<VoxelRecord>()),
+                (grid.listed, size_of::<u32>()),
+                (grid.textures.saturating_mul(face), size_of::<Texel>()),
+            ]
+            .map(|(count, item_bytes)| {
+                let section = section_after(end, count, item_bytes);
+                end = section[1];
+                section
+            })
         });
         Self {
             entries,
@@ -101,19 +87,12 @@ impl Layout {
         }
     }
 
-    /// Bytes of the file.
     pub(super) fn end(&self) -> u64 {
-        self.grids
-            .last()
-            .map_or(self.primitives[1], |g| g.textures[1])
+        self.sections().fold(0, |_, [_, end]| end)
     }
 
-    /// All sections, in order.
     pub(super) fn sections(&self) -> impl Iterator<Item = [u64; 2]> + '_ {
-        let of_grids = self
-            .grids
-            .iter()
-            .flat_map(|g| [g.voxels, g.lists, g.textures]);
+        let of_grids = self.grids.iter().flatten().copied();
         [self.entries, self.primitives].into_iter().chain(of_grids)
     }
 }

@@ -1,13 +1,14 @@
-//! The `.tvx` file: primitives, voxels, lists and sub-textures, mapped and used in place.
+//! The `.tvx` file, mapped and used in place.
 //!
-//! Opening a file checks everything except the texels, which take most of it. The texels of a grid are checked against
-//! their checksum when it is first drawn. [`TexturedFile::verify`] reads all, and computes erosion depths again.
+//! Opening checks everything except the texels, which take most of it: those of a grid are checked when it is first
+//! drawn. [`TexturedFile::verify`] reads all, and computes erosion depths again.
 
 mod check;
 mod format;
 mod read;
 mod write;
 
+pub use format::GridEntry;
 pub use read::{Grid, TexturedFile};
 pub use shiftvox::graph::file::FileError as TexturedError;
 pub use write::{encode, write_to};

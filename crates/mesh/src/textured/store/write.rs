@@ -9,28 +9,19 @@ use super::format::{FIELDS, FORMAT, Fields, GridEntry, Layout};
 use crate::textured::{Element, GridData, TexturedData};
 use shiftvox::graph::file;
 
-/// Writes textured voxels: to a temporary file, say, that then gets its name
-/// ([`shiftvox::whole::write_with`]).
-///
-/// # Errors
-/// The writer's byte order; a machine that stores the highest byte first.
 pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     let entries: Vec<GridEntry> = data.grids.iter().map(entry).collect();
     let layout = Layout::of(data.primitives.len() as u64, &entries);
     let mut sections: Vec<&[u8]> = vec![cast_slice(&entries), cast_slice(&data.primitives)];
     for grid in &data.grids {
-        let parts: [&[u8]; 3] = [
-            cast_slice(&grid.voxels),
-            cast_slice(&grid.lists),
-            cast_slice(&grid.textures),
-        ];
-        sections.extend(parts);
+        sections.push(cast_slice(&grid.voxels));
+        sections.push(cast_slice(&grid.lists));
+        sections.push(cast_slice(&grid.textures));
     }
     let fields = Fields {
         primitives: data.primitives.len() as u64,
         low: data.low.to_array(),
         high: data.high.to_array(),
-        // At most 16.
         grids: entries.len() as u32,
         y_up: u8::from(data.y_up),
         spare: [0; 11],
@@ -42,10 +33,6 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     file::write(&FORMAT, &header, layout.sections().zip(sections), out)
 }
 
-/// The bytes of a whole file.
-///
-/// # Errors
-/// As [`write_to`].
 pub fn encode(data: &TexturedData) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write_to(data, &mut bytes)?;
@@ -57,10 +44,7 @@ fn entry(grid: &GridData) -> GridEntry {
     GridEntry {
         cells: grid.cells,
         texels: grid.texels,
-        element: match grid.element {
-            Element::Cube => 0,
-            Element::Sides => 1,
-        },
+        element: u32::from(grid.element == Element::Sides),
         spare: 0,
         voxels: grid.voxels.len() as u64,
         listed: grid.lists.len() as u64,

@@ -1,85 +1,65 @@
-//! The choice of grid and level for a camera, which is future work in Tellier and Baroud 2003.
+//! The choice of grid and level for a camera, future work in Tellier and Baroud 2003.
 
 use glam::DVec3;
 
 use crate::raster::RasterCamera;
-use crate::textured::store::{Grid, TexturedFile};
+use crate::textured::store::TexturedFile;
 
-/// A grid and a level, and how large its texels are on the picture.
+/// A grid and a level, and the size of its texels in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    /// Number of the grid.
     pub grid: usize,
-    /// Erosions.
     pub level: u32,
-    /// The size of the largest texel, pixels, at the nearest point of the box around the remaining voxels. 0 without
+    /// The size of the largest texel, pixels, at the nearest point of the box around the voxels that are left. 0 without
     /// voxels, infinite from within the box.
     pub texel_px: f64,
-    /// How far behind a face lies what it shows, pixels, at the most, seen so.
+    /// The farthest way from a face to what it shows, seen so.
     pub behind_px: f64,
 }
 
 impl Choice {
     /// A given one. Levels above the last are the last.
     pub(super) fn of(file: &TexturedFile, view: &RasterCamera, grid: usize, level: u32) -> Self {
-        let levels = file.grid(grid).levels();
-        let level = level.min(levels.last());
+        let row = file.grid(grid).levels().row(level);
+        let lattice = file.grid(grid).cell_grid();
+        let reach = DVec3::from_array(row.reach.map(f64::from));
+        // Pixels of a length at the nearest voxel that is left. Division by zero: infinite.
+        let in_pixels = |length: f64| {
+            let [low, high] = row.cells.map(|cell| lattice.corner(cell));
+            let away = (low - view.eye).max(view.eye - high).max(DVec3::ZERO);
+            match row.voxels {
+                0 => 0.0,
+                _ => length * view.focal_px / away.length(),
+            }
+        };
         Self {
             grid,
-            level,
-            texel_px: texel_px(&file.grid(grid), level, view),
-            behind_px: behind_px(&file.grid(grid), level, view),
+            level: row.level,
+            texel_px: in_pixels(lattice.texel_size()),
+            behind_px: in_pixels((reach * lattice.cell_size()).max_element()),
         }
     }
 }
 
-/// The level of fewest faces, a surfel counting as two, of all grids, whose
-/// texels are at most so many pixels, and which shows nothing farther behind a
-/// face than that. Primitives alone always are.
+/// The level of fewest faces, a surfel counting as two, of all grids, whose texels are at most so many pixels, and which
+/// shows nothing farther behind a face; or primitives alone.
 pub fn choose(file: &TexturedFile, view: &RasterCamera, most_px: f64) -> Choice {
-    let mut best: Option<(u64, Choice)> = None;
+    let mut best = (u64::MAX, Choice::of(file, view, 0, u32::MAX));
     for grid in 0..file.grids() {
         for row in file.grid(grid).levels().rows() {
             let choice = Choice::of(file, view, grid, row.level);
             let cost = row.primitives + 2 * row.surfels;
-            let is_better = best.is_none_or(|(least, _)| cost < least);
-            if choice.texel_px.max(choice.behind_px) <= most_px && is_better {
-                best = Some((cost, choice));
+            if choice.texel_px.max(choice.behind_px) <= most_px && cost < best.0 {
+                best = (cost, choice);
             }
         }
     }
-    let all = Choice::of(file, view, 0, u32::MAX);
-    best.map_or(all, |(_, choice)| choice)
+    best.1
 }
 
-/// The grid for a level that is given: the coarsest whose texels are at most a
-/// pixel, or else the finest.
+/// The grid for a level that is given: the coarsest whose texels are at most a pixel, or else the finest.
 pub fn choose_grid(file: &TexturedFile, view: &RasterCamera, level: u32) -> usize {
-    let is_fine = |&grid: &usize| texel_px(&file.grid(grid), level, view) <= 1.0;
+    let is_fine = |&grid: &usize| Choice::of(file, view, grid, level).texel_px <= 1.0;
     let last = file.grids() - 1;
     (0..file.grids()).find(is_fine).unwrap_or(last)
-}
-
-/// Size of the largest texel of a level.
-fn texel_px(grid: &Grid<'_>, level: u32, view: &RasterCamera) -> f64 {
-    in_pixels(grid, level, view, grid.cell_grid().texel_size())
-}
-
-/// How far behind its face something may lie, seen from the side.
-fn behind_px(grid: &Grid<'_>, level: u32, view: &RasterCamera) -> f64 {
-    let reach = DVec3::from_array(grid.levels().reach(level).map(f64::from));
-    let longest = (reach * grid.cell_grid().cell_size()).max_element();
-    in_pixels(grid, level, view, longest)
-}
-
-/// A length, world units, at the nearest voxel that a level leaves.
-fn in_pixels(grid: &Grid<'_>, level: u32, view: &RasterCamera, length: f64) -> f64 {
-    let Some(cells) = grid.levels().box_of(level) else {
-        return 0.0;
-    };
-    let lattice = grid.cell_grid();
-    let [low, high] = cells.map(|cell| lattice.corner(cell));
-    let away = (low - view.eye).max(view.eye - high).max(DVec3::ZERO);
-    // Division by zero: infinite.
-    length * view.focal_px / away.length()
 }

@@ -1,15 +1,12 @@
 //! Textured voxels to a picture.
 //!
-//! The primitives of eroded voxels and the surfels of those that are left go
-//! to the rasteriser as triangles: one depth buffer, any camera. A surfel is
-//! two textured triangles; where a texel is transparent, what is behind shows.
+//! The primitives of eroded voxels and the surfels of those that are left go to the rasteriser as triangles: one depth
+//! buffer, any camera. Where a texel is transparent, what is behind shows.
 
 mod choose;
 mod scene;
 
-use crate::raster::{
-    self, Light, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
-};
+use crate::raster::{self, RasterCamera, RasterError, RasterOptions, RasterPicture};
 use shiftvox::graph::Silent;
 
 pub use choose::{Choice, choose, choose_grid};
@@ -17,7 +14,6 @@ pub use choose::{Choice, choose, choose_grid};
 use super::store::{TexturedError, TexturedFile};
 use scene::Shown;
 
-/// The grid and the level to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Detail {
     /// The level of fewest faces, of all grids, whose texels are at most so many pixels.
@@ -25,62 +21,39 @@ pub enum Detail {
         /// Pixels, above 0.
         texel_px: f64,
     },
-    /// This one.
     Level {
-        /// Number of the grid.
         grid: usize,
         /// Erosions; from the last level on primitives alone.
         level: u32,
     },
 }
 
-/// How textured voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewOptions {
-    /// The grid and the level.
     pub detail: Detail,
-    /// The number of samples per pixel, and their places.
-    pub samples: Samples,
-    /// The light, or `None` for unlit colours.
-    pub light: Option<Light>,
-    /// The background, sRGB, or `None` for transparent.
-    pub background: Option<[u8; 3]>,
+    pub raster: RasterOptions,
 }
 
-/// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// The file's data is damaged.
     #[error(transparent)]
     File(#[from] TexturedError),
-    /// The camera or the picture's size.
     #[error(transparent)]
     Raster(#[from] RasterError),
-    /// There is no such grid.
     #[error("there is no grid {0}: the file has {1}")]
     Grid(usize, usize),
-    /// The size of texels.
     #[error("texels are wanted at a size above 0 pixels, not {0}")]
     TexelSize(f64),
 }
 
-/// Counts and work of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedCounts {
-    /// The grid and level that are drawn, and the size of its texels.
     pub choice: Choice,
-    /// Primitives given to the rasteriser.
     pub primitives: u64,
-    /// Surfels given to the rasteriser.
     pub surfels: u64,
-    /// Voxels that are left.
     pub voxels: u64,
 }
 
-/// Draws a frame.
-///
-/// # Errors
-/// See [`ViewError`].
 pub fn draw(
     file: &TexturedFile,
     view: &RasterCamera,
@@ -96,19 +69,14 @@ pub fn draw(
     };
     let grid = file.grid(choice.grid);
     grid.ensure()?;
-    let levels = grid.levels();
     let shown = Shown::new(file, grid, choice.level);
-    let raster_options = RasterOptions {
-        samples: options.samples,
-        light: options.light,
-        background: options.background,
-    };
-    let picture = raster::draw(&shown, view, &raster_options, &Silent)?;
+    let picture = raster::draw(&shown, view, &options.raster, &Silent)?;
+    let row = grid.levels().row(choice.level);
     let counts = TexturedCounts {
         choice,
-        primitives: shown.primitives() as u64,
-        surfels: shown.surfels() as u64,
-        voxels: (grid.voxels().len() - levels.eroded(choice.level)) as u64,
+        primitives: row.primitives,
+        surfels: row.surfels,
+        voxels: row.voxels,
     };
     Ok((picture, counts))
 }

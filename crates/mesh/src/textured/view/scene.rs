@@ -2,26 +2,23 @@
 
 use glam::DVec3;
 
-use crate::textured::cell_grid::ACROSS;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
 use crate::textured::store::{Grid, TexturedFile};
+use crate::voxelize::OTHERS;
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
 /// A surfel and its geometry.
 struct Face<'f> {
     axis: usize,
-    /// Unit vector to the outer side.
     outwards: DVec3,
     /// The corner from which texels are counted.
     corner: DVec3,
-    /// Sides of the cell.
     size: DVec3,
     texels: &'f [Texel],
 }
 
-/// The contents of a level.
 pub(super) struct Shown<'f> {
     file: &'f TexturedFile,
     stored: &'f [Primitive],
@@ -60,17 +57,6 @@ impl<'f> Shown<'f> {
         }
     }
 
-    /// Number of primitives.
-    pub(super) fn primitives(&self) -> usize {
-        self.primitives.len()
-    }
-
-    /// Number of surfels.
-    pub(super) fn surfels(&self) -> usize {
-        self.faces.len()
-    }
-
-    /// The surfel of a textured triangle.
     fn face(&self, number: usize) -> &Face<'f> {
         &self.faces[(number - self.primitives.len()) / 2]
     }
@@ -86,7 +72,7 @@ impl Surface for Shown<'_> {
             return self.stored[primitive as usize].positions();
         }
         let face = self.face(number);
-        let [across, down] = ACROSS[face.axis];
+        let [across, down] = OTHERS[face.axis];
         let right = DVec3::AXES[across] * face.size[across];
         let below = DVec3::AXES[down] * face.size[down];
         let is_second = (number - self.primitives.len()) % 2 == 1;
@@ -119,7 +105,7 @@ impl Surface for Shown<'_> {
         let face = self.face(number);
         let place = (point - face.corner) / face.size * self.side as f64;
         // A negative number becomes 0: points on an edge may lie beyond it by rounding.
-        let [across, down] = ACROSS[face.axis].map(|k| (place[k] as usize).min(self.side - 1));
+        let [across, down] = OTHERS[face.axis].map(|k| (place[k] as usize).min(self.side - 1));
         let texel = &face.texels[down * self.side + across];
         if texel.is_clear() {
             return None;
