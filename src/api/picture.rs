@@ -15,36 +15,16 @@ use crate::whole;
 /// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
-    width: u32,
-    height: u32,
-    buffers: Buffers,
-    counters: Stats,
-    operations: Option<Counter>,
-}
-
-#[derive(Debug)]
-pub(super) struct Buffers {
+    pub(super) width: u32,
+    pub(super) height: u32,
     pub(super) rgba: Vec<[u8; 4]>,
     pub(super) others: Vec<(Buffer, Values)>,
     pub(super) hash: Option<String>,
+    pub(super) counters: Stats,
+    pub(super) operations: Option<Counter>,
 }
 
 impl Picture {
-    pub(super) fn new(
-        (width, height): (u32, u32),
-        buffers: Buffers,
-        counters: Stats,
-        operations: Option<Counter>,
-    ) -> Self {
-        Self {
-            width,
-            height,
-            buffers,
-            counters,
-            operations,
-        }
-    }
-
     /// Pixels across.
     #[must_use]
     pub fn width(&self) -> u32 {
@@ -61,13 +41,13 @@ impl Picture {
     /// [`Background::None`](crate::Background::None); then it is the share of the pixel that shows voxels.
     #[must_use]
     pub fn rgba(&self) -> &[[u8; 4]] {
-        &self.buffers.rgba
+        &self.rgba
     }
 
     /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
-        self.buffers.rgba.get(self.at(x, y)?).copied()
+        self.rgba.get(self.at(x, y)?).copied()
     }
 
     /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity without a voxel.
@@ -75,7 +55,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn depth(&self) -> Result<&[f32], Error> {
-        self.floats(Buffer::Depth)
+        self.numbers(Buffer::Depth)
     }
 
     /// Unit normals in world directions; zero without a voxel.
@@ -83,7 +63,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn normals(&self) -> Result<&[[f32; 3]], Error> {
-        Ok(self.floats(Buffer::Normal)?.as_chunks().0)
+        self.numbers(Buffer::Normal)
     }
 
     /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
@@ -92,7 +72,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn voxels(&self) -> Result<&[[i32; 4]], Error> {
-        Ok(self.integers(Buffer::Voxel)?.as_chunks().0)
+        self.numbers(Buffer::Voxel)
     }
 
     /// Visible graph node; -1 without one.
@@ -100,7 +80,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn nodes(&self) -> Result<&[i32], Error> {
-        self.integers(Buffer::Node)
+        self.numbers(Buffer::Node)
     }
 
     /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel,
@@ -149,7 +129,7 @@ impl Picture {
     pub fn hash(&self) -> Result<&str, Error> {
         let missing =
             || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
-        self.buffers.hash.as_deref().ok_or_else(missing)
+        self.hash.as_deref().ok_or_else(missing)
     }
 
     /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
@@ -187,11 +167,11 @@ impl Picture {
     #[doc(hidden)]
     #[must_use]
     pub fn into_buffers(self) -> (Vec<[u8; 4]>, Vec<(Buffer, Values)>) {
-        (self.buffers.rgba, self.buffers.others)
+        (self.rgba, self.others)
     }
 
     pub(super) fn values(&self, buffer: Buffer) -> Result<&Values, Error> {
-        let mut others = self.buffers.others.iter();
+        let mut others = self.others.iter();
         let found = others.find(|(other, _)| *other == buffer);
         found.map(|(_, values)| values).ok_or_else(|| {
             let name = buffer.name();
@@ -201,17 +181,11 @@ impl Picture {
         })
     }
 
-    fn floats(&self, buffer: Buffer) -> Result<&[f32], Error> {
-        match self.values(buffer)? {
-            Values::F32(values) => Ok(values),
-            Values::I32(_) | Values::U8(_) => Ok(&[]),
-        }
-    }
-
-    fn integers(&self, buffer: Buffer) -> Result<&[i32], Error> {
-        match self.values(buffer)? {
-            Values::I32(values) => Ok(values),
-            Values::F32(_) | Values::U8(_) => Ok(&[]),
-        }
+    fn numbers<T: bytemuck::Pod>(&self, buffer: Buffer) -> Result<&[T], Error> {
+        Ok(match self.values(buffer)? {
+            Values::F32(values) => bytemuck::cast_slice(values),
+            Values::I32(values) => bytemuck::cast_slice(values),
+            Values::U8(values) => bytemuck::cast_slice(values),
+        })
     }
 }

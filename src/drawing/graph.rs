@@ -9,7 +9,7 @@ use super::{
     Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples,
     milliseconds_since, timed,
 };
-use crate::frame::{Colors, Frame};
+use crate::frame::Colors;
 use crate::graph::{Graph, GraphView};
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
@@ -39,21 +39,6 @@ pub struct GraphDrawing<'g> {
     last: Option<Drawn>,
 }
 
-/// An engine and a frame, to be reused for another graph.
-pub struct Canvas {
-    engine: Box<dyn Engine + Send>,
-    frame: Frame,
-}
-
-impl Canvas {
-    pub fn new(engine: Box<dyn Engine + Send>) -> Self {
-        Self {
-            engine,
-            frame: Frame::nodes_only(0, 0),
-        }
-    }
-}
-
 pub struct DrawnFrame {
     pub setup: FrameSetup,
     pub stats: Stats,
@@ -81,17 +66,6 @@ impl<'g> GraphDrawing<'g> {
         style: GraphStyle,
         engine: impl Fn() -> Box<dyn Engine + Send> + 'g,
     ) -> Self {
-        Self::on(Canvas::new(engine()), graph, up, style, engine)
-    }
-
-    /// [`GraphDrawing::new`] on another drawing's canvas, whose engine must be of the kind that `engine` makes.
-    pub fn on(
-        canvas: Canvas,
-        graph: &'g Graph,
-        up: Up,
-        style: GraphStyle,
-        engine: impl Fn() -> Box<dyn Engine + Send> + 'g,
-    ) -> Self {
         let of_voxels = [Buffer::Depth, Buffer::Normal, Buffer::Voxel];
         let wants = |buffer: &Buffer| style.buffers.contains(buffer);
         let contents = if wants(&Buffer::Records) {
@@ -106,17 +80,12 @@ impl<'g> GraphDrawing<'g> {
             graph,
             up,
             style,
-            viewer: Viewer::reusing(graph.view(), canvas.engine, canvas.frame, contents),
+            viewer: Viewer::new(graph.view(), engine(), contents),
             engine: Box::new(engine),
             contents,
             pixel_bytes: COLOR_BYTES,
             last: None,
         }
-    }
-
-    pub fn into_canvas(self) -> Canvas {
-        let (engine, frame) = self.viewer.into_parts();
-        Canvas { engine, frame }
     }
 
     /// Sets the memory that the caller needs per finished pixel, bytes, for the check of memory; by default 3, for colours.

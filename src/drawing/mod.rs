@@ -15,7 +15,7 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use graph::{Canvas, DrawnFrame, GraphDrawing, GraphStyle};
+pub use graph::{DrawnFrame, GraphDrawing, GraphStyle};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {

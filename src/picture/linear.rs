@@ -48,17 +48,10 @@ impl Linear {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))
     }
 
-    /// The colour whose linear light is nearest; of two the brighter.
+    /// The colour whose linear light is nearest; of two the brighter. Excess light is full light.
     #[inline]
     pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
-        // Excess light is full light.
-        self.encode_16(light.map(|value| value.min(u32::from(u16::MAX))))
-    }
-
-    /// The same for light that is at most full.
-    #[inline]
-    pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
-        light.map(|value| self.nearest[usize::from(value as u16)])
+        light.map(|value| self.nearest[value.min(u32::from(u16::MAX)) as usize])
     }
 }
 

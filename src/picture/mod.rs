@@ -12,7 +12,6 @@ pub mod png;
 mod resolve;
 mod rows;
 mod shade;
-mod shares;
 mod sight;
 
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};

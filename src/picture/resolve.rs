@@ -2,15 +2,12 @@
 
 use crate::budget::Shortage;
 use std::ops::Range;
-use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::npy::Values;
-use super::paint::Painter;
 use super::rows::{Buffer, Rows};
 use super::shade::{Shader, Surface};
-use super::shares::Shares;
 use super::{Background, NO_DEPTH, Picture, Shading};
 use crate::budget;
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
@@ -48,13 +45,11 @@ pub fn resolve(
 }
 
 pub struct Resolver<'f> {
-    frame: &'f Frame,
-    shader: Shader<'f>,
+    pub(super) frame: &'f Frame,
+    pub(super) shader: Shader<'f>,
     origin_index: [i64; 3],
     /// Logarithm of the samples per pixel along an axis.
-    aa: u32,
-    /// Made on demand; none where everything is fully lit.
-    shares: OnceLock<Option<Shares>>,
+    pub(super) aa: u32,
 }
 
 const PIXELS: &str = "the pixels of a picture";
@@ -88,7 +83,6 @@ impl<'f> Resolver<'f> {
             shader: Shader::new(graph, setup, shading, background),
             origin_index: setup.placement.origin_index,
             aa: setup.options.aa_log2,
-            shares: OnceLock::new(),
         })
     }
 
@@ -97,23 +91,8 @@ impl<'f> Resolver<'f> {
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
-        self.write_colors(rows, &mut pixels)?;
+        self.each_row(rows, &mut pixels, |y, to| self.row(y, to))?;
         Ok(pixels)
-    }
-
-    /// [`Resolver::colors`] into the caller's pixels, as many as the rows have. Errors: as [`Resolver::colors`].
-    pub fn write_colors<const N: usize>(
-        &self,
-        rows: Range<u32>,
-        pixels: &mut [[u8; N]],
-    ) -> Result<(), ResolveError> {
-        let Shader { sight, light, .. } = &self.shader;
-        let is_lit = light.is_directed() && self.frame.blend.is_none();
-        let shares = self
-            .shares
-            .get_or_init(|| is_lit.then(|| Shares::new(sight, *light)));
-        let painter = Painter::new(self.frame, &self.shader, shares.as_ref(), self.aa);
-        self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 
     pub fn frame(&self) -> &Frame {

@@ -3,6 +3,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::shade::is_turned;
 use crate::project::FrameSetup;
 
 /// A ray that misses a cube by less than this share of the depth counts as a hit: `exact` draws on the outline itself,
@@ -16,10 +17,10 @@ pub(super) struct Sight {
     /// Whether the clip vectors of all points of the object fit 64 bits.
     is_narrow: bool,
     /// Object direction of a clip direction.
-    pub(super) to_object: DMat3,
+    to_object: DMat3,
     depth_unit: f64,
-    /// Samples across the image root, doubled.
-    pub(super) root_doubled: f64,
+    /// Half a sample, of the image root: a power of two.
+    half_sample: f64,
     axes: [DVec3; 3],
 }
 
@@ -53,7 +54,7 @@ impl Sight {
             is_narrow: is_narrow(setup),
             to_object,
             depth_unit: setup.depth_unit_world(),
-            root_doubled: 2.0 * (1u64 << setup.levels) as f64,
+            half_sample: 0.5 / (1u64 << setup.levels) as f64,
             axes: [across(rows.x_axis), -across(rows.y_axis), -forward],
         }
     }
@@ -94,17 +95,19 @@ impl Sight {
         }
     }
 
-    /// Unit object direction of a sample's ray, as in [`Sight::meet`].
-    pub(super) fn ray(&self, x: u32, y: u32) -> DVec3 {
-        self.direction(x, y).normalize_or_zero()
+    /// Whether a normal points away from the eye along a sample's ray.
+    pub(super) fn is_turned(&self, normal: DVec3, x: u32, y: u32) -> bool {
+        let direction = self.direction(x, y);
+        // Most do not, and need no unit vector.
+        normal.dot(direction) > 0.0 && is_turned(normal, direction.normalize_or_zero())
     }
 
     /// The object direction of a sample's ray along which `W` grows by one.
     fn direction(&self, x: u32, y: u32) -> DVec3 {
         self.to_object
             * DVec3::new(
-                f64::from(2 * x + 1) / self.root_doubled,
-                f64::from(2 * y + 1) / self.root_doubled,
+                f64::from(2 * x + 1) * self.half_sample,
+                f64::from(2 * y + 1) * self.half_sample,
                 1.0,
             )
     }

@@ -31,23 +31,14 @@ pub struct Viewer<'g, E> {
 impl<'g, E: Engine> Viewer<'g, E> {
     /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
     pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
-        Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
-    }
-
-    /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
-    pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
         Self {
             graph,
             engine,
             contents,
-            frame,
+            frame: Frame::nodes_only(0, 0),
             shown: None,
             stats: None,
         }
-    }
-
-    pub fn into_parts(self) -> (E, Frame) {
-        (self.engine, self.frame)
     }
 
     /// Changes the contents of samples from the next frame on, and shows nothing until then.
