@@ -31,9 +31,6 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use grid::Grid;
-pub use spool::part_of;
-
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
@@ -43,6 +40,7 @@ use crate::geometry::{barycentric, blend, plane_normal};
 use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
+use grid::Grid;
 use rays::Around;
 use room::{Room, shares};
 use sample::Rays;
@@ -50,7 +48,7 @@ use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
 use shot::{Own, Target};
 use split::{Branch, split};
-use spool::{Origin, Spool, open_part};
+use spool::Spool;
 use surface::{MOST_TRIANGLES, Surfaces};
 
 /// How far voxels are built.
@@ -141,7 +139,7 @@ pub enum BuildError {
         /// Bytes that it was given.
         given: u64,
     },
-    /// A temporary or unfinished file.
+    /// A temporary file.
     #[error("{}: {problem}", file.display())]
     File {
         /// It, or the folder that it is in.
@@ -158,8 +156,6 @@ pub struct Outside<'o> {
     pub memory: Option<u64>,
     /// Folder of temporary files, which have no names where the system allows it.
     pub folder: &'o Path,
-    /// The unfinished file, from which a build resumes; `None`: a temporary one.
-    pub part: Option<&'o Path>,
 }
 
 /// Far voxels whose data is in a file.
@@ -191,9 +187,8 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
     check(surface, options)?;
-    let spool = Spool::new(Cursor::new(Vec::new()));
-    let none = |_: &mut Spool<_>, _| Ok(());
-    let (mut data, mut spool) = fill(surface, options, None, (spool, none), progress)?;
+    let memory = Cursor::new(Vec::new());
+    let (mut data, mut spool) = fill(surface, options, None, memory, progress)?;
     let bytes: u64 = spool.nodes().map(|done| done.bytes).sum();
     data.packed.reserve_exact(bytes as usize);
     let copied = spool.copy_to(&mut data.packed);
@@ -212,18 +207,9 @@ pub fn build_outside(
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
     check(surface, options)?;
-    let spool = match outside.part {
-        Some(part) => open_part(part, &Origin::of(surface, options))?,
-        None => {
-            let file = tempfile::tempfile_in(outside.folder);
-            Spool::new(file.map_err(|e| failed(outside.folder, &e))?)
-        }
-    };
-    let resume = |spool: &mut Spool<File>, nodes| match outside.part {
-        Some(part) => spool.resume(nodes).map_err(|e| failed(part, &e)),
-        None => Ok(()),
-    };
-    let (data, spool) = fill(surface, options, Some(outside), (spool, resume), progress)?;
+    let file = tempfile::tempfile_in(outside.folder);
+    let file = file.map_err(|e| failed(outside.folder, &e))?;
+    let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
     Ok(Spooled { data, spool })
 }
 
@@ -268,10 +254,7 @@ fn fill<F: Read + Write + Seek + Send>(
     surface: &dyn Surface,
     options: &BuildOptions,
     outside: Option<&Outside<'_>>,
-    (mut spool, resume): (
-        Spool<F>,
-        impl FnOnce(&mut Spool<F>, usize) -> Result<(), BuildError>,
-    ),
+    file: F,
     progress: &dyn Progress,
 ) -> Result<(FarData, Spool<F>), BuildError> {
     let (centre, scale) = centre(surface)?;
@@ -291,8 +274,6 @@ fn fill<F: Read + Write + Seek + Send>(
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
     }
-    resume(&mut spool, branches.len())?;
-    spool.expect(branches.len());
     let triangles = Ordered {
         surface,
         order: &order,
@@ -390,20 +371,18 @@ fn fill<F: Read + Write + Seek + Send>(
             }
         }
     };
-    let done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
-    let spool = Mutex::new(spool);
+    let spool = Mutex::new(Spool::new(file, branches.len()));
     branches
         .par_iter()
         .enumerate()
         .try_for_each(|(number, branch)| {
-            let is_leaf = branch.children.is_none();
-            if !done[number] {
-                let (node, data) = make(number, branch)?;
-                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-                let added = spool.add(number, node, &data);
-                added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
+            let (node, data) = make(number, branch)?;
+            let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+            let added = spool.add(number, node, &data);
+            added.map_err(|e| failed(folder, &e))?;
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
             }
-            progress.advance(if is_leaf { branch.count as u64 } else { 0 });
             Ok(())
         })?;
     progress.end();
