@@ -19,8 +19,7 @@ use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 pub struct Camera(project::Camera);
 
 impl Camera {
-    /// A camera at `eye` that has `target` in the middle of its picture, world units, with a vertical field of view of
-    /// 40 degrees. Z is up.
+    /// A camera at `eye` that looks at `target`, world units. Z is up, the vertical field of view is 40 degrees.
     #[must_use]
     pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
         Self(project::Camera {
@@ -33,9 +32,8 @@ impl Camera {
         })
     }
 
-    /// A camera that sees all of a scene at any size of picture, from the front right and above (azimuth 45, elevation
-    /// 35.264 degrees), with a vertical field of view of 40 degrees. For voxels made from a mesh it sees all of the
-    /// mesh.
+    /// A camera that sees all of a scene at any size of picture: azimuth 45, elevation 35.264, vertical field of view 40
+    /// degrees.
     #[must_use]
     pub fn fit(scene: &Scene) -> FittedCamera {
         FittedCamera {
@@ -48,8 +46,8 @@ impl Camera {
     }
 
     setters! {
-        /// The direction that points up in the picture; it must not be parallel to the view. Scenes with Y up
-        /// ([`Scene::up`]) need `.up([0.0, 1.0, 0.0])`.
+        /// The direction that points up in the picture, not parallel to the view. Scenes with Y up ([`Scene::up`]) need
+        /// `.up([0.0, 1.0, 0.0])`.
         up(direction: [f64; 3]) 0.up = direction.into();
         /// Vertical field of view, degrees, above 0 and below 180.
         field_of_view(degrees: f64) 0.fov_degrees = degrees;

@@ -10,9 +10,9 @@ use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine. All
-/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
-/// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
+/// A finished picture: colours and the requested [buffers](crate::Renderer::buffers), of `width() * height()` entries, row
+/// by row from the top left. Colours average all samples of a pixel. Depth, normal, voxel and node are those of the sample
+/// right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
     pub(super) width: u32,
@@ -37,8 +37,8 @@ impl Picture {
         self.height
     }
 
-    /// Red, green, blue (sRGB) and alpha, not premultiplied. Alpha is 255 everywhere unless the background is
-    /// [`Background::None`](crate::Background::None); then it is the share of the pixel that shows voxels.
+    /// Red, green, blue (sRGB) and alpha, not premultiplied: with [`Background::None`](crate::Background::None) the share of
+    /// the pixel that shows voxels, else 255.
     #[must_use]
     pub fn rgba(&self) -> &[[u8; 4]] {
         &self.rgba
@@ -66,8 +66,7 @@ impl Picture {
         self.numbers(Buffer::Normal)
     }
 
-    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
-    /// `[0, 0, 0, -1]` without a voxel.
+    /// Index of the visible voxel, in finest voxels, and its level (0: the object); `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -83,8 +82,7 @@ impl Picture {
         self.numbers(Buffer::Node)
     }
 
-    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel,
-    /// and outside the picture.
+    /// A pixel of [`Picture::voxels`]; `None` without a voxel, and outside the picture.
     ///
     /// # Errors
     /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
@@ -99,8 +97,8 @@ impl Picture {
         is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
 
-    /// The engine's counters by name. Names differ by engine; all have `samples_drawn`. The fast engine has
-    /// `handed_to_machine`, 1, where the machine drew the frame instead, and the reason ([`Declined::counter`]).
+    /// The engine's counters by name; all engines have `samples_drawn`. Where the fast one left the frame to the machine, it
+    /// has `handed_to_machine`, 1, and the reason ([`Declined::counter`]).
     ///
     /// [`Declined::counter`]: crate::Declined::counter
     #[must_use]
@@ -115,7 +113,7 @@ impl Picture {
         counters.find(|(n, _)| *n == name).map(|&(_, count)| count)
     }
 
-    /// The machine's operations by class, width, stage and level, and its memory accesses, if
+    /// The machine's operations and memory accesses, if
     /// [`Renderer::count_operations`](super::Renderer::count_operations) requested them.
     #[must_use]
     pub fn operations(&self) -> Option<&Counter> {
@@ -132,7 +130,7 @@ impl Picture {
         self.hash.as_deref().ok_or_else(missing)
     }
 
-    /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
+    /// Writes the colours as a PNG, or replaces one; whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses.
@@ -145,8 +143,8 @@ impl Picture {
         .map_err(|e| Error::Write(e.into()))
     }
 
-    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces
-    /// an existing file; the file appears whole or not at all.
+    /// Writes a buffer as a NumPy array, `height x width`, times the entries per pixel if there are several, or replaces
+    /// one; whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.

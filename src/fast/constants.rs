@@ -1,5 +1,5 @@
-//! Constants of a frame for the traversal; the nearest octant of a node (R9). Clip vectors of nodes are halves of whole
-//! numbers, exact in `f64`, so level of detail compares the same depths as the machine.
+//! Constants of a frame. Clip vectors of nodes are halves of whole numbers, exact in `f64`, so level of detail compares
+//! the same depths as the machine.
 
 use crate::project::vector::cross;
 use crate::project::{FrameSetup, OpacityEye};
@@ -10,11 +10,11 @@ const EXACT_LIMIT: i128 = 1 << 53;
 /// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees. Beyond, slopes
 /// round by more than the margins allow.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
-/// Least size of voxels drawn one by one (`voxels.rs`) and not sample by sample (`bricks.rs`), samples. Measured.
+/// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
 const COARSE_SAMPLES: f64 = 3.0;
-/// Largest size of voxels of bricks of four levels, samples. Measured.
+/// Largest size of voxels of bricks of four levels.
 const FINE_SAMPLES: f64 = 0.75;
-/// Least size of a cube drawn by its planes, whole blocks and tiles at a time (`exact.rs`), samples. Measured.
+/// Least size of a cube drawn by its planes (`planes.rs`).
 const LARGE_SAMPLES: f64 = 24.0;
 
 const TINY_SAMPLES: f64 = 1.0 / 8.0;
@@ -23,7 +23,6 @@ const TINY_SAMPLES: f64 = 1.0 / 8.0;
 pub(super) struct Level {
     /// The children's centres relative to their parent's: by coordinate of the clip vector, then by octant.
     pub(super) child: [[f64; 8]; 3],
-    /// Vertices relative to the centre, likewise.
     pub(super) vertices: [[f64; 8]; 3],
     pub(super) half_depth: f64,
     pub(super) lod_depth: f64,
@@ -38,23 +37,18 @@ pub(super) struct Level {
 }
 
 /// Why the fast engine does not draw a frame itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Declined {
-    /// Only `exact` and `alpha` are defined without the machine's steps.
-    #[error("the drawing rule is defined by the machine's own steps")]
+    /// The machine's own steps define the rule.
     Rule,
     /// Words may overflow, which only the machine handles.
-    #[error("words of this format may overflow in this frame")]
     Words,
-    /// Positions exceed the bits of an `f64`.
-    #[error("positions take more than the 53 bits of a double")]
+    /// Positions exceed the 53 bits of an `f64`.
     Range,
     /// Beyond about 179.98 degrees slopes round too much.
-    #[error("the field of view is too wide")]
     FieldOfView,
-    /// Records per sample are wanted.
-    #[error("records are counted, which only the machine has")]
+    /// Records per sample are wanted, which only the machine has.
     Records,
 }
 
@@ -155,7 +149,7 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object's box covers, about; all where it reaches behind the eye. Only divides the work.
+    /// Rows of samples that the object covers, about, to divide the work.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
@@ -182,7 +176,7 @@ impl Constants {
     }
 }
 
-/// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that a finest voxel takes, times its depth.
+/// `clip`: a finest voxel's edges. `focal`: samples that it takes, times its depth.
 fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
     let corners = |half: f64| -> [[f64; 8]; 3] {

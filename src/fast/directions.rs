@@ -1,4 +1,4 @@
-//! Direction of the lines of a square's samples, and the octant in which they begin.
+//! Directions of the lines of a square's samples.
 
 use super::constants::Constants;
 use super::exact::Exact;
@@ -7,11 +7,9 @@ use super::window::{Window, bits};
 
 /// Roundings in `f32` of a line's values, each 2^-24 of the largest sum (counted in `spec/fast.md`).
 pub(super) const STEPS: f32 = 18.0;
-/// Bound of the error in `f32` of a direction, a moment, and a line's distance from a part, relative to the sum of the
-/// sizes of their terms.
+/// Bound of the error in `f32` of a direction, a moment, and a distance, relative to the sizes of their terms.
 pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
-/// Rounding of a direction in `f64`, relative to its terms: its coefficients are differences of numbers up to 2^13
-/// times as large (`Constants::new`).
+/// The same of a direction in `f64`, whose coefficients are differences of numbers up to 2^13 times as large.
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
 #[derive(Debug, Clone, Copy)]

@@ -13,7 +13,7 @@ use super::orders::along;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
 
-/// Rounding of a centre's column in `f64` relative to the column, over [`LINE_ERROR`]: 2^-50 over 2^-20.
+/// Relative rounding of a centre's column in `f64` over [`LINE_ERROR`]: 2^-50 over 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Largest distance of a part's centre from the node's, sides of a part.
 const FARTHEST: f32 = 8.0;
@@ -130,7 +130,6 @@ impl<I: Isa> Lines<I> {
             (f64::from(square.top) - projection.centre[1]) as f32,
         ];
         let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
-        // Rounding of the centre in f64; the bound includes 16 times 2^-24 of it.
         let unsure = projection
             .centre
             .map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
@@ -184,7 +183,6 @@ impl<I: Isa> Lines<I> {
         }
     }
 
-    /// The functions in widths: at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn in_widths(&self) -> [I::F32x4; 3] {
         self.moment.map(|moment| moment.mul(self.inverse))
@@ -233,7 +231,6 @@ impl<I: Isa> Lines<I> {
         line.moment.fma(unit, isa.splat(MIDDLE)).indices::<CELLS>()
     }
 
-    /// Whether a line certainly meets the part of side 1 at an offset, and whether it may.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
@@ -276,8 +273,7 @@ impl<I: Isa> Line<I> {
     }
 }
 
-/// Offset of a part's centre from its node's, in sides of a part: by function j, along the next axis and along the last
-/// one.
+/// Offset of a part's centre from its node's, in sides of a part: by function j, along the next axis and the last one.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(32))]
 pub(super) struct Offset {
@@ -380,8 +376,7 @@ pub(super) mod tests {
         }
     }
 
-    /// The worst of `|f - truth| / doubt` over lines, parts and functions, of bricks of two levels
-    /// and, about blocks, of four; the truth is computed in `f64`, 2^29 times as fine.
+    /// The worst of `|f - truth| / doubt`; the truth is computed in `f64`.
     #[test]
     fn values_are_within_a_bound_that_is_of_use() {
         let mut next = numbers();
@@ -453,13 +448,11 @@ pub(super) mod tests {
                 }
             }
         }
-        println!("worst deviation: {worst:.4} of the bound");
         assert!(worst < 1.0, "{worst}");
-        // Far too wide a bound would be of no use.
         assert!(worst > 0.01, "{worst}");
     }
 
-    /// The steps that `spec/fast.md` adds up: those of moments, and of the rest. Much room would hide faults.
+    /// The steps that `spec/fast.md` adds up. Much room would hide faults.
     const _: () = {
         const MOMENT: f32 = 6.0 + 2.0 + 3.0;
         const SHIFTS: f32 = 9.0 + 2.0 + 6.0;

@@ -1,7 +1,7 @@
 //! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! It works sample by sample, where the machine works record by record. Approximate arithmetic with a bounded error
-//! decides nearly all samples, the exact rule those in doubt (`spec/fast.md`).
+//! Approximate arithmetic with a bounded error decides nearly all samples, the exact rule those in doubt
+//! (`spec/fast.md`).
 //!
 //! ```text
 //! for each band of the picture, from the whole object down (traversal):
@@ -48,7 +48,7 @@ use exact::Exact;
 use lanes::Scalar;
 use window::{TILE_LOG2, Window};
 
-/// The instructions used. They do not change a picture.
+/// The instructions used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
@@ -102,7 +102,7 @@ impl Fast {
         self.declined
     }
 
-    /// Draws a frame. `false`: the fallback has to. Allocates nothing when the set-up is that of the last frame.
+    /// `false`: the fallback has to draw. Allocates nothing when the set-up is that of the last frame.
     fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
         let prepared = match &mut self.prepared {
             Some(prepared) if prepared.setup == *setup => prepared,
@@ -184,7 +184,7 @@ impl Engine for Fast {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         if setup.options.coverage.blends() {
-            // Nodes first: a blended sample has no colour before its last voxel.
+            // A blended sample has no colour before its last voxel.
             self.draw(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
             return Ok(());
@@ -197,7 +197,6 @@ impl Engine for Fast {
             voxel: &mut [],
             blend: &mut [],
         };
-        // Without colours there is nothing to look up.
         if !of_node.is_empty() && self.draw_fast(graph, setup, pixels) {
             return Ok(());
         }
@@ -236,13 +235,13 @@ impl Instructions {
         InstructionSet::Scalar(Scalar)
     }
 
-    /// Whether the processor has these. If not, the next lower set is used.
+    /// Whether the processor has these.
     pub fn are_available(self) -> bool {
         self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
     }
 }
 
-/// None changes a picture.
+/// Techniques on or off, for measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Switches {
     /// Skip nodes whose windows are full.

@@ -15,8 +15,8 @@ pub(super) static SAMPLES: [[f32; 2]; 64] = {
     table
 };
 
-/// Divides a window into squares with open samples, and those by the octant in which their lines begin, usually one.
-/// `draw` returns the samples drawn.
+/// Divides a window into squares, and those by the octant in which their lines begin, usually one. `draw` returns the
+/// samples drawn.
 #[inline(always)]
 pub(super) fn each_square<I: Isa>(
     band: &mut Band<'_, I>,

@@ -17,7 +17,7 @@ const LIGHTS: usize = 1 << 16;
 pub struct Linear {
     /// Linear light of each byte, 0..=65535, rising.
     of: [u16; 256],
-    /// For each linear light the byte whose light is nearest. 64 KB, of which a picture uses a part.
+    /// For each linear light the byte whose light is nearest.
     nearest: Box<[u8; LIGHTS]>,
 }
 
@@ -55,10 +55,8 @@ impl Linear {
     }
 }
 
-/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend.
-///
-/// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
-/// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
+/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend. A node has one light for all
+/// samples: its normal is turned towards the camera's plane; one without faces the camera.
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
     if !setup.options.coverage.blends() {
         return Vec::new();

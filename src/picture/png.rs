@@ -18,7 +18,6 @@ pub struct Image {
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {
-    /// Writes a PNG file. Fails if the picture is empty or its size does not fit its pixels, and those of `to`.
     pub fn write(&self, to: impl Write) -> Result<(), EncodingError> {
         let mut encoder = Encoder::new(to, self.width, self.height);
         encoder.set_color(match self.has_alpha {
@@ -34,8 +33,7 @@ impl Pixels {
     }
 }
 
-/// The bytes of a PNG file; without an alpha channel if all pixels are opaque. Fails if the picture is empty or its
-/// size does not fit its pixels.
+/// The bytes of a PNG file; without an alpha channel if all pixels are opaque.
 pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     Pixels::new(width, height, rgba.to_vec()).write(&mut bytes)?;

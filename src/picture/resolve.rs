@@ -14,11 +14,8 @@ use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
 use crate::project::FrameSetup;
 
-/// Makes the picture of a drawn frame.
-///
-/// Colours are averaged over all samples of a pixel, in linear light. Other buffers show the sample right of and below
-/// the pixel's middle (the pixel's only one without anti-aliasing), records all samples together. Fails when the frame
-/// is not of the set-up's size, or does not determine the visible voxels, or indices leave `i32`.
+/// The picture of a frame. Colours are means over a pixel's samples, in linear light; other buffers show the sample right of
+/// and below its middle, records all samples.
 pub fn resolve(
     frame: &Frame,
     graph: &Graph,
@@ -86,8 +83,7 @@ impl<'f> Resolver<'f> {
         })
     }
 
-    /// The colours of some rows: `N` bytes per pixel, red, green, blue, and alpha if `N` is 4. Fails when a colour
-    /// depends on a voxel that the frame does not determine.
+    /// The colours of some rows: red, green, blue, and alpha if `N` is 4.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
@@ -245,10 +241,9 @@ impl Rows for Resolver<'_> {
 pub enum ResolveError {
     #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
     Size(u32, u32, u32, u32),
-    /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
     #[error("the file index of a voxel is beyond 32 bits")]
     Index,
-    /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
+    /// Neither frame nor graph determines the visible voxel.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
     #[error(transparent)]

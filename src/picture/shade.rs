@@ -48,7 +48,7 @@ impl<'g> Shader<'g> {
         }
     }
 
-    /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel, given as in a frame.
+    /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel.
     pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
         let share = self.light.on(self.surface(x, y, node, voxel).normal);
         let light = self.linear.decode(self.graph.color_of(node));
@@ -75,8 +75,8 @@ impl<'g> Shader<'g> {
 /// Cosine above which a normal is taken to point away from the eye.
 const AWAY: f64 = 0.25;
 
-/// A normal turned to the visible side. A thin wall has two sides and one normal. Normals that lean away only slightly, as
-/// on rounded corners, are kept.
+/// A normal turned to the visible side: a thin wall has two sides and one normal. Normals that lean away only slightly are
+/// kept.
 pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
     if is_turned(normal, ray) {
         -normal

@@ -42,8 +42,7 @@ impl Sight {
         };
         let to_clip = DMat3::from_cols(column(0), column(1), column(2));
         let to_object = inverse(&to_clip);
-        // Rows of the view: the gradients of X, Y and W over the object. W grows along the view axis; the share of W in
-        // X and Y is removed.
+        // Gradients of X, Y and W over the object. W grows along the view axis; its share in X and Y is removed.
         let rows = to_clip.transpose();
         let forward = rows.z_axis.normalize();
         let across = |row: DVec3| (row - forward * row.dot(forward)).normalize();
@@ -152,8 +151,7 @@ fn inverse(m: &DMat3) -> DMat3 {
     DMat3::from_cols(bc / determinant, ca / determinant, ab / determinant).transpose()
 }
 
-/// The positions at which a ray enters and leaves the cube from 0 to `side`, and the axis of the face of entry: of equal
-/// ones the first.
+/// Where a ray enters and leaves the cube from 0 to `side`, and the axis of the face of entry: of equal ones the first.
 fn slabs(eye: DVec3, direction: DVec3, side: f64) -> (f64, f64, usize) {
     let (mut enter, mut exit, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
     for k in 0..3 {

@@ -40,9 +40,6 @@ pub struct ViewOptions {
     pub background: Option<[u8; 3]>,
     /// Whether hidden nodes are left out. Never changes the picture.
     pub culling: bool,
-    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the
-    /// picture.
-    pub late: usize,
 }
 
 impl Default for ViewOptions {
@@ -54,7 +51,6 @@ impl Default for ViewOptions {
             light: None,
             background: None,
             culling: true,
-            late: 1,
         }
     }
 }
@@ -140,11 +136,6 @@ impl<'f> FarViewer<'f> {
         }
     }
 
-    /// Takes these nodes, by number, for those that were visible in the last frame. Never changes the picture.
-    pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
-        self.memory.set(is_visible);
-    }
-
     /// Draws a frame.
     ///
     /// # Errors
@@ -185,7 +176,7 @@ impl<'f> FarViewer<'f> {
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
         let walked = if options.culling {
-            visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
+            visible::walk(&cut, &self.memory, &mut opaque, &mut counts)?
         } else {
             let drawn = cut.all(&mut counts);
             opaque.draw(&drawn, &mut counts)?;
