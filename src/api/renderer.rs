@@ -46,15 +46,15 @@ pub enum EngineKind {
 /// assert_eq!(fast.rgba(), oracle.rgba());
 /// # Ok::<(), shiftvox::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Renderer {
     engine: Option<EngineKind>,
     coverage: Coverage,
     level_of_detail: Option<f64>,
     tolerance: Option<f64>,
     cage: Option<CageKind>,
-    samples: u32,
-    bits: u32,
+    samples: Option<u32>,
+    bits: Option<u32>,
     frac: Option<u32>,
     overflow: Option<Overflow>,
     shading: Shading,
@@ -65,34 +65,11 @@ pub struct Renderer {
     is_hashed: bool,
 }
 
-impl Default for Renderer {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Renderer {
     /// The fast engine, exact coverage, one sample per pixel, shaded, on all threads.
     #[must_use]
     pub fn new() -> Self {
-        let options = SetupOptions::default();
-        Self {
-            engine: None,
-            coverage: options.coverage,
-            level_of_detail: None,
-            tolerance: None,
-            cage: None,
-            samples: 1,
-            bits: options.bits,
-            frac: options.frac,
-            overflow: None,
-            shading: Shading::default(),
-            background: Background::default(),
-            threads: 0,
-            counts_operations: false,
-            buffers: Vec::new(),
-            is_hashed: false,
-        }
+        Self::default()
     }
 
     setters! {
@@ -105,7 +82,7 @@ impl Renderer {
         /// exact coverage, otherwise a pixel.
         level_of_detail(pixels: f64) level_of_detail = Some(pixels);
         /// Samples per pixel along each axis: 1, 2 or 4.
-        samples(along_each_axis: u32) samples = along_each_axis;
+        samples(along_each_axis: u32) samples = Some(along_each_axis);
         /// The deviation, samples, at which a record may change from clip space to screen space: 0 never, infinity
         /// always. Rules other than [`Coverage::Any`] and [`Coverage::Center`] allow only 0.
         tolerance(samples: f64) tolerance = Some(samples);
@@ -126,7 +103,7 @@ impl Renderer {
     /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room for).
     #[must_use]
     pub fn word(mut self, bits: u32, fraction_bits: Option<u32>) -> Self {
-        self.bits = bits;
+        self.bits = Some(bits);
         self.frac = fraction_bits;
         self
     }
@@ -320,24 +297,19 @@ impl Renderer {
     }
 
     fn options(&self) -> Result<SetupOptions, Error> {
-        let aa_log2 = match self.samples {
-            1 => 0,
-            2 => 1,
-            4 => 2,
-            other => {
-                return Err(Error::Setting(format!(
-                    "a pixel has 1, 2 or 4 samples along each axis, not {other}"
-                )));
-            }
-        };
+        let samples = self.samples.unwrap_or(1);
+        if ![1, 2, 4].contains(&samples) {
+            let reason = format!("a pixel has 1, 2 or 4 samples along each axis, not {samples}");
+            return Err(Error::Setting(reason));
+        }
         let defaults = SetupOptions::of(self.coverage);
         Ok(SetupOptions {
-            bits: self.bits,
+            bits: self.bits.unwrap_or(defaults.bits),
             frac: self.frac,
             cage: self.cage.unwrap_or(defaults.cage),
             tolerance_px: self.tolerance.unwrap_or(defaults.tolerance_px),
             lod_px: self.level_of_detail.unwrap_or(defaults.lod_px),
-            aa_log2,
+            aa_log2: samples.ilog2(),
             ..defaults
         })
     }

@@ -63,14 +63,9 @@ impl Scene {
         for voxel in voxels {
             builder.push(voxel);
         }
-        let Placement {
-            world_origin,
-            voxel_size,
-            ..
-        } = Placement::default();
-        let graph = builder.finish((world_origin, voxel_size), &Silent);
-        let graph = graph.map_err(|e| Error::Build(e.into()))?;
-        Ok(graph.into())
+        let place = Placement::default();
+        let graph = builder.finish((place.world_origin, place.voxel_size), &Silent);
+        Ok(graph.map_err(|e| Error::Build(e.into()))?.into())
     }
 
     /// With another axis up, for [`Camera::fit`](super::Camera::fit).

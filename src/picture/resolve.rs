@@ -53,11 +53,8 @@ const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes faster than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
 
-#[derive(Clone, Copy)]
-struct At {
-    x: u32,
-    y: u32,
-}
+/// Column and row of a pixel.
+type At = [u32; 2];
 
 impl<'f> Resolver<'f> {
     pub fn new(
@@ -68,12 +65,8 @@ impl<'f> Resolver<'f> {
         background: Background,
     ) -> Result<Self, ResolveError> {
         if (frame.width, frame.height) != (setup.width, setup.height) {
-            return Err(ResolveError::Size(
-                frame.width,
-                frame.height,
-                setup.width,
-                setup.height,
-            ));
+            let (width, height) = (frame.width, frame.height);
+            return Err(ResolveError::Size(width, height, setup.width, setup.height));
         }
         Ok(Self {
             frame,
@@ -102,11 +95,8 @@ impl<'f> Resolver<'f> {
 
     /// Pixels that show a voxel at their middle sample.
     pub fn drawn(&self) -> usize {
-        if self.aa == 0 {
-            return self.frame.drawn();
-        }
         let (width, height) = self.size();
-        let row = |y: u32| (0..width).filter(move |&x| self.middle(At { x, y }).is_some());
+        let row = |y: u32| (0..width).filter(move |&x| self.middle([x, y]).is_some());
         (0..height).map(|y| row(y).count()).sum()
     }
 
@@ -120,7 +110,7 @@ impl<'f> Resolver<'f> {
         let mut pixels = budget::filled(PIXELS, nothing, width as usize * rows.len())?;
         self.each_row(rows, &mut pixels, |y, to| {
             for (x, to) in (0..width).zip(to) {
-                if let Some(value) = each(At { x, y })? {
+                if let Some(value) = each([x, y])? {
                     *to = value;
                 }
             }
@@ -145,7 +135,7 @@ impl<'f> Resolver<'f> {
     }
 
     /// The sample right of and below a pixel's middle, and its place in the frame; none if it shows nothing.
-    fn middle(&self, At { x, y }: At) -> Option<(u32, u32, usize)> {
+    fn middle(&self, [x, y]: At) -> Option<(u32, u32, usize)> {
         let half = (1 << self.aa) >> 1;
         let (x, y) = ((x << self.aa) + half, (y << self.aa) + half);
         let at = y as usize * self.frame.width as usize + x as usize;
@@ -164,13 +154,8 @@ impl<'f> Resolver<'f> {
         let Some((x, y, sample)) = self.middle(at) else {
             return Ok(None);
         };
-        let voxel = self.voxel_at(sample)?;
-        Ok(Some(self.shader.surface(
-            x,
-            y,
-            self.frame.node[sample],
-            voxel,
-        )))
+        let (node, voxel) = (self.frame.node[sample], self.voxel_at(sample)?);
+        Ok(Some(self.shader.surface(x, y, node, voxel)))
     }
 
     fn depth(&self, rows: Range<u32>) -> Result<Vec<f32>, ResolveError> {
@@ -211,7 +196,7 @@ impl<'f> Resolver<'f> {
             let Some(records) = &self.frame.records else {
                 return Ok(None);
             };
-            let row = |j| &records[(at.y as usize * side + j) * width + at.x as usize * side..];
+            let row = |j| &records[(at[1] as usize * side + j) * width + at[0] as usize * side..];
             Ok(Some((0..side).flat_map(|j| &row(j)[..side]).sum()))
         })
     }

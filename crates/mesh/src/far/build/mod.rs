@@ -1,7 +1,6 @@
 //! Triangles into far voxels: hierarchy, rays, fitting.
 //!
-//! The same triangles and options give the same bytes on any number of
-//! threads: a node's rays depend on its number and on nothing else.
+//! A node's rays depend on its number alone, so any number of threads gives the same bytes.
 
 mod bvh;
 mod clusters;
@@ -54,7 +53,7 @@ use surface::{MOST_TRIANGLES, Surfaces};
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// Rays of all nodes together. With `None`, as many as find the visible voxels, and [`RAYS_PER_VOXEL`] for each.
+    /// Rays of all nodes together. `None`: as many as needed.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
     pub leaf_triangles: u32,
@@ -62,13 +61,13 @@ pub struct BuildOptions {
     pub grid: u32,
     /// Least distance from which a node is used, in its voxels.
     pub distance_voxels: f64,
-    /// The opacities to store. With `Six`, only those that differ.
+    /// The opacities to store.
     pub opacity: Opacity,
-    /// Whether what is wider than a voxel stays a surface, decimated.
+    /// Whether what is wider than a voxel stays a decimated surface.
     pub hybrid: bool,
 }
 
-/// Rays for each voxel that is kept, where no number of rays is given.
+/// Rays for each kept voxel, if no number is given.
 pub const RAYS_PER_VOXEL: u32 = 24;
 const MOST_RAYS: u32 = 1 << 22;
 /// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
@@ -118,7 +117,7 @@ pub enum BuildError {
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
-    /// So far from the origin that the parts of the mesh have the same coordinates.
+    /// Too far from the origin for its size.
     #[error(
         "the mesh spans {extent} units {distance} units from the origin: too little for its coordinates; \
          move it to the origin"
@@ -152,9 +151,9 @@ pub enum BuildError {
 /// Where a build keeps what is not in memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside<'o> {
-    /// The memory budget in bytes, in addition to the surface. `None` means no limit.
+    /// Memory budget, bytes, beside the surface.
     pub memory: Option<u64>,
-    /// Folder of temporary files, which have no names where the system allows it.
+    /// Folder of temporary files.
     pub folder: &'o Path,
 }
 
@@ -220,8 +219,7 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
     }
 }
 
-/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1: single precision then holds
-/// their squares and products.
+/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1.
 struct Ordered<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],

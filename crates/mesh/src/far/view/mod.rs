@@ -86,8 +86,7 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth of the opaque parts, world units, at the sample right of and below the pixel's middle; or
-    /// infinite.
+    /// View-axis depth, world units, of what is opaque at the sample right of and below the pixel's middle; or infinite.
     pub depth: Vec<f32>,
     /// The node that is opaque at that sample, or -1.
     pub node: Vec<i32>,
@@ -104,7 +103,7 @@ pub struct FarCounts {
     pub voxel_nodes: u64,
     /// Leaves drawn.
     pub leaves: u64,
-    /// Nodes and branches that were found hidden; nothing below them was visited.
+    /// Nodes and branches found hidden.
     pub hidden: u64,
     /// Queries whether a node or branch is hidden.
     pub queries: u64,
@@ -114,7 +113,7 @@ pub struct FarCounts {
     pub transparent_voxels: u64,
     /// Triangles given to the rasteriser.
     pub triangles: u64,
-    /// Whether two triangles of different batches were equally deep and the frame was drawn again in one.
+    /// Whether triangles of different batches were equally deep, and the frame was drawn again in one.
     pub drawn_twice: u64,
     /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
