@@ -97,7 +97,7 @@ pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec
     Ok(list)
 }
 
-/// Memory that this process can still take, bytes, if it is reported: the least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
+/// Memory that this process can still take, bytes, if it is reported. It is the least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
 /// a limited address space (`ulimit -v`).
 pub fn available() -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(name).ok();

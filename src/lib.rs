@@ -56,8 +56,6 @@ pub use api::{Up, View};
 #[doc(inline)]
 pub use budget::Shortage;
 #[doc(inline)]
-pub use fast::Declined;
-#[doc(inline)]
 pub use graph::{PackedNormal, Voxel};
 #[doc(inline)]
 pub use hwmodel::Overflow;

@@ -19,7 +19,7 @@ use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 pub struct Camera(project::Camera);
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, world units. Z is up, the vertical field of view is 40 degrees.
+    /// A camera at `eye` with `target` in its middle, world units. Z is up, the vertical field of view is 40 degrees.
     #[must_use]
     pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
         Self(project::Camera {

@@ -66,7 +66,7 @@ impl Picture {
         self.numbers(Buffer::Normal)
     }
 
-    /// Index of the visible voxel, in finest voxels, and its level (0: the object); `[0, 0, 0, -1]` without a voxel.
+    /// Index of the visible voxel, in finest voxels, and its level, 0 for the object. `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
@@ -98,9 +98,7 @@ impl Picture {
     }
 
     /// The engine's counters by name; all engines have `samples_drawn`. Where the fast one left the frame to the machine, it
-    /// has `handed_to_machine`, 1, and the reason ([`Declined::counter`]).
-    ///
-    /// [`Declined::counter`]: crate::Declined::counter
+    /// has `handed_to_machine` and the reason, such as `handed_for_rule`.
     #[must_use]
     pub fn counters(&self) -> &[(&'static str, u64)] {
         &self.counters

@@ -146,8 +146,7 @@ impl Renderer {
     /// Draws a picture of `width` x `height` pixels.
     ///
     /// # Errors
-    /// [`Error::Setup`] if camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
-    /// [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
+    /// [`Error::Setup`] if camera and settings make no frame, [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
     /// [`Error::Engine`] if a word overflows, [`Error::Threads`] if the system provides no threads.
     pub fn render(
         &self,

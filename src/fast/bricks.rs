@@ -5,13 +5,12 @@
 //! parts are read when the first line needs them.
 
 use super::band::{Band, Brick, Hit, Record, voxel_at};
-use super::directions::Samples;
+use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
 use super::lines::{Lines, Meeting, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::squares::{SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::window::Window;
 

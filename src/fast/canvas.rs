@@ -1,7 +1,7 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
 //! Masks have a bit per open sample, in words of 8 x 8 samples (tiles), and a bit per tile with open samples, in words of
-//! 8 x 8 tiles (blocks). Samples outside the picture count as drawn. Squares (`squares.rs`) lie anywhere.
+//! 8 x 8 tiles (blocks). Samples outside the picture count as drawn. Squares (`directions.rs`) lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};

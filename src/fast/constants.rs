@@ -7,8 +7,7 @@ use crate::project::{FrameSetup, OpacityEye};
 /// Bound of positions times sixteen: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
 
-/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees. Beyond, slopes
-/// round by more than the margins allow.
+/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
 /// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
 const COARSE_SAMPLES: f64 = 3.0;
@@ -36,46 +35,16 @@ pub(super) struct Level {
     pub(super) large_depth: f64,
 }
 
-/// Why the fast engine does not draw a frame itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Declined {
-    /// The machine's own steps define the rule.
-    Rule,
-    /// Words may overflow, which only the machine handles.
-    Words,
-    /// Positions exceed the 53 bits of an `f64`.
-    Range,
-    /// Beyond about 179.98 degrees slopes round too much.
-    FieldOfView,
-    /// Records per sample are wanted, which only the machine has.
-    Records,
-}
-
-impl Declined {
-    /// The counter of frames declined for this reason.
-    pub const fn counter(self) -> &'static str {
-        match self {
-            Self::Rule => "handed_for_rule",
-            Self::Words => "handed_for_words",
-            Self::Range => "handed_for_range",
-            Self::FieldOfView => "handed_for_field_of_view",
-            Self::Records => "handed_for_records",
-        }
-    }
-}
-
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
     pub(super) levels: Vec<Level>,
     pub(super) depth: u32,
     pub(super) centre: [f64; 3],
     pub(super) root_samples: f64,
-    /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
-    /// the quotient is 0 at the centre of the first sample.
+    /// Clip vectors of a finest voxel's edges, X and Y in samples from the centre of the first sample:
+    /// `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`.
     pub(super) edge: [[f64; 3]; 3],
-    /// Direction of a sample's ray in the object, by axis: `[per column, per row, at sample 0]`. Scaled to about 1;
-    /// rays run forward.
+    /// Direction of a ray, by axis: `[per column, per row, at sample 0]`. Scaled to about 1.
     pub(super) direction: [[f64; 3]; 3],
     /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
@@ -90,16 +59,18 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
+    /// An error is the counter of frames that are declined for this reason: the machine's own steps define the rule, words
+    /// may overflow, positions exceed an `f64`, or slopes round too much.
+    pub(super) fn new(setup: &FrameSetup) -> Result<Self, &'static str> {
         if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
-            return Err(Declined::Rule);
+            return Err("handed_for_rule");
         }
         if !setup.has_headroom {
-            return Err(Declined::Words);
+            return Err("handed_for_words");
         }
-        let reach = setup.position_reach().ok_or(Declined::Range)?;
+        let reach = setup.position_reach().ok_or("handed_for_range")?;
         if reach * 16 >= EXACT_LIMIT {
-            return Err(Declined::Range);
+            return Err("handed_for_range");
         }
         let root_samples = libm::ldexp(1.0, setup.levels as i32);
         let clip = setup.edge_clip.map(|e| e.map(|c| c as f64));
@@ -121,7 +92,7 @@ impl Constants {
         let across = edge.map(|e| e[0] - middle[0] * e[2]);
         let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
         if root_samples > MOST_WIDTH * focal {
-            return Err(Declined::FieldOfView);
+            return Err("handed_for_field_of_view");
         }
         let levels = (0..=setup.depth)
             .map(|level| level_constants(setup, &clip, focal, level))

@@ -172,7 +172,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// The side of all samples of a window; `None`: both may occur; 0: no plane.
+    /// The side of all samples of a window, 0 of no plane; `None`: both may occur.
     #[inline(always)]
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;
@@ -203,7 +203,7 @@ impl Plane {
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
     edges: [[Plane; 4]; 3],
-    /// Of a cube beside the eye: a plane, and its side that sees the cube and not its mirror image behind the eye.
+    /// A plane, and its side that sees the cube and not its mirror image behind the eye.
     front: Option<(Plane, i8)>,
 }
 

@@ -1,10 +1,9 @@
 //! R8 by lines in Plücker coordinates: the lines of a square's samples against the parts of a node (`spec/fast.md`,
 //! section 2).
 //!
-//! With `P` the node centre's clip vector, `e_k` a voxel's edges and `q` the sample, a ray has the direction
-//! `v_k = (e_k+1 x e_k+2) q` and the moment `m_j = (P x e_j) q` about the centre: both linear in the sample. Their only
-//! error is the rounding of `f32`. Axes are mirrored so that lines run upwards along each (`v_k >= 0`). The unit of
-//! length is the side of a part.
+//! `P` is the node centre's clip vector, `e_k` are a voxel's edges, `q` is the sample. A ray has the direction
+//! `v_k = (e_k+1 x e_k+2) q` and the moment `m_j = (P x e_j) q` about the centre. Their only error is the rounding of
+//! `f32`. Axes are mirrored so that lines run upwards (`v_k >= 0`). The unit of length is the side of a part.
 
 use super::constants::Constants;
 use super::directions::{LINE_ERROR, Samples};
@@ -40,7 +39,7 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
-    /// Directions: at the first sample, and their slopes by column and by row.
+    /// At the first sample, and slopes by column and by row.
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
     pub(super) tables: [usize; 3],
@@ -49,11 +48,11 @@ pub(super) struct Lines<I: Isa> {
     pub(super) error: f32,
     pub(super) rounding: f32,
     pub(super) has_blind: bool,
-    /// Distance from a part's outline below which a sample is doubtful.
+    /// Distance from an outline below which a sample is doubtful.
     doubt: I::F32x4,
 }
 
-/// Values of a square's lines: at the first sample, and their slopes by column and by row.
+/// Values at the first sample, and their slopes by column and by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InUnits<I: Isa> {
     moment: [I::F32x4; 3],
@@ -154,7 +153,6 @@ impl<I: Isa> Lines<I> {
         let mut has_blind = false;
         let mut most = MOST_ERROR[0];
         if isa.splat(most).sub(error).signs() & 7 != 0 {
-            // Values are less accurate here.
             most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
                 if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
@@ -255,14 +253,13 @@ impl<I: Isa> Lines<I> {
 }
 
 impl<I: Isa> Line<I> {
-    /// The decrease of the moments about a point at an offset.
     #[inline(always)]
     fn shift(&self, isa: I, offset: &Offset) -> I::F32x4 {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
         next.fms(self.last, last.mul(self.next))
     }
 
-    /// The line about a block's centre, whose offset is in sides of a block, 4 parts.
+    /// The line about a block's centre. A block is 4 parts wide.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
         let shift = self.shift(isa, block);

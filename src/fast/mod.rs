@@ -12,7 +12,7 @@
 //!     large or near ones:     by exact planes (planes, exact)
 //! ```
 //!
-//! Frames that it declines ([`Declined`]) go to another engine.
+//! Frames that it declines go to another engine.
 
 mod alpha;
 mod band;
@@ -30,7 +30,6 @@ mod orders;
 mod parts;
 mod planes;
 mod projection;
-mod squares;
 mod strips;
 mod traversal;
 mod voxels;
@@ -42,7 +41,6 @@ use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use bands::{BandBuffers, Job, run_bands};
 use canvas::{FillMemory, Pixels, TileGrid};
 use constants::Constants;
-pub use constants::Declined;
 use counters::Counters;
 use exact::Exact;
 use lanes::Scalar;
@@ -76,12 +74,13 @@ pub struct Fast {
     fill: FillMemory,
     prepared: Option<Prepared>,
     counters: Counters,
-    declined: Option<Declined>,
+    /// Name of a counter.
+    declined: Option<&'static str>,
 }
 
 struct Prepared {
     setup: FrameSetup,
-    constants: Result<Constants, Declined>,
+    constants: Result<Constants, &'static str>,
     exact: Exact,
 }
 
@@ -98,7 +97,7 @@ impl Fast {
         }
     }
 
-    pub fn declined(&self) -> Option<Declined> {
+    pub fn declined(&self) -> Option<&'static str> {
         self.declined
     }
 
@@ -147,7 +146,7 @@ impl Fast {
 
     fn draw_frame(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
         if frame.records.is_some() {
-            self.declined = Some(Declined::Records);
+            self.declined = Some("handed_for_records");
             return false;
         }
         let pixels = Pixels {
@@ -215,7 +214,7 @@ impl Engine for Fast {
         }
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.push(("handed_to_machine", 1));
-        stats.extend(self.declined.map(|why| (why.counter(), 1)));
+        stats.extend(self.declined.map(|why| (why, 1)));
         Ok(stats)
     }
 }

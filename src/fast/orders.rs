@@ -1,8 +1,8 @@
-//! Tables of octants (rule R9): masks of children in order of occlusion, and the slabs of a node's 64 parts.
+//! Tables of octants (rule R9), and the slabs of a node's 64 parts.
 
 use super::lanes::{Isa, Lanes, U8x16};
 
-/// By octant: child masks turned, so that bit `c` is child `c ^ octant`.
+/// By octant: child masks turned: bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
     let mut table = [[0u8; 256]; 8];
     let mut octant = 0;
@@ -39,7 +39,7 @@ pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
     low.or(I::U8x16::load(isa, high).look_up(upper)).low()
 }
 
-/// By octant, for lanes of sixteen bytes: the outer octants' order, and a mask's lower and upper half turned.
+/// By octant: the outer octants' order, and a mask's lower and upper half turned.
 static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
     let mut table = [[[0u8; 16]; 3]; 8];
     let mut octant = 0;

@@ -10,8 +10,8 @@
 //! Divided by `v_n + v_l`, a strip is 1 wide and lies at `t_n s - t_l (1 - s)`, with the share `s = v_l / (v_n + v_l)`. A
 //! table per share has for each cell of the value the parts whose strip, with a margin, it may lie in.
 //!
-//! Parts are numbered `outer << 3 | inner`, octants in Morton order, with bits turned where the line runs downwards. So
-//! a line meets lower numbers first.
+//! Parts are numbered `outer << 3 | inner`, with bits turned where the line runs downwards, so that a line meets lower
+//! numbers first.
 
 use std::sync::LazyLock;
 
@@ -157,13 +157,13 @@ impl Strips {
         }
     }
 
-    /// Number of the table of an axis for a share, in steps, and a class of [`MOST_ERROR`].
+    /// `share` in steps, `class` of [`MOST_ERROR`].
     #[inline(always)]
     pub(super) fn table(axis: usize, share: usize, class: usize) -> usize {
         class * PER_MARGIN + axis * SHARES + share
     }
 
-    /// Number of the blind table, which excludes no part.
+    /// The table that excludes no part.
     pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
     #[inline(always)]
@@ -188,7 +188,6 @@ mod tests {
     use super::*;
     use crate::fast::orders::along;
 
-    /// The parts that a line with this value of function `axis` and share meets.
     fn met(axis: usize, share: f64, value: f64) -> u64 {
         let mut parts = 0;
         for part in 0..64 {

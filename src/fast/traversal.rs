@@ -181,7 +181,7 @@ impl<'b> Children<'b> {
             wanted &= windows.held | windows.near;
             band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
         } else {
-            // For measurements: children without a sample are tested against the whole band.
+            // Children without a sample are tested against the whole band.
             windows.near |= !windows.held;
         }
         self.record = *record;
@@ -237,7 +237,7 @@ fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: 
     }
 }
 
-/// Whether all eight vertices of a box partly behind the eye are beyond one edge of the image root: exact, and linear.
+/// Whether all vertices of a box partly behind the eye are beyond one edge of the image root.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {

@@ -3,20 +3,19 @@
 
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
-use super::directions::Samples;
+use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
 use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;
-use super::squares::{SAMPLES, each_square};
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::window::{Window, bits};
 
-/// Units per width in 16-bit numbers.
+/// Per width.
 const UNIT: f32 = 2048.0;
 /// Rounding in units: of the first value and of seven steps of a column and of a row, half each, and a unit.
 const ROUNDING: f32 = 8.5;
-/// Largest value, in units, in these numbers.
+/// In units, of 16 bits.
 const LARGEST: f32 = 30_000.0;
 
 #[inline(always)]

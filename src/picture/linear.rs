@@ -56,7 +56,7 @@ impl Linear {
 }
 
 /// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend. A node has one light for all
-/// samples: its normal is turned towards the camera's plane; one without faces the camera.
+/// samples: its normal is turned towards the camera's plane, and one without faces the camera.
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
     if !setup.options.coverage.blends() {
         return Vec::new();

@@ -13,7 +13,7 @@ struct Look {
     facing: Facing,
 }
 
-/// What decides a node's lit share, of 256.
+/// A node's lit share, of 256, or the data that decide it.
 enum Facing {
     FullyLit,
     /// The side of its surface that is seen.
