@@ -1,5 +1,5 @@
-//! Constants of a frame. Clip vectors of nodes are halves of whole numbers, exact in `f64`, so level of detail compares
-//! the same depths as the machine.
+//! Constants of a frame, and the nearest octant (R9). Clip vectors of nodes are halves of whole numbers, exact in `f64`,
+//! so level of detail compares the same depths as the machine.
 
 use crate::project::vector::cross;
 use crate::project::{FrameSetup, OpacityEye};
