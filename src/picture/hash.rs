@@ -17,7 +17,7 @@ const BUFFERS: [Buffer; 5] = [
     Buffer::Voxel,
 ];
 
-/// The picture's hash: XXH3 with 128 bits and seed 0 (`spec/picture.md`) of [`STREAM`], width, height (u32), and these
+/// The picture's hash: XXH3 with 128 bits and seed 0 (`spec/picture.md`) of `STREAM`, width, height (u32), and these
 /// buffers, little-endian. Negative zeros become zeros.
 pub fn hash(picture: &Picture) -> String {
     let Ok(hash) = hash_rows(picture);
