@@ -1,5 +1,4 @@
-//! Regular files of limited size, read whole. Pipes and devices are rejected before they are opened, because opening may
-//! wait.
+//! Regular files of limited size, read whole. Pipes and devices are not opened, because opening may wait.
 
 use std::fs::{self, File};
 use std::io::{self, Read};

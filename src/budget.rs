@@ -1,7 +1,4 @@
-//! Checks of memory and disk space before they are used.
-//!
-//! Objects whose size depends on a file or a flag are [checked](check) against the free memory, and
-//! [allocated](filled) so that a refusal is an error. Small objects are allocated as usual.
+//! Checks of memory and disk space before they are used, for objects whose size depends on a file or a flag.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -28,8 +25,7 @@ impl fmt::Display for Shortage {
     }
 }
 
-/// Fails if an object needs more memory than is free. Errors: [`Shortage`]; never if the system does not report the
-/// free memory.
+/// Fails if an object needs more memory than the system reports as free.
 pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     match available() {
         Some(free) if needed > free => Err(Shortage {
@@ -51,8 +47,7 @@ pub struct DiskShortage {
     pub free: u64,
 }
 
-/// Fails if files in a folder, which need not exist, need more than is free on its disk. Errors: [`DiskShortage`];
-/// never if the system does not report the free space.
+/// Fails if files in a folder, which need not exist, need more than the system reports as free on its disk.
 pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
     match free_disk(folder) {
         Some(free) if needed > free => Err(DiskShortage {
@@ -102,9 +97,7 @@ pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec
     Ok(list)
 }
 
-/// Memory that this process can still take, bytes. `None` if the system does not report it.
-///
-/// The least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
+/// Memory that this process can still take, bytes, if it is reported. It is the least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of
 /// a limited address space (`ulimit -v`).
 pub fn available() -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(name).ok();

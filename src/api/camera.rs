@@ -16,29 +16,24 @@ use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 /// # Ok::<(), shiftvox::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Camera {
-    eye: DVec3,
-    target: DVec3,
-    up: DVec3,
-    fov_degrees: f64,
-}
+pub struct Camera(project::Camera);
 
 impl Camera {
-    /// A camera at `eye` that has `target` in the middle of its picture, world units, with a vertical field of view of
-    /// 40 degrees. Z is up.
+    /// A camera at `eye` with `target` in its middle, world units. Z is up, the vertical field of view is 40 degrees.
     #[must_use]
     pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
-        Self {
+        Self(project::Camera {
             eye: eye.into(),
             target: target.into(),
             up: DVec3::Z,
             fov_degrees: DEFAULT_FOV,
-        }
+            width: 0,
+            height: 0,
+        })
     }
 
-    /// A camera that sees all of a scene at any size of picture, from the front right and above (azimuth 45, elevation
-    /// 35.264 degrees), with a vertical field of view of 40 degrees. For voxels made from a mesh it sees all of the
-    /// mesh.
+    /// A camera that sees all of a scene at any size of picture: azimuth 45, elevation 35.264, vertical field of view 40
+    /// degrees.
     #[must_use]
     pub fn fit(scene: &Scene) -> FittedCamera {
         FittedCamera {
@@ -51,11 +46,11 @@ impl Camera {
     }
 
     setters! {
-        /// The direction that points up in the picture; it must not be parallel to the view. Scenes with Y up
-        /// ([`Scene::up`]) need `.up([0.0, 1.0, 0.0])`.
-        up(direction: [f64; 3]) up = direction.into();
+        /// The direction that points up in the picture, not parallel to the view. Scenes with Y up ([`Scene::up`]) need
+        /// `.up([0.0, 1.0, 0.0])`.
+        up(direction: [f64; 3]) 0.up = direction.into();
         /// Vertical field of view, degrees, above 0 and below 180.
-        field_of_view(degrees: f64) fov_degrees = degrees;
+        field_of_view(degrees: f64) 0.fov_degrees = degrees;
     }
 }
 
@@ -98,7 +93,7 @@ impl FittedCamera {
 }
 
 /// A camera of either kind: [`Camera`] or [`FittedCamera`].
-pub trait View: private::Sealed {
+pub trait View {
     /// The camera of a picture of this size, pixels.
     #[doc(hidden)]
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error>;
@@ -106,47 +101,29 @@ pub trait View: private::Sealed {
 
 impl View for Camera {
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error> {
-        let &Self {
-            eye,
-            target,
-            up,
-            fov_degrees,
-        } = self;
         Ok(project::Camera {
-            eye,
-            target,
-            up,
-            fov_degrees,
             width,
             height,
+            ..self.0
         })
     }
 }
 
 impl View for FittedCamera {
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error> {
-        let zoom = self.zoom;
+        let &Self {
+            up,
+            direction,
+            zoom,
+            fov_degrees,
+            ..
+        } = self;
         if !(zoom.is_finite() && zoom > 0.0) {
             let reason = format!("the zoom must be above 0, not {zoom}");
             return Err(Error::Setting(reason));
         }
         let size = (width, height);
-        let fov = self.fov_degrees;
-        Ok(fit_camera(
-            &self.bounds,
-            self.up,
-            self.direction,
-            fov,
-            zoom,
-            size,
-        ))
+        let camera = fit_camera(&self.bounds, up, direction, fov_degrees, zoom, size);
+        Ok(camera)
     }
-}
-
-mod private {
-    /// Only this crate has cameras.
-    #[expect(unnameable_types, reason = "a sealed trait")]
-    pub trait Sealed {}
-    impl Sealed for super::Camera {}
-    impl Sealed for super::FittedCamera {}
 }

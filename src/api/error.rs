@@ -21,8 +21,8 @@ pub enum Error {
     /// Camera and settings make no frame.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// An invalid setting: one that the engine does not have, samples per axis other than 1, 2 and 4, more than 2^27
-    /// samples or 1024 threads, a zoom that is not above 0, or a buffer that was not requested.
+    /// An invalid setting, such as one that the engine does not have, more than 2^27 samples, or a buffer that was not
+    /// requested.
     #[error("{0}")]
     Setting(String),
     /// The picture does not fit in memory.

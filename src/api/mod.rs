@@ -2,7 +2,7 @@
 
 /// Methods of a builder that set one field each.
 macro_rules! setters {
-    ($($(#[$doc:meta])* $name:ident($value:ident: $type:ty) $($field:ident).+ = $to:expr;)+) => {
+    ($($(#[$doc:meta])* $name:ident($value:ident: $type:ty) $($field:tt).+ = $to:expr;)+) => {
         $(
             $(#[$doc])*
             #[must_use]
@@ -16,7 +16,6 @@ macro_rules! setters {
 
 mod camera;
 mod error;
-mod kept;
 mod picture;
 mod renderer;
 mod scene;

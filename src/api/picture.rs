@@ -10,41 +10,21 @@ use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine. All
-/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
-/// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
+/// A finished picture: colours and the requested [buffers](crate::Renderer::buffers), of `width() * height()` entries, row
+/// by row from the top left. Colours average all samples of a pixel. Depth, normal, voxel and node are those of the sample
+/// right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
-    width: u32,
-    height: u32,
-    buffers: Buffers,
-    counters: Stats,
-    operations: Option<Counter>,
-}
-
-#[derive(Debug)]
-pub(super) struct Buffers {
+    pub(super) width: u32,
+    pub(super) height: u32,
     pub(super) rgba: Vec<[u8; 4]>,
     pub(super) others: Vec<(Buffer, Values)>,
     pub(super) hash: Option<String>,
+    pub(super) counters: Stats,
+    pub(super) operations: Option<Counter>,
 }
 
 impl Picture {
-    pub(super) fn new(
-        (width, height): (u32, u32),
-        buffers: Buffers,
-        counters: Stats,
-        operations: Option<Counter>,
-    ) -> Self {
-        Self {
-            width,
-            height,
-            buffers,
-            counters,
-            operations,
-        }
-    }
-
     /// Pixels across.
     #[must_use]
     pub fn width(&self) -> u32 {
@@ -57,17 +37,17 @@ impl Picture {
         self.height
     }
 
-    /// Red, green, blue (sRGB) and alpha, not premultiplied. Alpha is 255 everywhere unless the background is
-    /// [`Background::None`](crate::Background::None); then it is the share of the pixel that shows voxels.
+    /// Red, green, blue (sRGB) and alpha, not premultiplied: with [`Background::None`](crate::Background::None) the share of
+    /// the pixel that shows voxels, else 255.
     #[must_use]
     pub fn rgba(&self) -> &[[u8; 4]] {
-        &self.buffers.rgba
+        &self.rgba
     }
 
     /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
-        self.buffers.rgba.get(self.at(x, y)?).copied()
+        self.rgba.get(self.at(x, y)?).copied()
     }
 
     /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity without a voxel.
@@ -75,7 +55,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn depth(&self) -> Result<&[f32], Error> {
-        self.floats(Buffer::Depth)
+        self.numbers(Buffer::Depth)
     }
 
     /// Unit normals in world directions; zero without a voxel.
@@ -83,16 +63,15 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn normals(&self) -> Result<&[[f32; 3]], Error> {
-        Ok(self.floats(Buffer::Normal)?.as_chunks().0)
+        self.numbers(Buffer::Normal)
     }
 
-    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
-    /// `[0, 0, 0, -1]` without a voxel.
+    /// Index of the visible voxel, in finest voxels, and its level, 0 for the object. `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn voxels(&self) -> Result<&[[i32; 4]], Error> {
-        Ok(self.integers(Buffer::Voxel)?.as_chunks().0)
+        self.numbers(Buffer::Voxel)
     }
 
     /// Visible graph node; -1 without one.
@@ -100,11 +79,10 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn nodes(&self) -> Result<&[i32], Error> {
-        self.integers(Buffer::Node)
+        self.numbers(Buffer::Node)
     }
 
-    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel,
-    /// and outside the picture.
+    /// A pixel of [`Picture::voxels`]; `None` without a voxel, and outside the picture.
     ///
     /// # Errors
     /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
@@ -119,10 +97,8 @@ impl Picture {
         is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
 
-    /// The engine's counters by name. Names differ by engine; all have `samples_drawn`. The fast engine has
-    /// `handed_to_machine`, 1, where the machine drew the frame instead, and the reason ([`Declined::counter`]).
-    ///
-    /// [`Declined::counter`]: crate::Declined::counter
+    /// The engine's counters by name; all engines have `samples_drawn`. Where the fast one left the frame to the machine, it
+    /// has `handed_to_machine` and the reason, such as `handed_for_rule`.
     #[must_use]
     pub fn counters(&self) -> &[(&'static str, u64)] {
         &self.counters
@@ -135,7 +111,7 @@ impl Picture {
         counters.find(|(n, _)| *n == name).map(|&(_, count)| count)
     }
 
-    /// The machine's operations by class, width, stage and level, and its memory accesses, if
+    /// The machine's operations and memory accesses, if
     /// [`Renderer::count_operations`](super::Renderer::count_operations) requested them.
     #[must_use]
     pub fn operations(&self) -> Option<&Counter> {
@@ -149,10 +125,10 @@ impl Picture {
     pub fn hash(&self) -> Result<&str, Error> {
         let missing =
             || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
-        self.buffers.hash.as_deref().ok_or_else(missing)
+        self.hash.as_deref().ok_or_else(missing)
     }
 
-    /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
+    /// Writes the colours as a PNG, or replaces one; whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses.
@@ -165,8 +141,8 @@ impl Picture {
         .map_err(|e| Error::Write(e.into()))
     }
 
-    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces
-    /// an existing file; the file appears whole or not at all.
+    /// Writes a buffer as a NumPy array, `height x width`, times the entries per pixel if there are several, or replaces
+    /// one; whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.
@@ -187,11 +163,11 @@ impl Picture {
     #[doc(hidden)]
     #[must_use]
     pub fn into_buffers(self) -> (Vec<[u8; 4]>, Vec<(Buffer, Values)>) {
-        (self.buffers.rgba, self.buffers.others)
+        (self.rgba, self.others)
     }
 
     pub(super) fn values(&self, buffer: Buffer) -> Result<&Values, Error> {
-        let mut others = self.buffers.others.iter();
+        let mut others = self.others.iter();
         let found = others.find(|(other, _)| *other == buffer);
         found.map(|(_, values)| values).ok_or_else(|| {
             let name = buffer.name();
@@ -201,17 +177,11 @@ impl Picture {
         })
     }
 
-    fn floats(&self, buffer: Buffer) -> Result<&[f32], Error> {
-        match self.values(buffer)? {
-            Values::F32(values) => Ok(values),
-            Values::I32(_) | Values::U8(_) => Ok(&[]),
-        }
-    }
-
-    fn integers(&self, buffer: Buffer) -> Result<&[i32], Error> {
-        match self.values(buffer)? {
-            Values::I32(values) => Ok(values),
-            Values::F32(_) | Values::U8(_) => Ok(&[]),
-        }
+    fn numbers<T: bytemuck::Pod>(&self, buffer: Buffer) -> Result<&[T], Error> {
+        Ok(match self.values(buffer)? {
+            Values::F32(values) => bytemuck::cast_slice(values),
+            Values::I32(values) => bytemuck::cast_slice(values),
+            Values::U8(values) => bytemuck::cast_slice(values),
+        })
     }
 }

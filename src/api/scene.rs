@@ -23,12 +23,11 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Opens a voxel file or a voxel graph, whose format is recognised by content. `spec/input.md` describes the
-    /// formats. Meshes are opened by `SceneOptions` of the crate `shiftvox-mesh`.
+    /// Opens a voxel file or a voxel graph (`spec/input.md`), recognised by content. Meshes are opened by the crate
+    /// `shiftvox-mesh`.
     ///
     /// # Errors
-    /// [`Error::Open`] if the file cannot be read, is damaged, is of another format, or holds more voxels than fit in
-    /// memory.
+    /// [`Error::Open`] if the file cannot be read, is damaged or of another format, or does not fit in memory.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let file = SceneFile::open(path.as_ref()).map_err(|e| Error::Open(e.into()))?;
         let source = Source::File(file);
@@ -36,7 +35,7 @@ impl Scene {
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
-    /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`.
+    /// [`Scene::open`] of bytes in memory; errors call them `name`.
     ///
     /// # Errors
     /// As [`Scene::open`].
@@ -45,11 +44,10 @@ impl Scene {
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
-    /// Generates a scene of a specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All generators and
-    /// their parameters: `spec/generators.md`.
+    /// Generates a scene, such as `terrain,depth=9,seed=1` (`spec/generators.md`).
     ///
     /// # Errors
-    /// [`Error::Open`] where no generator has the name, or its parameters are wrong.
+    /// [`Error::Open`] for a wrong specification.
     pub fn generate(specification: &str) -> Result<Self, Error> {
         let source = format!("{}{specification}", crate::scene::generate::PREFIX);
         let opened = open(&source, &OpenOptions::default(), &NoMeshes, &Silent);
@@ -59,25 +57,18 @@ impl Scene {
     /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one is kept.
     ///
     /// # Errors
-    /// [`Error::Build`] where there is no voxel, where the voxels span more than 2^21 (2,097,152) along an axis, or
-    /// where voxels or nodes number 2^32 or more.
+    /// [`Error::Build`] for no voxel, for a span of more than 2^21 along an axis, and for 2^32 voxels or nodes.
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
         let mut builder = Builder::new(BuildOptions::default());
         for voxel in voxels {
             builder.push(voxel);
         }
-        let Placement {
-            world_origin,
-            voxel_size,
-            ..
-        } = Placement::default();
-        let graph = builder.finish((world_origin, voxel_size), &Silent);
-        let graph = graph.map_err(|e| Error::Build(e.into()))?;
-        Ok(graph.into())
+        let place = Placement::default();
+        let graph = builder.finish((place.world_origin, place.voxel_size), &Silent);
+        Ok(graph.map_err(|e| Error::Build(e.into()))?.into())
     }
 
-    /// The same scene with another axis up, for [`Camera::fit`](super::Camera::fit); stored by [`Scene::save_vxg`] if
-    /// the scene was made from a mesh.
+    /// With another axis up, for [`Camera::fit`](super::Camera::fit).
     #[must_use]
     pub fn with_up(mut self, up: Up) -> Self {
         self.up = up;
@@ -112,8 +103,7 @@ impl Scene {
         [bounds.low.to_array(), bounds.high.to_array()]
     }
 
-    /// Writes the scene as a `.vxg` file, which opens without being built. Replaces an existing file; the file appears
-    /// whole or not at all.
+    /// Writes a `.vxg` file, which opens without being built, or replaces one; whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] where the system refuses.
@@ -121,14 +111,13 @@ impl Scene {
         vxg::write(&self.graph, path.as_ref(), true).map_err(|e| Error::Write(e.into()))
     }
 
-    /// The vertical axis: Z for voxels; Y for meshes other than STL and files made from them; or that of
-    /// [`Scene::with_up`].
+    /// The vertical axis: Z for voxels, Y for most meshes, or that of [`Scene::with_up`].
     #[must_use]
     pub fn up(&self) -> Up {
         self.up
     }
 
-    /// Warnings about the opened file, one sentence each: for example, that some of it was skipped.
+    /// Warnings about the opened file, one sentence each.
     ///
     /// ```
     /// use shiftvox::Scene;
@@ -145,8 +134,7 @@ impl Scene {
         &self.warnings
     }
 
-    /// Whether the whole file was checked. Only the header of a `.vxg` file of more than 256 MiB is checked, because
-    /// its other pages are read when a picture needs them. Damage there makes a wrong picture.
+    /// Whether the whole file was checked, and not only the header, as of a `.vxg` file of more than 256 MiB.
     #[must_use]
     pub fn is_verified(&self) -> bool {
         self.is_verified
@@ -171,7 +159,7 @@ impl From<Opened> for Scene {
 }
 
 impl From<Graph> for Scene {
-    /// A scene of a graph, Z up unless it was made from a mesh with Y up. It counts as verified.
+    /// It counts as verified.
     fn from(graph: Graph) -> Self {
         Self {
             up: Up::of(&graph),

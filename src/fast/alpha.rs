@@ -7,7 +7,7 @@ use super::window::bits;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 
-/// Weights of the visible sides of a voxel with this lowest corner and side: by axis, in sixteenths of its outline.
+/// Weights of a voxel's visible sides: by axis, in sixteenths of its outline.
 fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
     let along: [i64; 3] = std::array::from_fn(|k| {
         let centre = i64::from(min[k]) + i64::from(side / 2);
@@ -25,8 +25,7 @@ fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
 }
 
 impl<I: Isa> Band<'_, I> {
-    /// Shows a voxel at open samples of a square, eight bits per row. Returns the samples that are full by that: all,
-    /// unless voxels are blended.
+    /// Shows a voxel at open samples of a square, eight bits per row. Returns the samples that are full by that.
     #[inline(always)]
     pub(super) fn show(
         &mut self,

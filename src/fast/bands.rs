@@ -29,8 +29,8 @@ pub(super) struct BandBuffers<'p> {
     pub(super) pixels: Pixels<'p>,
 }
 
-/// Rows of tiles of the first of `rows` from `top`. A node across two bands is visited in both, so bands are few: several
-/// per thread, large ones first, so that threads end together. Only rows that the object covers count.
+/// Rows of tiles of the first band. A node across two bands is visited in both, so bands are few, large ones first, so that
+/// threads end together. Only rows that the object covers count.
 fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) -> usize {
     let begin = object.start.max(top);
     let covered = object.end.min(top + rows).saturating_sub(begin);

@@ -1,17 +1,16 @@
-//! Bricks: nodes whose 64 grandchildren (parts) are solids, drawn in one step. For each open sample three look-ups give
-//! the parts that its line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
+//! Bricks: nodes whose 64 grandchildren (parts) are solids. For each open sample three look-ups give the parts that its
+//! line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
-//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice, for 4096
-//! voxels. A block's parts are read when the first line needs them.
+//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. A block's
+//! parts are read when the first line needs them.
 
-use super::band::{Band, Brick, Hit, voxel_at};
-use super::directions::Samples;
+use super::band::{Band, Brick, Hit, Record, voxel_at};
+use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
 use super::lines::{Lines, Meeting, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::squares::{SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::window::Window;
 
@@ -145,8 +144,8 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// Splits samples: those whose lines meet the first part that they may meet, hits first, and those that may meet others.
-/// Has no branches, because the outcome is unpredictable.
+/// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
+/// branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
     let isa = band.isa;
@@ -226,17 +225,15 @@ fn show_hits<I: Isa, const DEEP: bool>(
         }
     }
     if band.pixels.wants_voxels() {
-        let side = band.constants.levels[brick.record.level as usize].side;
         for i in 0..count {
             let hit = band.hits[i];
             let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
-            band.pixels.voxel[at] = hit.path::<I, DEEP>(band, brick, pair).1.voxel(brick, side);
+            band.pixels.voxel[at] = hit.path::<I, DEEP>(band, brick, pair).1.voxel(band, brick);
         }
     }
 }
 
-/// Blends what a sample meets. Returns whether that hides everything behind it, and how many levels below the brick or
-/// block it is.
+/// Returns whether the hit hides everything behind it, and how many levels below the brick or block it is.
 #[inline(never)]
 fn blend<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
@@ -246,10 +243,7 @@ fn blend<I: Isa, const DEEP: bool>(
     pair: u32,
 ) -> (bool, u32) {
     let (node, path) = hit.path::<I, DEEP>(band, brick, pair);
-    let voxel = path.voxel(
-        brick,
-        band.constants.levels[brick.record.level as usize].side,
-    );
+    let voxel = path.voxel(band, brick);
     let full = band.show([square.left, square.top], 1 << hit.bit, node, voxel);
     (full != 0, path.levels)
 }
@@ -286,8 +280,11 @@ pub(super) struct Path {
 
 impl Path {
     #[inline(never)]
-    pub(super) fn voxel(&self, brick: Brick<'_>, side: i32) -> [i32; 4] {
-        let (mut min, mut side, mut level) = (brick.record.min, side, brick.record.level);
+    pub(super) fn voxel<I>(&self, band: &Band<'_, I>, brick: Brick<'_>) -> [i32; 4] {
+        let Record {
+            mut min, mut level, ..
+        } = *brick.record;
+        let mut side = band.constants.levels[level as usize].side;
         let mut down = |octant: u32| {
             side /= 2;
             level += 1;
@@ -318,10 +315,7 @@ pub(super) fn is_covered<I: Isa>(
     path: &Path,
 ) -> bool {
     band.counters.exact_samples += 1;
-    let [x, y, z, level] = path.voxel(
-        brick,
-        band.constants.levels[brick.record.level as usize].side,
-    );
+    let [x, y, z, level] = path.voxel(band, brick);
     let side = band.constants.levels[level as usize].side;
     let at = [
         square.left + (bit as i32 & 7),

@@ -1,7 +1,7 @@
 //! The picture in progress: masks of open samples, and their contents.
 //!
-//! A mask has a bit per open sample, in words of 8 x 8 samples (tiles), and a bit per tile with open samples, in words
-//! of 8 x 8 tiles (blocks). Samples outside the picture count as drawn. A square (`squares.rs`) may lie anywhere.
+//! Masks have a bit per open sample, in words of 8 x 8 samples (tiles), and a bit per tile with open samples, in words of
+//! 8 x 8 tiles (blocks). Samples outside the picture count as drawn. Squares (`directions.rs`) lie anywhere.
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
@@ -14,7 +14,7 @@ pub(super) struct Fill<'p> {
     pub(super) bounds: Window,
     grid: TileGrid,
     first_tile: usize,
-    /// Row of the band's first blocks in the whole picture. A band may have only the lower tiles of these.
+    /// A band may have only the lower tiles of these.
     first_block_row: i32,
     part: FillPart<'p>,
     pub(super) open: u64,
@@ -22,9 +22,7 @@ pub(super) struct Fill<'p> {
 
 #[derive(Debug)]
 pub(super) struct FillPart<'p> {
-    /// One bit per sample, set where it is open; by tile.
     tiles: &'p mut [u64],
-    /// One bit per tile, set where a sample of it is open; by block.
     blocks: &'p mut [u64],
 }
 
@@ -36,7 +34,7 @@ pub(super) struct FillMemory {
 
 impl FillMemory {
     pub(super) fn resize(&mut self, grid: &TileGrid) {
-        // Room below and beside the last tile, so that squares there are read like others.
+        // So that squares at the last tile are read like others.
         let beyond = grid.tiles_across + 2;
         self.tiles
             .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
@@ -162,7 +160,6 @@ impl<'p> Fill<'p> {
             (window.bottom - window.top) as usize,
         );
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        // The four tiles that the window may reach; unreached ones are shifted out or masked.
         let below = at.wrapping_add(self.grid.tiles_across);
         let [a, b, c, d] = match self.part.tiles.get(at..below.wrapping_add(2)) {
             Some(tiles) => [tiles[0], tiles[1], tiles[below - at], tiles[below - at + 1]],
@@ -248,8 +245,7 @@ impl<'p> Fill<'p> {
         false
     }
 
-    /// Whether a sample of a window inside the band may be open. In windows larger than a tile, tiles that are not full
-    /// count as open.
+    /// Whether a sample of a window may be open. In windows larger than a tile, tiles that are not full count as open.
     #[inline(always)]
     pub(super) fn is_open(&self, window: &Window) -> bool {
         if window.right - window.left < 8 && window.bottom - window.top < 8 {
@@ -303,7 +299,6 @@ impl Pixels<'_> {
     ) {
         let first = self.at(x, y);
         let word = self.word(node);
-        // All eight rows: the number of drawn ones is unpredictable.
         let end = first + 7 * self.width + 8;
         match self.shown.get_mut(first..end) {
             Some(rows) => isa.store_masked(rows, self.width, samples, word),

@@ -1,5 +1,5 @@
-//! Windows of a node's eight children, eight at a time: bounding rectangles in the picture. A window may be too wide,
-//! never too narrow (margins: `spec/fast.md`, section 5).
+//! Bounding rectangles of a node's eight children in the picture. A window may be too wide, never too narrow (margins:
+//! `spec/fast.md`, section 5).
 
 use super::constants::{Constants, Level};
 use super::lanes::{F32x8, Floats, Isa, Lanes};
@@ -79,7 +79,6 @@ impl ChildWindows {
                 .floor()
                 .min(I::F32x8::splat(isa, last as f32));
             self.held &= low.at_most(high);
-            // Those that hold a sample are within the band.
             self.sides[axis] = low.whole();
             self.sides[axis + 2] = high.whole();
         }

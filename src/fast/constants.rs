@@ -1,5 +1,5 @@
-//! Constants of a frame for the traversal; the nearest octant of a node (R9). Clip vectors of nodes are halves of whole
-//! numbers, exact in `f64`, so level of detail compares the same depths as the machine.
+//! Constants of a frame, and the nearest octant (R9). Clip vectors of nodes are halves of whole numbers, exact in `f64`,
+//! so level of detail compares the same depths as the machine.
 
 use crate::project::vector::cross;
 use crate::project::{FrameSetup, OpacityEye};
@@ -7,14 +7,13 @@ use crate::project::{FrameSetup, OpacityEye};
 /// Bound of positions times sixteen: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
 
-/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees. Beyond, slopes
-/// round by more than the margins allow.
+/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
-/// Least size of voxels drawn one by one (`voxels.rs`) and not sample by sample (`bricks.rs`), samples. Measured.
+/// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
 const COARSE_SAMPLES: f64 = 3.0;
-/// Largest size of voxels of bricks of four levels, samples. Measured.
+/// Largest size of voxels of bricks of four levels.
 const FINE_SAMPLES: f64 = 0.75;
-/// Least size of a cube drawn by its planes, whole blocks and tiles at a time (`exact.rs`), samples. Measured.
+/// Least size of a cube drawn by its planes (`planes.rs`).
 const LARGE_SAMPLES: f64 = 24.0;
 
 const TINY_SAMPLES: f64 = 1.0 / 8.0;
@@ -23,7 +22,6 @@ const TINY_SAMPLES: f64 = 1.0 / 8.0;
 pub(super) struct Level {
     /// The children's centres relative to their parent's: by coordinate of the clip vector, then by octant.
     pub(super) child: [[f64; 8]; 3],
-    /// Vertices relative to the centre, likewise.
     pub(super) vertices: [[f64; 8]; 3],
     pub(super) half_depth: f64,
     pub(super) lod_depth: f64,
@@ -37,51 +35,16 @@ pub(super) struct Level {
     pub(super) large_depth: f64,
 }
 
-/// Why the fast engine does not draw a frame itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
-#[non_exhaustive]
-pub enum Declined {
-    /// Only `exact` and `alpha` are defined without the machine's steps.
-    #[error("the drawing rule is defined by the machine's own steps")]
-    Rule,
-    /// Words may overflow, which only the machine handles.
-    #[error("words of this format may overflow in this frame")]
-    Words,
-    /// Positions exceed the bits of an `f64`.
-    #[error("positions take more than the 53 bits of a double")]
-    Range,
-    /// Beyond about 179.98 degrees slopes round too much.
-    #[error("the field of view is too wide")]
-    FieldOfView,
-    /// Records per sample are wanted.
-    #[error("records are counted, which only the machine has")]
-    Records,
-}
-
-impl Declined {
-    /// The counter of frames declined for this reason.
-    pub const fn counter(self) -> &'static str {
-        match self {
-            Self::Rule => "handed_for_rule",
-            Self::Words => "handed_for_words",
-            Self::Range => "handed_for_range",
-            Self::FieldOfView => "handed_for_field_of_view",
-            Self::Records => "handed_for_records",
-        }
-    }
-}
-
 #[derive(Debug, Clone)]
 pub(super) struct Constants {
     pub(super) levels: Vec<Level>,
     pub(super) depth: u32,
     pub(super) centre: [f64; 3],
     pub(super) root_samples: f64,
-    /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that
-    /// the quotient is 0 at the centre of the first sample.
+    /// Clip vectors of a finest voxel's edges, X and Y in samples from the centre of the first sample:
+    /// `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`.
     pub(super) edge: [[f64; 3]; 3],
-    /// Direction of a sample's ray in the object, by axis: `[per column, per row, at sample 0]`. Scaled to about 1;
-    /// rays run forward.
+    /// Direction of a ray, by axis: `[per column, per row, at sample 0]`. Scaled to about 1.
     pub(super) direction: [[f64; 3]; 3],
     /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
@@ -96,16 +59,18 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
+    /// An error is the counter of frames that are declined for this reason: the machine's own steps define the rule, words
+    /// may overflow, positions exceed an `f64`, or slopes round too much.
+    pub(super) fn new(setup: &FrameSetup) -> Result<Self, &'static str> {
         if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
-            return Err(Declined::Rule);
+            return Err("handed_for_rule");
         }
         if !setup.has_headroom {
-            return Err(Declined::Words);
+            return Err("handed_for_words");
         }
-        let reach = setup.position_reach().ok_or(Declined::Range)?;
+        let reach = setup.position_reach().ok_or("handed_for_range")?;
         if reach * 16 >= EXACT_LIMIT {
-            return Err(Declined::Range);
+            return Err("handed_for_range");
         }
         let root_samples = libm::ldexp(1.0, setup.levels as i32);
         let clip = setup.edge_clip.map(|e| e.map(|c| c as f64));
@@ -127,7 +92,7 @@ impl Constants {
         let across = edge.map(|e| e[0] - middle[0] * e[2]);
         let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
         if root_samples > MOST_WIDTH * focal {
-            return Err(Declined::FieldOfView);
+            return Err("handed_for_field_of_view");
         }
         let levels = (0..=setup.depth)
             .map(|level| level_constants(setup, &clip, focal, level))
@@ -155,7 +120,7 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object's box covers, about; all where it reaches behind the eye. Only divides the work.
+    /// Rows of samples that the object covers, about, to divide the work.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
@@ -182,7 +147,7 @@ impl Constants {
     }
 }
 
-/// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that a finest voxel takes, times its depth.
+/// `clip`: a finest voxel's edges. `focal`: samples that it takes, times its depth.
 fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
     let corners = |half: f64| -> [[f64; 8]; 3] {

@@ -1,4 +1,4 @@
-//! Counts of a frame: work done and work skipped.
+//! Counts of a frame.
 
 use crate::project::Stats;
 
@@ -35,9 +35,7 @@ counters! {
     skipped_behind = "skipped_behind_eye";
     skipped_off_screen = "skipped_off_screen";
     skipped_hidden = "skipped_hidden";
-    /// Nodes whose further children were left because all samples were drawn.
     skipped_full = "skipped_picture_full";
-    /// Nodes with children that level of detail took for a solid, outside of bricks.
     skipped_detail = "skipped_below_detail";
     tiles_filled = "tiles_filled_whole";
 }

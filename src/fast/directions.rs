@@ -1,5 +1,6 @@
-//! Direction of the lines of a square's samples, and the octant in which they begin.
+//! Squares, pieces of at most 8 x 8 samples of a window, and the directions of their lines.
 
+use super::band::Band;
 use super::constants::Constants;
 use super::exact::Exact;
 use super::lanes::{F32x4, Floats, Isa};
@@ -7,11 +8,9 @@ use super::window::{Window, bits};
 
 /// Roundings in `f32` of a line's values, each 2^-24 of the largest sum (counted in `spec/fast.md`).
 pub(super) const STEPS: f32 = 18.0;
-/// Bound of the error in `f32` of a direction, a moment, and a line's distance from a part, relative to the sum of the
-/// sizes of their terms.
+/// Bound of the error in `f32` of a direction, a moment, and a distance, relative to the sizes of their terms.
 pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
-/// Rounding of a direction in `f64`, relative to its terms: its coefficients are differences of numbers up to 2^13
-/// times as large (`Constants::new`).
+/// The same of a direction in `f64`, whose coefficients are differences of numbers up to 2^13 times as large.
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
 #[derive(Debug, Clone, Copy)]
@@ -104,4 +103,58 @@ pub(super) fn by_octant(
         parts[octant] |= 1 << bit;
     }
     parts
+}
+
+pub(super) static SAMPLES: [[f32; 2]; 64] = {
+    let mut table = [[0.0; 2]; 64];
+    let mut sample = 0;
+    while sample < 64 {
+        table[sample] = [(sample & 7) as f32, (sample >> 3) as f32];
+        sample += 1;
+    }
+    table
+};
+
+/// Divides a window into squares, and those by the octant in which their lines begin, usually one. `draw` returns the
+/// samples drawn.
+#[inline(always)]
+pub(super) fn each_square<I: Isa>(
+    band: &mut Band<'_, I>,
+    window: &Window,
+    draw: impl Fn(&mut Band<'_, I>, &Samples<'_, I>) -> u64,
+) {
+    let mut top = window.top;
+    while top <= window.bottom {
+        let mut left = window.left;
+        while left <= window.right {
+            let [right, bottom] = [(left + 7).min(window.right), (top + 7).min(window.bottom)];
+            let square = Window::of([left, top, right, bottom]);
+            let open = band.fill.open_in_square(&square);
+            if open != 0 {
+                band.counters.squares += 1;
+                let directions = Directions::of(band.isa, band.constants, &square);
+                let mut samples = Samples {
+                    square: &square,
+                    open,
+                    directions,
+                    octant: directions.octant,
+                };
+                let mut groups = [0; 8];
+                if directions.is_mixed {
+                    groups = by_octant(band.constants, band.exact, &square, open);
+                    samples.take_group(&mut groups);
+                }
+                let mut drawn = 0;
+                loop {
+                    drawn |= draw(band, &samples);
+                    if !directions.is_mixed || !samples.take_group(&mut groups) {
+                        break;
+                    }
+                }
+                band.fill.mark_square(&square, drawn);
+            }
+            left += 8;
+        }
+        top += 8;
+    }
 }

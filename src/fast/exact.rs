@@ -7,8 +7,8 @@
 use super::window::Window;
 use crate::project::FrameSetup;
 
-/// Bound of the error in `f64` of a plane's value at a sample, relative to the sum of the sizes of its at most nine
-/// products. Each of a few operations in a row adds 2^-53, so there is room.
+/// Bound of the error in `f64` of a plane's value at a sample, relative to the sizes of its at most nine products. A few
+/// operations in a row add 2^-53 each.
 const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
 #[derive(Debug, Clone)]
@@ -41,7 +41,7 @@ fn side_of(plane: [i128; 3], sample: [i64; 3]) -> i8 {
     0
 }
 
-/// A cross product; and with the second vector's sizes, a bound of its rounding error.
+/// A product, and the sizes of its terms.
 #[inline(always)]
 fn dot(a: &[f64; 3], b: &[f64; 3], size: &[f64; 3]) -> (f64, f64) {
     (
@@ -76,8 +76,8 @@ impl Exact {
         at
     }
 
-    /// Whether the ray of a sample meets the inside of a cube before the eye. In direction j, `n q = A (e_j x q)` for the
-    /// starts `A` of the four edges: their least and greatest values decide.
+    /// Whether the ray of a sample meets the inside of a cube before the eye. Per direction j the least and greatest
+    /// `n q = A (e_j x q)` decide, over the starts `A` of the four edges.
     #[inline(always)]
     pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
         let corner = self.at(min);
@@ -139,8 +139,7 @@ impl Exact {
         Outline { edges, front }
     }
 
-    /// The half of the rays that reach a cube that does not hold the eye: along an axis on which the eye is outside it,
-    /// rays run towards it.
+    /// The half of the rays that reach a cube which does not hold the eye.
     fn front(&self, min: [i32; 3], side: i32) -> Option<(Plane, i8)> {
         (0..3).find_map(|axis| {
             let upwards = self.eye_ceil[axis] <= i64::from(min[axis]);
@@ -173,7 +172,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// The side of all samples of a window; `None`: both may occur. 0: there is no plane.
+    /// The side of all samples of a window, 0 of no plane; `None`: both may occur.
     #[inline(always)]
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;
@@ -204,7 +203,7 @@ impl Plane {
 #[derive(Debug, Clone)]
 pub(super) struct Outline {
     edges: [[Plane; 4]; 3],
-    /// Of a cube beside the eye: a plane, and its side that sees the cube and not its mirror image behind the eye.
+    /// A plane, and its side that sees the cube and not its mirror image behind the eye.
     front: Option<(Plane, i8)>,
 }
 

@@ -1,10 +1,9 @@
 //! R8 by lines in Plücker coordinates: the lines of a square's samples against the parts of a node (`spec/fast.md`,
 //! section 2).
 //!
-//! With `P` the node centre's clip vector, `e_k` a voxel's edges and `q` the sample, a ray has the direction
-//! `v_k = (e_k+1 x e_k+2) q` and the moment `m_j = (P x e_j) q` about the centre: both linear in the sample. Their only
-//! error is the rounding of `f32`. Axes are mirrored so that lines run upwards along each (`v_k >= 0`). The unit of
-//! length is the side of a part.
+//! `P` is the node centre's clip vector, `e_k` are a voxel's edges, `q` is the sample. A ray has the direction
+//! `v_k = (e_k+1 x e_k+2) q` and the moment `m_j = (P x e_j) q` about the centre. Their only error is the rounding of
+//! `f32`. Axes are mirrored so that lines run upwards (`v_k >= 0`). The unit of length is the side of a part.
 
 use super::constants::Constants;
 use super::directions::{LINE_ERROR, Samples};
@@ -13,7 +12,7 @@ use super::orders::along;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
 
-/// Rounding of a centre's column in `f64` relative to the column, over [`LINE_ERROR`]: 2^-50 over 2^-20.
+/// Relative rounding of a centre's column in `f64` over [`LINE_ERROR`]: 2^-50 over 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Largest distance of a part's centre from the node's, sides of a part.
 const FARTHEST: f32 = 8.0;
@@ -40,7 +39,7 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
-    /// Directions: at the first sample, and their slopes by column and by row.
+    /// At the first sample, and slopes by column and by row.
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
     pub(super) tables: [usize; 3],
@@ -49,11 +48,11 @@ pub(super) struct Lines<I: Isa> {
     pub(super) error: f32,
     pub(super) rounding: f32,
     pub(super) has_blind: bool,
-    /// Distance from a part's outline below which a sample is doubtful.
+    /// Distance from an outline below which a sample is doubtful.
     doubt: I::F32x4,
 }
 
-/// Values of a square's lines: at the first sample, and their slopes by column and by row.
+/// Values at the first sample, and their slopes by column and by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InUnits<I: Isa> {
     moment: [I::F32x4; 3],
@@ -130,7 +129,6 @@ impl<I: Isa> Lines<I> {
             (f64::from(square.top) - projection.centre[1]) as f32,
         ];
         let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
-        // Rounding of the centre in f64; the bound includes 16 times 2^-24 of it.
         let unsure = projection
             .centre
             .map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
@@ -155,7 +153,6 @@ impl<I: Isa> Lines<I> {
         let mut has_blind = false;
         let mut most = MOST_ERROR[0];
         if isa.splat(most).sub(error).signs() & 7 != 0 {
-            // Values are less accurate here.
             most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
                 if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
@@ -184,7 +181,6 @@ impl<I: Isa> Lines<I> {
         }
     }
 
-    /// The functions in widths: at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn in_widths(&self) -> [I::F32x4; 3] {
         self.moment.map(|moment| moment.mul(self.inverse))
@@ -233,7 +229,6 @@ impl<I: Isa> Lines<I> {
         line.moment.fma(unit, isa.splat(MIDDLE)).indices::<CELLS>()
     }
 
-    /// Whether a line certainly meets the part of side 1 at an offset, and whether it may.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
@@ -258,14 +253,13 @@ impl<I: Isa> Lines<I> {
 }
 
 impl<I: Isa> Line<I> {
-    /// The decrease of the moments about a point at an offset.
     #[inline(always)]
     fn shift(&self, isa: I, offset: &Offset) -> I::F32x4 {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
         next.fms(self.last, last.mul(self.next))
     }
 
-    /// The line about a block's centre, whose offset is in sides of a block, 4 parts.
+    /// The line about a block's centre. A block is 4 parts wide.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
         let shift = self.shift(isa, block);
@@ -276,8 +270,7 @@ impl<I: Isa> Line<I> {
     }
 }
 
-/// Offset of a part's centre from its node's, in sides of a part: by function j, along the next axis and along the last
-/// one.
+/// Offset of a part's centre from its node's, in sides of a part: by function j, along the next axis and the last one.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(32))]
 pub(super) struct Offset {
@@ -380,8 +373,7 @@ pub(super) mod tests {
         }
     }
 
-    /// The worst of `|f - truth| / doubt` over lines, parts and functions, of bricks of two levels
-    /// and, about blocks, of four; the truth is computed in `f64`, 2^29 times as fine.
+    /// The worst of `|f - truth| / doubt`; the truth is computed in `f64`.
     #[test]
     fn values_are_within_a_bound_that_is_of_use() {
         let mut next = numbers();
@@ -453,13 +445,11 @@ pub(super) mod tests {
                 }
             }
         }
-        println!("worst deviation: {worst:.4} of the bound");
         assert!(worst < 1.0, "{worst}");
-        // Far too wide a bound would be of no use.
         assert!(worst > 0.01, "{worst}");
     }
 
-    /// The steps that `spec/fast.md` adds up: those of moments, and of the rest. Much room would hide faults.
+    /// The steps that `spec/fast.md` adds up. Much room would hide faults.
     const _: () = {
         const MOMENT: f32 = 6.0 + 2.0 + 3.0;
         const SHIFTS: f32 = 9.0 + 2.0 + 6.0;

@@ -1,7 +1,7 @@
 //! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! It works sample by sample, where the machine works record by record. Approximate arithmetic with a bounded error
-//! decides nearly all samples, the exact rule those in doubt (`spec/fast.md`).
+//! Approximate arithmetic with a bounded error decides nearly all samples, the exact rule those in doubt
+//! (`spec/fast.md`).
 //!
 //! ```text
 //! for each band of the picture, from the whole object down (traversal):
@@ -12,7 +12,7 @@
 //!     large or near ones:     by exact planes (planes, exact)
 //! ```
 //!
-//! Frames that it declines ([`Declined`]) go to another engine.
+//! Frames that it declines go to another engine.
 
 mod alpha;
 mod band;
@@ -30,7 +30,6 @@ mod orders;
 mod parts;
 mod planes;
 mod projection;
-mod squares;
 mod strips;
 mod traversal;
 mod voxels;
@@ -42,13 +41,12 @@ use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use bands::{BandBuffers, Job, run_bands};
 use canvas::{FillMemory, Pixels, TileGrid};
 use constants::Constants;
-pub use constants::Declined;
 use counters::Counters;
 use exact::Exact;
 use lanes::Scalar;
 use window::{TILE_LOG2, Window};
 
-/// The instructions used. They do not change a picture.
+/// The instructions used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
@@ -76,12 +74,13 @@ pub struct Fast {
     fill: FillMemory,
     prepared: Option<Prepared>,
     counters: Counters,
-    declined: Option<Declined>,
+    /// Name of a counter.
+    declined: Option<&'static str>,
 }
 
 struct Prepared {
     setup: FrameSetup,
-    constants: Result<Constants, Declined>,
+    constants: Result<Constants, &'static str>,
     exact: Exact,
 }
 
@@ -98,11 +97,11 @@ impl Fast {
         }
     }
 
-    pub fn declined(&self) -> Option<Declined> {
+    pub fn declined(&self) -> Option<&'static str> {
         self.declined
     }
 
-    /// Draws a frame. `false`: the fallback has to. Allocates nothing when the set-up is that of the last frame.
+    /// `false`: the fallback has to draw. Allocates nothing when the set-up is that of the last frame.
     fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
         let prepared = match &mut self.prepared {
             Some(prepared) if prepared.setup == *setup => prepared,
@@ -147,7 +146,7 @@ impl Fast {
 
     fn draw_frame(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
         if frame.records.is_some() {
-            self.declined = Some(Declined::Records);
+            self.declined = Some("handed_for_records");
             return false;
         }
         let pixels = Pixels {
@@ -184,7 +183,7 @@ impl Engine for Fast {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         if setup.options.coverage.blends() {
-            // Nodes first: a blended sample has no colour before its last voxel.
+            // A blended sample has no colour before its last voxel.
             self.draw(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
             return Ok(());
@@ -197,7 +196,6 @@ impl Engine for Fast {
             voxel: &mut [],
             blend: &mut [],
         };
-        // Without colours there is nothing to look up.
         if !of_node.is_empty() && self.draw_fast(graph, setup, pixels) {
             return Ok(());
         }
@@ -216,7 +214,7 @@ impl Engine for Fast {
         }
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.push(("handed_to_machine", 1));
-        stats.extend(self.declined.map(|why| (why.counter(), 1)));
+        stats.extend(self.declined.map(|why| (why, 1)));
         Ok(stats)
     }
 }
@@ -236,13 +234,13 @@ impl Instructions {
         InstructionSet::Scalar(Scalar)
     }
 
-    /// Whether the processor has these. If not, the next lower set is used.
+    /// Whether the processor has these.
     pub fn are_available(self) -> bool {
         self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
     }
 }
 
-/// None changes a picture.
+/// Techniques on or off, for measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Switches {
     /// Skip nodes whose windows are full.

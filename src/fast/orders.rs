@@ -1,8 +1,8 @@
-//! Tables of octants (rule R9): masks of children in order of occlusion, and the slabs of a node's 64 parts.
+//! Tables of octants (rule R9), and the slabs of a node's 64 parts.
 
 use super::lanes::{Isa, Lanes, U8x16};
 
-/// By octant: child masks turned, so that bit `c` is child `c ^ octant`.
+/// By octant: child masks turned: bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
     let mut table = [[0u8; 256]; 8];
     let mut octant = 0;
@@ -21,13 +21,13 @@ static TURNED: [[u8; 256]; 8] = {
     table
 };
 
-/// A child mask turned: for the nearest octant, in order of occlusion.
+/// A child mask in order of occlusion.
 #[inline(always)]
 pub(super) fn turned(mask: u8, octant: u8) -> u8 {
     TURNED[usize::from(octant & 7)][usize::from(mask)]
 }
 
-/// The same for 64 parts, both octants of a part turned.
+/// The same for 64 parts, by both octants.
 #[inline(always)]
 pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
     let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
@@ -39,7 +39,7 @@ pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
     low.or(I::U8x16::load(isa, high).look_up(upper)).low()
 }
 
-/// By octant, for lanes of sixteen bytes: the outer octants' order, and a mask's lower and upper half turned.
+/// By octant: the outer octants' order, and a mask's lower and upper half turned.
 static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
     let mut table = [[[0u8; 16]; 3]; 8];
     let mut octant = 0;
@@ -75,8 +75,8 @@ pub(super) static SLABS: [[u64; 4]; 3] = {
     table
 };
 
-/// By axis and by which of its four slabs are filled: middle of the filled range from the node's centre, and half its
-/// extent, in sides of a slab; in the axis' lane.
+/// By axis and by its filled slabs: middle of the filled range from the node's centre, and half its extent, in sides of
+/// a slab; in the axis' lane.
 pub(super) static EXTENTS: [[[[f32; 4]; 2]; 16]; 3] = {
     let mut table = [[[[0.0; 4]; 2]; 16]; 3];
     let mut slabs = 1u32;

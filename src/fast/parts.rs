@@ -15,10 +15,10 @@ pub(super) struct Parts {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Kind {
-    /// Each part is a node; children lie one after the other.
+    /// Parts are nodes; children lie one after the other.
     #[default]
     Plain,
-    /// Each part is a node, named by the graph's links; or a child is solid.
+    /// Parts are named by the graph's links, or a child is solid.
     Linked,
     Solid,
 }
@@ -46,8 +46,7 @@ impl Parts {
         }
     }
 
-    /// The parts of a node with children. `is_last`: the children are finest voxels. `detail`: the children that level
-    /// of detail makes solids.
+    /// `is_last`: the children are finest voxels. `detail`: those that level of detail makes solids.
     #[inline(always)]
     pub(super) fn of<I: Isa>(
         isa: I,
@@ -134,7 +133,6 @@ impl Parts {
         isa.prefetch(graph.first, self.first as usize);
     }
 
-    /// Prefetches the parts' children, where nodes lie level by level.
     #[inline(always)]
     pub(super) fn prefetch_below<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let first = graph.first.get(self.first as usize).copied().unwrap_or(0) as usize;

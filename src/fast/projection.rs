@@ -21,8 +21,7 @@ pub(super) struct Projection<I: Isa> {
 }
 
 impl<I: Isa> Projection<I> {
-    /// Projects a node that is `across` parts wide, with its centre's clip vector. The unit of slopes is the side of a
-    /// part.
+    /// Of a node that is `across` parts wide, with its centre's clip vector. The unit of slopes is the side of a part.
     #[inline(always)]
     pub(super) fn new(
         isa: I,
@@ -42,9 +41,9 @@ impl<I: Isa> Projection<I> {
         }
     }
 
-    /// The part of a window that the box around some parts of the node of [`Projection::new`] covers, or a little more; where
-    /// the node is near ([`NEAR`]), the whole window. A point `t` parts from the centre is seen `t . step` from it, times a
-    /// constant, over its depth, which differs from the centre's by at most half a node's.
+    /// The part of a window that the box around some parts covers, or a little more; of a near node ([`NEAR`]) all. A point
+    /// `t` parts from the centre is seen `t . step` from it, times a constant, over its depth, which differs from the
+    /// centre's by at most half a node's.
     #[inline(always)]
     pub(super) fn window(
         &self,
@@ -88,8 +87,7 @@ impl<I: Isa> Projection<I> {
     }
 }
 
-/// Slopes by column and by row of moments about a point at `centre` (column and row). `edges`: by coordinate, times
-/// `unit`.
+/// Slopes by column and by row of moments about a point of the picture. `edges`: by coordinate, times `unit`.
 #[inline(always)]
 fn steps<I: Isa>(isa: I, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [I::F32x4; 2] {
     let (column, row) = (
@@ -185,9 +183,6 @@ mod tests {
             }
             checked += 1;
         }
-        println!(
-            "of {checked} windows {far} are of far nodes, and of those {tight} hardly too large"
-        );
         assert!(far > 1000 && tight * 10 > far * 9, "{tight} of {far}");
     }
 }

@@ -10,8 +10,8 @@
 //! Divided by `v_n + v_l`, a strip is 1 wide and lies at `t_n s - t_l (1 - s)`, with the share `s = v_l / (v_n + v_l)`. A
 //! table per share has for each cell of the value the parts whose strip, with a margin, it may lie in.
 //!
-//! Parts are numbered `outer << 3 | inner`, octants in Morton order, with bits turned where the line runs downwards. So
-//! a line meets lower numbers first.
+//! Parts are numbered `outer << 3 | inner`, with bits turned where the line runs downwards, so that a line meets lower
+//! numbers first.
 
 use std::sync::LazyLock;
 
@@ -22,14 +22,14 @@ use super::orders::SLABS;
 pub(super) const SHARES: usize = 128;
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
 pub(super) const CELLS_PER_WIDTH: f32 = 30.0;
-/// Cells of a table. They reach 2.13 widths to either side of the node's centre.
+/// They reach 2.13 widths to either side of the node's centre.
 pub(super) const CELLS: usize = 128;
 /// The cell of a line through the node's centre.
 pub(super) const MIDDLE: f32 = 64.0;
 
 const CLASSES: usize = 3;
 const MARGINS: [f32; CLASSES] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0];
-/// The part of a margin for the rounding of the share and of the cell's number: at most `3 / 2 SHARE_STEPS`, and 1/512.
+/// Rounding of the share, at most `3 / 2 SHARE_STEPS`, and of the cell's number.
 const ROUNDING: f32 = 1.5 / SHARE_STEPS + 1.0 / 512.0;
 /// Allowed error of values, in widths, by margin.
 pub(super) const MOST_ERROR: [f32; CLASSES] = [
@@ -43,7 +43,6 @@ pub(super) type Row = [u64; CELLS];
 
 #[derive(Debug)]
 pub(super) struct Strips {
-    /// Parts whose strip the cell may lie in.
     touched: Vec<Row>,
     /// Parts whose strip reaches the cell or beyond it.
     ends_above: Vec<Row>,
@@ -58,8 +57,8 @@ pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 pub(super) struct Candidates(pub(super) [u64; 64]);
 
 impl Candidates {
-    /// Looks up the parts among `wanted` by open sample. Returns the open samples that have any, eight bits per row. `cells`:
-    /// the functions in cells, at the first sample, and their slopes by column and by row.
+    /// Looks up the parts among `wanted` by open sample. Returns the samples that have any. `cells`: the functions in cells,
+    /// at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn look_up<I: Isa>(
         &mut self,
@@ -138,7 +137,6 @@ impl Strips {
         strips
     }
 
-    /// Notes where strips begin and end, then adds up the parts that have begun, and downwards those that have not ended.
     fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
@@ -159,13 +157,13 @@ impl Strips {
         }
     }
 
-    /// Number of the table of an axis for a share, in steps, and a class of [`MOST_ERROR`].
+    /// `share` in steps, `class` of [`MOST_ERROR`].
     #[inline(always)]
     pub(super) fn table(axis: usize, share: usize, class: usize) -> usize {
         class * PER_MARGIN + axis * SHARES + share
     }
 
-    /// Number of the blind table, which excludes no part.
+    /// The table that excludes no part.
     pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
     #[inline(always)]
@@ -173,7 +171,7 @@ impl Strips {
         tables.map(|table| &self.touched[table])
     }
 
-    /// The parts that a line may meet whose values lie in these cells or between them.
+    /// The parts that lines with values from cells to cells may meet.
     #[inline(always)]
     pub(super) fn between(&self, tables: [usize; 3], low: [usize; 3], high: [usize; 3]) -> u64 {
         let mut parts = u64::MAX;
@@ -190,7 +188,6 @@ mod tests {
     use super::*;
     use crate::fast::orders::along;
 
-    /// The parts that a line with this value of function `axis` and share meets.
     fn met(axis: usize, share: f64, value: f64) -> u64 {
         let mut parts = 0;
         for part in 0..64 {

@@ -1,8 +1,5 @@
-//! The traversal of the graph, front to back, with an explicit stack of the nodes whose children are being visited. Rules
-//! R7.1 (level of detail), R8.2 (plane of the eye) and R10 (termination).
-//!
-//! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too narrow. The loop and each
-//! way to draw are functions compiled for the instruction set ([`Isa::vectorize`]).
+//! The traversal of the graph, front to back: rules R7.1 (level of detail), R8.2 (plane of the eye), R9 (nearest octant)
+//! and R10 (termination). Clip vectors of nodes are exact.
 
 use super::band::{Band, Brick, Record, voxel_at};
 use super::child_windows::ChildWindows;
@@ -32,7 +29,6 @@ pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
         return;
     }
     stack[0].begin(band, &root);
-    // Nodes on the stack. Each has children left.
     let mut height = usize::from(stack[0].left != 0);
     while height > 0 {
         if band.fill.open == 0 && band.switches.full {
@@ -127,7 +123,7 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
         && (ends == constants.depth as usize || least_depth >= constants.levels[ends].lod_depth)
 }
 
-/// Children that level of detail draws as solids although they may have children, as a mask.
+/// Children that level of detail draws as solids, as a mask.
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
     let (own, below) = (
@@ -185,7 +181,7 @@ impl<'b> Children<'b> {
             wanted &= windows.held | windows.near;
             band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
         } else {
-            // For measurements: children without a sample are tested against the whole band.
+            // Children without a sample are tested against the whole band.
             windows.near |= !windows.held;
         }
         self.record = *record;
@@ -241,7 +237,7 @@ fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: 
     }
 }
 
-/// Whether all eight vertices of a box partly behind the eye are beyond one edge of the image root: exact, and linear.
+/// Whether all vertices of a box partly behind the eye are beyond one edge of the image root.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {

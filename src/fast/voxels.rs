@@ -1,23 +1,21 @@
-//! Voxels one after the other, nearest first, each against the 64 samples of a square in 16-bit numbers. The tables
-//! (`strips.rs`) give those that the square's lines may meet. Samples near an outline are decided one by one.
+//! Voxels one after the other, nearest first, each against the 64 samples of a square in 16-bit numbers. Samples near an
+//! outline are decided one by one.
 
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
-use super::directions::Samples;
+use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
 use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;
-use super::squares::{SAMPLES, each_square};
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::window::{Window, bits};
 
-/// Units per width in 16-bit numbers.
+/// Per width.
 const UNIT: f32 = 2048.0;
-/// Rounding in units: of the first sample's value, and of seven steps of a column and of a row, half a unit each, and a
-/// unit.
+/// Rounding in units: of the first value and of seven steps of a column and of a row, half each, and a unit.
 const ROUNDING: f32 = 8.5;
-/// Largest value, in units, in these numbers.
+/// In units, of 16 bits.
 const LARGEST: f32 = 30_000.0;
 
 #[inline(always)]
@@ -54,7 +52,7 @@ fn draw_samples<I: Isa>(
     if wanted == 0 {
         return 0;
     }
-    // Only a strip's width changes within a square, from which the tables' error is four times as large.
+    // Within a square only a strip's width changes: a quarter of the tables' error.
     let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
     let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
     let sure = if lines.has_blind {
@@ -112,10 +110,7 @@ fn draw_samples<I: Isa>(
         if covered != 0 {
             band.counters.solids += 1;
             let voxel = if band.pixels.wants_voxels() || band.constants.opacity_eye.is_some() {
-                path.voxel(
-                    brick,
-                    band.constants.levels[brick.record.level as usize].side,
-                )
+                path.voxel(band, brick)
             } else {
                 [0; 4]
             };
@@ -128,8 +123,7 @@ fn draw_samples<I: Isa>(
     drawn
 }
 
-/// Distances of the three functions from 0, the largest by sample of a square, two rows per vector. No meaning where
-/// values exceed 16 bits.
+/// The largest distance of the three functions from 0, by sample, two rows per vector. No meaning beyond 16 bits.
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
@@ -177,7 +171,6 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     let (unit, middle) = (isa.splat(CELLS_PER_WIDTH), isa.splat(MIDDLE));
     let low = least.fma(unit, middle).max(zero);
     let high = greatest.fma(unit, middle);
-    // Below the table there is nothing; above it, its last cell.
     if high.signs() & 7 != 0 {
         return 0;
     }

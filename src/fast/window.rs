@@ -1,8 +1,6 @@
 //! Windows: rectangles of samples, and their bits in tiles and blocks.
 
-/// Log2 of the samples per side of a tile.
 pub(super) const TILE_LOG2: u32 = 3;
-/// Log2 of the samples per side of a block.
 pub(super) const BLOCK_LOG2: u32 = 6;
 pub(super) const ALL: u64 = u64::MAX;
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
@@ -57,7 +55,7 @@ impl Window {
         }
     }
 
-    /// The bits of a tile or block in the window. `x`, `y`: the window's unit at the word's first bit.
+    /// The bits of a tile or block, whose first bit is at `x`, `y`, in the window.
     #[inline(always)]
     pub(super) fn bits(&self, x: i32, y: i32) -> u64 {
         let left = (self.left - x).max(0) as u32;

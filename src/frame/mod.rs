@@ -27,7 +27,7 @@ pub const NO_NODE: u32 = u32::MAX;
 /// `voxel` where nothing is seen.
 pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 
-/// The samples of one frame, row by row from the top left. Colour, normal and depth follow from the visible voxels.
+/// The samples of one frame, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     pub width: u32,
@@ -35,7 +35,7 @@ pub struct Frame {
     /// Visible graph node, or [`NO_NODE`].
     pub node: Vec<u32>,
     /// Object coordinates of the visible voxel's lowest corner, in finest voxels, and its octree level (0 = root); or
-    /// [`NO_VOXEL`]. Empty if voxels are not stored ([`Frame::nodes_only`]).
+    /// [`NO_VOXEL`]. May be empty.
     pub voxel: Vec<[i32; 4]>,
     /// Share of the processed records, if requested: a record counts 1, spread evenly over its quadtree node's samples.
     pub records: Option<Vec<f32>>,
@@ -73,7 +73,7 @@ impl Frame {
         }
     }
 
-    /// An empty frame whose `voxel` stays empty, a fifth of the memory. Engines then store no voxels.
+    /// Engines then store no voxels, which saves four fifths of the memory.
     pub fn nodes_only(width: u32, height: u32) -> Self {
         Self {
             width,

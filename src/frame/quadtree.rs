@@ -1,8 +1,7 @@
 //! The image quadtree and its fill vectors (image-order paper, 3.3).
 //!
-//! Each node has a 4-bit fill vector, one bit per quadrant (`y << 1 | x`). A drawn sample sets all its bits; a full node
-//! sets its bit in its parent. Quadrants outside the picture are full from the start, so clipping is the same test as
-//! occlusion.
+//! A bit per quadrant (`y << 1 | x`). A drawn sample sets all its bits; a full node sets its bit in its parent. Quadrants
+//! outside the picture are full from the start, so clipping is the same test as occlusion.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct QuadNode {

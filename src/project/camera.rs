@@ -10,7 +10,7 @@ pub struct Camera {
     pub eye: DVec3,
     /// A point in the middle of the picture, world units.
     pub target: DVec3,
-    /// A direction that points up in the picture; not along the view axis.
+    /// Not along the view axis.
     pub up: DVec3,
     /// Vertical field of view, degrees, above 0 and below 180.
     pub fov_degrees: f64,

@@ -52,7 +52,7 @@ impl Up {
     }
 }
 
-/// An axis-aligned box in world units, and points in it that enclose the object.
+/// In world units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     pub low: DVec3,
@@ -62,9 +62,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of a graph's voxels in object coordinates, finest voxels; `None` without voxels.
-    ///
-    /// Exact, except for graphs with millions of nodes on their outside, whose box may be too large by a few voxels.
+    /// The box of a graph's voxels in object coordinates, finest voxels; of graphs with millions of nodes on their outside
+    /// perhaps too large by a few.
     pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
         if graph.is_empty() {
             return None;
@@ -94,7 +93,7 @@ impl Bounds {
                 }
             }
         }
-        // In a damaged file that was not verified, the lists of children may lead nowhere.
+        // In a damaged file, lists of children may lead nowhere.
         (low[0] < high[0]).then_some((low, high))
     }
 
@@ -144,7 +143,7 @@ impl Bounds {
         }
     }
 
-    /// The bounds of the object revolved around the up axis, so that a fitted distance is the same from all sides.
+    /// Revolved around the up axis, so that a fitted distance is the same from all sides.
     pub fn revolved(&self, up: Up) -> Self {
         let centre = (self.low + self.high) / 2.0;
         let axis = up.axis();
@@ -233,7 +232,7 @@ impl Direction {
     };
 }
 
-/// The nearest camera in a direction that sees the whole box, then magnified by `zoom` (the eye comes nearer).
+/// The nearest camera in a direction that sees everything; `zoom` divides its distance.
 pub fn fit_camera(
     bounds: &Bounds,
     up: Up,
@@ -274,7 +273,7 @@ pub fn fit_camera(
     }
 }
 
-/// Rounds to about six decimal digits of `scale`, so that a printed camera is short and is read as the same numbers.
+/// Rounds to about six decimal digits of `scale`, so that a printed camera is short and exact.
 fn tidy(point: DVec3, scale: f64) -> DVec3 {
     let digits = 6 - libm::ceil(libm::log10(scale.max(f64::MIN_POSITIVE))) as i32;
     let round = |x: f64| -> f64 {

@@ -1,4 +1,4 @@
-//! Settings of a frame (words, cage, drawing rule, level of detail, samples), and numbers that follow only from them.
+//! Settings of a frame, and numbers that follow only from them.
 
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +82,7 @@ impl Coverage {
         self.outline_rule().has_planes()
     }
 
-    /// The default tolerance, samples. Rules that draw outlines never change to screen space and allow only 0.
+    /// The default tolerance, samples. Rules that draw outlines allow only 0.
     #[inline]
     pub const fn default_tolerance(self) -> f64 {
         match self {
@@ -91,8 +91,8 @@ impl Coverage {
         }
     }
 
-    /// The default size, pixels, up to which nodes are drawn as one voxel. A pixel is the paper's, and right for
-    /// opacities, which are means. For outlines half a pixel is the largest without a relevant error (`docs/error.md`).
+    /// The default size, pixels, up to which nodes are drawn as one voxel: the paper's pixel, or for outlines the largest
+    /// without a relevant error (`docs/error.md`).
     #[inline]
     pub const fn default_lod(self) -> f64 {
         match self {
@@ -102,14 +102,14 @@ impl Coverage {
     }
 }
 
-/// The rule by which the samples of a voxel are found.
+/// The samples that a voxel covers:
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutlineRule {
-    /// Those that the voxel's box overlaps.
+    /// Those that its box overlaps.
     Box,
-    /// The one that contains the voxel's centre.
+    /// The one that contains its centre.
     Centre,
-    /// Those whose centres lie within the voxel's silhouette.
+    /// Those whose centres lie within its silhouette.
     Silhouette,
 }
 
@@ -131,8 +131,7 @@ pub struct SetupOptions {
     /// Fraction bits of clip depths (voxels) and of screen positions (pixels). `None`: as many as the frame has room for.
     pub frac: Option<u32>,
     pub cage: CageKind,
-    /// Largest deviation, in samples, at which a record may change from clip space to screen space: 0 never, infinity
-    /// always. Rules other than `any` and `center` allow only 0.
+    /// Largest deviation, in samples, at which a record may change to screen space: 0 never, infinity always.
     pub tolerance_px: f64,
     pub coverage: Coverage,
     /// Nodes of at most this many pixels are drawn as one voxel. 0: only leaves.
@@ -170,8 +169,8 @@ impl SetupOptions {
     }
 }
 
-/// Divides `total` fraction bits of a position between the precision of the view (at most `most`) and exact halving below
-/// the finest voxels, which only rules that subdivide solids need.
+/// Divides `total` fraction bits of a position between the view (at most `most`) and exact halving below the finest
+/// voxels, which only rules that subdivide solids need.
 pub(super) fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
     if coverage.draws_outlines() {
         return (total.min(most), 0);
@@ -186,8 +185,7 @@ pub(super) fn grow_shift(tolerance: f64) -> Option<i32> {
     is_approximate.then(|| -(libm::ceil(libm::log2(tolerance)) as i32))
 }
 
-/// A constant factor as a sum of powers of two: a product with it is a sum of shifted copies, by these places to the right
-/// (negative: to the left).
+/// A constant factor as a sum of powers of two: places of shifts to the right (negative: to the left).
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ShiftSum(Vec<i32>);
 
@@ -219,8 +217,7 @@ impl ShiftSum {
     }
 }
 
-/// A size in samples, less its share of twice the tolerance, so that neighbours that deviate by the tolerance leave no
-/// pinhole; `None` for 0.
+/// A size in samples, less its share of twice the tolerance, so that deviating neighbours leave no pinhole.
 pub(super) fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
     let tolerance = Some(options.tolerance_px).filter(|t| t.is_finite());
     // At least an eighth: the user of a coarser tolerance accepts holes.
@@ -228,7 +225,7 @@ pub(super) fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSu
     (samples > 0.0).then(|| ShiftSum::floor(samples * share))
 }
 
-/// The size up to which level of detail makes a node a solid; `None` for 0. Outlines need no share for pinholes.
+/// The size up to which level of detail makes a node a solid. Outlines need no share for pinholes.
 pub(super) fn detail_limit(options: &SetupOptions) -> Option<ShiftSum> {
     if options.coverage.draws_outlines() {
         return (options.lod_px > 0.0).then(|| ShiftSum::floor(options.lod_px));

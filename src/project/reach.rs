@@ -20,7 +20,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// The reach over the object's eight corners; other vertices lie between. `None` beyond 127 bits.
+    /// Over the object's eight corners; other vertices lie between. `None` beyond 127 bits.
     pub(super) fn of(quantised: &Quantised, depth: u32) -> Option<Self> {
         let origin = quantised.origin.map(i128::from);
         let edge = quantised.edge.map(|e| e.map(i128::from));

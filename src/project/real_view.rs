@@ -1,6 +1,6 @@
-//! The view of an object in real numbers, its quantisation, and the depths by level at which records change (`SPEC.md`,
-//! "The change to screen space", "Drawing rules"). At twice the depth a voxel of twice the side looks the same, so one
-//! ratio of side to depth serves all levels.
+//! The view in real numbers, its quantisation, and the depths by level at which records change (`SPEC.md`, "The change to
+//! screen space", "Drawing rules"). At twice the depth a voxel of twice the side looks the same, so one ratio of side to
+//! depth serves all levels.
 
 use hwmodel::Format;
 
@@ -49,9 +49,7 @@ impl RealView {
         }
     }
 
-    /// Integers of `2^-frac` voxels, if they fit 64 bits with room.
-    ///
-    /// The origin is computed from the rounded edges, so the eye stays in place and only the view's shape is rounded.
+    /// Integers of `2^-frac` voxels, if they fit. The origin follows from the rounded edges, so the eye stays in place.
     pub(super) fn quantise(&self, frac: u32) -> Option<Quantised> {
         let scale = (1u64 << frac) as f64;
         let mut edge = [[0; 3]; 3];
@@ -68,8 +66,7 @@ impl RealView {
         Some(Quantised { origin, edge })
     }
 
-    /// The most fraction bits, and levels below a finest voxel, with which positions fit a word and silhouette planes a
-    /// wide word, with headroom.
+    /// The most fraction bits, and levels below a finest voxel, with which words have headroom.
     pub(super) fn widest_fraction(
         &self,
         depth: u32,
@@ -94,8 +91,8 @@ impl RealView {
         split_fraction(plane_frac + room, plane_frac, coverage)
     }
 
-    /// Sum over a finest voxel's edges of the speed of a picture position, samples times depth. Linear and convex functions are
-    /// greatest at the ends of the positions that may change.
+    /// Sum over a finest voxel's edges of the speed of a picture position, samples times depth. Convex functions are
+    /// greatest at the ends.
     fn total_speed(&self, options: &SetupOptions) -> f64 {
         let root_samples = (1u64 << (self.root_px_log2 + options.aa_log2)) as f64;
         let guard = libm::ldexp(1.0, -(SCREEN_GUARD_SHIFT as i32));
@@ -111,8 +108,7 @@ impl RealView {
         most
     }
 
-    /// Least `W`, by level, at which a record deviates from its screen-space cage by at most the tolerance: `SPEC.md`, "The
-    /// change to screen space".
+    /// Least `W`, by level, at which a record deviates from its screen-space cage by at most the tolerance.
     pub(super) fn screen_depths(
         &self,
         levels: &Levels,
@@ -134,7 +130,7 @@ impl RealView {
         levels.scaled(libm::sqrt(speed * (x + y + z) / allowed))
     }
 
-    /// Least `W`, by level, at which a node with children is no larger than the level of detail, anywhere in the picture.
+    /// Least `W`, by level, at which a node with children is no larger than the level of detail.
     pub(super) fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
         match detail_limit(options) {
             Some(limit) => levels.scaled(self.total_speed(options) / limit.value()),

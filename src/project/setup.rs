@@ -1,9 +1,7 @@
-//! The host's part of a frame: a camera and a placed object become the integers from which every engine starts.
+//! The host's part of a frame, which multiplies and divides: a camera and a placed object become the integers from which
+//! every engine starts, so *exact* means exact for them. Rules: `SPEC.md`, "Frame set-up".
 //!
-//! This is the only module that multiplies or divides for the machine. The result is quantised once; machine, fast engine,
-//! oracle and hardware use the same integers, so *exact* means exact for them. Rules: `SPEC.md`, "Frame set-up".
-//!
-//! Coordinates. A point `u` of the object (finest voxels, `0..=2^depth` per side) has the clip vector
+//! A point `u` of the object (finest voxels, `0..=2^depth` per side) has the clip vector
 //! `(X, Y, W) = origin_clip + sum u_k edge_clip[k]` in units of `2^-clip_frac` finest voxels of depth. `X / W` and `Y / W`
 //! are fractions of the image root: the square of `2^levels` samples whose top left corner is the picture's. Sample
 //! `(i, j)` is at `((2i + 1) / 2^(levels + 1), (2j + 1) / 2^(levels + 1))`.
@@ -22,7 +20,7 @@ use crate::graph::{MAX_DEPTH, Placement};
 const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Boxes widened by more samples may leave their words.
 const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
-/// Bits of a word beyond a screen position's fraction and the levels of the image: sign, guard, and sums of eight vertices.
+/// Sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
 
 /// Why a frame cannot be set up.
@@ -72,7 +70,7 @@ pub enum SetupError {
     },
 }
 
-/// The input of a frame: all integers from which an engine starts.
+/// All integers from which an engine starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSetup {
     pub options: SetupOptions,
@@ -99,19 +97,17 @@ pub struct FrameSetup {
     pub eye_floor: [i64; 3],
     /// The same, rounded up.
     pub eye_ceil: [i64; 3],
-    /// Least depth `W` at which `any` and `center` draw, units of `2^-clip_frac` voxels. `exact` draws everything before
-    /// the eye.
+    /// Least depth `W` at which `any` and `center` draw.
     pub near: i64,
-    /// By octree level, least depth `W` of a record that may change to screen space. `i64::MAX`: none may, as under the
-    /// rules that draw outlines.
+    /// By octree level, least depth `W` of a record that may change to screen space; `i64::MAX`: none.
     pub screen_depth: Vec<i64>,
     /// By octree level, least depth `W` of a clip-space node with children that level of detail makes a solid;
     /// `i64::MAX`: none.
     pub lod_depth: Vec<i64>,
     /// Whether no word of the frame can overflow.
     pub has_headroom: bool,
-    /// Widening, in samples, of a clip-space box in tests against the quadtree, as a shift to the right (0 = one sample). It is
-    /// the tolerance, rounded up to a power of two.
+    /// The tolerance rounded up to a power of two, by which clip-space boxes are widened in tests against the quadtree, as
+    /// a shift to the right (0 = one sample).
     pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
@@ -121,8 +117,7 @@ pub struct FrameSetup {
 }
 
 impl FrameSetup {
-    /// Quantises a camera's view of a placed object of `2^depth` voxels a side. Fails when the camera cannot see, the
-    /// format is invalid, or a setting is out of its range.
+    /// Quantises a camera's view of a placed object of `2^depth` voxels a side.
     pub fn new(
         camera: &Camera,
         placement: &Placement,
@@ -199,12 +194,12 @@ impl FrameSetup {
         })
     }
 
-    /// The deepest level of a record: that of the finest voxels plus the levels to which a solid may be subdivided.
+    /// The deepest level of a record.
     pub fn level_bound(&self) -> u32 {
         self.depth + self.sub_levels
     }
 
-    /// The same frame without level of detail, as a reference for measurements.
+    /// A reference for measurements.
     pub fn without_detail(&self) -> Self {
         let mut whole = self.clone();
         whole.options.lod_px = 0.0;

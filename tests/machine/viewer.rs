@@ -99,7 +99,7 @@ proptest! {
         let (frames, error) = (Cell::new(0), Cell::new(None));
         let engine = Watched { machine: Machine::default(), frames: &frames, error: &error };
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
-        let mut viewer = Viewer::new(graph.view(), engine, contents);
+        let mut viewer = Viewer::new(graph.view(), Box::new(engine), contents);
         let mut last: Option<FrameSetup> = None;
         let set_up = |camera: usize, options: usize| {
             FrameSetup::new(&cameras[camera], &graph.placement, graph.depth, &settings()[options])

@@ -61,9 +61,6 @@ pub struct ConvertArgs {
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     instances: Option<u32>,
-    /// Of .far: keep finished nodes in OUT.part, and resume an earlier build with the same mesh and options
-    #[arg(long)]
-    resume: bool,
     /// Of .far: keep parts wider than a voxel as a decimated surface, and thinner parts as voxels
     #[arg(long)]
     hybrid: bool,
@@ -81,7 +78,6 @@ impl ConvertArgs {
             || self.leaf_triangles.is_some()
             || self.instances.is_some()
             || self.far_opacity.is_some()
-            || self.resume
             || self.hybrid
     }
 
@@ -130,7 +126,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
                 "a .tvx takes --grid, --texels and --element; --memory is for .vxg and .far files, \
-                 --rays, --leaf-triangles, --instances, --resume, --far-opacity and --hybrid are for \
+                 --rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for \
                  .far files",
             ));
         }
@@ -144,7 +140,6 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         let resources = far::Resources {
             memory: args.memory.map(|memory| memory.bytes),
             temporary: args.temp.as_deref(),
-            resume: args.resume,
         };
         return far::convert(
             &args.conversion(),
@@ -156,7 +151,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances, --resume, --far-opacity and --hybrid are for .far files, \
+            "--rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for .far files, \
              --grid for .far and .tvx files",
         ));
     }

@@ -1,6 +1,5 @@
 //! `.far` files on the command line: `convert` and `info`.
 
-use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
@@ -18,7 +17,7 @@ use shiftvox::drawing::milliseconds_since;
 use shiftvox::project::Up;
 use shiftvox::whole;
 use shiftvox_mesh::Instances;
-use shiftvox_mesh::far::build::{Outside, part_of};
+use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
 
@@ -28,8 +27,6 @@ pub(super) struct Resources<'r> {
     pub(super) memory: Option<u64>,
     /// Folder of temporary files, or `None` for the output's folder.
     pub(super) temporary: Option<&'r Path>,
-    /// Whether an unfinished file is kept, and used.
-    pub(super) resume: bool,
 }
 
 /// Builds far voxels of a mesh and writes them.
@@ -46,7 +43,6 @@ pub(super) fn convert(
     check_room(triangles, resources.memory).map_err(|e| e.at(of.input))?;
     let beside = whole::folder_of(of.output);
     whole::make_folder(beside)?;
-    let part = resources.resume.then(|| part_of(of.output));
     let outside = Outside {
         // The mesh and the program itself are resident.
         memory: resources.memory.map(|memory| {
@@ -54,7 +50,6 @@ pub(super) fn convert(
             (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
         }),
         folder: resources.temporary.unwrap_or(beside),
-        part: part.as_deref(),
     };
     let built = match instances {
         None => build_outside(&mesh, options, &outside, console.progress()),
@@ -86,10 +81,6 @@ pub(super) fn convert(
     built.data.settings.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
     whole::write_with(of.output, of.force, |file| built.write_to(file))?;
-    if let Some(part) = &part {
-        // It is of no use any more; left, it would do no harm.
-        let _ = fs::remove_file(part);
-    }
     let file = FarFile::open(of.output)?;
     let described = describe(&file, of.input);
     let n = |key: &str| report::figure(&described[key]);

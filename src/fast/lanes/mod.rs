@@ -1,9 +1,8 @@
-//! Operations on lanes. Algorithms are generic over [`Isa`]; [`Scalar`] defines every operation, [`Avx2`] uses AVX2. An
-//! instruction set is a value that exists only where the processor has the set, and vectors are made only from it. Sets
-//! round differently; no picture depends on it, because doubtful cases are decided exactly.
+//! Operations on lanes. [`Scalar`] defines them. An instruction set is a value that exists only where the processor has
+//! the set, and vectors are made only from it. Sets round differently, on which no picture depends.
 //!
-//! Each large step of the traversal runs in [`Isa::vectorize`], which compiles it for the set. Functions below it that use
-//! lanes are `#[inline(always)]`.
+//! Each large step of the traversal runs in [`Isa::vectorize`]. Functions below it that use lanes are
+//! `#[inline(always)]`.
 
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -47,11 +46,10 @@ pub(super) trait F32x4: Floats<4, Lane = f32> {
     fn last(self) -> Self;
     /// Sign bits, the first lane's lowest.
     fn signs(self) -> u32;
-    /// Whole parts of the first three lanes as indices of a table of `N` entries; numbers outside the table become the
-    /// last index.
+    /// Whole parts of the first three lanes as indices below `N`; others become the last index.
     fn indices<const N: usize>(self) -> [usize; 3];
     fn values(self) -> [f32; 4];
-    /// Sums of all lanes: of this vector, of the other, and of both again.
+    /// Sums of all lanes: of this vector, the other, and both again.
     fn sums(self, other: Self) -> Self;
     /// Whole numbers, of lanes that are whole and small.
     fn whole(self) -> [i32; 4];
@@ -98,8 +96,8 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type U64x4: U64x4<Isa = Self>;
     type U8x16: U8x16<Isa = Self>;
 
-    /// Runs a step in its own function, compiled for this set. The step is a closure marked `#[inline(always)]`. Its
-    /// main arguments are passed, not captured, so that the compiler knows that they do not alias.
+    /// Runs a step, an `#[inline(always)]` closure, in its own function, compiled for this set. Arguments are passed, not
+    /// captured, so that the compiler knows that they do not alias.
     fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A));
 
     #[inline(always)]
@@ -116,14 +114,13 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
     fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
-    /// A table's entries at the whole parts of lanes; the last entry for numbers outside the table.
+    /// A table's entries at [`F32x4::indices`].
     fn look_up<const N: usize>(self, table: &[u64; N], at: Self::F32x8) -> [Self::U64x4; 2];
     /// A vector of eight bytes, and eight more of no meaning.
     fn bytes(self, eight: u64) -> Self::U8x16;
-    /// Bytes one after the other at the places of a mask's bits, and bytes of ones there.
+    /// Bytes, one after the other, at the places of a mask's bits, and bytes of ones there.
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
-    /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist: a check
-    /// per row would take a fifth more instructions per voxel.
+    /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist.
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
     fn prefetch<T>(self, entries: &[T], at: usize);
 }

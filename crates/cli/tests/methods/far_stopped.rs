@@ -107,65 +107,6 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert!(FarFile::open(&at.join("sheet.far")).is_ok());
 }
 
-/// A build of many nodes, some of which take their time, of which what is finished is kept.
-fn start_to_resume(folder: &Path, more: &[&str]) -> Command {
-    let arguments =
-        "convert sheet.stl kept.far --leaf-triangles 200 --grid 32 --rays 2000000 --resume";
-    let mut command = Command::new(crate::common::program());
-    command
-        .current_dir(folder)
-        .args(arguments.split(' '))
-        .args(more);
-    command
-}
-
-#[test]
-fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    fs::write(at.join("sheet.stl"), stl()).unwrap();
-    let whole = "convert sheet.stl whole.far --leaf-triangles 200 --grid 32 --rays 2000000 -q";
-    let mut command = Command::new(crate::common::program());
-    let built = command.current_dir(at).args(whole.split(' ')).status();
-    assert!(built.unwrap().success());
-    let expected = fs::read(at.join("whole.far")).unwrap();
-    let part = at.join("kept.far.part");
-    let length = || fs::metadata(&part).map_or(0, |there| there.len());
-    // Stopped by either signal after a sixth each, and its last node cut short.
-    for (sixths, signal) in [(1, Signal::TERM), (2, Signal::KILL)] {
-        let enough = expected.len() as u64 * sixths / 6;
-        let mut quiet = start_to_resume(at, &["-q"]);
-        let mut child = quiet.stderr(Stdio::null()).spawn().unwrap();
-        while length() < enough && child.try_wait().unwrap().is_none() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        send(&child, signal);
-        assert_eq!(child.wait().unwrap().signal(), Some(signal.as_raw()));
-        assert!(!at.join("kept.far").exists());
-        assert!(length() >= enough);
-        let kept = fs::File::options().write(true).open(&part).unwrap();
-        kept.set_len(length() - 5).unwrap();
-    }
-    // Of something else it is not resumed.
-    let refused = |more: &[&str]| {
-        let output = start_to_resume(at, more).output().unwrap();
-        assert_eq!(output.status.code(), Some(1));
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert!(stderr.contains("kept.far.part"), "{stderr}");
-        stderr
-    };
-    assert!(refused(&["--far-opacity", "none"]).contains("other options"));
-    let mut other = stl();
-    other[84 + 12] ^= 1;
-    fs::write(at.join("sheet.stl"), other).unwrap();
-    assert!(refused(&[]).contains("another mesh"));
-    fs::write(at.join("sheet.stl"), stl()).unwrap();
-    assert!(length() > expected.len() as u64 / 4);
-    assert!(start_to_resume(at, &["-q"]).status().unwrap().success());
-    assert!(fs::read(at.join("kept.far")).unwrap() == expected);
-    assert!(!part.exists());
-}
-
 /// Builds `a.far` of twenty copies of `sheet.stl`, with more settings.
 fn convert_copies(at: &Path, settings: &str) -> Command {
     let always = "convert sheet.stl a.far --leaf-triangles 5000 --force -q";

@@ -48,7 +48,7 @@ pub enum Drawer<'c> {
     /// An engine, which draws every frame.
     Engine(Box<dyn Engine + Send>),
     /// A viewer, which draws only frames that change.
-    Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
+    Viewer(Box<Viewer<'c, dyn Engine + Send>>),
 }
 
 impl Contender<'_> {

@@ -64,9 +64,8 @@ fn only_times_change_on_a_walk() {
     let within = FarFile::open_within(&path, budget);
     let mut hidden = 0;
     for opacity in [Opacity::None, Opacity::Six] {
-        let mut viewers: Vec<(usize, FarViewer<'_>)> =
-            [0, 1, 4].map(|late| (late, FarViewer::new(&file))).into();
-        viewers.extend(within.iter().map(|file| (0, FarViewer::new(file))));
+        let mut viewers = vec![FarViewer::new(&file)];
+        viewers.extend(within.iter().map(FarViewer::new));
         for frame in 0..FRAMES {
             let view = view_of(&camera(&file, frame), file.bounds()).unwrap();
             let all = ViewOptions {
@@ -75,10 +74,9 @@ fn only_times_change_on_a_walk() {
                 ..ViewOptions::default()
             };
             let (expected, _) = FarViewer::new(&file).draw(&view, &all).unwrap();
-            for (number, (late, viewer)) in viewers.iter_mut().enumerate() {
+            for (number, viewer) in viewers.iter_mut().enumerate() {
                 let culled = ViewOptions {
                     culling: true,
-                    late: *late,
                     ..all
                 };
                 let (picture, counts) = viewer.draw(&view, &culled).unwrap();

@@ -1,11 +1,8 @@
-//! The six main directions, and how values for them are blended.
-//!
-//! A direction points from the surface to the eye, so `+x` is the view of an eye far out on the x axis. Main directions
-//! are numbered `+x -x +y -y +z -z`. The three nearest ones share a direction.
+//! Blends of values for the six main directions, `+x -x +y -y +z -z` from the surface to the eye. The three nearest ones
+//! share a direction.
 
 use glam::DVec3;
 
-/// Number of main directions.
 pub(super) const DIRECTIONS: usize = 6;
 
 pub(super) type Shares = [(usize, f64); 3];
@@ -33,7 +30,7 @@ fn shares(towards_eye: DVec3, raw: DVec3) -> Shares {
     })
 }
 
-/// Least squares: observations of directions are fitted by the blend of six unknowns.
+/// Least squares: observations are fitted by the blend of six unknowns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit<const N: usize> {
     matrix: [[f32; DIRECTIONS]; DIRECTIONS],

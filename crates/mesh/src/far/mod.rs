@@ -1,6 +1,5 @@
-//! Far voxels with anti-aliased voxels: a mesh as a hierarchy whose inner nodes are grids of voxels that look from afar
-//! like the geometry in them, and whose leaves are triangles. Rules, and where they go beyond the paper: `spec/far.md`.
-//! Real numbers are allowed here.
+//! Far voxels (`spec/far.md`): a mesh as a hierarchy whose inner nodes are grids of voxels that look from afar like the
+//! geometry in them, and whose leaves are triangles. Real numbers are allowed here.
 
 mod blend;
 pub mod build;
@@ -15,7 +14,7 @@ use record::Node;
 pub use build::{BuildError, BuildOptions, build, build_outside};
 pub use store::{FarError, FarFile};
 
-/// Far voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
+/// Far voxels in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarData {
     /// The settings of all nodes.
@@ -26,7 +25,7 @@ pub struct FarData {
     pub packed: Vec<u8>,
 }
 
-/// The settings of all nodes of far voxels.
+/// The settings of all nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarSettings {
     /// Single precision coordinates are relative to it, world units.

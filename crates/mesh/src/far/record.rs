@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::blend::{DIRECTIONS, by_cosines, by_squares};
+use crate::geometry::point;
 use crate::{linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
@@ -27,13 +28,13 @@ pub enum OpacityKind {
     Six,
 }
 
-/// The opacities that a build stores or a view uses.
+/// Opacities that are stored or used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Opacity {
-    /// Every voxel is opaque: without anti-aliasing.
+    /// Every voxel is opaque.
     None,
-    /// One number for each side of a voxel's surface: rays that hit, over rays that hit or pass.
+    /// For each side of a voxel's surface: rays that hit, over rays that hit or pass.
     Scalar,
     /// A number for each main direction, where they differ.
     #[default]
@@ -50,7 +51,7 @@ pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Complex, OpacityKind::Six),
 ];
 
-/// Bytes of a voxel in each list: place 3, flat shader 8 or complex one 30, opacities 0, 2 or 5.
+/// Bytes of a voxel in each list: place 3, shader 8 or 30, opacities 0, 2 or 5.
 pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
 /// Bytes of the opacities in a voxel of each list.
@@ -61,7 +62,7 @@ const MEAN_OUTLINE: f64 = 1.5;
 
 const SIX_STEPS: f64 = 15.0;
 
-/// How steeply one looks upon a surface: four equal ranges of the cosine to its normal.
+/// Equal ranges of the cosine to a surface's normal.
 pub const STEEPNESSES: usize = 4;
 
 /// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
@@ -76,14 +77,14 @@ pub fn steepness(cosine: f64) -> usize {
     reason = "lives on the stack for one voxel at a time"
 )]
 pub enum Shader {
-    /// One normal; colours (linear light) seen from its side and from the other.
+    /// Colours are linear light.
     Flat {
         /// Unit normal.
         normal: DVec3,
         /// In front, behind.
         colors: [DVec3; 2],
     },
-    /// A normal and a colour (linear light) for each main direction.
+    /// For each main direction.
     Complex {
         /// Unit normals.
         normals: [DVec3; DIRECTIONS],
@@ -93,8 +94,7 @@ pub enum Shader {
 }
 
 impl Shader {
-    /// How steeply one looks upon it from a direction: the cosine to its normal, negative from
-    /// behind a flat one.
+    /// The cosine to its normal, negative from behind a flat one.
     pub fn cosine(&self, towards_eye: DVec3) -> f64 {
         match self {
             Self::Flat { normal, .. } => normal.dot(towards_eye),
@@ -102,7 +102,7 @@ impl Shader {
         }
     }
 
-    /// Unit normal on the eye's side, and colour in linear light, as seen from a direction.
+    /// Unit normal on the eye's side, and colour in linear light.
     pub fn seen_from(&self, towards_eye: DVec3) -> (DVec3, DVec3) {
         match self {
             Self::Flat { normal, colors } => {
@@ -124,18 +124,17 @@ impl Shader {
     }
 }
 
-/// The opacity of a voxel seen from one side of its surface.
+/// Opacity seen from one side of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SideOpacity {
     /// Over all directions, 0 to 1.
     pub scalar: f64,
-    /// The steepness from which on the voxel is opaque, as part of a large object. [`STEEPNESSES`]: none; 0: from
-    /// everywhere.
+    /// The steepness from which on it is opaque; [`STEEPNESSES`]: none.
     pub solid_from: u8,
 }
 
 impl SideOpacity {
-    /// It hides what is behind it.
+    /// Everywhere.
     pub const OPAQUE: Self = Self {
         scalar: 1.0,
         solid_from: 0,
@@ -172,7 +171,7 @@ pub struct Voxel {
     pub shader: Shader,
     /// Opacity seen from each main direction, 0 to 1; 1 where it is not stored.
     pub opacity: [f64; DIRECTIONS],
-    /// Opacity over all directions from before its surface, and from behind it.
+    /// Opacity over all directions from before its surface, and behind it.
     pub sides: [SideOpacity; 2],
     /// How they are stored.
     pub opacity_kind: OpacityKind,
@@ -183,11 +182,7 @@ fn color_bytes(color: DVec3) -> [u8; 3] {
 }
 
 fn color_of(bytes: &[u8]) -> DVec3 {
-    DVec3::new(
-        f64::from(srgb_to_linear(bytes[0])),
-        f64::from(srgb_to_linear(bytes[1])),
-        f64::from(srgb_to_linear(bytes[2])),
-    )
+    point([0, 1, 2].map(|c| srgb_to_linear(bytes[c])))
 }
 
 fn normal_bytes(normal: DVec3) -> [u8; 2] {
@@ -231,7 +226,7 @@ impl Voxel {
             }
     }
 
-    /// Appends its record, [`RECORD_BYTES`] of its list.
+    /// Appends its record.
     pub fn write(&self, out: &mut Vec<u8>) {
         out.extend(self.place);
         match &self.shader {
@@ -254,7 +249,7 @@ impl Voxel {
         }
     }
 
-    /// Decodes a record of [`RECORD_BYTES`] of a list. Any bytes are accepted.
+    /// Decodes a record of a list, of any bytes.
     pub fn read(list: usize, bytes: &[u8]) -> Self {
         let (kind, opacity_kind) = LISTS[list];
         let (shader, end) = match kind {
@@ -283,7 +278,7 @@ impl Voxel {
         }
     }
 
-    /// Its opacity as seen from a direction, as it is stored or as one number.
+    /// Its opacity as seen from a direction.
     pub fn opacity_from(&self, towards_eye: DVec3, mode: Opacity) -> f64 {
         if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
             return 1.0;
@@ -302,7 +297,7 @@ impl Voxel {
         shares.map(|(k, share)| self.opacity[k] * share).sum()
     }
 
-    /// Whether a record is of a voxel that is opaque from some directions only.
+    /// Whether the voxel is opaque from some directions only.
     pub fn is_partly_solid(list: usize, bytes: &[u8]) -> bool {
         let end = RECORD_BYTES[list] - OPACITY_BYTES[list];
         let is_solid = |&byte: &u8| usize::from(SideOpacity::of(byte).solid_from) < STEEPNESSES;
@@ -352,19 +347,19 @@ pub struct Node {
     pub is_leaf: u8,
     /// Levels below the root.
     pub level: u32,
-    /// Numbers of the children: two, or one and zero, or zeros in a leaf ([`Node::below`]).
+    /// Numbers of the children, or zeros.
     pub children: [u32; 2],
     /// The first of its triangles.
     pub first_triangle: u32,
     /// How many it has: those of all leaves below.
     pub triangles: u32,
-    /// Where its data begins in its section, bytes; it ends where that of the next node begins.
+    /// Where its data begins in its section, bytes.
     pub data_at: u64,
     /// Voxels of each of the six lists; zero in a leaf.
     pub counts: [u32; 6],
-    /// Voxels that triangles touch: those kept and those dropped.
+    /// Voxels that triangles touch.
     pub touched: u32,
-    /// Kept voxels at which too few rays were aimed to decide whether they are occluded.
+    /// Kept voxels with too few rays to decide whether they are hidden.
     pub untested: u32,
     /// Rays that were shot for it.
     pub rays: u32,
@@ -378,9 +373,9 @@ pub struct Node {
     pub checksum: u64,
     /// Corners of its surface that no other node has, and those that others share.
     pub vertices: [u32; 2],
-    /// Triangles of its surface: of a leaf all that it has, of an inner node decimated ones, if any.
+    /// Triangles of its surface: of an inner node decimated ones, if any.
     pub surface: u32,
-    /// Colours in the table of its surface. If it is 0, each vertex has its own colour.
+    /// Colours in the table of its surface; 0: each vertex has its own.
     pub colors: u16,
     /// Whether normals are those of the triangles' planes, 1 or 0.
     pub is_flat: u8,
@@ -388,20 +383,17 @@ pub struct Node {
     pub spare: u8,
 }
 
-/// Bytes of the position of a vertex of one node: 16 bits an axis of the node's box.
+/// Bytes of the position of a vertex of one node.
 pub const OWN_BYTES: usize = 6;
-/// Bytes of the position of a vertex that nodes share: single precision.
+/// Bytes of the position of a vertex that nodes share.
 pub const SHARED_BYTES: usize = 12;
 /// Most colours of which vertices have the numbers.
 pub const MOST_COLORS: usize = 256;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::far) struct SurfaceColumns {
-    /// Of a vertex's normal.
     pub(in crate::far) normal: usize,
-    /// Of a vertex's colour, or of its number.
     pub(in crate::far) color: usize,
-    /// Of the number of a corner's vertex.
     pub(in crate::far) index: usize,
 }
 
@@ -425,17 +417,17 @@ impl SurfaceColumns {
 pub const NODE_BYTES: usize = size_of::<Node>();
 
 impl Node {
-    /// Whether it has triangles and no voxels.
+    /// Whether it has no children.
     pub fn is_leaf(&self) -> bool {
         self.is_leaf != 0
     }
 
-    /// Whether it has a grid. A node without a grid is never drawn, only its children are.
+    /// Without a grid only its children are drawn.
     pub fn has_grid(&self) -> bool {
         self.voxel > 0.0
     }
 
-    /// Numbers of its children: two, or a coarser node's one, or a leaf's none.
+    /// Numbers of its children, at most two.
     pub fn below(&self) -> impl Iterator<Item = usize> + use<> {
         let children = self.children.into_iter();
         // The first node is never a child.
@@ -472,15 +464,12 @@ impl Node {
         lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
     }
 
-    /// Lowest and highest corner of its grid, or of its triangles where it has none, relative to the
-    /// file's centre.
+    /// Corners of its grid, or of its triangles, relative to the file's centre.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
         if !self.has_grid() {
             return (point(self.low), point(self.high));
         }
-        let cells = DVec3::from_array(self.cells.map(f64::from));
         let origin = point(self.origin);
-        (origin, origin + cells * f64::from(self.voxel))
+        (origin, origin + point(self.cells) * f64::from(self.voxel))
     }
 }

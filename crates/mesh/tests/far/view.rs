@@ -1,4 +1,4 @@
-//! The view: culling, late answers, threads and memory budgets never change a picture.
+//! The view: culling, threads and memory budgets never change a picture.
 
 use std::collections::HashSet;
 
@@ -10,7 +10,7 @@ use super::city::{city, draw, far, far_of, file_of, lit, view};
 use super::shared::{on_any_threads, triangles};
 
 #[test]
-fn culling_and_late_answers_never_change_the_picture() {
+fn culling_never_changes_the_picture() {
     let file = file_of(&far_of(true, false));
     // Turn, height and size of voxels: before the wall twice, behind it, from above.
     let places = [
@@ -21,7 +21,7 @@ fn culling_and_late_answers_never_change_the_picture() {
     ];
     let mut hidden = 0;
     for opacity in [Opacity::None, Opacity::Scalar, Opacity::Six] {
-        let mut viewers: Vec<FarViewer<'_>> = (0..3).map(|_| FarViewer::new(&file)).collect();
+        let mut viewer = FarViewer::new(&file);
         for number in 0..8 {
             let (turn, height, voxel_px) = places[number % 4];
             let step = number as f64;
@@ -32,32 +32,19 @@ fn culling_and_late_answers_never_change_the_picture() {
                 ..lit(&view, voxel_px)
             };
             let (expected, _) = draw(&file, &view, &options);
-            let culled = |late| ViewOptions {
+            let culled = ViewOptions {
                 culling: true,
-                late,
                 ..options
             };
-            // Viewers with a memory, whose answers come sooner and later.
-            for (late, viewer) in [0, 1, 4].into_iter().zip(&mut viewers) {
-                let (picture, counts) = viewer.draw(&view, &culled(late)).unwrap();
-                assert!(picture == expected, "{opacity:?}, step {step}, late {late}");
-                hidden += counts.hidden;
-            }
-            // Wrong memories: any third of the nodes, and the ground alone.
-            let memories: [&dyn Fn(usize) -> bool; 2] = [&|node| node % 3 == number % 3, &|node| {
-                file.nodes()[node].high[1] < 0.0
-            }];
-            for (wrong, memory) in memories.into_iter().enumerate() {
-                for late in [0, 1, 4] {
-                    let mut viewer = FarViewer::new(&file);
-                    viewer.remember(memory);
-                    let (picture, _) = viewer.draw(&view, &culled(late)).unwrap();
-                    assert!(
-                        picture == expected,
-                        "{opacity:?}, step {step}, memory {wrong}"
-                    );
-                }
-            }
+            // Memories of the last view, and of one from elsewhere.
+            let (picture, counts) = viewer.draw(&view, &culled).unwrap();
+            assert!(picture == expected, "{opacity:?}, step {step}");
+            hidden += counts.hidden;
+            let elsewhere = self::view(step * 45.0, 0.3, 70.0, 64);
+            let mut other = FarViewer::new(&file);
+            other.draw(&elsewhere, &culled).unwrap();
+            let (picture, _) = other.draw(&view, &culled).unwrap();
+            assert!(picture == expected, "{opacity:?}, step {step}, elsewhere");
         }
     }
     assert!(hidden > 20, "{hidden} nodes were hidden");

@@ -46,8 +46,7 @@ pub(super) struct Part {
 }
 
 impl Occluders {
-    /// With `within`, a file and a number of bytes, at most these bytes are in memory, and a cluster per thread that
-    /// uses it.
+    /// `within`: a file, and the most bytes in memory beside a cluster per thread.
     pub(super) fn new<C, I>(
         parts: &[Part],
         corners: C,

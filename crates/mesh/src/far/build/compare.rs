@@ -10,6 +10,7 @@ use crate::far::store::pack::pack;
 use crate::far::store::{encode, surface};
 use crate::far::view::{FarPicture, FarViewer, ViewOptions};
 use crate::far::{FarData, FarFile};
+use crate::geometry::point;
 use crate::raster::{Light, RasterCamera};
 use crate::srgb_to_linear;
 
@@ -25,8 +26,7 @@ const DIRECTIONS: [DVec3; 4] = [
 ];
 /// In voxels of the node: from there on coarser nodes are drawn.
 const PIXEL: f64 = 2.0;
-/// Samples along each axis of a pixel: of the triangles and of a candidate. With fewer, small errors vanish; with as
-/// many, the samples that small triangles need and voxels do not would not count.
+/// Samples along each axis of a pixel: of the triangles and of a candidate.
 const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
 pub(super) struct Candidate {
@@ -49,7 +49,7 @@ impl<'o> Comparison<'o> {
         triangles: &[LeafTriangle],
         options: &'o BuildOptions,
     ) -> Result<Self, BuildError> {
-        let [lowest, highest] = [node.low, node.high].map(|p| DVec3::from_array(p.map(f64::from)));
+        let [lowest, highest] = [node.low, node.high].map(point);
         let middle = (lowest + highest) / 2.0;
         let extent = (highest - lowest).max_element();
         let Node { low, high, .. } = around(node, middle);
@@ -117,10 +117,10 @@ impl<'o> Comparison<'o> {
     fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
         let mut sum = 0.0;
         for (view, light, right) in &self.views {
-            sum += square_error(
-                &draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?,
-                right,
-            );
+            let seen = draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?;
+            let both = seen.iter().zip(right);
+            let errors: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
+            sum += errors / right.len().max(1) as f64;
         }
         Ok(sum / self.views.len() as f64)
     }
@@ -158,11 +158,7 @@ fn failed(error: impl std::fmt::Display) -> BuildError {
 }
 
 fn around(node: &Node, middle: DVec3) -> Node {
-    let moved = |p: [f32; 3]| {
-        (DVec3::from_array(p.map(f64::from)) - middle)
-            .as_vec3()
-            .to_array()
-    };
+    let moved = |p| (point(p) - middle).as_vec3().to_array();
     Node {
         low: moved(node.low),
         high: moved(node.high),
@@ -173,11 +169,7 @@ fn around(node: &Node, middle: DVec3) -> Node {
 }
 
 fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
-    let moved = |p: [f32; 3]| {
-        (DVec3::from_array(p.map(f64::from)) - middle)
-            .as_vec3()
-            .to_array()
-    };
+    let moved = |p| (point(p) - middle).as_vec3().to_array();
     let triangle = |triangle: &LeafTriangle| LeafTriangle {
         corners: triangle.corners.map(moved),
         ..*triangle
@@ -207,12 +199,6 @@ fn draw(
     drawn
         .map(|(picture, _)| light_and_cover(&picture))
         .map_err(failed)
-}
-
-fn square_error(seen: &[DVec4], right: &[DVec4]) -> f64 {
-    let both = seen.iter().zip(right);
-    let sum: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
-    sum / right.len().max(1) as f64
 }
 
 fn light_and_cover(picture: &FarPicture) -> Vec<DVec4> {

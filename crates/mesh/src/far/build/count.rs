@@ -1,6 +1,4 @@
-//! Hits and passes: how much of a voxel is there, seen from which direction.
-//!
-//! A probe *hits* the voxel where it ends at one of the node's own triangles, and *passes* every kept voxel that it
+//! Hits and passes. A probe *hits* the voxel where it ends at one of the node's own triangles, and *passes* every kept voxel that it
 //! leaves before. Its weight is one over the number of probes aimed at the voxels on its line, so that lines through a
 //! voxel are spread evenly. A voxel is opaque from where all probes onto its surface, at a steepness, are stopped in it
 //! or right behind: it is part of a large object.
@@ -29,7 +27,7 @@ pub(super) struct SurfaceSample {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
-    /// Its opacity where no ray says anything of it: from its triangles.
+    /// From its triangles, where no ray crosses it.
     pub(super) unseen_opacity: f64,
     pub(super) crossings: u32,
     /// By side of the surface and by steepness.
@@ -53,7 +51,7 @@ impl Seen {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) counted: Counted,
-    /// Their number, and weights of those stopped in it or right behind it, and of the others.
+    /// Number, weights of those stopped in it or right behind it, and of the others.
     pub(super) probes: u32,
     pub(super) stopped: f64,
     pub(super) passed: f64,
@@ -161,8 +159,7 @@ impl Crossing {
 pub(super) struct Marks<'m> {
     pub(super) slot: &'m [u32],
     pub(super) kept: &'m [u32],
-    /// Of all voxels: 0 of one that is not kept, else one more than the number of probes that were
-    /// aimed at it.
+    /// 0 of a voxel that is not kept, else one more than the probes aimed at it.
     pub(super) aimed: &'m [u8],
 }
 

@@ -4,6 +4,8 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
+use crate::geometry::point;
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
     pub(super) origin: DVec3,
@@ -74,8 +76,8 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Calls back with each voxel along a line, in order, and the distance (in voxels, from `from`) at which the line
-    /// leaves it. Distances are whole numbers of 2^-32 voxels, so that steps are exact and need no branch.
+    /// Visits each voxel along a line, with the distance (in voxels) at which the line leaves it. Distances are whole numbers
+    /// of 2^-32 voxels, so that steps are exact and need no branch.
     #[inline]
     pub(super) fn along(
         &self,
@@ -83,7 +85,7 @@ impl Grid {
         direction: DVec3,
         mut visit: impl FnMut(usize, f64) -> ControlFlow<()>,
     ) {
-        let cells = DVec3::from_array(self.cells.map(f64::from));
+        let cells = point(self.cells);
         let per_cell = direction.recip();
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         for k in 0..3 {

@@ -1,8 +1,5 @@
-//! Coarser nodes above the root, each with one child, for pictures smaller than the root's grid; and the nodes that
-//! have voxels.
-//!
-//! A node whose box is almost as long as that of the one above has none, because its voxels would have the same size. A
-//! node whose triangles each cover many voxels has none either: the triangles take fewer bytes.
+//! Coarser nodes above the root, for pictures smaller than its grid; and the nodes that have voxels: not those almost as
+//! long as the one above, and not those whose triangles each cover many voxels and so take fewer bytes.
 
 use super::split::Branch;
 
@@ -52,7 +49,7 @@ pub(super) fn leave_out_dense(
 /// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
 const LEAST: [u32; 2] = [32, 16];
 
-/// Puts nodes of half the voxels along a side, and so on, above the root, unless that is a leaf. Gives how many.
+/// Puts nodes of half the voxels along a side, and so on, above a root with children. Gives how many.
 pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
     let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
         return 0;

@@ -1,7 +1,6 @@
 //! Triangles into far voxels: hierarchy, rays, fitting.
 //!
-//! The same triangles and options give the same bytes on any number of
-//! threads: a node's rays depend on its number and on nothing else.
+//! A node's rays depend on its number alone, so any number of threads gives the same bytes.
 
 mod bvh;
 mod clusters;
@@ -31,9 +30,6 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use grid::Grid;
-pub use spool::part_of;
-
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
@@ -43,6 +39,7 @@ use crate::geometry::{barycentric, blend, plane_normal};
 use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
+use grid::Grid;
 use rays::Around;
 use room::{Room, shares};
 use sample::Rays;
@@ -50,13 +47,13 @@ use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
 use shot::{Own, Target};
 use split::{Branch, split};
-use spool::{Origin, Spool, open_part};
+use spool::Spool;
 use surface::{MOST_TRIANGLES, Surfaces};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// Rays of all nodes together. With `None`, as many as find the visible voxels, and [`RAYS_PER_VOXEL`] for each.
+    /// Rays of all nodes together. `None`: as many as needed.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
     pub leaf_triangles: u32,
@@ -64,13 +61,13 @@ pub struct BuildOptions {
     pub grid: u32,
     /// Least distance from which a node is used, in its voxels.
     pub distance_voxels: f64,
-    /// The opacities to store. With `Six`, only those that differ.
+    /// The opacities to store.
     pub opacity: Opacity,
-    /// Whether what is wider than a voxel stays a surface, decimated.
+    /// Whether what is wider than a voxel stays a decimated surface.
     pub hybrid: bool,
 }
 
-/// Rays for each voxel that is kept, where no number of rays is given.
+/// Rays for each kept voxel, if no number is given.
 pub const RAYS_PER_VOXEL: u32 = 24;
 const MOST_RAYS: u32 = 1 << 22;
 /// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
@@ -120,7 +117,7 @@ pub enum BuildError {
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
-    /// So far from the origin that the parts of the mesh have the same coordinates.
+    /// Too far from the origin for its size.
     #[error(
         "the mesh spans {extent} units {distance} units from the origin: too little for its coordinates; \
          move it to the origin"
@@ -141,7 +138,7 @@ pub enum BuildError {
         /// Bytes that it was given.
         given: u64,
     },
-    /// A temporary or unfinished file.
+    /// A temporary file.
     #[error("{}: {problem}", file.display())]
     File {
         /// It, or the folder that it is in.
@@ -154,12 +151,10 @@ pub enum BuildError {
 /// Where a build keeps what is not in memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside<'o> {
-    /// The memory budget in bytes, in addition to the surface. `None` means no limit.
+    /// Memory budget, bytes, beside the surface.
     pub memory: Option<u64>,
-    /// Folder of temporary files, which have no names where the system allows it.
+    /// Folder of temporary files.
     pub folder: &'o Path,
-    /// The unfinished file, from which a build resumes; `None`: a temporary one.
-    pub part: Option<&'o Path>,
 }
 
 /// Far voxels whose data is in a file.
@@ -191,9 +186,8 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
     check(surface, options)?;
-    let spool = Spool::new(Cursor::new(Vec::new()));
-    let none = |_: &mut Spool<_>, _| Ok(());
-    let (mut data, mut spool) = fill(surface, options, None, (spool, none), progress)?;
+    let memory = Cursor::new(Vec::new());
+    let (mut data, mut spool) = fill(surface, options, None, memory, progress)?;
     let bytes: u64 = spool.nodes().map(|done| done.bytes).sum();
     data.packed.reserve_exact(bytes as usize);
     let copied = spool.copy_to(&mut data.packed);
@@ -212,18 +206,9 @@ pub fn build_outside(
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
     check(surface, options)?;
-    let spool = match outside.part {
-        Some(part) => open_part(part, &Origin::of(surface, options))?,
-        None => {
-            let file = tempfile::tempfile_in(outside.folder);
-            Spool::new(file.map_err(|e| failed(outside.folder, &e))?)
-        }
-    };
-    let resume = |spool: &mut Spool<File>, nodes| match outside.part {
-        Some(part) => spool.resume(nodes).map_err(|e| failed(part, &e)),
-        None => Ok(()),
-    };
-    let (data, spool) = fill(surface, options, Some(outside), (spool, resume), progress)?;
+    let file = tempfile::tempfile_in(outside.folder);
+    let file = file.map_err(|e| failed(outside.folder, &e))?;
+    let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
     Ok(Spooled { data, spool })
 }
 
@@ -234,8 +219,7 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
     }
 }
 
-/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1: single precision then holds
-/// their squares and products.
+/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1.
 struct Ordered<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -268,10 +252,7 @@ fn fill<F: Read + Write + Seek + Send>(
     surface: &dyn Surface,
     options: &BuildOptions,
     outside: Option<&Outside<'_>>,
-    (mut spool, resume): (
-        Spool<F>,
-        impl FnOnce(&mut Spool<F>, usize) -> Result<(), BuildError>,
-    ),
+    file: F,
     progress: &dyn Progress,
 ) -> Result<(FarData, Spool<F>), BuildError> {
     let (centre, scale) = centre(surface)?;
@@ -291,8 +272,6 @@ fn fill<F: Read + Write + Seek + Send>(
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
     }
-    resume(&mut spool, branches.len())?;
-    spool.expect(branches.len());
     let triangles = Ordered {
         surface,
         order: &order,
@@ -390,20 +369,18 @@ fn fill<F: Read + Write + Seek + Send>(
             }
         }
     };
-    let done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
-    let spool = Mutex::new(spool);
+    let spool = Mutex::new(Spool::new(file, branches.len()));
     branches
         .par_iter()
         .enumerate()
         .try_for_each(|(number, branch)| {
-            let is_leaf = branch.children.is_none();
-            if !done[number] {
-                let (node, data) = make(number, branch)?;
-                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-                let added = spool.add(number, node, &data);
-                added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
+            let (node, data) = make(number, branch)?;
+            let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+            let added = spool.add(number, node, &data);
+            added.map_err(|e| failed(folder, &e))?;
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
             }
-            progress.advance(if is_leaf { branch.count as u64 } else { 0 });
             Ok(())
         })?;
     progress.end();

@@ -1,8 +1,5 @@
-//! The first triangle on each ray.
-//!
-//! Triangles are held in *clusters*, subtrees of the hierarchy with a ray hierarchy each. A batch of rays is tested
-//! against one cluster after the other. Of equally near triangles the lowest number counts, so that the result is
-//! independent of the order of the clusters and of how many are in memory.
+//! The first triangle on each ray; of equally near ones the lowest number. Triangles are held in *clusters*, subtrees of
+//! the hierarchy with a ray hierarchy each.
 
 use std::io::{self, Read};
 
@@ -12,8 +9,7 @@ use glam::{DVec3, Vec3, Vec3A};
 use super::bvh::{self, Node, Ray};
 use super::shot::NOWHERE;
 
-/// Share of an edge by which triangles reach beyond it, so that no ray slips
-/// between two that share it.
+/// Share of an edge by which triangles reach beyond it, so that no ray slips between two.
 const EDGE: f32 = 1e-5;
 const MARGIN: f32 = 1.0 + 1e-3;
 
@@ -27,7 +23,7 @@ pub(super) struct Query {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
     pub(super) distance: f32,
-    /// The number of the triangle in the order of the hierarchy, or [`NOWHERE`].
+    /// In the order of the hierarchy, or [`NOWHERE`].
     pub(super) triangle: u32,
 }
 

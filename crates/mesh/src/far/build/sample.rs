@@ -1,6 +1,4 @@
-//! Rays at a node: which of its voxels are seen, and what of them.
-//!
-//! *Visibility rays* are aimed at points of each voxel's contents, from random directions and from where a neighbour
+//! Rays at a node. *Visibility rays* are aimed at each voxel's contents, from random directions and from where a neighbour
 //! was seen, until one ends in the voxel. Then *probes* are aimed at random points of the outlines of the voxels that
 //! were seen: the share that ends in a voxel is its opacity (`count.rs`).
 
@@ -14,6 +12,7 @@ use super::count::{FOLLOWED, Groups, Marks, Probes, Seen, main_normal};
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
+use crate::geometry::point;
 use shiftvox::split_mix::SplitMix;
 
 pub(super) const MOST_VISIBILITY_RAYS: u32 = 16;
@@ -37,16 +36,15 @@ pub(super) struct Sampled {
 /// The number of rays of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rays {
-    /// So many probes across each voxel that is seen, or aimed at it where few cross it.
+    /// So many probes across each seen voxel, or aimed at it where few cross it.
     PerVoxel(u32),
     /// So many in all, of which at most half are visibility rays.
     InAll(u32),
 }
 
 impl Target<'_> {
-    /// Shoots rays, at most `most`, which is no more than 2^22. `admit` gets the number of touched voxels, and waits
-    /// until there is memory for them. Calls back with each kept voxel, in the order of the grid, with its shader and
-    /// its number of samples.
+    /// Shoots at most `most` rays. `admit` gets the number of touched voxels, and waits for memory. `keep` gets each kept
+    /// voxel, in the order of the grid, with its shader and its number of samples.
     pub(super) fn sample<A>(
         &self,
         rays: Rays,
@@ -196,7 +194,7 @@ struct Prober<'p> {
 
 impl<'p> Prober<'p> {
     fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut SplitMix) -> Self {
-        let cells = DVec3::from_array(target.grid.cells.map(f64::from));
+        let cells = point(target.grid.cells);
         Self {
             target,
             aims,
@@ -296,7 +294,7 @@ impl<'s> Found<'s> {
         Ok(())
     }
 
-    /// Shoots visibility rays, unless there were enough. Gives the voxels newly seen, and along which direction.
+    /// Gives the voxels newly seen, and along which direction.
     fn look(&mut self, target: &Target<'_>, mut looks: Vec<Look>) -> io::Result<Vec<Look>> {
         looks.truncate(self.most - self.shots.len());
         for (number, _) in &looks {
@@ -318,7 +316,7 @@ impl<'s> Found<'s> {
         Ok(fresh)
     }
 
-    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no more are found.
+    /// Aims at neighbours of voxels that were just seen, along the same directions.
     fn follow(&mut self, target: &Target<'_>, mut fresh: Vec<Look>) -> io::Result<()> {
         let mut waiting: Vec<Look> = Vec::new();
         let mut batch_of = vec![
@@ -402,5 +400,5 @@ fn entry(place: [u8; 3], direction: DVec3, chance: &mut SplitMix) -> DVec3 {
     }
     let mut point = DVec3::new(chance.unit(), chance.unit(), chance.unit());
     point[axis] = if direction[axis] < 0.0 { 1.0 } else { 0.0 };
-    point + DVec3::from_array(place.map(f64::from))
+    point + self::point(place)
 }

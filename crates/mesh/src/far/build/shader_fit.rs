@@ -51,23 +51,6 @@ pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit 
     }
 }
 
-pub(super) fn fit(seen: &Seen, shader: Shader, use_of_opacity: Opacity) -> Voxel {
-    let fitted = classify(seen, use_of_opacity);
-    Voxel {
-        place: seen.place,
-        shader,
-        opacity: fitted.six,
-        sides: fitted.sides,
-        opacity_kind: fitted.kind,
-    }
-}
-
-struct FittedOpacity {
-    kind: OpacityKind,
-    sides: [SideOpacity; 2],
-    six: [f64; DIRECTIONS],
-}
-
 /// A side that nothing looks upon is solid: it is hidden.
 fn solid_from(side: &[Found; STEEPNESSES]) -> usize {
     let mut solid = STEEPNESSES;
@@ -84,11 +67,13 @@ fn solid_from(side: &[Found; STEEPNESSES]) -> usize {
     if probes == 0 { 0 } else { solid }
 }
 
-fn classify(seen: &Seen, most: Opacity) -> FittedOpacity {
-    let opaque = FittedOpacity {
-        kind: OpacityKind::Opaque,
+pub(super) fn fit(seen: &Seen, shader: Shader, most: Opacity) -> Voxel {
+    let opaque = Voxel {
+        place: seen.place,
+        shader,
+        opacity: [1.0; DIRECTIONS],
         sides: [SideOpacity::OPAQUE; 2],
-        six: [1.0; DIRECTIONS],
+        opacity_kind: OpacityKind::Opaque,
     };
     let is_crossed = seen.found.iter().flatten().any(|found| found.probes > 0);
     let sides = [0, 1].map(|side| {
@@ -117,8 +102,8 @@ fn classify(seen: &Seen, most: Opacity) -> FittedOpacity {
         .map(|(rest, _, scalar)| rest.weight * rest.square_from(&six, *scalar))
         .sum();
     let is_alike = square <= alike * rest.weight;
-    FittedOpacity {
-        kind: if most == Opacity::Scalar || is_alike {
+    Voxel {
+        opacity_kind: if most == Opacity::Scalar || is_alike {
             OpacityKind::Scalar
         } else {
             OpacityKind::Six
@@ -127,7 +112,8 @@ fn classify(seen: &Seen, most: Opacity) -> FittedOpacity {
             scalar,
             solid_from: solid as u8,
         }),
-        six,
+        opacity: six,
+        ..opaque
     }
 }
 

@@ -1,7 +1,4 @@
-//! Rays at a node, from the surface S to where they end.
-//!
-//! S lies around the node: each of its points is `distance` voxels from the
-//! node's grid. Triangles beyond S do not hide the node.
+//! Rays at a node, from the surface S, `distance` voxels around its grid. Triangles beyond S do not hide the node.
 
 use std::io;
 use std::ops::Range;
@@ -11,6 +8,7 @@ use glam::{DVec3, Vec3, Vec3A};
 use super::clusters::Occluders;
 use super::grid::Grid;
 use super::rays::{Around, Meeting, Query};
+use crate::geometry::point;
 
 const STEPS_TO_S: u32 = 2;
 
@@ -90,30 +88,16 @@ const END_WITHIN: f64 = 0.01;
 const BATCH: usize = 1 << 17;
 const CELLS: f32 = 4.0;
 
-const ALL_CELLS: usize = 128;
-
 fn cell(direction: Vec3) -> usize {
     let cell = |c: f32| (((c + 1.0) * CELLS) as usize).min(7);
     (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
 }
 
 /// Similar rays, which visit the same boxes, follow one another.
-fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
-    let mut places = [0u32; ALL_CELLS];
-    for aim in aims {
-        places[cell(aim.direction)] += 1;
-    }
-    let mut sum = 0;
-    for place in &mut places {
-        sum += std::mem::replace(place, sum);
-    }
-    order.clear();
-    order.resize(aims.len(), 0);
-    for (number, aim) in aims.iter().enumerate() {
-        let place = &mut places[cell(aim.direction)];
-        order[*place as usize] = number as u32;
-        *place += 1;
-    }
+fn in_order(aims: &[Aim]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..aims.len() as u32).collect();
+    order.sort_by_key(|&number| cell(aims[number as usize].direction));
+    order
 }
 
 impl Target<'_> {
@@ -128,20 +112,14 @@ impl Target<'_> {
             return here;
         }
         let near = (0..27).map(|step| {
-            let step = DVec3::new(
-                f64::from(step % 3),
-                f64::from(step / 3 % 3),
-                f64::from(step / 9),
-            );
+            let step = point([step % 3, step / 3 % 3, step / 9]);
             number(end + (step - DVec3::ONE) * END_WITHIN)
         });
-        near.into_iter()
-            .find(|&slot| slot != NOWHERE)
-            .unwrap_or(NOWHERE)
+        let mut near = near.into_iter();
+        near.find(|&slot| slot != NOWHERE).unwrap_or(NOWHERE)
     }
 
-    /// Shoots rays from S, followed until `beyond` voxels behind the points that they are aimed at. `slot` has the
-    /// numbers of touched voxels.
+    /// Rays are followed until `beyond` voxels behind their aims. `slot`: numbers of touched voxels.
     pub(super) fn shoot(
         &self,
         aims: &[Aim],
@@ -149,12 +127,12 @@ impl Target<'_> {
         slot: &[u32],
         shots: &mut Vec<Shot>,
     ) -> io::Result<()> {
-        let cells = DVec3::from_array(self.grid.cells.map(f64::from));
+        let cells = point(self.grid.cells);
         let reach = DVec3::splat(self.distance + 1.0);
         let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
-        let (mut order, mut queries, mut meetings) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut queries, mut meetings) = (Vec::new(), Vec::new());
         for batch in aims.chunks(BATCH) {
-            in_order(batch, &mut order);
+            let order = in_order(batch);
             let begin = shots.len();
             queries.clear();
             shots.extend(batch.iter().map(|aim| Shot {
@@ -203,8 +181,7 @@ impl Target<'_> {
     fn back_to_surface(&self, point: Vec3, direction: Vec3) -> f32 {
         let (point, direction) = (Vec3A::from(point), Vec3A::from(direction));
         let cells = Vec3A::from_array(self.grid.cells.map(f32::from));
-        // The distance from the grid grows ever faster along the ray: Newton's
-        // steps from beyond S come nearer to it and never go past.
+        // A convex function: Newton's steps from beyond S never go past it.
         let mut back = self.distance as f32 + cells.length();
         for _ in 0..STEPS_TO_S {
             let at = point - direction * back;

@@ -1,5 +1,5 @@
-//! The hierarchy: triangles split in two by the surface area heuristic, each to the side of a plane on which the middle
-//! of its box is. The plane is the best between 32 slices along each axis. A node's triangles are a range.
+//! The hierarchy: triangles split in two by the surface area heuristic, at the best plane between 32 slices along each
+//! axis. A node's triangles are a range.
 
 use std::ops::Range;
 
@@ -48,7 +48,7 @@ struct Tree {
 }
 
 /// Splits until a node has fewer triangles than `leaf_triangles` (or one). Gives the nodes, parents first, and the
-/// triangles' numbers in their new order. `count` is 1 to 2^32 - 1.
+/// triangles' numbers in their order.
 pub(super) fn split(
     count: usize,
     corners: impl Fn(usize) -> [DVec3; 3] + Sync,
@@ -69,7 +69,7 @@ pub(super) fn split(
     (branches, numbers)
 }
 
-/// As [`tree`], of triangles whose boxes are found again each time while there are many: they take four bytes each.
+/// While there are many, boxes are found again each time, to save memory.
 fn tree_of_numbers<F>(numbers: &mut [u32], item_of: &F, leaf_triangles: usize, level: u32) -> Tree
 where
     F: Fn(&u32) -> Item + Sync,

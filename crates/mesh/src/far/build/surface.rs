@@ -70,8 +70,7 @@ impl<'s> Surfaces<'s> {
         pack(&Default::default(), &bytes)
     }
 
-    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles and describes them in
-    /// the node.
+    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles.
     pub(super) fn inner(
         &self,
         node: &Node,
@@ -100,7 +99,7 @@ impl<'s> Surfaces<'s> {
     ) -> Result<Vec<Candidate>, BuildError> {
         let voxel = f64::from(node.voxel);
         let is_thin = |place: usize| f64::from(self.parts.size(place).width) < THIN * voxel;
-        // Small parts are left out whole: what of them lies beyond the node does not matter.
+        // Small parts are left out whole.
         let is_seen =
             |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
         let surface = |triangles| Candidate {

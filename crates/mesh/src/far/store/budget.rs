@@ -1,5 +1,5 @@
 //! Keeps unpacked data of nodes to a budget, by the clock algorithm: a node that was used since the hand last passed is
-//! spared once. Released nodes are read again when they are next drawn.
+//! spared once.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};

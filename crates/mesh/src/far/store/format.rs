@@ -1,7 +1,4 @@
 //! The layout of a `.far` file (`spec/far.md`), and writing it.
-//!
-//! A header of 128 bytes, then nodes and their data, each aligned to 64 bytes with zeros between. All numbers are
-//! little-endian.
 
 use std::io::{self, Write};
 

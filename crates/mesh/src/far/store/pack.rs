@@ -1,5 +1,4 @@
-//! A node's data as it is stored: the first bytes of all voxels of a list, then the second ones, and so on, then the
-//! surface (`surface.rs`); deflated.
+//! A node's data as it is stored (`spec/far.md`): columns of bytes, deflated.
 
 use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, compress_to_output, create_comp_flags_from_zip_params,
@@ -10,7 +9,7 @@ use super::surface;
 use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
 const EFFORT: i32 = 6;
-/// Bytes after which the end of a column ends a deflated block, too: columns differ, and each block has its own codes.
+/// From there on, the end of a column ends a block: columns differ.
 const LEAST_BLOCK: usize = 2048;
 
 pub(in crate::far) fn pack(lists: &[Vec<u8>; 6], surface: &[u8]) -> Vec<u8> {

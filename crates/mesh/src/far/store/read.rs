@@ -16,6 +16,7 @@ use super::format::{BLENDS, FIELDS, FORMAT, Fields, layout};
 use super::pack::unpack;
 use crate::far::FarSettings;
 use crate::far::record::Node;
+use crate::geometry::point;
 use shiftvox::graph::MeshBox;
 use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use shiftvox::graph::map::release;
@@ -50,8 +51,7 @@ impl FarFile {
         Self::of(Bytes::Mapped(opened.map()?), path)
     }
 
-    /// Opens a file of which at most so many bytes of nodes' data are in memory, unpacked, at a time (a larger node is
-    /// there alone), beside header, hierarchy and pictures.
+    /// Opens a file of which at most so many bytes of nodes' data are in memory at a time, or one larger node.
     ///
     /// # Errors
     /// As [`FarFile::open`]; and where the system cannot let go of mapped pages.
@@ -159,8 +159,8 @@ impl FarFile {
     /// Lowest and highest corner of all triangles, world units.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let root = &self.nodes[0];
-        let world = |p: [f32; 3]| self.settings.centre + DVec3::from_array(p.map(f64::from));
-        (world(root.low), world(root.high))
+        let centre = self.settings.centre;
+        (centre + point(root.low), centre + point(root.high))
     }
 
     /// The box for fitted cameras.
@@ -170,12 +170,13 @@ impl FarFile {
         MeshBox::new(span, self.settings.bevels, self.settings.y_up)
     }
 
-    pub(in crate::far) fn first_voxel(&self, node: usize) -> u32 {
-        self.first_voxel[node]
+    /// The number of each node's first voxel.
+    pub(in crate::far) fn first_voxels(&self) -> &[u32] {
+        &self.first_voxel
     }
 
-    pub(in crate::far) fn first_triangle(&self, node: usize) -> u32 {
-        self.first_triangle[node]
+    pub(in crate::far) fn first_triangles(&self) -> &[u32] {
+        &self.first_triangle
     }
 
     /// Voxels of all nodes.

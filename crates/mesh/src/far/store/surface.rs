@@ -1,8 +1,6 @@
-//! Triangles of a node as they are stored: vertices, and three numbers of them per triangle.
-//!
-//! A vertex of one node is stored in steps of 1/65,535 of the node's box, a shared one in single precision, so that no
-//! gap opens between nodes. There is a list of each. A triangle names a vertex by how far back in its list it is: 0 is
-//! the next.
+//! Triangles of a node as they are stored (`spec/far.md`): vertices of one node in steps of 1/65,535 of its box, shared
+//! ones in single precision, so that no gap opens. A triangle names a vertex by how far back in its list it is: 0 is the
+//! next.
 
 use std::collections::HashMap;
 
@@ -53,8 +51,7 @@ pub(in crate::far) fn flat_normal(corners: &[[f32; 3]; 3]) -> u16 {
 
 type Key = ([u32; 3], u16, [u8; 3]);
 
-/// Lays out a surface, sets the node's counts, and gives its bytes. The node has its box. Normals are left out where
-/// all are those of the triangles' planes.
+/// Sets the counts of a node, which has its box, and gives the bytes.
 pub(in crate::far) fn lay_out(
     node: &mut Node,
     triangles: &[LeafTriangle],

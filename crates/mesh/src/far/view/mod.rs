@@ -40,9 +40,6 @@ pub struct ViewOptions {
     pub background: Option<[u8; 3]>,
     /// Whether hidden nodes are left out. Never changes the picture.
     pub culling: bool,
-    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the
-    /// picture.
-    pub late: usize,
 }
 
 impl Default for ViewOptions {
@@ -54,7 +51,6 @@ impl Default for ViewOptions {
             light: None,
             background: None,
             culling: true,
-            late: 1,
         }
     }
 }
@@ -90,8 +86,7 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth of the opaque parts, world units, at the sample right of and below the pixel's middle; or
-    /// infinite.
+    /// View-axis depth, world units, of what is opaque at the sample right of and below the pixel's middle; or infinite.
     pub depth: Vec<f32>,
     /// The node that is opaque at that sample, or -1.
     pub node: Vec<i32>,
@@ -108,7 +103,7 @@ pub struct FarCounts {
     pub voxel_nodes: u64,
     /// Leaves drawn.
     pub leaves: u64,
-    /// Nodes and branches that were found hidden; nothing below them was visited.
+    /// Nodes and branches found hidden.
     pub hidden: u64,
     /// Queries whether a node or branch is hidden.
     pub queries: u64,
@@ -118,7 +113,7 @@ pub struct FarCounts {
     pub transparent_voxels: u64,
     /// Triangles given to the rasteriser.
     pub triangles: u64,
-    /// Whether two triangles of different batches were equally deep and the frame was drawn again in one.
+    /// Whether triangles of different batches were equally deep, and the frame was drawn again in one.
     pub drawn_twice: u64,
     /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
@@ -138,11 +133,6 @@ impl<'f> FarViewer<'f> {
             file,
             memory: VisibilityHistory::new(file.nodes().len()),
         }
-    }
-
-    /// Takes these nodes, by number, for those that were visible in the last frame. Never changes the picture.
-    pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
-        self.memory.set(is_visible);
     }
 
     /// Draws a frame.
@@ -185,7 +175,7 @@ impl<'f> FarViewer<'f> {
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
         let walked = if options.culling {
-            visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
+            visible::walk(&cut, &self.memory, &mut opaque, &mut counts)?
         } else {
             let drawn = cut.all(&mut counts);
             opaque.draw(&drawn, &mut counts)?;

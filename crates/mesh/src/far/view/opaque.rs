@@ -12,6 +12,7 @@ use super::splat::Places;
 use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
+use crate::geometry::point;
 use crate::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
 };
@@ -74,7 +75,7 @@ impl<'f> Opaque<'f> {
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
         let places = Places::of(&self.file.nodes()[number], self.file.settings.centre);
-        let mut id = self.file.first_voxel(number);
+        let mut id = self.file.first_voxels()[number];
         let mut drawn = 0;
         let width = self.view.width as usize;
         let data = self.file.data(number)?;
@@ -166,27 +167,13 @@ impl<'f> Opaque<'f> {
                 let node = if word == EMPTY {
                     return -1;
                 } else if id < voxels {
-                    self.last_from(id, |node| self.file.first_voxel(node))
+                    last_from(self.file.first_voxels(), id)
                 } else {
-                    let first = |node| self.file.first_triangle(node);
-                    self.last_from(id - voxels, first)
+                    last_from(self.file.first_triangles(), id - voxels)
                 };
                 i32::try_from(node).unwrap_or(i32::MAX)
             })
             .collect()
-    }
-
-    fn last_from(&self, item: u32, first: impl Fn(usize) -> u32) -> usize {
-        let (mut low, mut high) = (0, self.file.nodes().len());
-        while high - low > 1 {
-            let middle = low.midpoint(high);
-            if first(middle) <= item {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
     }
 
     pub(super) fn resolve(&self) -> Vec<Pixel> {
@@ -226,7 +213,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
-        let number = self.last_from(id, |node| self.file.first_voxel(node));
+        let number = last_from(self.file.first_voxels(), id);
         if last.as_ref().is_none_or(|(node, _)| *node != number) {
             // The node was drawn, so its data is sound.
             *last = self.file.data(number).ok().map(|data| (number, data));
@@ -234,7 +221,7 @@ impl<'f> Opaque<'f> {
         let Some((_, data)) = last else {
             return [0.0; 3];
         };
-        let mut rest = (id - self.file.first_voxel(number)) as usize;
+        let mut rest = (id - self.file.first_voxels()[number]) as usize;
         for (list, records) in data.lists().into_iter().enumerate() {
             let count = records.len() / RECORD_BYTES[list];
             if rest < count {
@@ -260,6 +247,13 @@ impl<'f> Opaque<'f> {
     }
 }
 
+/// The node that an item belongs to.
+fn last_from(first: &[u32], item: u32) -> usize {
+    first
+        .partition_point(|&first| first <= item)
+        .saturating_sub(1)
+}
+
 pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {
     let (normal, color) = voxel.shader.seen_from(towards_eye);
     let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
@@ -281,7 +275,7 @@ impl<'f> Surfaces<'f> {
             places: Vec::new(),
         };
         for &node in nodes {
-            let first = file.first_triangle(node);
+            let first = file.first_triangles()[node];
             let number = surface.data.len() as u32;
             let places = (0..file.nodes()[node].surface).map(|at| (number, at, first + at));
             surface.places.extend(places);
@@ -304,7 +298,7 @@ impl Surface for Surfaces<'_> {
     fn corners(&self, number: usize) -> [DVec3; 3] {
         let centre = self.file.settings.centre;
         let corners = self.triangle_at(number).corners;
-        corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
+        corners.map(|p| point(p) + centre)
     }
 
     fn triangle(&self, number: usize) -> Triangle {

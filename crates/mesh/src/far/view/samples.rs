@@ -12,8 +12,7 @@ pub(super) fn finer(view: &RasterCamera, across: u32) -> RasterCamera {
     }
 }
 
-/// Pixels from samples: their means, in linear light, as they are premultiplied.
-/// The depth of a pixel is not kept.
+/// Means of a pixel's samples, in premultiplied linear light, without depth.
 pub(super) fn averaged(samples: Vec<Pixel>, size: [usize; 2], across: usize) -> Vec<Pixel> {
     if across == 1 {
         return samples;

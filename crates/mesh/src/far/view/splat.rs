@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::far::record::Node;
+use crate::geometry::point;
 use crate::raster::RasterCamera;
 
 /// Share by which an outline is drawn larger, so that rounding leaves no gap between cubes.
@@ -26,7 +27,7 @@ pub(super) struct Square {
 impl Places {
     pub(super) fn of(node: &Node, centre: DVec3) -> Self {
         Self {
-            origin: DVec3::from_array(node.origin.map(f64::from)) + centre,
+            origin: point(node.origin) + centre,
             voxel: f64::from(node.voxel),
         }
     }
@@ -36,11 +37,7 @@ impl Places {
     }
 
     fn middle(&self, place: &[u8]) -> DVec3 {
-        let place = DVec3::new(
-            f64::from(place[0]),
-            f64::from(place[1]),
-            f64::from(place[2]),
-        );
+        let place = point([place[0], place[1], place[2]]);
         self.origin + (place + DVec3::splat(0.5)) * self.voxel
     }
 
@@ -133,8 +130,7 @@ impl Square {
         [[x0, y0], [x1, y1]]
     }
 
-    /// The parts of a row or column of pixels whose middles are in the square, a bit for each of the [`PARTS`] of
-    /// `pixel`.
+    /// The [`PARTS`] of a row or column whose middles are in the square, a bit each.
     pub(super) fn parts(&self, k: usize, pixel: usize) -> u32 {
         let at = |edge: f64| {
             let part = ((edge - pixel as f64) * PARTS as f64 - 0.5).ceil();

@@ -1,6 +1,4 @@
-//! Transparent voxels before what is opaque, front to back, tested against depth and not written to it.
-//!
-//! A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in the parts whose
+//! Transparent voxels before what is opaque, front to back. A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in the parts whose
 //! middles its square covers: squares side by side cover each part once.
 
 use rayon::prelude::*;

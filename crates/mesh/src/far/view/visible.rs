@@ -1,8 +1,8 @@
 //! The visible nodes: traverses the hierarchy front to back and culls hidden nodes.
 //!
 //! A branch that was visible in the last frame is walked without a test, and its nodes are drawn first. Any other
-//! branch's box is tested against the picture of some batches before, as a GPU's late answers are. Culled nodes are
-//! behind drawn ones in every pixel, so neither memory nor lateness can change the picture.
+//! branch's box is tested against the picture of the batch before the last, as a GPU's late answers are. Culled nodes
+//! are behind drawn ones in every pixel, so memory cannot change the picture.
 
 use std::collections::BTreeMap;
 
@@ -24,12 +24,6 @@ impl VisibilityHistory {
         Self {
             seen_in: vec![0; nodes],
             frame: 1,
-        }
-    }
-
-    pub(super) fn set(&mut self, is_visible: impl Fn(usize) -> bool) {
-        for (number, seen_in) in self.seen_in.iter_mut().enumerate() {
-            *seen_in = if is_visible(number) { self.frame } else { 0 };
         }
     }
 
@@ -65,7 +59,6 @@ pub(super) struct VisibleNodes {
 pub(super) fn walk(
     cut: &Cut<'_>,
     memory: &VisibilityHistory,
-    late: usize,
     opaque: &mut Opaque<'_>,
     counts: &mut FarCounts,
 ) -> Result<VisibleNodes, ViewError> {
@@ -91,10 +84,10 @@ pub(super) fn walk(
         }
     }
     opaque.draw(&walked.drawn, counts)?;
-    let mut fills = vec![Fill::of(&opaque.depths(), &cut.view)];
+    let mut fill = Fill::of(&opaque.depths(), &cut.view);
+    let mut next_fill = None;
     let mut batch = FIRST_BATCH;
     while !waiting.is_empty() {
-        let fill = &fills[(fills.len() - 1).saturating_sub(late)];
         let mut visible = Vec::new();
         while visible.len() < batch
             && let Some((_, found)) = waiting.pop_first()
@@ -115,7 +108,8 @@ pub(super) fn walk(
         }
         opaque.draw(&visible, counts)?;
         walked.drawn.extend(visible);
-        fills.push(Fill::of(&opaque.depths(), &cut.view));
+        let drawn = next_fill.replace(Fill::of(&opaque.depths(), &cut.view));
+        fill = drawn.unwrap_or(fill);
         batch *= 2;
     }
     Ok(walked)
