@@ -191,9 +191,8 @@ impl File {
         }
         // Names of pictures are relative to the library.
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        let textures = library.textures.into_iter();
-        let textures = textures.map(|t| t.map(|t| folder.join(t).to_string_lossy().into_owned()));
-        for (material, texture) in library.materials.into_iter().zip(textures) {
+        for (material, texture) in library.materials {
+            let texture = texture.map(|name| folder.join(name).to_string_lossy().into_owned());
             self.by_name
                 .insert(material.name.clone(), self.materials.len());
             self.materials.push((builder.material(material), texture));

@@ -139,7 +139,7 @@ impl Buffers {
                     let bytes = match (uri, binary) {
                         (None, Some(binary)) if number == 0 => binary.to_vec(),
                         (None, _) => {
-                            return Err(fault_of("buffer", number, "content", "none", BROKEN));
+                            return Err(broken("buffer", number, "content", "none"));
                         }
                         (Some(uri), _) => fetch(uri, number, beside)?,
                     };
@@ -151,13 +151,7 @@ impl Buffers {
             let bytes = distinct[at].len() as u64;
             if bytes < buffer.byte_length {
                 let expected = format!("{} bytes", buffer.byte_length);
-                return Err(fault_of(
-                    "buffer",
-                    number,
-                    &expected,
-                    &bytes.to_string(),
-                    BROKEN,
-                ));
+                return Err(broken("buffer", number, &expected, &bytes.to_string()));
             }
             of.push(at);
         }
@@ -185,7 +179,7 @@ fn decoded(data: &str) -> Option<Vec<u8>> {
 fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Problem> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decoded(data)
-            .ok_or_else(|| fault_of("buffer", number, "data in base64", "other data", BROKEN));
+            .ok_or_else(|| broken("buffer", number, "data in base64", "other data"));
     }
     let name = unescaped(uri);
     beside.read(&name).map_err(|error| {
@@ -219,7 +213,11 @@ fn unescaped(uri: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A finding at one of the document's numbered parts.
+/// A fault at a numbered part of a document that is damaged.
+fn broken(part: &str, number: usize, expected: &str, found: &str) -> Problem {
+    fault_of(part, number, expected, found, BROKEN)
+}
+
 fn fault_of(part: &str, number: usize, expected: &str, found: &str, advice: &str) -> Problem {
     let part = format!("{part} {number}");
     Fault::new(part, Place::Whole, expected, found, advice).into()

@@ -3,7 +3,7 @@
 use std::io;
 use std::rc::Rc;
 
-use super::accessor::Numbers;
+use super::accessor::{Numbers, view_bytes};
 use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::load::texture::{Texture, Textures};
@@ -65,11 +65,7 @@ pub(super) fn find(
         let view = image
             .buffer_view
             .and_then(|view| document.buffer_views.get(view));
-        let bytes = view.and_then(|view| {
-            let begin = usize::try_from(view.byte_offset).ok()?;
-            let end = begin.checked_add(usize::try_from(view.byte_length).ok()?)?;
-            buffers.get(view.buffer)?.get(begin..end)
-        });
+        let bytes = view.and_then(|view| view_bytes(view, buffers));
         bytes
             .map(<[u8]>::to_vec)
             .ok_or_else(|| missing("it is not in its buffer"))

@@ -5,7 +5,7 @@ use glam::{DMat4, DQuat, DVec3};
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
 use super::picture::{self, Painted};
-use super::{BROKEN, Beside, Buffers, Fault, Place, Problem, fault_of};
+use super::{Beside, Buffers, Fault, Place, Problem, broken};
 use crate::load::texture::Textures;
 use crate::material::linear_to_srgb;
 use crate::{ColorSpace, Material, MeshBuilder};
@@ -81,23 +81,11 @@ impl<'d> Reader<'d> {
         let mut shown = Vec::new();
         while let Some((number, parent)) = open.pop() {
             let Some(node) = nodes.get(number) else {
-                return Err(fault_of(
-                    "node",
-                    number,
-                    "a node of this number",
-                    "none",
-                    BROKEN,
-                ));
+                return Err(broken("node", number, "a node of this number", "none"));
             };
             if std::mem::replace(&mut seen[number], true) {
-                let found = "a second way to it";
-                return Err(fault_of(
-                    "node",
-                    number,
-                    "one parent, in a tree",
-                    found,
-                    BROKEN,
-                ));
+                let expected = "one parent, in a tree";
+                return Err(broken("node", number, expected, "a second way to it"));
             }
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
@@ -214,13 +202,7 @@ impl<'d> Reader<'d> {
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
         let Some(mesh) = self.document.meshes.get(number) else {
-            return Err(fault_of(
-                "mesh",
-                number,
-                "a mesh of this number",
-                "none",
-                BROKEN,
-            ));
+            return Err(broken("mesh", number, "a mesh of this number", "none"));
         };
         for primitive in &mesh.primitives {
             self.primitive(number, primitive, placed, builder)?;
@@ -334,12 +316,11 @@ impl<'d> Reader<'d> {
                 };
                 let sound = index.filter(|&index| (index as usize) < positions.count);
                 *corner = sound.ok_or_else(|| {
-                    fault_of(
+                    broken(
                         "mesh",
                         mesh,
                         &format!("indices from 0 to {}", positions.count as i64 - 1),
                         &index.map_or("a number of another kind".into(), |i| i.to_string()),
-                        BROKEN,
                     )
                 })?;
             }
