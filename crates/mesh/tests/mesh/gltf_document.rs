@@ -210,7 +210,7 @@ impl Composer {
     /// Positions and attributes, with or without normals and colours.
     fn vertices(&mut self, choose: &mut Choose<'_>) -> (Vec<DVec3>, Value) {
         let count = 3 + choose(5) as usize;
-        // Component type, its bytes, and the number that stands for 1 in shares.
+        // Component type, its bytes, and the number that means 1 if normalized.
         let (kind, width, full) = [
             (5126, 4, 1.0),
             (5120, 1, 127.0),

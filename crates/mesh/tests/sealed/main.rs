@@ -40,43 +40,29 @@ unsafe impl GlobalAlloc for Limited {
     }
 }
 
-/// Files that are tried.
-const FILES: u64 = 1500;
-
-/// Says which file it was where a test fails.
-struct Told(u64);
-
-impl Drop for Told {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            eprintln!("the file of seed {}", self.0);
-        }
-    }
-}
-
 #[test]
 fn edited_files_are_refused_or_drawn() {
     let folder = tempfile::tempdir().unwrap();
     // Of each format: refused, sound.
     let mut found = [[0u32; 2]; 3];
-    for seed in 0..FILES {
-        let told = Told(seed);
+    for seed in 0..1500 {
         let mut random = SplitMix::new(seed);
         // The file, and 0 to 4 edits.
-        let choices = (0..=random.below(5)).map(|_| random.bits());
-        let choices: Vec<u64> = choices.collect();
-        let Some((format, bytes)) = exercise::edited(choices.iter().copied()) else {
+        let edits = random.below(5);
+        let choices = (0..=edits).map(|_| random.bits());
+        let Some((format, bytes)) = exercise::edited(choices) else {
             continue;
         };
         let path = folder.path().join("edited.vxg");
+        // Shown where the test fails.
+        println!("seed {seed}");
         let is_sound = exercise::exercise(format, &bytes, &path);
         found[format as usize][usize::from(is_sound)] += 1;
-        if choices.len() == 1 {
-            assert!(is_sound, "putting a sound file right changes nothing");
-        }
-        drop(told);
+        assert!(
+            is_sound || edits > 0,
+            "putting a sound file right changes nothing"
+        );
     }
-    println!("refused and sound, of .vxg, .far, .tvx: {found:?}");
     // Neither all nor none: what is behind the checksums is reached.
     assert!(found.iter().flatten().all(|&files| files > 50), "{found:?}");
 }

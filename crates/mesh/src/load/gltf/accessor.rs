@@ -3,16 +3,16 @@
 use super::document::{BufferView, Document};
 use super::{Buffers, Problem, broken, fault_of};
 
-/// An accessor whose numbers are known to be there.
 #[derive(Debug)]
 pub(super) struct Numbers<'b> {
     bytes: &'b [u8],
     stride: usize,
-    /// Elements.
     pub(super) count: usize,
     /// Numbers of an element.
     pub(super) width: usize,
     component: u32,
+    /// Bytes of a number.
+    size: usize,
     normalized: bool,
 }
 
@@ -84,6 +84,7 @@ impl<'b> Numbers<'b> {
             count: accessor.count as usize,
             width,
             component: accessor.component_type,
+            size,
             normalized: accessor.normalized,
         })
     }
@@ -124,13 +125,8 @@ impl<'b> Numbers<'b> {
         if element >= self.count || k >= self.width {
             return None;
         }
-        let size = match self.component {
-            5120 | 5121 => 1,
-            5122 | 5123 => 2,
-            _ => 4,
-        };
-        let at = element * self.stride + k * size;
-        Some(match *self.bytes.get(at..at + size)? {
+        let at = element * self.stride + k * self.size;
+        Some(match *self.bytes.get(at..at + self.size)? {
             [a] => u32::from(a),
             [a, b] => u32::from(u16::from_le_bytes([a, b])),
             [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),

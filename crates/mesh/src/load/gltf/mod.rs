@@ -46,23 +46,15 @@ pub(super) fn read_binary(
         Some(u32::from_le_bytes(word.try_into().ok()?))
     };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(wrong(
-            "header",
-            0,
-            "12 bytes".into(),
-            format!("{}", bytes.len()),
-        ));
+        let found = bytes.len().to_string();
+        return Err(wrong("header", 0, "12 bytes".into(), found));
     };
     if version != 2 {
         return Err(wrong("header", 4, "version 2".into(), version.to_string()));
     }
     if u64::from(length) > bytes.len() as u64 {
-        return Err(wrong(
-            "header",
-            8,
-            format!("{length} bytes in all, as it says"),
-            bytes.len().to_string(),
-        ));
+        let expected = format!("{length} bytes in all, as it says");
+        return Err(wrong("header", 8, expected, bytes.len().to_string()));
     }
     let bytes = &bytes[..length as usize];
     let mut at = 12usize;
@@ -71,12 +63,9 @@ pub(super) fn read_binary(
         let begin = at + 8;
         let end = begin.saturating_add(size as usize);
         let Some(content) = bytes.get(begin..end) else {
-            return Err(wrong(
-                "chunk",
-                at,
-                format!("{size} bytes of content"),
-                (bytes.len().saturating_sub(begin)).to_string(),
-            ));
+            let expected = format!("{size} bytes of content");
+            let found = bytes.len().saturating_sub(begin).to_string();
+            return Err(wrong("chunk", at, expected, found));
         };
         match kind {
             JSON if json.is_none() => json = Some((content, begin)),
@@ -99,17 +88,11 @@ fn read_document(
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let document: Document = serde_json::from_slice(json).map_err(|error| {
-        Fault::new(
-            "JSON",
-            if offset == 0 {
-                Place::Line(error.line() as u64)
-            } else {
-                Place::Byte(offset)
-            },
-            "glTF 2.0",
-            error.to_string(),
-            BROKEN,
-        )
+        let place = match offset {
+            0 => Place::Line(error.line() as u64),
+            _ => Place::Byte(offset),
+        };
+        Fault::new("JSON", place, "glTF 2.0", error.to_string(), BROKEN)
     })?;
     document.check()?;
     let buffers = Buffers::read(&document, binary, beside)?;

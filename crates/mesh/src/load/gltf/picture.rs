@@ -16,7 +16,6 @@ pub(super) struct Painted<'d> {
 }
 
 impl Painted<'_> {
-    /// The mean colour of a triangle.
     pub(super) fn mean(&self, corners: [u32; 3]) -> Option<[f32; 3]> {
         let place = |corner: u32| {
             let uv = [0, 1].map(|k| f64::from(self.uvs.real(corner as usize, k)));
@@ -35,7 +34,6 @@ fn moved([u, v]: [f64; 2], transform: &TextureTransform) -> [f64; 2] {
     [cos * u + sin * v + offset[0], cos * v - sin * u + offset[1]]
 }
 
-/// The texture of a number, read where it was not read before.
 pub(super) fn find(
     document: &Document,
     buffers: &Buffers,

@@ -95,8 +95,13 @@ impl<'d> Reader<'d> {
             open.extend(node.children.iter().rev().map(|&child| (child, placed)));
         }
         self.make_room(&shown, builder)?;
-        for (mesh, placed) in shown {
-            self.mesh(mesh, placed, builder)?;
+        for (number, placed) in shown {
+            let mesh = document.meshes.get(number);
+            let mesh =
+                mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))?;
+            for primitive in &mesh.primitives {
+                self.primitive(number, primitive, placed, builder)?;
+            }
         }
         self.tell(builder);
         Ok(())
@@ -104,37 +109,28 @@ impl<'d> Reader<'d> {
 
     fn tell(&self, builder: &mut MeshBuilder) {
         self.textures.tell(builder);
-        for (count, what) in [
-            (
-                self.skipped_modes,
-                "primitives of points or lines were passed over",
-            ),
-            (
-                self.morphed,
-                "primitives have morph targets, which are not applied",
-            ),
-            (self.skinned, "meshes have skins, which are not applied"),
-        ] {
+        let mut warn = |count: u64, what: &str| {
             if count > 0 {
                 builder.warn(format!("{count} {what}"));
             }
-        }
+        };
+        let (modes, morphed) = (self.skipped_modes, self.morphed);
+        warn(modes, "primitives of points or lines were passed over");
+        warn(
+            morphed,
+            "primitives have morph targets, which are not applied",
+        );
+        warn(self.skinned, "meshes have skins, which are not applied");
     }
 
-    /// Makes room for all that nodes show, before any of it is made.
     fn make_room(
         &self,
         shown: &[(usize, DMat4)],
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
         let fault = |expected: String, found: String| {
-            Problem::Limit(Fault::new(
-                "nodes",
-                Place::Whole,
-                expected,
-                found,
-                "export a part of the scene",
-            ))
+            let advice = "export a part of the scene";
+            Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
         };
         let mut of_mesh = vec![None; self.document.meshes.len()];
         let (mut positions, mut triangles) = (0u64, 0u64);
@@ -195,22 +191,6 @@ impl<'d> Reader<'d> {
         }))
     }
 
-    fn mesh(
-        &mut self,
-        number: usize,
-        placed: DMat4,
-        builder: &mut MeshBuilder,
-    ) -> Result<(), Problem> {
-        let Some(mesh) = self.document.meshes.get(number) else {
-            return Err(broken("mesh", number, "a mesh of this number", "none"));
-        };
-        for primitive in &mesh.primitives {
-            self.primitive(number, primitive, placed, builder)?;
-        }
-        Ok(())
-    }
-
-    /// The texture of a primitive's base colour and where its corners are on it.
     fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, Problem> {
         let document = self.document;
         let material = primitive.material.and_then(|m| document.materials.get(m));
