@@ -20,20 +20,13 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
-/// A triangle as it is given.
-#[derive(Debug, Clone, Copy)]
-struct Corners {
-    corners: [u32; 3],
-    normals: Option<[[f32; 3]; 3]>,
-    material: u32,
-    tint: Option<[f32; 3]>,
-}
+/// A triangle as it is given: corners, normals, material, tint.
+type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
-/// Left out, counted and reported as a warning: triangles with a coordinate that is infinite or not a number, triangles
-/// without area (two equal corners, or all three on a line), triangles whose material has opacity 0. If all triangles
-/// had opacity 0, they are drawn opaque, with a warning: some programs write 0 for opaque materials.
+/// Left out, with a warning: triangles with a coordinate that is not finite, without area, or of a material with opacity
+/// 0. If all triangles have opacity 0, they are drawn opaque: some programs write 0 for opaque materials.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
@@ -44,13 +37,13 @@ pub struct MeshBuilder {
     degenerate: u64,
     invisible: u64,
     /// Triangles of opacity 0, while there are no others.
-    hidden: Vec<Corners>,
+    hidden: Vec<Given>,
     seen: u64,
     too_many: bool,
 }
 
 impl MeshBuilder {
-    /// A builder without anything.
+    /// An empty builder.
     pub fn new() -> Self {
         Self::default()
     }
@@ -110,14 +103,12 @@ impl MeshBuilder {
         self.mesh.positions.len()
     }
 
-    /// Tells the user something.
+    /// Adds a warning to the mesh.
     pub fn warn(&mut self, warning: impl Into<String>) {
         self.mesh.warnings.push(warning.into());
     }
 
-    /// Adds a triangle of positions that were added before, with the normals
-    /// of its corners where the file has them. A material that does not exist
-    /// is taken for the first.
+    /// Adds a triangle, with or without normals of its corners. A material that does not exist is taken for the first.
     ///
     /// # Errors
     /// [`BadIndex`] where a position does not exist; the triangle is not added.
@@ -130,8 +121,7 @@ impl MeshBuilder {
         self.textured_triangle(corners, normals, material, None)
     }
 
-    /// [`triangle`](Self::triangle), with the mean colour of its texture, linear light, by which its colour is
-    /// multiplied.
+    /// [`triangle`](Self::triangle) with the mean colour of its texture, linear light: a factor.
     ///
     /// # Errors
     /// As [`triangle`](Self::triangle).
@@ -160,19 +150,11 @@ impl MeshBuilder {
             self.degenerate += 1;
             return Ok(());
         }
-        let materials = &self.mesh.materials;
-        if materials
-            .get(material as usize)
-            .is_some_and(|material| material.alpha == 0.0)
-        {
+        let alpha = self.mesh.materials.get(material as usize).map(|m| m.alpha);
+        if alpha == Some(0.0) {
             self.invisible += 1;
             if self.mesh.triangles.is_empty() && self.hidden.len() < MOST {
-                self.hidden.push(Corners {
-                    corners,
-                    normals,
-                    material,
-                    tint,
-                });
+                self.hidden.push((corners, normals, material, tint));
             }
             return Ok(());
         }
@@ -231,14 +213,9 @@ impl MeshBuilder {
         ));
         self.invisible = 0;
         let seen = self.seen;
-        for triangle in hidden {
+        for (corners, normals, material, tint) in hidden {
             // In range: it was when it was given.
-            let _ = self.textured_triangle(
-                triangle.corners,
-                triangle.normals,
-                triangle.material,
-                triangle.tint,
-            );
+            let _ = self.textured_triangle(corners, normals, material, tint);
         }
         self.seen = seen;
     }
@@ -251,13 +228,8 @@ impl MeshBuilder {
         self.show_hidden();
         let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
-            let fault = Fault::new(
-                "mesh",
-                Place::Whole,
-                "fewer than 2^32 positions and triangles",
-                "more",
-                "split the mesh",
-            );
+            let expected = "fewer than 2^32 positions and triangles";
+            let fault = Fault::new("mesh", Place::Whole, expected, "more", "split the mesh");
             return Err(in_file(Problem::Limit(fault)));
         }
         let complaints = [
@@ -280,18 +252,12 @@ impl MeshBuilder {
             .map(|(count, what)| format!("{count} of {} triangles {what}", self.seen))
             .collect();
         if self.mesh.triangles.is_empty() {
-            let found = if told.is_empty() {
-                "none".to_owned()
-            } else {
-                format!("none that can be drawn: {}", told.join(", "))
+            let found = match &told[..] {
+                [] => "none".to_owned(),
+                told => format!("none that can be drawn: {}", told.join(", ")),
             };
-            let fault = Fault::new(
-                "mesh",
-                Place::Whole,
-                "at least one triangle",
-                found,
-                "export the mesh again, with its faces",
-            );
+            let advice = "export the mesh again, with its faces";
+            let fault = Fault::new("mesh", Place::Whole, "at least one triangle", found, advice);
             return Err(in_file(fault.into()));
         }
         for complaint in &mut told {

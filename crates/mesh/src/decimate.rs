@@ -55,9 +55,8 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
     decimate_between(mesh, how, |_| None)
 }
 
-/// Decimates a part of a mesh. Positions that it shares with other parts stay; `shared` gives the
-/// normals that all triangles have there, each as long as its triangle's area, and `None` for a
-/// position of this part alone.
+/// Decimates a part of a mesh. Positions that it shares with other parts stay. For these, `shared` gives the normals of
+/// all triangles there, each as long as its triangle's area.
 ///
 /// # Errors
 /// [`DecimateError`].
@@ -94,14 +93,7 @@ pub fn decimate_between<'n>(
     let share = how
         .error
         .map_or(NORMAL_WEIGHT, |error| (error / extent) as f32);
-    let weights = [
-        share,
-        share,
-        share,
-        COLOR_WEIGHT,
-        COLOR_WEIGHT,
-        COLOR_WEIGHT,
-    ];
+    let weights = [[share; 3], [COLOR_WEIGHT; 3]];
     let failed = |error: meshoptimizer_rs::Error| DecimateError(error.to_string());
     let count = vertices.positions.len();
     let attributes = vertices.attributes.as_flattened();
@@ -110,7 +102,7 @@ pub fn decimate_between<'n>(
         &vertices.indices,
         Positions::from_packed(&near),
         attributes.map_err(failed)?,
-        &weights,
+        weights.as_flattened(),
         Some(&flags),
         SimplifySettings {
             target_index_count: (3 * how.triangles).min(vertices.indices.len()),
@@ -123,7 +115,6 @@ pub fn decimate_between<'n>(
     Ok(vertices.mesh_of(mesh, &simplified.indices))
 }
 
-/// A mesh as the library takes it.
 struct Vertices {
     positions: Vec<[f64; 3]>,
     attributes: Vec<[f32; ATTRIBUTES]>,
@@ -150,7 +141,6 @@ impl Vertices {
             let [a, b, c] = triangle.corners;
             let area = (b - a).cross(c - a).length();
             for (k, &corner) in corners.iter().enumerate() {
-                // Zeros of both signs are one place.
                 let position = mesh.positions[corner as usize];
                 let place = place_of(position);
                 let material = mesh.material_of[number];
@@ -185,7 +175,6 @@ impl Vertices {
         all
     }
 
-    /// The triangles that are left.
     fn mesh_of(&self, mesh: &Mesh, indices: &[u32]) -> Option<Mesh> {
         let mut left = Mesh {
             materials: mesh.materials.clone(),
@@ -231,8 +220,7 @@ fn place_of(position: [f64; 3]) -> Place {
     position.map(|x| (x + 0.0).to_bits())
 }
 
-/// The mean colour of textures at each position of each material, linear light; nothing where there
-/// are none.
+/// The mean colour of textures at each position of each material, linear light.
 fn tints(mesh: &Mesh) -> HashMap<(Place, u32), DVec3> {
     let mut sums: HashMap<(Place, u32), (DVec3, f64)> = HashMap::new();
     for (number, &tint) in mesh.tints.iter().enumerate() {

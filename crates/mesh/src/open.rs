@@ -118,7 +118,6 @@ fn is_y_up(kind: FileKind) -> bool {
     kind != FileKind::Stl
 }
 
-/// Reads a mesh, and the files in its folder that it names.
 fn read(
     file: &MeshFile,
     options: &LoadOptions,

@@ -1,4 +1,4 @@
-//! Far voxels as something that can be drawn.
+//! Far voxels.
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,4 @@
-//! Cameras, light and pictures of renderers of meshes: triangles, far voxels,
-//! textured voxels. They take and give what the image-order engines do not.
+//! Cameras, light and pictures of renderers of meshes.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Textured voxels as something that can be drawn.
+//! Textured voxels.
 
 use serde_json::json;
 
@@ -87,7 +87,6 @@ impl Method for TexturedMethod<'_> {
         self.style.aa_log2
     }
 
-    /// Choosing the grid that fits the view is part of the work.
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = ViewOptions {
             detail: self.detail(view)?,

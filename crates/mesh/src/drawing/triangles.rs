@@ -1,4 +1,4 @@
-//! The triangles of a mesh as something that can be drawn: the reference picture of the other methods.
+//! The triangles of a mesh: the reference picture of the other methods.
 
 use serde_json::json;
 

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DVec3, dvec3};
 
 use super::maker::Maker;
 
@@ -12,7 +12,7 @@ pub(super) fn scan(maker: &mut Maker) {
     let lobes: Vec<(DVec3, f64, f64)> = (0..40)
         .map(|i| {
             let unit = |maker: &mut Maker| maker.between(-1.0, 1.0);
-            let towards = DVec3::new(unit(maker), unit(maker), unit(maker)).normalize_or(DVec3::X);
+            let towards = dvec3(unit(maker), unit(maker), unit(maker)).normalize_or(DVec3::X);
             let sharp = if i < 8 { 4.0 } else { 60.0 };
             (towards, sharp, maker.between(-2.0, 2.0) / libm::sqrt(sharp))
         })
@@ -23,7 +23,7 @@ pub(super) fn scan(maker: &mut Maker) {
     maker.sheet(SIZE, |row, column| {
         let polar = PI * f64::from(row) / f64::from(SIZE[0]);
         let around = TAU * f64::from(column) / f64::from(SIZE[1]);
-        let mut towards = DVec3::new(
+        let mut towards = dvec3(
             libm::sin(polar) * libm::cos(around),
             libm::cos(polar),
             libm::sin(polar) * libm::sin(around),
@@ -36,10 +36,9 @@ pub(super) fn scan(maker: &mut Maker) {
             .iter()
             .map(|(lobe, sharp, height)| height * libm::exp(sharp * (lobe.dot(towards) - 1.0)));
         let height: f64 = bumps.sum::<f64>() * 0.25;
-        let noise = if is_pole {
-            0.0
-        } else {
-            noise[(row * SIZE[1] + column) as usize]
+        let noise = match is_pole {
+            true => 0.0,
+            false => noise[(row * SIZE[1] + column) as usize],
         };
         let shade = |base: f64| (base + 90.0 * height).clamp(20.0, 250.0) as u8;
         let color = [shade(190.0), shade(150.0), shade(110.0)];
@@ -52,14 +51,10 @@ pub(super) fn machine(maker: &mut Maker) {
     let steel = maker.material([150, 155, 165]);
     let dark = maker.material([60, 64, 72]);
     let paint = maker.material([190, 70, 40]);
-    maker.block(
-        DVec3::new(-5.0, -0.3, -5.0),
-        DVec3::new(5.0, 0.0, 5.0),
-        dark,
-    );
+    maker.block(dvec3(-5.0, -0.3, -5.0), dvec3(5.0, 0.0, 5.0), dark);
     for _ in 0..14 {
-        let low = DVec3::new(maker.between(-4.8, 3.0), 0.0, maker.between(-4.8, 3.0));
-        let size = DVec3::new(
+        let low = dvec3(maker.between(-4.8, 3.0), 0.0, maker.between(-4.8, 3.0));
+        let size = dvec3(
             maker.between(0.4, 1.8),
             maker.between(0.3, 2.5),
             maker.between(0.4, 1.8),
@@ -68,14 +63,14 @@ pub(super) fn machine(maker: &mut Maker) {
         maker.block(low, low + size, material);
     }
     for _ in 0..60 {
-        let foot = DVec3::new(maker.between(-4.8, 4.8), 0.0, maker.between(-4.8, 4.8));
+        let foot = dvec3(maker.between(-4.8, 4.8), 0.0, maker.between(-4.8, 4.8));
         let radius = maker.between(0.04, 0.3);
         let top = foot + DVec3::Y * maker.between(0.2, 1.5);
         maker.tube([foot, top], [radius; 2], 32, steel);
     }
     for _ in 0..24 {
         let radius = maker.between(0.02, 0.1);
-        let mut at = DVec3::new(maker.between(-4.5, 4.5), 0.0, maker.between(-4.5, 4.5));
+        let mut at = dvec3(maker.between(-4.5, 4.5), 0.0, maker.between(-4.5, 4.5));
         for bend in 0..5 {
             let length = maker.between(0.4, 2.5);
             let turn = [DVec3::Y, DVec3::X, DVec3::Z][bend % 3];
@@ -96,7 +91,7 @@ pub(super) fn wheel(maker: &mut Maker) {
     maker.tube(hub, [0.04; 2], 24, steel);
     let pairs = 14 + maker.lot.below(5);
     let radius = maker.between(0.003, 0.005);
-    let on = |angle: f64, r: f64, z: f64| DVec3::new(r * libm::cos(angle), r * libm::sin(angle), z);
+    let on = |angle: f64, r: f64, z: f64| dvec3(r * libm::cos(angle), r * libm::sin(angle), z);
     for pair in 0..pairs {
         for side in [-1.0, 1.0] {
             let at = TAU * (pair as f64 + side / 4.0) / pairs as f64;
@@ -111,7 +106,7 @@ pub(super) fn wheel(maker: &mut Maker) {
 pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64, forks: u32) {
     let bark = maker.material([95, 70, 50]);
     let leaves = [[70, 120, 40], [95, 140, 50], [60, 100, 45]].map(|c| maker.material(c));
-    let foot = DVec3::new(x, 0.0, z);
+    let foot = dvec3(x, 0.0, z);
     let mut growing = vec![(foot, DVec3::Y, height * 0.35, height * 0.03, 0)];
     while let Some((from, towards, length, radius, fork)) = growing.pop() {
         let to = from + towards * length;
@@ -119,9 +114,9 @@ pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64, forks: u32)
         if fork == forks {
             for _ in 0..22 {
                 let mut offset = || maker.between(-0.5, 0.5) * height * 0.11;
-                let middle = to + DVec3::new(offset(), offset(), offset());
+                let middle = to + dvec3(offset(), offset(), offset());
                 let mut unit = || maker.between(-1.0, 1.0);
-                let long = DVec3::new(unit(), unit(), unit()).normalize_or(DVec3::X);
+                let long = dvec3(unit(), unit(), unit()).normalize_or(DVec3::X);
                 let across = long.any_orthonormal_vector();
                 let size = height * maker.between(0.008, 0.013);
                 let (long, across) = (long * size, across * size * 0.6);
@@ -138,7 +133,7 @@ pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64, forks: u32)
         }
         for _ in 0..4 {
             let mut unit = || maker.between(-1.0, 1.0);
-            let aside = DVec3::new(unit(), unit() * 0.5 + 0.2, unit());
+            let aside = dvec3(unit(), unit() * 0.5 + 0.2, unit());
             let towards = (towards * 0.6 + aside).normalize_or(DVec3::Y);
             let shorter = length * maker.between(0.55, 0.75);
             growing.push((to, towards, shorter, radius * 0.6, fork + 1));
@@ -151,7 +146,7 @@ pub(super) fn stadium(maker: &mut Maker) {
     let concrete = maker.material([170, 168, 160]);
     let grass = maker.material([70, 130, 60]);
     let seats = [[180, 50, 40], [40, 70, 150]].map(|c| maker.material(c));
-    let corner = DVec3::new(30.0, 0.0, 20.0);
+    let corner = dvec3(30.0, 0.0, 20.0);
     let up = DVec3::Y * -0.2;
     maker.block(-corner + up, corner, grass);
     for tier in 0..10 {
@@ -163,9 +158,9 @@ pub(super) fn stadium(maker: &mut Maker) {
             let place = |along: f64, y: f64, away: f64| {
                 let away = sign * (out + away);
                 if is_long {
-                    DVec3::new(along, y, away)
+                    dvec3(along, y, away)
                 } else {
-                    DVec3::new(away, y, along)
+                    dvec3(away, y, along)
                 }
             };
             let mut block = |[a0, a1]: [f64; 2], [y0, y1]: [f64; 2], [o0, o1]: [f64; 2], m| {
@@ -177,18 +172,10 @@ pub(super) fn stadium(maker: &mut Maker) {
                 let along = -half + 1.0 + 2.4 * f64::from(seat);
                 let seat_color = seats[(seat / 6 % 2) as usize];
                 let width = [along, along + 1.6];
-                block(
-                    width,
-                    [height, height + 0.3],
-                    [inner + 0.3, inner + 0.7],
-                    seat_color,
-                );
-                block(
-                    width,
-                    [height, height + 0.8],
-                    [inner + 0.7, inner + 0.8],
-                    seat_color,
-                );
+                for (top, front, back) in [(0.3, 0.3, 0.7), (0.8, 0.7, 0.8)] {
+                    let depth = [inner + front, inner + back];
+                    block(width, [height, height + top], depth, seat_color);
+                }
             }
         }
     }
@@ -197,19 +184,12 @@ pub(super) fn stadium(maker: &mut Maker) {
         let x = maker.between(-24.0, 20.0);
         let top = maker.between(9.0, 11.0);
         maker.block(
-            DVec3::new(x, top, 18.0),
-            DVec3::new(x + 8.0, top + 0.3, 32.0),
+            dvec3(x, top, 18.0),
+            dvec3(x + 8.0, top + 0.3, 32.0),
             concrete,
         );
-        maker.tube(
-            [
-                DVec3::new(x + 4.0, 0.0, 31.0),
-                DVec3::new(x + 4.0, top, 31.0),
-            ],
-            [0.2; 2],
-            12,
-            concrete,
-        );
+        let mast = [0.0, top].map(|y| dvec3(x + 4.0, y, 31.0));
+        maker.tube(mast, [0.2; 2], 12, concrete);
     }
 }
 
@@ -219,31 +199,15 @@ fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
     let wall = maker.material([(205.0 + shade) as u8, (195.0 + shade) as u8, 175]);
     let roof = maker.material([150, (70.0 + shade) as u8, 55]);
     let glass = maker.material([70, 90, 110]);
-    let at = |dx: f64, y: f64, dz: f64| DVec3::new(x + dx, y, z + dz);
+    let at = |dx: f64, y: f64, dz: f64| dvec3(x + dx, y, z + dz);
     maker.block(at(0.0, 0.0, 0.0), at(size.x, size.y, size.z), wall);
     let (ridge, over) = (size.y + size.x * 0.5, 0.3);
     let eaves = |dx: f64, dz: f64| at(dx, size.y - over, dz);
     let (front, back) = (-over, size.z + over);
     let top = |dz: f64| at(size.x / 2.0, ridge, dz);
-    maker.quad(
-        [
-            eaves(-over, front),
-            top(front),
-            top(back),
-            eaves(-over, back),
-        ],
-        roof,
-    );
-    let right = size.x + over;
-    maker.quad(
-        [
-            eaves(right, back),
-            top(back),
-            top(front),
-            eaves(right, front),
-        ],
-        roof,
-    );
+    for (dx, from, to) in [(-over, front, back), (size.x + over, back, front)] {
+        maker.quad([eaves(dx, from), top(from), top(to), eaves(dx, to)], roof);
+    }
     for dz in [0.0, size.z] {
         let gable = [
             at(0.0, size.y, dz),
@@ -259,16 +223,9 @@ fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
         for window in 0..windows {
             let dz = 0.6 + 1.8 * f64::from(window);
             for dx in [-0.02, size.x + 0.02] {
-                let corner = |up: f64, along: f64| at(dx, y + up, dz + along);
-                maker.quad(
-                    [
-                        corner(0.0, 0.0),
-                        corner(1.2, 0.0),
-                        corner(1.2, 0.9),
-                        corner(0.0, 0.9),
-                    ],
-                    glass,
-                );
+                let corners = [[0.0, 0.0], [1.2, 0.0], [1.2, 0.9], [0.0, 0.9]];
+                let corners = corners.map(|[up, along]| at(dx, y + up, dz + along));
+                maker.quad(corners, glass);
             }
         }
     }
@@ -281,18 +238,14 @@ fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
 
 pub(super) fn village(maker: &mut Maker) {
     let ground = maker.material([120, 130, 90]);
-    maker.block(
-        DVec3::new(-5.0, -0.3, -5.0),
-        DVec3::new(95.0, 0.0, 95.0),
-        ground,
-    );
+    maker.block(dvec3(-5.0, -0.3, -5.0), dvec3(95.0, 0.0, 95.0), ground);
     for row in 0..6 {
         for column in 0..6 {
             let place = [
                 f64::from(row) * 16.0 + maker.between(0.0, 3.0),
                 f64::from(column) * 16.0 + maker.between(0.0, 3.0),
             ];
-            let size = DVec3::new(
+            let size = dvec3(
                 maker.between(5.0, 9.0),
                 maker.between(2.8, 9.0),
                 maker.between(6.0, 11.0),
@@ -305,12 +258,8 @@ pub(super) fn village(maker: &mut Maker) {
 pub(super) fn garden(maker: &mut Maker) {
     let ground = maker.material([110, 135, 80]);
     let wood = maker.material([225, 220, 210]);
-    maker.block(
-        DVec3::new(-9.0, -0.2, -9.0),
-        DVec3::new(17.0, 0.0, 17.0),
-        ground,
-    );
-    house(maker, [0.0, 0.0], DVec3::new(7.0, 5.4, 9.0));
+    maker.block(dvec3(-9.0, -0.2, -9.0), dvec3(17.0, 0.0, 17.0), ground);
+    house(maker, [0.0, 0.0], dvec3(7.0, 5.4, 9.0));
     for [x, z] in [[-5.0, -4.0], [12.0, -5.0], [12.0, 12.0], [-5.0, 13.0]] {
         let place = [x + maker.between(-1.0, 1.0), z + maker.between(-1.0, 1.0)];
         let height = maker.between(5.0, 8.0);
@@ -319,12 +268,12 @@ pub(super) fn garden(maker: &mut Maker) {
     for side in [-8.5, 16.5] {
         for picket in 0..100 {
             let along = -8.5 + 0.25 * f64::from(picket);
-            let low = DVec3::new(along, 0.0, side);
-            maker.block(low, low + DVec3::new(0.1, 1.1, 0.03), wood);
+            let low = dvec3(along, 0.0, side);
+            maker.block(low, low + dvec3(0.1, 1.1, 0.03), wood);
         }
         for y in [0.3, 0.8] {
-            let low = DVec3::new(-8.5, y, side + 0.03);
-            maker.block(low, low + DVec3::new(25.0, 0.08, 0.03), wood);
+            let low = dvec3(-8.5, y, side + 0.03);
+            maker.block(low, low + dvec3(25.0, 0.08, 0.03), wood);
         }
     }
 }

@@ -47,7 +47,6 @@ impl Maker {
         let _ = self.builder.triangle(corners, normals, material);
     }
 
-    /// Two triangles with the corners in order around them.
     pub(super) fn quad(&mut self, [a, b, c, d]: [DVec3; 4], material: u32) {
         self.triangle([a, b, c], None, material);
         self.triangle([a, c, d], None, material);

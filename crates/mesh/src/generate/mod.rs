@@ -106,11 +106,8 @@ pub fn ply(mesh: &Mesh) -> Vec<u8> {
     // Fewer than 2^32 corners: these meshes are small.
     for first in (0..3 * count as u32).step_by(3) {
         bytes.push(3);
-        bytes.extend(
-            [first, first + 1, first + 2]
-                .iter()
-                .flat_map(|i| i.to_le_bytes()),
-        );
+        let corners = [first, first + 1, first + 2].map(u32::to_le_bytes);
+        bytes.extend(corners.as_flattened());
     }
     bytes
 }

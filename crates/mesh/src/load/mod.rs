@@ -1,4 +1,4 @@
-//! Files to meshes. The caller finds the format, by content.
+//! Files to meshes.
 
 mod gltf;
 mod mtl;
@@ -21,22 +21,20 @@ use shiftvox::scene::FileKind;
 /// How a mesh is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoadOptions {
-    /// How an MTL's colours are meant; the format does not say. glTF has
-    /// linear colours, vertex colours of PLY and OBJ are sRGB.
+    /// How an MTL's colours are meant; the format does not say.
     pub mtl_colors: ColorSpace,
 }
 
-/// Reads the files that a mesh names: its material library, its buffers.
+/// Reads the files that a mesh names.
 pub trait Beside {
-    /// The bytes of a file by the name that the mesh has for it.
+    /// The bytes of a file.
     ///
     /// # Errors
     /// When there is no such file or it cannot be read.
     fn read(&self, name: &str) -> io::Result<Vec<u8>>;
 }
 
-/// Files in the folder of the mesh, or below it. Other folders are not
-/// entered: of a name that leads there, only the last part counts.
+/// Files in the folder of the mesh, or below it. Of a name that leads elsewhere, only the last part counts.
 #[derive(Debug, Clone)]
 pub struct SameFolder(PathBuf);
 
@@ -59,9 +57,7 @@ impl Beside for SameFolder {
                 return found;
             }
         }
-        let last = path
-            .file_name()
-            .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "not a file's name"))?;
+        let last = path.file_name().ok_or(io::ErrorKind::NotFound)?;
         bounded::read(&self.0.join(last), u64::MAX)
     }
 }
@@ -72,10 +68,7 @@ pub struct Nothing;
 
 impl Beside for Nothing {
     fn read(&self, _name: &str) -> io::Result<Vec<u8>> {
-        Err(io::Error::new(
-            io::ErrorKind::NotFound,
-            "there are no other files",
-        ))
+        Err(io::ErrorKind::NotFound.into())
     }
 }
 
@@ -98,8 +91,7 @@ fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {
 /// Reads a mesh that is in memory; `name` is what errors call it.
 ///
 /// # Errors
-/// [`SceneError`] where the content breaks its format's rules, names a position
-/// that does not exist, or holds no triangle that can be drawn.
+/// [`SceneError`] where the content breaks its format's rules or holds no triangle that can be drawn.
 pub fn read(
     bytes: &[u8],
     format: FileKind,

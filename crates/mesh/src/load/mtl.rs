@@ -8,71 +8,53 @@ use shiftvox::scene::DEFAULT_COLOR;
 use super::{LoadOptions, text};
 use crate::Material;
 
-/// The contents of a material library.
 #[derive(Debug, Default)]
 pub(super) struct Library {
-    /// Materials in the order of the file; of two of one name the last counts.
-    pub(super) materials: Vec<Material>,
-    /// By material, the name of the picture that its colour is multiplied by.
-    pub(super) textures: Vec<Option<String>>,
+    /// In the order of the file, each with the name of the picture that its colour is multiplied by.
+    pub(super) materials: Vec<(Material, Option<String>)>,
     /// First line that could not be understood.
     pub(super) odd_line: Option<usize>,
 }
 
-/// Reads a library. Unknown lines are skipped.
 pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
     let text = text::decoded(bytes);
-    let mut library = Library::default();
-    let mut current: Option<Open> = None;
+    let mut found: Vec<Found> = Vec::new();
+    let mut odd_line = None;
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         let (key, rest) = line
             .split_once(char::is_whitespace)
             .map_or((line, ""), |(key, rest)| (key, rest.trim()));
         if key == "newmtl" {
-            if let Some(open) = current.replace(Open::new(rest)) {
-                library.close(open, options);
-            }
+            let name = rest.to_owned();
+            found.push(Found {
+                name,
+                alpha: 1.0,
+                ..Found::default()
+            });
             continue;
         }
-        let Some(open) = &mut current else { continue };
+        let Some(last) = found.last_mut() else {
+            continue;
+        };
         let understood = match key {
-            "Kd" => open.colored(rest),
-            "d" => open.alpha_from(rest, |d| d),
-            "Tr" => open.alpha_from(rest, |tr| 1.0 - tr),
+            "Kd" => last.colored(rest),
+            "d" => last.alpha_from(rest, |d| d),
+            "Tr" => last.alpha_from(rest, |tr| 1.0 - tr),
             "map_Kd" => {
-                open.texture = file_name(rest);
-                open.texture.is_some()
+                last.texture = file_name(rest);
+                last.texture.is_some()
             }
             _ => true,
         };
         if !understood {
-            library.odd_line.get_or_insert(number + 1);
+            odd_line.get_or_insert(number + 1);
         }
     }
-    if let Some(open) = current {
-        library.close(open, options);
-    }
-    library
-}
-
-impl Library {
-    fn close(&mut self, open: Open, options: &LoadOptions) {
-        // A black factor would make the picture black. Programs that write it mean the picture alone. So do those that
-        // write none.
-        let color = match (&open.texture, open.color) {
-            (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
-            (_, color) => color,
-        };
-        self.textures.push(open.texture);
-        let material = match color {
-            Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
-            None => Material {
-                alpha: open.alpha.clamp(0.0, 1.0),
-                ..Material::of_srgb(open.name, DEFAULT_COLOR)
-            },
-        };
-        self.materials.push(material);
+    let materials = found.into_iter().map(|found| found.material(options));
+    Library {
+        materials: materials.collect(),
+        odd_line,
     }
 }
 
@@ -99,21 +81,30 @@ fn file_name(rest: &str) -> Option<String> {
     (!rest.is_empty()).then(|| rest.to_owned())
 }
 
-struct Open {
+#[derive(Default)]
+struct Found {
     name: String,
     color: Option<[f32; 3]>,
     alpha: f32,
     texture: Option<String>,
 }
 
-impl Open {
-    fn new(name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            color: None,
-            alpha: 1.0,
-            texture: None,
-        }
+impl Found {
+    fn material(self, options: &LoadOptions) -> (Material, Option<String>) {
+        // A black factor would make the picture black. Programs that write it mean the picture alone. So do those that
+        // write none.
+        let color = match (&self.texture, self.color) {
+            (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
+            (_, color) => color,
+        };
+        let material = match color {
+            Some(color) => Material::of_numbers(self.name, color, options.mtl_colors, self.alpha),
+            None => Material {
+                alpha: self.alpha.clamp(0.0, 1.0),
+                ..Material::of_srgb(self.name, DEFAULT_COLOR)
+            },
+        };
+        (material, self.texture)
     }
 
     fn colored(&mut self, rest: &str) -> bool {
@@ -149,12 +140,10 @@ mod tests {
 
     #[test]
     fn pictures_have_names_after_their_options() {
-        let name = |line| file_name(line);
-        assert_eq!(name("a b.png").as_deref(), Some("a b.png"));
         let options = "-s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 sub/a b.png";
-        assert_eq!(name(options).as_deref(), Some("sub/a b.png"));
-        assert_eq!(name("-clamp on"), None);
-        assert_eq!(name(""), None);
+        assert_eq!(file_name(options).as_deref(), Some("sub/a b.png"));
+        assert_eq!(file_name("-clamp on"), None);
+        assert_eq!(file_name(""), None);
     }
 
     #[test]
@@ -163,14 +152,15 @@ mod tests {
             b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
             map_Kd wood.png\nnewmtl d\nKd spectral x.rfl\nnewmtl \xfc\n";
         let library = read(text, &LoadOptions::default());
-        let names: Vec<&str> = library.materials.iter().map(|m| m.name.as_str()).collect();
+        let (materials, textures): (Vec<Material>, Vec<_>) = library.materials.into_iter().unzip();
+        let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
         assert_eq!(names, ["a b", "c", "d", "\u{fffd}"]);
-        assert_eq!(library.materials[0].diffuse[..2], [1.0, 0.0]);
-        assert_eq!(library.materials[0].alpha, 0.75);
-        assert_eq!(library.materials[1].alpha, 0.5);
-        assert_eq!(library.materials[2].diffuse, library.materials[3].diffuse);
+        assert_eq!(materials[0].diffuse[..2], [1.0, 0.0]);
+        assert_eq!(materials[0].alpha, 0.75);
+        assert_eq!(materials[1].alpha, 0.5);
+        assert_eq!(materials[2].diffuse, materials[3].diffuse);
         assert_eq!(library.odd_line, Some(11));
         let wood = Some("wood.png".to_owned());
-        assert_eq!(library.textures, [None, wood, None, None]);
+        assert_eq!(textures, [None, wood, None, None]);
     }
 }

@@ -32,7 +32,6 @@ pub(super) fn read(
     file.build(beside, builder)
 }
 
-/// A file that was parsed.
 #[derive(Default)]
 struct File {
     /// Positions, and colours where they have any.
@@ -116,14 +115,11 @@ impl File {
                 let is_whole =
                     corners.len() > 2 && corners.iter().all(|c| form(c) == form(&corners[0]));
                 if !line.ends_with('\n') && !is_whole {
-                    return Err(Fault::new(
-                        "face",
-                        Place::Line(number),
-                        "three or more corners of one form in the last line, which has no end",
-                        shown(line),
-                        "the file is cut short; export the mesh again",
-                    )
-                    .into());
+                    let expected =
+                        "three or more corners of one form in the last line, which has no end";
+                    let advice = "the file is cut short; export the mesh again";
+                    let place = Place::Line(number);
+                    return Err(Fault::new("face", place, expected, shown(line), advice).into());
                 }
                 self.faces.push(Face {
                     end: self.corners.len(),
@@ -191,9 +187,8 @@ impl File {
         }
         // Names of pictures are relative to the library.
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        let textures = library.textures.into_iter();
-        let textures = textures.map(|t| t.map(|t| folder.join(t).to_string_lossy().into_owned()));
-        for (material, texture) in library.materials.into_iter().zip(textures) {
+        for (material, texture) in library.materials {
+            let texture = texture.map(|name| folder.join(name).to_string_lossy().into_owned());
             self.by_name
                 .insert(material.name.clone(), self.materials.len());
             self.materials.push((builder.material(material), texture));
@@ -258,7 +253,6 @@ impl File {
     }
 }
 
-/// A part of all three corners, if they have it.
 fn all<T: Copy>(corners: [[u32; 3]; 3], part: usize, list: &[T]) -> Option<[T; 3]> {
     let of = |corner: [u32; 3]| list.get(corner[part] as usize).copied();
     let [a, b, c] = corners.map(of);
@@ -287,9 +281,6 @@ fn out_of_range(index: i64, count: usize, line: u64) -> Problem {
 /// At most 40 characters of a line, quoted.
 fn shown(line: &str) -> String {
     let begin: String = line.chars().take(40).collect();
-    let more = match line.chars().nth(40) {
-        Some(_) => "...",
-        None => "",
-    };
-    format!("{:?}", format!("{begin}{more}"))
+    let more = if begin.len() < line.len() { "..." } else { "" };
+    format!("{:?}", begin + more)
 }

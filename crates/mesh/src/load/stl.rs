@@ -18,7 +18,7 @@ const TRIANGLE: usize = 50;
 
 type Corners = [[f32; 3]; 3];
 
-/// Reads a file that is in memory. Equal corners become one position.
+/// Equal corners become one position.
 pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
     builder.material(Material::default_color());
     let mut numbers = HashMap::new();
@@ -30,7 +30,6 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
                 .entry(position.map(f32::to_bits))
                 .or_insert_with(|| builder.position(position))
         });
-        // In range: they were all added just now.
         let _ = builder.triangle(corners, None, 0);
     };
     if is_binary_stl(bytes, bytes.len() as u64) {

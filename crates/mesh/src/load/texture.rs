@@ -107,7 +107,6 @@ impl Texture {
     }
 }
 
-/// Rejects pictures without texels, and those that are too large.
 fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
     if width == 0 || height == 0 {
         return Err("it is empty".to_owned());
@@ -124,12 +123,12 @@ fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
 pub(super) struct Textures {
     known: HashMap<String, Option<Rc<Texture>>>,
     bytes: u64,
-    /// Those that could not be read, and why.
+    /// Names and reasons.
     failed: Vec<(String, String)>,
 }
 
 impl Textures {
-    /// The texture of a name, whose file `read` reads where it was not read before. Unreadable files are noted.
+    /// The texture of a name, read where it was not read before.
     pub(super) fn get(
         &mut self,
         name: &str,

@@ -11,7 +11,6 @@ use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
 use crate::Surface;
 use crate::material::{linear_to_srgb, srgb_to_linear};
 
-/// One pixel of the picture.
 #[derive(Debug, Clone, Copy)]
 struct Pixel {
     rgba: [u8; 4],
@@ -150,7 +149,6 @@ impl Buffer<'_> {
         }
     }
 
-    /// Averages the samples of each pixel.
     fn resolve<S: Surface + ?Sized>(&self, surface: &S) -> Vec<Pixel> {
         let light = self.options.light.as_ref();
         let mut paints: std::collections::HashMap<u32, Paint> = std::collections::HashMap::new();

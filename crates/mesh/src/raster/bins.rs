@@ -69,7 +69,6 @@ impl Bins {
         [bin % self.columns * BIN, bin / self.columns * BIN]
     }
 
-    /// The triangles of a bin, in their order.
     pub(super) fn triangles(&self, bin: usize) -> impl Iterator<Item = u32> + '_ {
         self.chunks
             .iter()

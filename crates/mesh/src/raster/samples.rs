@@ -1,10 +1,7 @@
 //! Where in a pixel the samples lie.
 
-use std::fmt;
-
 use shiftvox::split_mix::mix;
 
-/// Steps of the sub-pixel lattice in a pixel, as a power of two.
 pub(super) const SUBPIXEL_BITS: u32 = 12;
 /// Steps of the sub-pixel lattice in a pixel.
 pub(super) const SUBPIXELS: i64 = 1 << SUBPIXEL_BITS;
@@ -30,16 +27,9 @@ pub struct Samples {
 }
 
 /// A number of samples that there is not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("a pixel has 1, 4, 16 or 256 samples, not {0}")]
 pub struct SamplesError(pub u32);
-
-impl fmt::Display for SamplesError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a pixel has 1, 4, 16 or 256 samples, not {}", self.0)
-    }
-}
-
-impl std::error::Error for SamplesError {}
 
 impl Samples {
     /// A pattern of 1, 4, 16 or 256 samples per pixel.
@@ -93,7 +83,6 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Of `columns` by `rows` pixels from a corner, row by row.
     pub(super) fn new(samples: &Samples, corner: [u32; 2], columns: u32, rows: u32) -> Self {
         let pixels = match samples.pattern {
             Pattern::Regular => 1,
@@ -110,14 +99,10 @@ impl Places {
         Self { per_pixel, table }
     }
 
-    /// Those of a pixel.
     #[inline]
     pub(super) fn of(&self, pixel: usize) -> &[[i32; 2]] {
-        let at = if self.table.len() == self.per_pixel {
-            0
-        } else {
-            pixel * self.per_pixel
-        };
+        let is_shared = self.table.len() == self.per_pixel;
+        let at = if is_shared { 0 } else { pixel * self.per_pixel };
         &self.table[at..at + self.per_pixel]
     }
 }

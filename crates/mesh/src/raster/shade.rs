@@ -40,16 +40,9 @@ pub(super) struct Nearness {
 impl Nearness {
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| view.seen(corner));
-        let depths = [a.z, b.z, c.z];
         // Nearer parts were cut off.
-        let nearest = depths
-            .iter()
-            .fold(f64::INFINITY, |m, &z| m.min(z))
-            .max(view.near);
-        let farthest = depths
-            .iter()
-            .fold(0.0, |m: f64, &z| m.max(z))
-            .max(view.near);
+        let nearest = a.z.min(b.z).min(c.z).max(view.near);
+        let farthest = a.z.max(b.z).max(c.z).max(view.near);
         let normal = (b - a).cross(c - a);
         // Points p with normal . p = offset; a sample's ray is (x, y, 1) times its depth.
         let offset = normal.dot(a);
@@ -142,11 +135,7 @@ impl Paint {
         let color = blend(&self.triangle.colors, share);
         let Some(light) = light else { return color };
         let normal = blend(&self.triangle.normals, share).normalize_or(self.face);
-        let seen = if normal.dot(self.face) < 0.0 {
-            -normal
-        } else {
-            normal
-        };
-        color * light.on(seen)
+        let is_behind = normal.dot(self.face) < 0.0;
+        color * light.on(if is_behind { -normal } else { normal })
     }
 }

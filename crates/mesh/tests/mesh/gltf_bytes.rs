@@ -1,4 +1,4 @@
-//! Bytes of glTF documents: addresses, binary files, and what can be wrong with the JSON.
+//! Bytes of glTF documents: addresses, binary files, damage.
 #![allow(
     unreachable_pub,
     reason = "a module of test crates, and of a fuzz target"

@@ -10,7 +10,7 @@
 use std::io;
 
 use glam::{DAffine3, DMat4, DVec3};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{Beside, LoadOptions, Mesh, MeshFormat, read};
 
@@ -69,61 +69,87 @@ const TURNS: [([f64; 4], [DVec3; 3]); 4] = [
     ([0.0, 0.0, 0.0, 0.0], DVec3::AXES),
 ];
 
-#[derive(Default)]
-struct Composer {
-    buffers: Vec<Vec<u8>>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+/// Appends to a list of an object, which is made where there is none. Returns the number of the entry.
+fn add(object: &mut Value, list: &str, value: Value) -> usize {
+    if object[list].is_null() {
+        object[list] = json!([]);
+    }
+    let list = object[list].as_array_mut();
+    list.map_or(0, |list| {
+        list.push(value);
+        list.len() - 1
+    })
 }
-
-struct Vertices {
-    positions: Vec<DVec3>,
-    attributes: Map<String, Value>,
-}
-
-/// An attribute or list of indices: its accessor without place and count, and the bytes of its elements.
-type Elements = (&'static str, Value, Vec<Vec<u8>>);
 
 /// Composes a document.
 pub fn compose(choose: &mut Choose<'_>) -> Document {
     let mut composer = Composer {
         buffers: vec![Vec::new(); 1 + choose(3) as usize],
-        ..Composer::default()
+        json: json!({
+            "asset": {"version": "2.0"},
+            "materials": [
+                {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}},
+                {"alphaMode": "BLEND"},
+            ],
+        }),
     };
-    let count = 1 + choose(3);
-    let vertices: Vec<Vertices> = (0..count).map(|_| composer.vertices(choose)).collect();
-    let count = 1 + choose(3);
-    let (meshes, shown): (Vec<Value>, Vec<Vec<[DVec3; 3]>>) = (0..count)
-        .map(|_| {
-            let count = 1 + choose(2);
-            let primitives = (0..count).map(|_| composer.primitive(&vertices, choose));
-            let (json, triangles): (Vec<Value>, Vec<_>) = primitives.unzip();
-            (json!({ "primitives": json }), triangles.concat())
-        })
-        .unzip();
+    let vertices = (0..=choose(3)).map(|_| composer.vertices(choose));
+    let vertices: Vec<(Vec<DVec3>, Value)> = vertices.collect();
+    let mut shown = Vec::new();
+    for _ in 0..=choose(3) {
+        let mut mesh = json!({});
+        let mut triangles = Vec::new();
+        for _ in 0..=choose(2) {
+            let vertices = &vertices[choose(vertices.len() as u32) as usize];
+            let (primitive, own) = composer.primitive(vertices, choose);
+            add(&mut mesh, "primitives", primitive);
+            triangles.extend(own);
+        }
+        add(&mut composer.json, "meshes", mesh);
+        shown.push(triangles);
+    }
+    let Composer { mut json, buffers } = composer;
+    let shows = compose_nodes(&mut json, &shown, choose);
+    let mut document = Document {
+        json,
+        binary: None,
+        beside: Vec::new(),
+        shows: Some(shows),
+    };
+    store(buffers, &mut document, choose);
+    for _ in 0..choose(8).saturating_sub(4) {
+        damage(&mut document.json, choose);
+        document.shows = None;
+    }
+    document
+}
+
+/// Adds nodes and scenes that show meshes of these triangles. Returns the triangles in the world.
+fn compose_nodes(
+    json: &mut Value,
+    shown: &[Vec<[DVec3; 3]>],
+    choose: &mut Choose<'_>,
+) -> Vec<Corners> {
     let count = 1 + choose(7) as usize;
     let (mut nodes, places): (Vec<Value>, Vec<DAffine3>) = (0..count).map(|_| node(choose)).unzip();
+    let mut children = vec![Vec::new(); count];
     let mut roots = Vec::new();
     for number in 0..count {
-        if choose(4) > 0 {
-            nodes[number]["mesh"] = choose(meshes.len() as u32).into();
-        }
         match choose(number as u32 + 1) as usize {
             parent if parent < number && choose(3) > 0 => {
-                let children = &mut nodes[parent]["children"];
-                match children.as_array_mut() {
-                    Some(children) => children.push(number.into()),
-                    None => *children = json!([number]),
-                }
+                add(&mut nodes[parent], "children", number.into());
+                children[parent].push(number);
             }
             _ => roots.push(number),
         }
     }
-    let mut json = json!({
-        "asset": {"version": "2.0"}, "accessors": composer.accessors, "bufferViews": composer.views,
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}}, {"alphaMode": "BLEND"}],
-        "meshes": meshes,
-    });
+    let meshes = [0; 7].map(|_| choose(shown.len() as u32 + 1) as usize);
+    for (node, &mesh) in nodes.iter_mut().zip(&meshes) {
+        if mesh < shown.len() {
+            node["mesh"] = mesh.into();
+        }
+    }
+    json["nodes"] = nodes.into();
     let scenes = choose(3) as usize;
     // Without scenes all nodes are shown.
     if scenes > 0 {
@@ -136,70 +162,55 @@ pub fn compose(choose: &mut Choose<'_>) -> Document {
         }
     }
     let mut shows = Vec::new();
-    let whole = |value: &Value| value.as_u64().map(|number| number as usize);
     let mut open: Vec<(usize, DAffine3)> = Vec::new();
     open.extend(roots.iter().rev().map(|&n| (n, DAffine3::IDENTITY)));
     while let Some((number, parent)) = open.pop() {
         let place = parent * places[number];
-        if let Some(mesh) = whole(&nodes[number]["mesh"]) {
-            shows.extend(shown[mesh].iter().filter_map(|t| moved(t, &place)));
-        }
-        let children = nodes[number]["children"].as_array().into_iter().flatten();
-        open.extend(children.rev().filter_map(whole).map(|n| (n, place)));
+        let own = shown.get(meshes[number]).into_iter().flatten();
+        shows.extend(own.filter_map(|triangle| moved(triangle, &place)));
+        open.extend(children[number].iter().rev().map(|&n| (n, place)));
     }
-    json["nodes"] = nodes.into();
-    let mut document = Document {
-        json,
-        binary: None,
-        beside: Vec::new(),
-        shows: Some(shows),
-    };
-    store(composer.buffers, &mut document, choose);
-    for _ in 0..choose(8).saturating_sub(4) {
-        damage(&mut document.json, choose);
-        document.shows = None;
-    }
-    document
+    shows
+}
+
+struct Composer {
+    json: Value,
+    buffers: Vec<Vec<u8>>,
 }
 
 impl Composer {
-    /// Puts elements into a buffer, `stride` bytes from one to the next. Returns the number of their view.
-    fn view(&mut self, elements: &[Vec<u8>], stride: usize, choose: &mut Choose<'_>) -> usize {
-        let number = choose(self.buffers.len() as u32) as usize;
-        let buffer = &mut self.buffers[number];
-        // The reader skips the padding.
-        let begin = buffer.len().next_multiple_of(4) + 4 * choose(2) as usize;
-        buffer.resize(begin, 0xee);
-        for element in elements {
-            let end = buffer.len() + stride;
-            buffer.extend(element);
-            buffer.resize(end, 0xee);
-        }
-        self.views.push(json!({
-            "buffer": number, "byteOffset": begin, "byteLength": buffer.len() - begin, "byteStride": stride,
-        }));
-        self.views.len() - 1
-    }
-
-    /// Adds the accessor of elements in a view, and returns its number.
+    /// Puts elements into a buffer, with padding between them. Completes their accessor and returns its number.
     fn accessor(
         &mut self,
-        (_, accessor, elements): &Elements,
-        view: usize,
-        offset: usize,
-    ) -> Value {
-        let mut accessor = accessor.clone();
-        accessor["bufferView"] = view.into();
+        mut accessor: Value,
+        elements: &[Vec<u8>],
+        choose: &mut Choose<'_>,
+    ) -> usize {
+        let number = choose(self.buffers.len() as u32) as usize;
+        let buffer = &mut self.buffers[number];
+        let begin = buffer.len().next_multiple_of(4) + 4 * choose(2) as usize;
+        let [offset, gap] = [0; 2].map(|_| 4 * choose(2) as usize);
+        buffer.resize(begin + offset, 0xee);
+        for element in elements {
+            buffer.extend(element);
+            buffer.resize(buffer.len() + gap, 0xee);
+        }
+        let mut view = json!({
+            "buffer": number, "byteOffset": begin, "byteLength": buffer.len() - begin,
+        });
+        if gap > 0 || accessor["type"] != "SCALAR" {
+            view["byteStride"] = (elements.first().map_or(4, Vec::len) + gap).into();
+        }
+        accessor["bufferView"] = add(&mut self.json, "bufferViews", view).into();
         accessor["byteOffset"] = offset.into();
         accessor["count"] = elements.len().into();
-        self.accessors.push(accessor);
-        (self.accessors.len() - 1).into()
+        add(&mut self.json, "accessors", accessor)
     }
 
-    /// Positions, with or without normals and colours: one after the other, or together in one view.
-    fn vertices(&mut self, choose: &mut Choose<'_>) -> Vertices {
+    /// Positions and attributes, with or without normals and colours.
+    fn vertices(&mut self, choose: &mut Choose<'_>) -> (Vec<DVec3>, Value) {
         let count = 3 + choose(5) as usize;
-        // Component type, its bytes, and the number that stands for 1 in shares.
+        // Component type, its bytes, and the number that means 1 if normalized.
         let (kind, width, full) = [
             (5126, 4, 1.0),
             (5120, 1, 127.0),
@@ -208,7 +219,8 @@ impl Composer {
             (5123, 2, 65535.0),
         ][choose(5) as usize];
         let normalized = choose(2) == 0;
-        let (mut raw, mut positions) = (Vec::new(), Vec::new());
+        let one: f32 = if normalized { full } else { 1.0 };
+        let (mut elements, mut positions) = (Vec::new(), Vec::new());
         for _ in 0..count {
             let numbers = [0; 3].map(|_| choose(6) as u8);
             let mut bytes: Vec<u8> = match kind {
@@ -216,62 +228,38 @@ impl Composer {
                 _ => numbers.map(|n| [n, 0][..width].to_vec()).concat(),
             };
             bytes.resize(bytes.len().next_multiple_of(4), 0xee);
-            raw.push(bytes);
-            let one: f32 = if normalized { full } else { 1.0 };
-            positions.push(DVec3::from_array(
-                numbers.map(|n| f64::from(f32::from(n) / one)),
-            ));
+            elements.push(bytes);
+            let place = numbers.map(|n| f64::from(f32::from(n) / one));
+            positions.push(DVec3::from_array(place));
         }
         let position = json!({"componentType": kind, "normalized": normalized, "type": "VEC3"});
-        let mut lists: Vec<Elements> = vec![("POSITION", position, raw)];
-        if choose(2) == 0 {
-            let up = [0.0f32, 0.0, 1.0].map(f32::to_le_bytes).concat();
-            let normal = json!({"componentType": 5126, "type": "VEC3"});
-            lists.push(("NORMAL", normal, vec![up; count]));
-        }
-        if choose(2) == 0 {
-            let bytes = [1, 2, 3, 255].map(|c: u8| c.wrapping_mul(choose(100) as u8));
-            let color = json!({"componentType": 5121, "normalized": true, "type": "VEC4"});
-            lists.push(("COLOR_0", color, vec![bytes.to_vec(); count]));
-        }
-        let mut attributes = Map::new();
-        let gap = 4 * choose(3) as usize;
-        let is_interleaved = choose(2) == 0;
-        let groups = lists.chunks(if is_interleaved { lists.len() } else { 1 });
-        for group in groups {
-            let together = |i: usize| group.iter().flat_map(|list| list.2[i].clone()).collect();
-            let elements: Vec<Vec<u8>> = (0..count).map(together).collect();
-            let view = self.view(&elements, elements[0].len() + gap, choose);
-            let mut offset = 0;
-            for list in group {
-                attributes.insert(list.0.into(), self.accessor(list, view, offset));
-                offset += list.2[0].len();
+        let mut attributes = json!({"POSITION": self.accessor(position, &elements, choose)});
+        for name in ["NORMAL", "COLOR_0"] {
+            if choose(2) == 0 {
+                let up = [0.0f32, 0.0, 1.0].map(f32::to_le_bytes).concat();
+                let floats = json!({"componentType": 5126, "type": "VEC3"});
+                attributes[name] = self.accessor(floats, &vec![up; count], choose).into();
             }
         }
-        Vertices {
-            positions,
-            attributes,
-        }
+        (positions, attributes)
     }
 
     /// A primitive and its triangles.
-    fn primitive(&mut self, all: &[Vertices], choose: &mut Choose<'_>) -> (Value, Vec<[DVec3; 3]>) {
-        let vertices = &all[choose(all.len() as u32) as usize];
-        let count = vertices.positions.len() as u32;
-        let mut json = json!({"attributes": vertices.attributes});
+    fn primitive(
+        &mut self,
+        (positions, attributes): &(Vec<DVec3>, Value),
+        choose: &mut Choose<'_>,
+    ) -> (Value, Vec<[DVec3; 3]>) {
+        let count = positions.len() as u32;
+        let mut json = json!({"attributes": attributes});
         let mut corners: Vec<u32> = (0..count).collect();
         let kinds = [(5121, 1), (5123, 2), (5125, 4)];
         if let Some(&(kind, width)) = kinds.get(choose(4) as usize) {
-            let length = choose(13);
-            corners = (0..length).map(|_| choose(count)).collect();
+            corners = (0..choose(13)).map(|_| choose(count)).collect();
             let bytes = corners.iter().map(|i| i.to_le_bytes()[..width].to_vec());
             let elements: Vec<Vec<u8>> = bytes.collect();
-            let view = self.view(&elements, width, choose);
-            if choose(2) == 0 {
-                self.views[view]["byteStride"].take();
-            }
             let indices = json!({"componentType": kind, "type": "SCALAR"});
-            json["indices"] = self.accessor(&("", indices, elements), view, 0);
+            json["indices"] = self.accessor(indices, &elements, choose).into();
         }
         let mode = [4, 4, 4, 5, 6, 0, 1][choose(7) as usize];
         if mode != 4 || choose(2) == 0 {
@@ -280,15 +268,14 @@ impl Composer {
         if choose(2) == 0 {
             json["material"] = choose(3).into();
         }
+        let fan = corners.len().saturating_sub(2);
         let (triangles, numbers): (usize, fn(usize) -> [usize; 3]) = match mode {
             4 => (corners.len() / 3, |k| [3 * k, 3 * k + 1, 3 * k + 2]),
-            5 => (corners.len().saturating_sub(2), |k| {
-                [k + k % 2, k + 1 - k % 2, k + 2]
-            }),
-            6 => (corners.len().saturating_sub(2), |k| [0, k + 1, k + 2]),
+            5 => (fan, |k| [k + k % 2, k + 1 - k % 2, k + 2]),
+            6 => (fan, |k| [0, k + 1, k + 2]),
             _ => (0, |_| [0; 3]),
         };
-        let position = |i: usize| vertices.positions[corners[i] as usize];
+        let position = |i: usize| positions[corners[i] as usize];
         let triangles = (0..triangles).map(|k| numbers(k).map(position));
         (json, triangles.collect())
     }
@@ -340,7 +327,6 @@ fn moved(triangle: &[DVec3; 3], place: &DAffine3) -> Option<Corners> {
 
 /// Puts the buffers into the file, into addresses and beside it.
 fn store(buffers: Vec<Vec<u8>>, document: &mut Document, choose: &mut Choose<'_>) {
-    let mut list = Vec::new();
     for (number, bytes) in buffers.into_iter().enumerate() {
         let mut buffer = json!({"byteLength": bytes.len()});
         match choose(4) {
@@ -353,7 +339,6 @@ fn store(buffers: Vec<Vec<u8>>, document: &mut Document, choose: &mut Choose<'_>
             2 => buffer["uri"] = data_uri(&bytes).trim_end_matches('=').into(),
             _ => buffer["uri"] = data_uri(&bytes).into(),
         }
-        list.push(buffer);
+        add(&mut document.json, "buffers", buffer);
     }
-    document.json["buffers"] = list.into();
 }

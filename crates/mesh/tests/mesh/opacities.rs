@@ -2,15 +2,18 @@
 
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, sixteenths};
 use shiftvox_mesh::Mesh;
-use shiftvox_mesh::voxelize::{Grid, opacities, voxelize};
+use shiftvox_mesh::voxelize::{Grid, opacities};
 
 use super::shared::{one_box, quad, shape};
+use super::voxels::voxels;
 
 /// The graph of a mesh's voxels, with opacities.
 pub(super) fn graph_of(mesh: &Mesh, depth: u32) -> (Graph, Grid) {
     let grid = Grid::around(mesh, depth).unwrap();
     let mut builder = Builder::new(BuildOptions::default());
-    voxelize(mesh, &grid, &mut |voxel| builder.push(voxel), &Silent);
+    voxels(mesh, depth)
+        .into_iter()
+        .for_each(|voxel| builder.push(voxel));
     let mut graph = builder.finish(grid.placement(), &Silent).unwrap();
     graph.opacity = opacities(mesh, &grid, &graph, &Silent).into();
     graph.validate().unwrap();
@@ -19,35 +22,34 @@ pub(super) fn graph_of(mesh: &Mesh, depth: u32) -> (Graph, Grid) {
 
 /// By level, the area of all nodes' faces seen along an axis from its high side, in world units. All nodes of a column
 /// count.
-fn covered(graph: &Graph, axis: usize) -> Vec<f64> {
+fn covered(graph: &Graph, axis: usize) -> impl Iterator<Item = (usize, f64)> {
     let levels = graph.level_start.windows(2).enumerate();
-    let area = |(level, nodes): (usize, &[u32])| {
+    levels.map(move |(level, nodes)| {
         let parts = f64::from(1u32 << (graph.depth as usize - level));
         let side = graph.placement.voxel_size * parts;
         let share = |node: u32| {
             let opacity = graph.opacity[node as usize];
             f64::from(sixteenths(opacity.from_side(axis, true))) / 16.0
         };
-        (nodes[0]..nodes[1]).map(share).sum::<f64>() * side * side
-    };
-    levels.map(area).collect()
+        (
+            level,
+            (nodes[0]..nodes[1]).map(share).sum::<f64>() * side * side,
+        )
+    })
 }
 
 #[test]
 fn a_thin_bar_keeps_its_width_at_every_level() {
-    // A hundred long, a third wide. At 1024 voxels it is three wide; at 32, a tenth of one, one
-    // and a half of the sixteenths that opacities distinguish. Coarser, it is one or none.
+    // A hundred long, a third wide. At 1024 voxels it is three wide; at 32, a tenth of one, one and a half of the
+    // sixteenths that opacities distinguish. Coarser, it is one or none.
     let bar = one_box([0.0, 0.1, 0.2], [100.0, 0.4, 0.5]);
     let (graph, _) = graph_of(&bar, 10);
     for axis in [1, 2] {
-        for (level, area) in covered(&graph, axis).into_iter().enumerate().skip(5) {
+        for (level, area) in covered(&graph, axis).skip(5) {
             let share = area / (100.0 * 0.3);
             // The back, behind the front, counts only where both are whole.
             let most = if level > 8 { 2.2 } else { 1.5 };
-            assert!(
-                (0.6..most).contains(&share),
-                "level {level}, {axis}: {share}"
-            );
+            assert!((0.6..most).contains(&share), "{level}, {axis}: {share}");
         }
     }
 }
@@ -58,7 +60,7 @@ fn slanted_walls_stay_whole() {
     let corners = corners.map(|[x, z]| [x, x * 37.0 / 64.0, z]);
     let (graph, _) = graph_of(&shape(|builder| quad(builder, corners, 0)), 6);
     // All but the outermost columns are covered in full, by both parts of the wall where a node border cuts it.
-    for (level, area) in covered(&graph, 1).into_iter().enumerate().skip(2) {
+    for (level, area) in covered(&graph, 1).skip(2) {
         let share = area / (64.0 * 64.0);
         assert!((0.9..1.9).contains(&share), "level {level}: {share}");
     }

@@ -8,8 +8,13 @@ use shiftvox_mesh::{Mesh, SceneOptions, Surface};
 
 use super::shared::{ball, one_box, shape, turned};
 
-/// The text of a white shell around the same shape in red, smaller.
-fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> String {
+fn scene_of(text: &str, depth: u32) -> Scene {
+    let options = SceneOptions::new().mesh_depth(depth).opacities(true);
+    options.from_bytes(text.as_bytes(), "nested.obj").unwrap()
+}
+
+/// A white shell around the same shape in red, smaller.
+fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> Scene {
     let mut text = String::new();
     for (scale, color) in [(1.0, "1 1 1"), (inner, "1 0 0")] {
         for number in 0..mesh.len() {
@@ -20,12 +25,7 @@ fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> String {
             text += "f -3 -2 -1\n";
         }
     }
-    text
-}
-
-fn scene_of(text: &str, depth: u32) -> Scene {
-    let options = SceneOptions::new().mesh_depth(depth).opacities(true);
-    options.from_bytes(text.as_bytes(), "nested.obj").unwrap()
+    scene_of(&text, 8)
 }
 
 /// The largest difference of red and green in any pixel, and its mean over the covered pixels.
@@ -36,9 +36,8 @@ fn redness(scene: &Scene, camera: &impl View, coverage: Coverage) -> (i32, f64) 
         .background(Background::Color([0; 3]));
     let picture = renderer.render(scene, camera, 160, 160).unwrap();
     let seen = picture.rgba().iter().filter(|pixel| pixel[0] > 0);
-    let excess: Vec<i32> = seen
-        .map(|[r, g, ..]| i32::from(*r) - i32::from(*g))
-        .collect();
+    let excess = seen.map(|[r, g, ..]| i32::from(*r) - i32::from(*g));
+    let excess: Vec<i32> = excess.collect();
     let mean = f64::from(excess.iter().sum::<i32>()) / excess.len().max(1) as f64;
     (excess.into_iter().fold(0, i32::max), mean)
 }
@@ -50,27 +49,22 @@ fn a_closed_surface_hides_everything_inside() {
     let profile = [(1.0, 0.0), (1.0, 0.4), (-1.0, 0.4), (-1.0, 0.0)];
     let can = shape(|builder| turned(builder, DVec3::ZERO, &profile, 48, 0));
     let cube = one_box([-1.0; 3], [1.0; 3]);
-    let directions = [
-        (0.0, 0.0),
-        (2.0, 3.0),
-        (11.0, 7.0),
-        (45.0, 35.26),
-        (75.0, 20.0),
-        (140.0, -50.0),
-        (200.0, 85.0),
-        (260.0, 1.0),
-        (310.0, 60.0),
-    ];
-    for (name, text) in [
+    for (name, scene) in [
         ("ball", nested(&ball(48), 0.9, DQuat::IDENTITY)),
         ("cube", nested(&cube, 0.9, DQuat::IDENTITY)),
         ("tilted cube", nested(&cube, 0.9, tilted)),
         ("tilted can", nested(&can, 0.85, tilted * upright)),
     ] {
-        let scene = scene_of(&text, 8);
         // From more than a pixel per voxel to the whole scene in a few pixels.
         for zoom in [1.6, 0.8, 0.4, 0.2] {
-            for (azimuth, elevation) in directions {
+            for (azimuth, elevation) in [
+                (0.0, 0.0),
+                (2.0, 3.0),
+                (45.0, 35.26),
+                (140.0, -50.0),
+                (200.0, 85.0),
+                (310.0, 60.0),
+            ] {
                 let fitted = Camera::fit(&scene).zoom(zoom);
                 let camera = fitted.azimuth(azimuth).elevation(elevation);
                 let (exact, _) = redness(&scene, &camera, Coverage::Exact);

@@ -1,17 +1,15 @@
-//! Triangles to voxels: known answers, and an oracle with rational numbers.
+//! Triangles to voxels: known answers, and an oracle over all cubes in exact integers.
 
 use std::collections::{HashMap, HashSet};
 
 use glam::{DAffine3, DMat3, DVec3, EulerRot};
-use num_bigint::BigInt;
-use num_rational::BigRational;
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
 use shiftvox_mesh::voxelize::{Grid, GridError, voxelize};
 use shiftvox_mesh::{Instances, Material, Mesh, Surface};
 
 use super::shared::{
-    ball, indexed, on_any_threads, one_box, quad, shape, sheet, soup, triangle, turned,
+    Corners, ball, indexed, on_any_threads, one_box, quad, shape, sheet, triangle, turned,
 };
 
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
@@ -22,64 +20,53 @@ pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel>
     found
 }
 
-fn cells(voxels: &[Voxel]) -> HashSet<[i32; 3]> {
-    let set: HashSet<[i32; 3]> = voxels.iter().map(|voxel| voxel.index).collect();
-    assert_eq!(set.len(), voxels.len(), "each voxel once");
-    set
-}
-
-fn square(z: f32) -> Mesh {
-    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, z]), 0))
+fn rectangle([left, right]: [f32; 2]) -> [[f32; 3]; 4] {
+    [[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]].map(|[x, y]| [x, y, 5.0])
 }
 
 #[test]
-fn simple_shapes_have_known_voxels_and_normals() {
-    let outwards = |voxel: &Voxel| {
-        let side = |c| f64::from(i32::from(c == 31) - i32::from(c == 0));
-        DVec3::from_array(voxel.index.map(side)).normalize()
-    };
-    let from_middle = |voxel: &Voxel| {
-        let offset = DVec3::from_array(voxel.index.map(f64::from)) - DVec3::splat(31.5);
-        offset.normalize()
-    };
-    type Normal<'n> = &'n dyn Fn(&Voxel) -> DVec3;
-    // Mesh, depth, number of voxels where it is known, the normal of a voxel and its least cosine.
-    let cases: [(Mesh, u32, Option<usize>, Normal<'_>, f64); 4] = [
-        (square(5.0), 1, Some(4), &|_| DVec3::Z, 1.0 - 1e-9),
-        (square(5.0), 7, Some(1 << 14), &|_| DVec3::Z, 1.0 - 1e-9),
-        (
-            one_box([-1.0; 3], [1.0; 3]),
-            5,
-            Some(32 * 32 * 32 - 30 * 30 * 30),
-            &outwards,
-            0.999,
-        ),
-        (ball(24), 6, None, &from_middle, 0.97),
-    ];
-    for (mesh, depth, count, normal, least) in cases {
-        let found = voxels(&mesh, depth);
-        assert!(count.is_none_or(|count| count == found.len()));
-        for voxel in found {
-            assert_eq!(voxel.color, [90, 120, 150]);
-            let found = voxel.normal.unwrap().decode().unwrap();
-            assert!(found.dot(normal(&voxel)) > least, "{voxel:?}: {found}");
-        }
-    }
+fn voxels_have_the_normals_of_their_surface() {
+    let square = shape(|builder| quad(builder, rectangle([0.0, 1.0]), 0));
     // A flat mesh lies in the middle of its layer.
-    let (origin, voxel_size) = Grid::around(&square(5.0), 4).unwrap().placement();
+    let (origin, voxel_size) = Grid::around(&square, 4).unwrap().placement();
     let layer = (5.0 - origin[2]) / voxel_size;
     assert!((layer - 0.5).abs() < 1e-9);
+    let wall = indexed(
+        &rectangle([0.0, 1.0]),
+        &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]],
+    );
+    let outwards = |index: [i32; 3]| {
+        let side = |c| f64::from(i32::from(c == 31) - i32::from(c == 0));
+        DVec3::from_array(index.map(side))
+    };
+    let from_middle =
+        |index: [i32; 3]| DVec3::from_array(index.map(f64::from)) - DVec3::splat(31.5);
+    // Mesh, depth, a direction along the normal and its least cosine.
+    type Normal<'n> = &'n dyn Fn([i32; 3]) -> DVec3;
+    let cases: [(Mesh, u32, Normal<'_>, f64); 4] = [
+        (square, 7, &|_| DVec3::Z, 1.0 - 1e-9),
+        // Of two sides one is kept.
+        (wall, 3, &|_| DVec3::Z, 1.0 - 1e-9),
+        (one_box([-1.0; 3], [1.0; 3]), 5, &outwards, 0.999),
+        (ball(24), 6, &from_middle, 0.97),
+    ];
+    for (mesh, depth, normal, least) in cases {
+        for voxel in voxels(&mesh, depth) {
+            assert_eq!(voxel.color, [90, 120, 150]);
+            let found = voxel.normal.unwrap().decode().unwrap();
+            let cosine = found.dot(normal(voxel.index).normalize());
+            assert!(cosine > least, "{voxel:?}: {found}");
+        }
+    }
 }
 
 #[test]
 fn colours_are_weighted_by_area_in_linear_light() {
     // Three quarters of the square are white, the rest is black.
     let mesh = shape(|builder| {
-        for (byte, low, high) in [(255, 0.0, 0.75), (0, 0.75, 1.0)] {
+        for (byte, range) in [(255, [0.0, 0.75]), (0, [0.75, 1.0])] {
             let material = builder.material(Material::of_srgb("m", [byte; 3]));
-            let corners = [[low, 0.0], [high, 0.0], [high, 1.0], [low, 1.0]];
-            quad(builder, corners.map(|[x, y]| [x, y, 0.0]), material);
+            quad(builder, rectangle(range), material);
         }
     });
     let found = voxels(&mesh, 1);
@@ -90,35 +77,19 @@ fn colours_are_weighted_by_area_in_linear_light() {
 }
 
 #[test]
-fn a_wall_with_two_sides_keeps_one_normal() {
-    let [a, b] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
-    let [c, d] = [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    let wall = indexed(&[a, b, c, d], &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
-    for voxel in voxels(&wall, 3) {
-        assert_eq!(voxel.normal.unwrap().decode(), Some(DVec3::Z));
-    }
-}
-
-#[test]
-fn threads_and_instances_change_nothing() {
+fn threads_change_nothing_and_instances_are_moved_meshes() {
     let mesh = ball(12);
     on_any_threads(|| voxels(&mesh, 7));
-    // Five balls as instances, and as one mesh.
-    let flat = shape(|builder| {
-        for i in 0..5u8 {
-            for corners in soup(&mesh) {
-                let moved = corners.map(|[x, y, z]| [x + 3.0 * f32::from(i), y, z]);
-                triangle(builder, moved, 0);
-            }
-        }
-    });
-    let places = (0..5).map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i)));
-    let instances = Instances::new(mesh, places.collect());
-    assert_eq!(instances.len(), Surface::len(&flat));
-    let (a, b) = (cells(&voxels(&instances, 7)), cells(&voxels(&flat, 7)));
-    // Single precision rounds the positions of the mesh.
-    let differing = a.symmetric_difference(&b).count();
-    assert!(differing * 100 < a.len(), "{differing} of {}", a.len());
+    let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 1.1, -0.7);
+    let places = [1.0, 2.0].map(|x| DAffine3::from_mat3_translation(turn * x, DVec3::X * x));
+    let instances = Instances::new(mesh.clone(), places.to_vec());
+    let moved = |place: DAffine3| {
+        let corners = (0..mesh.len()).map(|number| Surface::corners(&mesh, number));
+        corners.map(move |corners| corners.map(|corner| place.transform_point3(corner)))
+    };
+    let expected = places.into_iter().flat_map(moved);
+    let found = (0..instances.len()).map(|number| Surface::corners(&instances, number));
+    assert!(found.eq(expected));
 }
 
 #[test]
@@ -135,72 +106,80 @@ fn invalid_grids_are_refused() {
     assert!(matches!(refused, Err(GridError::Coordinates { .. })));
 }
 
-type Exact = [BigRational; 3];
+type Exact = [i128; 3];
 
-/// The part of a polygon in a closed cube: cut at six planes in rational numbers.
-fn cut(mut polygon: Vec<Exact>, corner: [i64; 3], side: i64) -> Vec<Exact> {
-    let whole = |value: i64| BigRational::from_integer(BigInt::from(value));
-    for axis in 0..3 {
-        for (plane, sign) in [(corner[axis], 1), (corner[axis] + side, -1)] {
-            let zero = whole(0);
-            let inside = |p: &Exact| (p[axis].clone() - whole(plane)) * whole(sign);
-            let mut kept = Vec::new();
-            for (i, here) in polygon.iter().enumerate() {
-                let next = &polygon[(i + 1) % polygon.len()];
-                let (a, b) = (inside(here), inside(next));
-                if a >= zero {
-                    kept.push(here.clone());
-                }
-                if (a >= zero) != (b >= zero) {
-                    let t = a.clone() / (a - b);
-                    let between = |k: usize| &here[k] + (&next[k] - &here[k]) * &t;
-                    kept.push([0, 1, 2].map(between));
-                }
-            }
-            polygon = kept;
-        }
-    }
-    polygon
+fn subtract(a: Exact, b: Exact) -> Exact {
+    [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// Adds the voxels that a polygon meets, cube by cube.
+fn cross(a: Exact, b: Exact) -> Exact {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i])
+}
+
+/// The directions of which one separates a triangle from any cube apart from it.
+fn directions(corners: [Exact; 3]) -> Vec<Exact> {
+    let edges = [0, 1, 2].map(|i| subtract(corners[(i + 1) % 3], corners[i]));
+    let axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let between = edges.map(|edge| axes.map(|axis| cross(edge, axis)));
+    let normal = cross(edges[0], edges[1]);
+    [&axes[..], between.as_flattened(), &[normal]].concat()
+}
+
+fn range(points: &[Exact], direction: Exact) -> [i128; 2] {
+    let values = points
+        .iter()
+        .map(|p| (0..3).map(|k| p[k] * direction[k]).sum::<i128>());
+    values.fold([i128::MAX, i128::MIN], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
+/// Adds the voxels that a triangle meets, cube by cube.
 fn add(
-    polygon: Vec<Exact>,
+    corners: [Exact; 3],
+    directions: &[Exact],
     index: [i32; 3],
-    level: u32,
-    depth: u32,
+    levels: u32,
     found: &mut HashSet<[i32; 3]>,
+    depth: u32,
 ) {
-    let side = 1i64 << (30 - level);
-    let polygon = cut(polygon, index.map(|c| i64::from(c) * side), side);
-    if polygon.is_empty() {
+    let side = 1i128 << (30 - depth + levels);
+    let cube = [0, 1, 2, 3, 4, 5, 6, 7]
+        .map(|i: i128| [0, 1, 2].map(|k| (i128::from(index[k]) + (i >> k & 1)) * side));
+    let is_apart = directions.iter().any(|&direction| {
+        let [a, b] = [&corners[..], &cube].map(|points| range(points, direction));
+        a[1] < b[0] || b[1] < a[0]
+    });
+    if is_apart {
         return;
     }
-    if level == depth {
+    if levels == 0 {
         found.insert(index);
         return;
     }
     for octant in 0..8 {
         let child = [0, 1, 2].map(|k| 2 * index[k] + (octant >> k & 1));
-        add(polygon.clone(), child, level + 1, depth, found);
+        add(corners, directions, child, levels - 1, found, depth);
     }
 }
 
-/// Compares the voxels of a surface with those of rational arithmetic.
+/// Compares the voxels of a surface with those of the oracle.
 fn check<S: Surface>(surface: &S, depth: u32) {
     let grid = Grid::around(surface, depth).unwrap();
     let mut expected = HashSet::new();
     for number in 0..surface.len() as u32 {
-        let corners = grid.corners(surface, number);
-        let exact = corners.map(|p| p.map(|c| BigRational::from_integer(c.into())));
-        add(exact.to_vec(), [0; 3], 0, depth, &mut expected);
+        let corners = grid.corners(surface, number).map(|p| p.map(i128::from));
+        let directions = directions(corners);
+        add(corners, &directions, [0; 3], depth, &mut expected, depth);
     }
-    assert_eq!(cells(&voxels(surface, depth)), expected, "depth {depth}");
+    let voxels = voxels(surface, depth);
+    let found: HashSet<[i32; 3]> = voxels.iter().map(|voxel| voxel.index).collect();
+    assert_eq!(found.len(), voxels.len(), "each voxel once");
+    assert_eq!(found, expected, "depth {depth}");
 }
 
 #[test]
-fn voxels_of_closed_surfaces_are_exact() {
-    check(&ball(9), 5);
+fn voxels_of_large_surfaces_are_exact() {
     check(&one_box([0.0; 3], [1.0; 3]), 4);
     // A turned body with a waist, in a skew place.
     let profile = [
@@ -223,14 +202,21 @@ fn voxels_of_closed_surfaces_are_exact() {
     check(&bent, 6);
 }
 
-/// Coordinates in a voxel's quarters at depth 3, so that faces, edges and corners of cubes are met exactly; or anywhere.
+/// Corners in a voxel's quarters at depth 3, so that faces, edges and corners of cubes are met exactly; or anywhere.
 fn corners() -> impl Strategy<Value = Vec<[f32; 3]>> {
     let quarters = (0u8..=28).prop_map(|n| f32::from(n) / 4.0);
-    let anywhere = 0f32..=7.0;
     let list = |coordinate: BoxedStrategy<f32>| {
         prop::collection::vec(prop::array::uniform3(coordinate), 3..9)
     };
-    prop_oneof![list(quarters.boxed()), list(anywhere.boxed())]
+    prop_oneof![list(quarters.boxed()), list((0f32..=7.0).boxed())]
+}
+
+fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
+    shape(|builder| {
+        for corners in triangles {
+            triangle(builder, corners, 0);
+        }
+    })
 }
 
 proptest! {
@@ -239,14 +225,9 @@ proptest! {
     #[test]
     fn voxels_of_random_triangles_are_exact(corners in corners()) {
         // At depth 3 a voxel has side 1 where the box has 7.
-        let box_corners = [[0.0; 3], [7.0; 3], [7.0, 0.0, 7.0]];
-        let mesh = shape(|builder| {
-            triangle(builder, box_corners, 0);
-            for corners in corners.windows(3) {
-                triangle(builder, [corners[0], corners[1], corners[2]], 0);
-            }
-        });
-        check(&mesh, 3);
+        let outer = [[0.0; 3], [7.0; 3], [7.0, 0.0, 7.0]];
+        let strip = corners.windows(3).map(|w| [w[0], w[1], w[2]]);
+        check(&mesh_of([outer].into_iter().chain(strip)), 3);
     }
 
     /// A triangle of almost no width loses no voxel.
@@ -256,12 +237,9 @@ proptest! {
         depth in 3u32..9,
     ) {
         let c = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0 + 1e-6 * off[k]);
-        let mesh = shape(|builder| {
-            // Two far corners hold the box.
-            triangle(builder, [[0.0; 3], [0.0, 1e-4, 0.0], a], 0);
-            triangle(builder, [[1.0; 3], [1.0, 1.0, 0.999], a], 0);
-            triangle(builder, [a, b, c], 0);
-        });
-        check(&mesh, depth);
+        // Two far corners hold the box.
+        let low = [[0.0; 3], [0.0, 1e-4, 0.0], a];
+        let high = [[1.0; 3], [1.0, 1.0, 0.999], a];
+        check(&mesh_of([low, high, [a, b, c]]), depth);
     }
 }

@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use shiftvox::graph::Silent;
-use shiftvox_mesh::Mesh;
-use shiftvox_mesh::raster::{self, RasterCamera};
+use shiftvox_mesh::raster::RasterCamera;
+use shiftvox_mesh::{Mesh, Surface};
 
-use super::shared::{looking, plain, shape, triangle};
+use super::shared::{looking, shape, triangle, triangles};
 
 /// Pixels along a side of the picture.
 const SIDE: i32 = 40;
@@ -22,12 +21,9 @@ fn area([a, b, c]: [Point; 3]) -> i32 {
 
 /// Triangles that tile a rectangle: two, then each point within one cuts that into three.
 fn tiling(low: Point, high: Point, points: &[(Point, bool, usize)]) -> Vec<[Point; 3]> {
-    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-    let mut triangles = vec![
-        [corners[0], corners[1], corners[2]],
-        [corners[0], corners[2], corners[3]],
-    ];
-    let mut known = corners.to_vec();
+    let [a, b, c, d] = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let mut triangles = vec![[a, b, c], [a, c, d]];
+    let mut known = vec![a, b, c, d];
     for &(mut point, is_level, pick) in points {
         if is_level {
             // The height of a known vertex makes horizontal edges.
@@ -63,23 +59,9 @@ fn mesh(triangles: &[[Point; 3]], height: impl Fn(Point) -> f32) -> Mesh {
 
 /// The number of each pixel's samples that see a triangle.
 fn covered(mesh: &Mesh, view: &RasterCamera, per_pixel: u32) -> Vec<u32> {
-    let picture = raster::draw(mesh, view, &plain(per_pixel), &Silent).unwrap();
+    let picture = triangles(mesh, view, per_pixel, None, None);
     let samples = |&share: &f32| (share * per_pixel as f32).round() as u32;
     picture.coverage.iter().map(samples).collect()
-}
-
-/// The number of each pixel's samples in a rectangle, which includes its left and upper side.
-fn expected(low: Point, high: Point, per_pixel: u32) -> Vec<u32> {
-    let across = per_pixel.isqrt() as i32;
-    // Samples are the middles of squares.
-    let along = |pixel: i32, k: usize| {
-        let at = |sample: i32| pixel * STEPS + (2 * sample + 1) * STEPS / (2 * across);
-        let own = (0..across).filter(|&s| (low[k]..high[k]).contains(&at(s)));
-        own.count() as u32
-    };
-    (0..SIDE * SIDE)
-        .map(|pixel| along(pixel % SIDE, 0) * along(pixel / SIDE, 1))
-        .collect()
 }
 
 /// The samples of all triangles, drawn one by one.
@@ -97,13 +79,22 @@ fn one_by_one(
     sum
 }
 
-/// Compares tiles in the plane with the samples of their rectangle. A unit is a picture's side, so that vertices are
-/// exactly on the lattice.
+/// Compares tiles in the plane with the samples of their rectangle, which includes its left and upper side. A unit is
+/// a picture's side, so that vertices are exactly on the lattice.
 fn check(low: Point, high: Point, points: &[(Point, bool, usize)]) {
     let triangles = tiling(low, high, points);
     let view = looking(DVec3::Z, DVec3::ZERO, [SIDE as u32; 2], f64::from(SIDE));
-    for per_pixel in [1, 4, 16] {
-        let expected = expected(low, high, per_pixel);
+    for (across, per_pixel) in [(1, 1), (2, 4), (4, 16)] {
+        let along = |pixel: i32, k: usize| {
+            // Samples are the middles of squares.
+            let at = |sample: i32| pixel * STEPS + (2 * sample + 1) * STEPS / (2 * across);
+            let own = (0..across).filter(|&s| (low[k]..high[k]).contains(&at(s)));
+            own.count() as u32
+        };
+        let pixels = 0..SIDE * SIDE;
+        let expected: Vec<u32> = pixels
+            .map(|pixel| along(pixel % SIDE, 0) * along(pixel / SIDE, 1))
+            .collect();
         let whole = covered(&mesh(&triangles, |_| 0.0), &view, per_pixel);
         assert_eq!(whole, expected, "{per_pixel}: {triangles:?}");
         let sum = one_by_one(&triangles, |_| 0.0, &view, per_pixel);
@@ -158,7 +149,7 @@ proptest! {
         let view = looking(DVec3::new(x, y, z), DVec3::new(0.0, 0.02, 0.0), [SIDE as u32; 2], f64::from(SIDE));
         let all = mesh(&triangles, height);
         let folds = (0..triangles.len()).any(|number| {
-            let [a, b, c] = shiftvox_mesh::Surface::corners(&all, number);
+            let [a, b, c] = Surface::corners(&all, number);
             (b - a).cross(c - a).dot(view.eye - a) <= 0.0
         });
         let whole = covered(&all, &view, 16);

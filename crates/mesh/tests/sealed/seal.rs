@@ -53,14 +53,18 @@ fn slot(section: &Range<u64>) -> Range<usize> {
     section.start as usize..section.end as usize
 }
 
-/// A checksum of some of the bytes.
-fn sum(bytes: &[u8], of: Range<usize>, at: usize) -> Option<(usize, u64)> {
-    Some((at, xxh3_64(bytes.get(of)?)))
+/// Writes the checksum of a section. Sections beyond the file, or that end before they begin, have none.
+fn seal(bytes: &mut [u8], section: &Range<u64>, at: usize) {
+    if let Some(content) = bytes.get(slot(section)) {
+        let sum = xxh3_64(content);
+        put(bytes, at, sum);
+    }
 }
 
-fn seal_header(bytes: &mut [u8], header: usize) {
-    let sum = xxh3_64(&bytes[..header - 8]);
-    put(bytes, header - 8, sum);
+fn sealed(mut bytes: Vec<u8>, header: usize) -> Option<Vec<u8>> {
+    let end = header - 8;
+    seal(&mut bytes, &(0..end as u64), end);
+    Some(bytes)
 }
 
 /// A `.vxg` file put right; nothing where its header says too much. With `place` sections follow each other.
@@ -84,14 +88,10 @@ pub(crate) fn vxg(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     put(&mut bytes, 16, length);
     for &entry in entries {
         let [begin, length] = [8, 16].map(|at| number(&bytes, entry + at, 8));
-        let own = begin as usize..begin.saturating_add(length) as usize;
-        // Ranges beyond the file have no checksum.
-        if let Some((at, sum)) = sum(&bytes, own, entry + 24) {
-            put(&mut bytes, at, sum);
-        }
+        let own = begin..begin.saturating_add(length);
+        seal(&mut bytes, &own, entry + 24);
     }
-    seal_header(&mut bytes, VXG_HEADER);
-    Some(bytes)
+    sealed(bytes, VXG_HEADER)
 }
 
 /// A `.far` file put right; nothing where its header says too much. With `place` no node's data begins before that of
@@ -116,19 +116,12 @@ pub(crate) fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     let mut last = length;
     for node in slot(&nodes).step_by(NODE).rev() {
         let begin = number(&bytes, node + 64, 8);
-        let own = [begin, last].map(|at| (data.start + at.min(length)) as usize);
+        let [from, to] = [begin, last].map(|at| data.start + at.min(length));
         last = begin;
-        // Data beyond the file, or that ends before it begins, has no checksum.
-        if own[0] <= own[1]
-            && let Some((at, sum)) = sum(&bytes, own[0]..own[1], node + 120)
-        {
-            put(&mut bytes, at, sum);
-        }
+        seal(&mut bytes, &(from..to), node + 120);
     }
-    let (at, sum) = sum(&bytes, slot(&nodes), 96)?;
-    put(&mut bytes, at, sum);
-    seal_header(&mut bytes, RECORD);
-    Some(bytes)
+    seal(&mut bytes, &nodes, 96);
+    sealed(bytes, RECORD)
 }
 
 /// A `.tvx` file put right; nothing where its header says too much. With `fit` its box is the one around its primitives.
@@ -155,9 +148,8 @@ pub(crate) fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
     lay_out(&mut bytes, RECORD, &sections)?;
     for (grid, entry) in slot(&entries).step_by(GRID).enumerate() {
         for part in 0..3 {
-            let own = slot(&sections[2 + 3 * grid + part]);
-            let (at, sum) = sum(&bytes, own, entry + 56 + 8 * part)?;
-            put(&mut bytes, at, sum);
+            let own = &sections[2 + 3 * grid + part];
+            seal(&mut bytes, own, entry + 56 + 8 * part);
         }
     }
     if fit {
@@ -173,10 +165,7 @@ pub(crate) fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
             put(&mut bytes, 56 + 8 * k, high.to_bits());
         }
     }
-    for (of, at) in [(&primitives, 104), (&entries, 112)] {
-        let (at, sum) = sum(&bytes, slot(of), at)?;
-        put(&mut bytes, at, sum);
-    }
-    seal_header(&mut bytes, RECORD);
-    Some(bytes)
+    seal(&mut bytes, &primitives, 104);
+    seal(&mut bytes, &entries, 112);
+    sealed(bytes, RECORD)
 }

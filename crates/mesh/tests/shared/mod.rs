@@ -17,7 +17,7 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 
 pub type Corners = [[f32; 3]; 3];
 
-/// A camera at `eye` that looks at `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
+/// A camera at `eye`, turned to `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
 pub fn looking(
     eye: DVec3,
     target: DVec3,

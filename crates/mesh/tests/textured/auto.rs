@@ -10,8 +10,6 @@ use super::scenes::{file_of, options};
 use super::shared::{difference, triangles};
 use super::view::{shown, view};
 
-const BACKGROUND: Option<[u8; 3]> = Some([20, 20, 30]);
-
 /// Decibel, over all of the picture.
 fn psnr(reference: &[[u8; 4]], picture: &[[u8; 4]]) -> f64 {
     -20.0 * libm::log10(difference(reference, picture, |b| f64::from(b) / 255.0).max(1e-5))
@@ -19,6 +17,7 @@ fn psnr(reference: &[[u8; 4]], picture: &[[u8; 4]]) -> f64 {
 
 #[test]
 fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
+    let background = Some([20, 20, 30]);
     // Texels of a pixel alone would allow levels that are worse by so many decibel.
     let mut worst_by_texels: f64 = 0.0;
     let mut with_textures = 0;
@@ -32,15 +31,15 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
             for away in [3.0, 12.0, 60.0, 400.0] {
                 let eye = middle + DVec3::from_array(direction).normalize() * radius * away;
                 let view = view(eye, middle, 128, 40.0);
-                let picture = |samples| triangles(&mesh, &view, samples, None, BACKGROUND).rgba;
-                let reference = picture(256);
+                let [reference, one] =
+                    [256, 1].map(|samples| triangles(&mesh, &view, samples, None, background).rgba);
                 let drawn = |detail| {
                     let mut options = shown(detail);
-                    options.raster.background = BACKGROUND;
+                    options.raster.background = background;
                     let (picture, counts) = draw(&file, &view, &options).unwrap();
                     (psnr(&reference, &picture.rgba), counts.choice.texel_px)
                 };
-                let rival = psnr(&reference, &picture(1));
+                let rival = psnr(&reference, &one);
                 let (auto, texel) = drawn(Detail::Auto { texel_px: 1.0 });
                 // From 48 dB on the error is less than a step of a byte.
                 assert!(

@@ -4,12 +4,12 @@ use std::fs;
 
 use shiftvox::graph::Silent;
 use shiftvox::scene::{FileKind, detect};
+use shiftvox_mesh::Instances;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER};
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{
     BuildError, BuildOptions, Element, TexturedData, TexturedError, TexturedFile, build,
 };
-use shiftvox_mesh::{Instances, Surface};
 
 use super::scenes::{balls, file_of, mesh_of, options, rectangle};
 use super::shared::on_any_threads;
@@ -28,7 +28,9 @@ fn verified(bytes: &[u8]) -> Result<(), TexturedError> {
 }
 
 #[test]
-fn files_hold_the_data_that_was_built() {
+fn files_hold_the_data_that_was_built_on_any_number_of_threads() {
+    let grids = options(&[4, 10, 16], 5, Element::Cube);
+    on_any_threads(|| encode(&build(&balls(), &grids, &Silent).unwrap()).unwrap());
     let data = small();
     let file = file_of(&data);
     file.verify().unwrap();
@@ -133,26 +135,16 @@ fn inconsistent_contents_are_refused() {
 }
 
 #[test]
-fn files_have_the_same_bytes_on_any_number_of_threads() {
-    let mesh = balls();
-    let options = options(&[4, 10, 16], 5, Element::Cube);
-    on_any_threads(|| encode(&build(&mesh, &options, &Silent).unwrap()).unwrap());
-}
-
-#[test]
 fn invalid_options_are_refused() {
     let mesh = balls();
     let grid = |cells, texels| BuildError::Grid { cells, texels };
     for (grids, texels, error) in [
         (&[0][..], 16, grid(0, 16)),
-        (&[1], 16, grid(1, 16)),
-        (&[3], 16, grid(3, 16)),
         (&[15], 16, grid(15, 16)),
         (&[130], 16, grid(130, 16)),
         (&[u32::MAX], 16, grid(u32::MAX, 16)),
         (&[4], 0, grid(4, 0)),
         (&[4], 65, grid(4, 65)),
-        (&[4], u32::MAX, grid(4, u32::MAX)),
         (&[128], 64, grid(128, 64)),
         (&[], 4, BuildError::Grids),
         (&[4, 4], 4, BuildError::Grids),
@@ -161,7 +153,6 @@ fn invalid_options_are_refused() {
         assert_eq!(refused.err(), Some(error));
     }
     let nothing = Instances::new(mesh, Vec::new());
-    assert!(nothing.is_empty());
     let refused = build(&nothing, &BuildOptions::default(), &Silent);
     assert_eq!(refused.err(), Some(BuildError::Empty));
 }

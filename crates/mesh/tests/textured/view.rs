@@ -122,7 +122,7 @@ fn from_anywhere_levels_cover_at_most_a_cell_around_the_mesh() {
 
 #[test]
 fn transparent_texels_show_the_surface_behind() {
-    // A frame in one half, in front of a wall in the other.
+    // A frame in one half, in front of a wall in the other, both on the cells' outer faces: nothing is displaced.
     let quads = [
         rectangle(8.0, [0.0, 0.0], [8.0, 2.0]),
         rectangle(8.0, [0.0, 6.0], [8.0, 8.0]),
@@ -135,16 +135,12 @@ fn transparent_texels_show_the_surface_behind() {
     let view = view(DVec3::new(4.0, 4.0, 30.0), DVec3::splat(4.0), 120, 20.0);
     let (picture, counts) = drawn(&file, &view, 0);
     assert_eq!(counts.primitives, 0);
-    // Frame and wall are on the cells' outer faces: nothing is displaced.
-    for (x, depth) in [(60, 30.0), (20, 22.0)] {
-        assert!((picture.depth[60 * 120 + x] - depth).abs() < 1e-3);
-    }
-    // Only the border of the hole is on the border of texels.
     let full = triangles(&mesh, &view, 1, None, None);
+    assert_eq!(covered(&picture), covered(&full));
+    // Only the border of the hole is on the border of texels.
     let pairs = picture.depth.iter().zip(&full.depth);
     let differing = pairs.filter(|(a, b)| (*a - *b).abs() > 1e-3).count();
     assert!(differing <= 4 * 120, "{differing}");
-    assert_eq!(covered(&picture), covered(&full));
 }
 
 #[test]
@@ -160,15 +156,14 @@ fn any_camera_is_drawn_the_same_on_any_number_of_threads() {
         ("on a corner of cells", corner, high, true),
         ("behind", high + DVec3::ONE, high + DVec3::splat(5.0), false),
         ("grazing a face", beside, beside.with_z(high.z), true),
-        ("far", centre + DVec3::splat(100.0), centre, true),
     ] {
-        for fov in [1.0, 60.0, 170.0] {
+        // A narrow view may miss the balls, and in a wide one they may be too small.
+        for (fov, is_checked) in [(1.0, false), (60.0, true), (170.0, false)] {
             let view = view(eye, target, 96, fov);
             for level in [0, 1, 9] {
                 let picture = on_any_threads(|| drawn(&file, &view, level).0);
-                // A narrow view may miss the balls, and in a wide one they may be too small.
-                let seen = count(&covered(&picture)) > 0;
-                assert!(fov != 60.0 || seen == is_seen, "{name} {fov} {level}");
+                let seen = covered(&picture).contains(&true);
+                assert!(!is_checked || seen == is_seen, "{name} {level}");
                 let is_depth = |d: &f32| *d >= view.near as f32;
                 assert!(picture.depth.iter().all(is_depth), "{name}");
             }
@@ -195,11 +190,7 @@ fn the_automatic_level_has_texels_of_at_most_a_pixel() {
             "{chosen:?}"
         );
         let row = &file.grid(chosen.grid).levels().rows()[chosen.level as usize];
-        assert!(
-            row.faces <= faces_before,
-            "{away}: {} after {faces_before}",
-            row.faces
-        );
+        assert!(row.faces <= faces_before, "{away}: {row:?}");
         faces_before = row.faces;
         let auto = shown(Detail::Auto { texel_px: 1.0 });
         assert_eq!(draw(&file, &view, &auto).unwrap().1.choice, chosen);

@@ -1,18 +1,18 @@
 //! Numbers out of a glTF document's buffers, every place checked.
 
-use super::document::Document;
-use super::{BROKEN, Buffers, Problem, fault_of};
+use super::document::{BufferView, Document};
+use super::{Buffers, Problem, broken, fault_of};
 
-/// An accessor whose numbers are known to be there.
 #[derive(Debug)]
 pub(super) struct Numbers<'b> {
     bytes: &'b [u8],
     stride: usize,
-    /// Elements.
     pub(super) count: usize,
     /// Numbers of an element.
     pub(super) width: usize,
     component: u32,
+    /// Bytes of a number.
+    size: usize,
     normalized: bool,
 }
 
@@ -23,7 +23,7 @@ impl<'b> Numbers<'b> {
         number: usize,
     ) -> Result<Self, Problem> {
         let wrong = |expected: &str, found: &str| -> Problem {
-            fault_of("accessor", number, expected, found, BROKEN)
+            broken("accessor", number, expected, found)
         };
         let accessor = document
             .accessors
@@ -50,28 +50,21 @@ impl<'b> Numbers<'b> {
             5122 | 5123 => 2,
             5125 | 5126 => 4,
             other => {
-                return Err(wrong(
-                    "a component type from 5120 to 5126",
-                    &other.to_string(),
-                ));
+                let found = other.to_string();
+                return Err(wrong("a component type from 5120 to 5126", &found));
             }
         };
         let view = accessor
             .buffer_view
-            .and_then(|view| document.buffer_views.get(view));
-        let view = view.ok_or_else(|| wrong("a buffer view", "none"))?;
-        let buffer = buffers.get(view.buffer);
-        let buffer = buffer.ok_or_else(|| wrong("a buffer", "none"))?;
-        let slice = slice(buffer, view.byte_offset, view.byte_length);
-        let slice =
-            slice.ok_or_else(|| wrong("a buffer view within its buffer", "one beyond it"))?;
+            .and_then(|v| document.buffer_views.get(v));
+        let content = view.and_then(|view| Some((view, view_bytes(view, buffers)?)));
+        let (view, content) =
+            content.ok_or_else(|| wrong("a buffer view within its buffer", "none"))?;
         let element = (width * size) as u64;
         let stride = view.byte_stride.unwrap_or(element);
         if stride < element {
-            return Err(wrong(
-                "a stride of at least an element",
-                &stride.to_string(),
-            ));
+            let found = stride.to_string();
+            return Err(wrong("a stride of at least an element", &found));
         }
         let needed = match accessor.count {
             0 => Some(0),
@@ -79,15 +72,11 @@ impl<'b> Numbers<'b> {
                 .checked_mul(stride)
                 .and_then(|n| n.checked_add(element)),
         };
-        let bytes = needed.and_then(|needed| self::slice(slice, accessor.byte_offset, needed));
+        let bytes = needed.and_then(|needed| slice(content, accessor.byte_offset, needed));
         let bytes = bytes.ok_or_else(|| {
-            wrong(
-                &format!(
-                    "{} elements of {element} bytes within the buffer view",
-                    accessor.count
-                ),
-                &format!("{} bytes", slice.len()),
-            )
+            let count = accessor.count;
+            let expected = format!("{count} elements of {element} bytes within the buffer view");
+            wrong(&expected, &format!("{} bytes", content.len()))
         })?;
         Ok(Self {
             bytes,
@@ -95,6 +84,7 @@ impl<'b> Numbers<'b> {
             count: accessor.count as usize,
             width,
             component: accessor.component_type,
+            size,
             normalized: accessor.normalized,
         })
     }
@@ -135,19 +125,23 @@ impl<'b> Numbers<'b> {
         if element >= self.count || k >= self.width {
             return None;
         }
-        let size = match self.component {
-            5120 | 5121 => 1,
-            5122 | 5123 => 2,
-            _ => 4,
-        };
-        let at = element * self.stride + k * size;
-        Some(match *self.bytes.get(at..at + size)? {
+        let at = element * self.stride + k * self.size;
+        Some(match *self.bytes.get(at..at + self.size)? {
             [a] => u32::from(a),
             [a, b] => u32::from(u16::from_le_bytes([a, b])),
             [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
             _ => return None,
         })
     }
+}
+
+/// The bytes of a buffer view, where they are within its buffer.
+pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers) -> Option<&'b [u8]> {
+    slice(
+        buffers.get(view.buffer)?,
+        view.byte_offset,
+        view.byte_length,
+    )
 }
 
 fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {

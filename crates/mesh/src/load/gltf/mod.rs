@@ -46,23 +46,15 @@ pub(super) fn read_binary(
         Some(u32::from_le_bytes(word.try_into().ok()?))
     };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(wrong(
-            "header",
-            0,
-            "12 bytes".into(),
-            format!("{}", bytes.len()),
-        ));
+        let found = bytes.len().to_string();
+        return Err(wrong("header", 0, "12 bytes".into(), found));
     };
     if version != 2 {
         return Err(wrong("header", 4, "version 2".into(), version.to_string()));
     }
     if u64::from(length) > bytes.len() as u64 {
-        return Err(wrong(
-            "header",
-            8,
-            format!("{length} bytes in all, as it says"),
-            bytes.len().to_string(),
-        ));
+        let expected = format!("{length} bytes in all, as it says");
+        return Err(wrong("header", 8, expected, bytes.len().to_string()));
     }
     let bytes = &bytes[..length as usize];
     let mut at = 12usize;
@@ -71,12 +63,9 @@ pub(super) fn read_binary(
         let begin = at + 8;
         let end = begin.saturating_add(size as usize);
         let Some(content) = bytes.get(begin..end) else {
-            return Err(wrong(
-                "chunk",
-                at,
-                format!("{size} bytes of content"),
-                (bytes.len().saturating_sub(begin)).to_string(),
-            ));
+            let expected = format!("{size} bytes of content");
+            let found = bytes.len().saturating_sub(begin).to_string();
+            return Err(wrong("chunk", at, expected, found));
         };
         match kind {
             JSON if json.is_none() => json = Some((content, begin)),
@@ -99,17 +88,11 @@ fn read_document(
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let document: Document = serde_json::from_slice(json).map_err(|error| {
-        Fault::new(
-            "JSON",
-            if offset == 0 {
-                Place::Line(error.line() as u64)
-            } else {
-                Place::Byte(offset)
-            },
-            "glTF 2.0",
-            error.to_string(),
-            BROKEN,
-        )
+        let place = match offset {
+            0 => Place::Line(error.line() as u64),
+            _ => Place::Byte(offset),
+        };
+        Fault::new("JSON", place, "glTF 2.0", error.to_string(), BROKEN)
     })?;
     document.check()?;
     let buffers = Buffers::read(&document, binary, beside)?;
@@ -139,7 +122,7 @@ impl Buffers {
                     let bytes = match (uri, binary) {
                         (None, Some(binary)) if number == 0 => binary.to_vec(),
                         (None, _) => {
-                            return Err(fault_of("buffer", number, "content", "none", BROKEN));
+                            return Err(broken("buffer", number, "content", "none"));
                         }
                         (Some(uri), _) => fetch(uri, number, beside)?,
                     };
@@ -151,13 +134,7 @@ impl Buffers {
             let bytes = distinct[at].len() as u64;
             if bytes < buffer.byte_length {
                 let expected = format!("{} bytes", buffer.byte_length);
-                return Err(fault_of(
-                    "buffer",
-                    number,
-                    &expected,
-                    &bytes.to_string(),
-                    BROKEN,
-                ));
+                return Err(broken("buffer", number, &expected, &bytes.to_string()));
             }
             of.push(at);
         }
@@ -185,7 +162,7 @@ fn decoded(data: &str) -> Option<Vec<u8>> {
 fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Problem> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decoded(data)
-            .ok_or_else(|| fault_of("buffer", number, "data in base64", "other data", BROKEN));
+            .ok_or_else(|| broken("buffer", number, "data in base64", "other data"));
     }
     let name = unescaped(uri);
     beside.read(&name).map_err(|error| {
@@ -219,7 +196,11 @@ fn unescaped(uri: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A finding at one of the document's numbered parts.
+/// A fault at a numbered part of a document that is damaged.
+fn broken(part: &str, number: usize, expected: &str, found: &str) -> Problem {
+    fault_of(part, number, expected, found, BROKEN)
+}
+
 fn fault_of(part: &str, number: usize, expected: &str, found: &str, advice: &str) -> Problem {
     let part = format!("{part} {number}");
     Fault::new(part, Place::Whole, expected, found, advice).into()

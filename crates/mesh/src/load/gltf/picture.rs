@@ -3,7 +3,7 @@
 use std::io;
 use std::rc::Rc;
 
-use super::accessor::Numbers;
+use super::accessor::{Numbers, view_bytes};
 use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::load::texture::{Texture, Textures};
@@ -16,7 +16,6 @@ pub(super) struct Painted<'d> {
 }
 
 impl Painted<'_> {
-    /// The mean colour of a triangle.
     pub(super) fn mean(&self, corners: [u32; 3]) -> Option<[f32; 3]> {
         let place = |corner: u32| {
             let uv = [0, 1].map(|k| f64::from(self.uvs.real(corner as usize, k)));
@@ -35,7 +34,6 @@ fn moved([u, v]: [f64; 2], transform: &TextureTransform) -> [f64; 2] {
     [cos * u + sin * v + offset[0], cos * v - sin * u + offset[1]]
 }
 
-/// The texture of a number, read where it was not read before.
 pub(super) fn find(
     document: &Document,
     buffers: &Buffers,
@@ -65,11 +63,7 @@ pub(super) fn find(
         let view = image
             .buffer_view
             .and_then(|view| document.buffer_views.get(view));
-        let bytes = view.and_then(|view| {
-            let begin = usize::try_from(view.byte_offset).ok()?;
-            let end = begin.checked_add(usize::try_from(view.byte_length).ok()?)?;
-            buffers.get(view.buffer)?.get(begin..end)
-        });
+        let bytes = view.and_then(|view| view_bytes(view, buffers));
         bytes
             .map(<[u8]>::to_vec)
             .ok_or_else(|| missing("it is not in its buffer"))

@@ -5,7 +5,7 @@ use glam::{DMat4, DQuat, DVec3};
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
 use super::picture::{self, Painted};
-use super::{BROKEN, Beside, Buffers, Fault, Place, Problem, fault_of};
+use super::{Beside, Buffers, Fault, Place, Problem, broken};
 use crate::load::texture::Textures;
 use crate::material::linear_to_srgb;
 use crate::{ColorSpace, Material, MeshBuilder};
@@ -81,23 +81,11 @@ impl<'d> Reader<'d> {
         let mut shown = Vec::new();
         while let Some((number, parent)) = open.pop() {
             let Some(node) = nodes.get(number) else {
-                return Err(fault_of(
-                    "node",
-                    number,
-                    "a node of this number",
-                    "none",
-                    BROKEN,
-                ));
+                return Err(broken("node", number, "a node of this number", "none"));
             };
             if std::mem::replace(&mut seen[number], true) {
-                let found = "a second way to it";
-                return Err(fault_of(
-                    "node",
-                    number,
-                    "one parent, in a tree",
-                    found,
-                    BROKEN,
-                ));
+                let expected = "one parent, in a tree";
+                return Err(broken("node", number, expected, "a second way to it"));
             }
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
@@ -107,8 +95,13 @@ impl<'d> Reader<'d> {
             open.extend(node.children.iter().rev().map(|&child| (child, placed)));
         }
         self.make_room(&shown, builder)?;
-        for (mesh, placed) in shown {
-            self.mesh(mesh, placed, builder)?;
+        for (number, placed) in shown {
+            let mesh = document.meshes.get(number);
+            let mesh =
+                mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))?;
+            for primitive in &mesh.primitives {
+                self.primitive(number, primitive, placed, builder)?;
+            }
         }
         self.tell(builder);
         Ok(())
@@ -116,37 +109,28 @@ impl<'d> Reader<'d> {
 
     fn tell(&self, builder: &mut MeshBuilder) {
         self.textures.tell(builder);
-        for (count, what) in [
-            (
-                self.skipped_modes,
-                "primitives of points or lines were passed over",
-            ),
-            (
-                self.morphed,
-                "primitives have morph targets, which are not applied",
-            ),
-            (self.skinned, "meshes have skins, which are not applied"),
-        ] {
+        let mut warn = |count: u64, what: &str| {
             if count > 0 {
                 builder.warn(format!("{count} {what}"));
             }
-        }
+        };
+        let (modes, morphed) = (self.skipped_modes, self.morphed);
+        warn(modes, "primitives of points or lines were passed over");
+        warn(
+            morphed,
+            "primitives have morph targets, which are not applied",
+        );
+        warn(self.skinned, "meshes have skins, which are not applied");
     }
 
-    /// Makes room for all that nodes show, before any of it is made.
     fn make_room(
         &self,
         shown: &[(usize, DMat4)],
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
         let fault = |expected: String, found: String| {
-            Problem::Limit(Fault::new(
-                "nodes",
-                Place::Whole,
-                expected,
-                found,
-                "export a part of the scene",
-            ))
+            let advice = "export a part of the scene";
+            Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
         };
         let mut of_mesh = vec![None; self.document.meshes.len()];
         let (mut positions, mut triangles) = (0u64, 0u64);
@@ -207,28 +191,6 @@ impl<'d> Reader<'d> {
         }))
     }
 
-    fn mesh(
-        &mut self,
-        number: usize,
-        placed: DMat4,
-        builder: &mut MeshBuilder,
-    ) -> Result<(), Problem> {
-        let Some(mesh) = self.document.meshes.get(number) else {
-            return Err(fault_of(
-                "mesh",
-                number,
-                "a mesh of this number",
-                "none",
-                BROKEN,
-            ));
-        };
-        for primitive in &mesh.primitives {
-            self.primitive(number, primitive, placed, builder)?;
-        }
-        Ok(())
-    }
-
-    /// The texture of a primitive's base colour and where its corners are on it.
     fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, Problem> {
         let document = self.document;
         let material = primitive.material.and_then(|m| document.materials.get(m));
@@ -334,12 +296,11 @@ impl<'d> Reader<'d> {
                 };
                 let sound = index.filter(|&index| (index as usize) < positions.count);
                 *corner = sound.ok_or_else(|| {
-                    fault_of(
+                    broken(
                         "mesh",
                         mesh,
                         &format!("indices from 0 to {}", positions.count as i64 - 1),
                         &index.map_or("a number of another kind".into(), |i| i.to_string()),
-                        BROKEN,
                     )
                 })?;
             }
