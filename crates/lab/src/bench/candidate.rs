@@ -25,7 +25,7 @@ pub struct Candidate {
 }
 
 /// The nodes that a traversal fetches, in its order, repeated as often as they are fetched.
-pub type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
+pub(super) type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
 
 /// How a contender gets its frames.
 #[derive(Debug, Clone, Copy, Default)]

@@ -14,7 +14,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// The parameter.
+    /// The parameter's name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::report::html::escaped;
+
 /// An sRGB colour, `0xRRGGBB`.
 pub(super) type Color = u32;
 
@@ -37,7 +39,6 @@ impl Canvas {
         let _ = writeln!(self.body, "{element}");
     }
 
-    /// A filled rectangle.
     pub(super) fn rectangle(&mut self, [left, top, width, height]: [f64; 4], fill: Color) {
         let top = top + self.top;
         self.put(format_args!(
@@ -45,7 +46,6 @@ impl Canvas {
         ));
     }
 
-    /// A line through places.
     pub(super) fn line(&mut self, places: &[(f64, f64)], color: Color, width: u32, dashes: &str) {
         let mut points = String::new();
         for (x, y) in places {
@@ -61,7 +61,6 @@ impl Canvas {
         ));
     }
 
-    /// A dot.
     pub(super) fn dot(&mut self, (x, y): (f64, f64), color: Color) {
         let y = y + self.top;
         self.put(format_args!(
@@ -90,10 +89,4 @@ impl Canvas {
              text-anchor=\"middle\">{text}</text>"
         ));
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }
