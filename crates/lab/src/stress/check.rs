@@ -13,7 +13,7 @@ use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
 use shiftvox::rays::Rays;
 
 /// Largest tolerance, samples, at which a hole is a failure.
-pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
+pub(super) const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
 /// Every rule must have ended after so many records.
 pub const PATIENCE: u64 = 200_000_000;
 /// Voxels per frame whose vertices are examined.
@@ -22,15 +22,23 @@ const VOXELS_LOOKED_AT: usize = 6;
 const LEVELS_BELOW: u32 = 3;
 
 /// The oracle's last picture without level of detail, which cases with the same integers share.
-#[derive(Debug, Default)]
-pub(crate) struct Oracle {
+#[derive(Default)]
+pub(super) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
+}
+
+/// The oracle's picture.
+fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    // The oracle has no error to give.
+    let _ = Rays.render(&graph.view(), setup, &mut frame);
+    frame
 }
 
 impl Oracle {
     fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        // The integers that the oracle uses.
         let same = |last: &FrameSetup| {
-            // The integers that the oracle uses.
             last.origin_clip == setup.origin_clip
                 && last.edge_clip == setup.edge_clip
                 && last.sub_levels == setup.sub_levels
@@ -42,27 +50,14 @@ impl Oracle {
         {
             return frame.clone();
         }
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        // The oracle has no error to give.
-        let _ = Rays.render(&graph.view(), &setup.without_detail(), &mut frame);
+        let frame = cast(graph, &setup.without_detail());
         self.last = Some((setup.clone(), frame.clone()));
-        frame
-    }
-
-    /// The picture that `exact` must show: at the frame's level of detail.
-    fn picture_with_detail(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
-        if setup.lod_limit.is_none() {
-            return self.picture(graph, setup);
-        }
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        // The oracle has no error to give.
-        let _ = Rays.render(&graph.view(), setup, &mut frame);
         frame
     }
 }
 
 /// Draws a case and checks it.
-pub(crate) fn check(
+pub(super) fn check(
     subject: &dyn Subject,
     case: &Case,
     graph: &Graph,
@@ -78,7 +73,7 @@ pub(crate) fn check(
                 SetupError::Depth(_) => "too deep",
                 _ => "not a view",
             };
-            return Outcome::new(End::Refused(kind.to_owned()));
+            return Outcome::new(End::Refused(kind.to_owned()), 0);
         }
     };
     let mut frame = Frame::new(setup.width, setup.height, false);
@@ -86,8 +81,7 @@ pub(crate) fn check(
     let stats = match drawn {
         Ok(Some(stats)) => stats,
         Ok(None) => {
-            let mut outcome = Outcome::new(End::CutOff);
-            outcome.records = most_records;
+            let mut outcome = Outcome::new(End::CutOff, most_records);
             if case.options.coverage == Coverage::Exact || most_records >= PATIENCE {
                 let left = format!("records are left after {most_records}");
                 outcome.fail(Check::Ends, left);
@@ -95,10 +89,10 @@ pub(crate) fn check(
             return outcome;
         }
         Err(EngineError::Memory(short)) => {
-            return Outcome::new(End::Refused(short.to_string()));
+            return Outcome::new(End::Refused(short.to_string()), 0);
         }
         Err(EngineError::Trap(trap)) => {
-            let mut outcome = Outcome::new(End::Trapped(trap.to_string()));
+            let mut outcome = Outcome::new(End::Trapped(trap.to_string()), 0);
             if setup.has_headroom {
                 outcome.fail(Check::Headroom, trap.to_string());
             }
@@ -106,8 +100,7 @@ pub(crate) fn check(
         }
     };
     let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
-    let mut outcome = Outcome::new(End::Drawn);
-    outcome.records = stat("records");
+    let mut outcome = Outcome::new(End::Drawn, stat("records"));
     let right = oracle.picture(graph, &setup);
     outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
     let seen = CheckedFrame {
@@ -117,8 +110,8 @@ pub(crate) fn check(
         is_at_bound: stat("at_level_bound") > 0,
     };
     if seen.is_exact() {
-        let defined = oracle.picture_with_detail(graph, &setup);
-        seen.check_exact(&defined, &mut outcome);
+        let defined = setup.lod_limit.is_some().then(|| cast(graph, &setup));
+        seen.check_exact(defined.as_ref().unwrap_or(&right), &mut outcome);
     }
     seen.check_place(&mut outcome);
     seen.check_order(&mut outcome);
@@ -227,38 +220,39 @@ impl CheckedFrame<'_> {
         parted
     }
 
+    /// Fails a check at the first of some samples.
+    fn fail_at(
+        &self,
+        outcome: &mut Outcome,
+        check: Check,
+        samples: &[usize],
+        detail: impl Fn(usize) -> String,
+    ) {
+        if let Some(&first) = samples.first() {
+            let (count, place) = (samples.len(), self.at(first));
+            let detail = detail(first);
+            outcome.fail(
+                check,
+                format!("{count} samples, the first at {place:?}: {detail}"),
+            );
+        }
+    }
+
     /// Of a frame under `exact`: it is the one that is `defined`, and has all
     /// samples that are covered without level of detail.
     fn check_exact(&self, defined: &Frame, outcome: &mut Outcome) {
-        let differs = |sample: &usize| {
-            self.frame.voxel[*sample] != defined.voxel[*sample]
-                || self.frame.node[*sample] != defined.node[*sample]
+        let (frame, right) = (self.frame, self.right);
+        let all = 0..frame.voxel.len();
+        let differs = |&at: &usize| {
+            frame.voxel[at] != defined.voxel[at] || frame.node[at] != defined.node[at]
         };
-        let all = 0..self.frame.voxel.len();
-        if let Some(sample) = all.clone().find(differs) {
-            outcome.fail(
-                Check::Exact,
-                format!(
-                    "{} samples differ, the first at {:?}: {:?}, should be {:?}",
-                    all.clone().filter(differs).count(),
-                    self.at(sample),
-                    self.frame.voxel[sample],
-                    defined.voxel[sample]
-                ),
-            );
-        }
-        let missing =
-            |sample: &usize| self.right.voxel[*sample][3] >= 0 && self.frame.voxel[*sample][3] < 0;
-        if let Some(sample) = all.clone().find(missing) {
-            outcome.fail(
-                Check::Missing,
-                format!(
-                    "{} samples missing, the first at {:?}",
-                    outcome.coverage.missing,
-                    self.at(sample)
-                ),
-            );
-        }
+        let differing: Vec<usize> = all.clone().filter(differs).collect();
+        self.fail_at(outcome, Check::Exact, &differing, |at| {
+            format!("{:?}, should be {:?}", frame.voxel[at], defined.voxel[at])
+        });
+        let is_missing = |&at: &usize| right.voxel[at][3] >= 0 && frame.voxel[at][3] < 0;
+        let missing: Vec<usize> = all.filter(is_missing).collect();
+        self.fail_at(outcome, Check::Missing, &missing, |_| "missing".to_owned());
     }
 
     /// A voxel that is seen lies before the eye, and not wholly to one side
@@ -310,62 +304,45 @@ impl CheckedFrame<'_> {
         if !self.tolerance().is_finite() {
             return;
         }
-        let strict = self.is_exact();
-        let mut first = None;
-        for sample in 0..self.frame.voxel.len() {
+        let is_wrong = |&sample: &usize| {
             let (shown, right) = (&self.frame.voxel[sample], &self.right.voxel[sample]);
             if shown[3] < 0 || right[3] < 0 || shown == right || !self.hides(right, shown) {
-                continue;
+                return false;
             }
-            let middle = || {
-                self.around(sample)
-                    .is_some_and(|all| all.iter().all(|v| v == right))
-            };
-            if strict || (!self.is_at_bound && middle()) {
-                outcome.order += 1;
-                first.get_or_insert((sample, *shown, *right));
-            }
-        }
-        if let Some((sample, shown, right)) = first {
-            outcome.fail(
-                Check::Order,
-                format!(
-                    "{} samples, the first at {:?}: {shown:?} is seen, {right:?} hides it",
-                    outcome.order,
-                    self.at(sample)
-                ),
-            );
-        }
+            let around = || self.around(sample);
+            let is_middle = || around().is_some_and(|all| all.iter().all(|v| v == right));
+            self.is_exact() || (!self.is_at_bound && is_middle())
+        };
+        let wrong: Vec<usize> = (0..self.frame.voxel.len()).filter(is_wrong).collect();
+        outcome.order = wrong.len() as u64;
+        self.fail_at(outcome, Check::Order, &wrong, |at| {
+            let (shown, right) = (self.frame.voxel[at], self.right.voxel[at]);
+            format!("{shown:?} is seen, {right:?} hides it")
+        });
     }
 
     fn check_holes(&self, outcome: &mut Outcome) {
-        let mut first = None;
+        let mut holes = Vec::new();
         for sample in 0..self.frame.voxel.len() {
             let Some(around) = self.around(sample) else {
                 continue;
             };
             outcome.inside += 1;
             let shown = &self.frame.voxel[sample];
-            let through = || around.iter().all(|front| self.hides(front, shown));
-            if shown[3] < 0 || through() {
-                outcome.holes += 1;
-                first.get_or_insert(sample);
+            if shown[3] < 0 || around.iter().all(|front| self.hides(front, shown)) {
+                holes.push(sample);
             }
         }
+        outcome.holes = holes.len() as u64;
         // The image-order paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that
         // words are too narrow for the view. Its holes, and those at infinite tolerance, are counted but allowed.
         let is_promised =
             self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
-        if let Some(sample) = first.filter(|_| is_promised) {
-            outcome.fail(
-                Check::Holes,
-                format!(
-                    "{} of {} samples inside a closed surface, the first at {:?}",
-                    outcome.holes,
-                    outcome.inside,
-                    self.at(sample)
-                ),
-            );
+        if is_promised {
+            let inside = outcome.inside;
+            self.fail_at(outcome, Check::Holes, &holes, |_| {
+                format!("of {inside} inside a closed surface")
+            });
         }
     }
 }

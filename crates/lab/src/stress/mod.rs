@@ -4,23 +4,23 @@
 //! [`sweep()`] runs a [`SweepPlan`]. It shrinks a failure to a small [`Case`], a line of text that [`run_case`] draws again.
 //! `spec/lab.md` describes the method.
 
-pub mod case;
+mod case;
 mod check;
 mod findings;
 #[cfg(test)]
 mod mutants;
 mod outcome;
-pub mod scene;
+mod scene;
 mod shrink;
 mod specified;
-pub(crate) mod subject;
-pub(crate) mod sweep;
+mod subject;
+mod sweep;
 mod tables;
 mod vertex;
-pub mod viewpoint;
+mod viewpoint;
 
 pub use case::Case;
-pub use check::{PATIENCE, STRICT_TOLERANCE};
+pub use check::PATIENCE;
 pub use findings::{Failed, Findings, Key, Tally};
 pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;

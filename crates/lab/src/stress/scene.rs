@@ -136,8 +136,7 @@ impl FromStr for StressScene {
 impl StressScene {
     /// Whether its surface is closed: no line of sight passes between its
     /// voxels where the oracle's rays next to it do not.
-    #[must_use]
-    pub fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         match self {
             Self::Plane { .. } | Self::Solid { .. } => true,
             Self::Generated(spec) => matches!(spec.generator().name, "sphere" | "shell"),
@@ -145,29 +144,8 @@ impl StressScene {
         }
     }
 
-    /// Levels.
-    #[must_use]
-    pub fn depth(&self) -> u32 {
-        match self {
-            Self::Generated(spec) if spec.generator().name == "menger" => {
-                // A step triples the voxels; the cube's side is a power of two.
-                3u64.saturating_pow(spec.settings().depth)
-                    .next_power_of_two()
-                    .trailing_zeros()
-            }
-            Self::Generated(spec) => spec.settings().depth,
-            Self::Plane { depth, .. }
-            | Self::Solid { depth }
-            | Self::Cyclic { depth, .. }
-            | Self::Voxels { depth, .. } => *depth,
-        }
-    }
-
-    /// Makes it.
-    ///
-    /// # Errors
-    /// In words, where there is nothing to draw or too much.
-    pub fn graph(&self) -> Result<Graph, String> {
+    /// Makes it. Fails in words, where there is nothing to draw or too much.
+    pub(super) fn graph(&self) -> Result<Graph, String> {
         match self {
             Self::Generated(spec) => match spec.linked() {
                 Some(graph) => Ok(graph),
@@ -187,8 +165,7 @@ impl StressScene {
     }
 
     /// The same scene as a list of voxels, if it has no more than `most`.
-    #[must_use]
-    pub fn as_voxels(&self, most: usize) -> Option<Self> {
+    pub(super) fn as_voxels(&self, most: usize) -> Option<Self> {
         let graph = self.graph().ok()?;
         // A cyclic scene's voxels may be too many to walk through.
         if graph.voxels > most as u64 || graph.depth > MOST_LISTED_DEPTH {
@@ -238,8 +215,6 @@ fn listed(depth: u32, at: &[[i32; 3]]) -> Result<Graph, String> {
     if at.is_empty() {
         return Err("a scene needs a voxel".to_owned());
     }
-    let mut graph = LinkedGraph::new(depth);
-    graph.add_node([200, 120, 60], [None; 8]);
     let mut children: Vec<[Option<u32>; 8]> = vec![[None; 8]];
     for voxel in at {
         let mut node = 0usize;
@@ -304,25 +279,18 @@ mod tests {
 
     #[test]
     fn scenes_are_what_their_text_says() {
-        for text in [
-            "gen:shell,depth=4",
-            "plane:4,3,5,7",
-            "solid:30",
-            "cyclic:6,3",
-            "voxels:2,0.0.0+3.1.2",
+        for (text, depth) in [
+            ("gen:shell,depth=4", 4),
+            ("plane:4,3,5,7", 4),
+            ("solid:30", 30),
+            ("cyclic:6,3", 6),
+            ("voxels:2,0.0.0+3.1.2", 2),
         ] {
             let scene: StressScene = text.parse().unwrap();
             assert_eq!(scene.to_string(), text);
-            assert_eq!(scene.graph().unwrap().depth, scene.depth(), "{text}");
+            assert_eq!(scene.graph().unwrap().depth, depth, "{text}");
         }
-        for bad in [
-            "plane:4,1,1,0",
-            "solid:31",
-            "voxels:2,4.0.0",
-            "voxels:2,",
-            "cube",
-            "gen:x",
-        ] {
+        for bad in "plane:4,1,1,0 solid:31 voxels:2,4.0.0 voxels:2, cube gen:x".split(' ') {
             assert!(bad.parse::<StressScene>().is_err(), "{bad}");
         }
     }

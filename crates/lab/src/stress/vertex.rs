@@ -50,8 +50,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Adds other vertices.
-    pub fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.vertices += other.vertices;
         self.tightest = self.tightest.max(other.tightest);
         if other.error_px > self.error_px {
@@ -70,8 +69,7 @@ impl Worst {
     }
 }
 
-/// Results of a frame's vertices.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 pub(super) struct Vertices {
     /// By [`Hold`].
     pub(super) worst: [Worst; 3],
@@ -99,24 +97,25 @@ pub(super) fn check_path(
     let specified = SpecifiedVertices::new(setup);
     let mut changed: Option<usize> = None;
     for (level, held) in way.iter().enumerate() {
+        let here = &path[..level];
         if changed.is_none() && !matches!(held, Cage::Clip(_)) {
             changed = Some(level);
-            let (is, least) = specified.change_depths(&path[..level]);
-            if is < least && found.differs.is_none() {
-                found.differs = Some(format!(
-                    "the voxel at path {:?} changed to screen space at depth {is}, nearer than \
-                     {least}",
-                    &path[..level]
-                ));
+            let (is, least) = specified.change_depths(here);
+            if is < least {
+                found.differs.get_or_insert_with(|| {
+                    format!(
+                        "the voxel at path {here:?} changed to screen space at depth {is}, nearer than {least}"
+                    )
+                });
             }
         }
-        let here = &path[..level];
-        let specified_cage = specified.held(here, changed);
-        if specified_cage.as_ref() != Some(held) && found.differs.is_none() {
-            found.differs = Some(format!(
-                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the \
-                 specification {specified_cage:?}"
-            ));
+        let right = specified.held(here, changed);
+        if right.as_ref() != Some(held) {
+            found.differs.get_or_insert_with(|| {
+                format!(
+                    "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the specification {right:?}"
+                )
+            });
         }
         measure(setup, bounds, &specified, here, changed, held, found);
     }
