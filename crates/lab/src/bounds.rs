@@ -1,9 +1,5 @@
-//! How far a vertex can be from where it should be: bounds that are derived
-//! in `spec/bounds.md`, in real numbers, from the camera.
-//!
-//! Nothing here depends on how the machine computes. It uses the
-//! widths of the numbers that the machine holds: the fraction bits of clip
-//! vectors and of screen positions.
+//! How far a vertex can be from where it should be: bounds that are derived in `spec/bounds.md`, in
+//! real numbers, from the camera and the machine's fraction bits.
 
 use glam::DVec3;
 
@@ -76,7 +72,6 @@ pub struct Bounds {
     eye: DVec3,
     /// Clip vectors of a voxel's edges: X, Y in parts of the image root, W in voxels.
     edge: [DVec3; 3],
-    /// Samples a side of the image root.
     root: f64,
     widths: Widths,
     /// Error of the eye in `f64`, voxels along each axis.
@@ -152,7 +147,6 @@ impl Bounds {
         self.unit() / 2.0 * (steps + 1.0) + real
     }
 
-    /// The unit of clip vectors, voxels.
     fn unit(&self) -> f64 {
         libm::ldexp(1.0, -(self.widths.clip_frac as i32))
     }
@@ -196,11 +190,8 @@ impl Bounds {
         }
     }
 
-    /// Depths that the cube's edges span, the greatest speed of a position
-    /// along each edge (times the depth, samples), and the least depth.
-    ///
-    /// All of the rounded view, which is a perspective view like the true one:
-    /// what its straight lines deviate from it is bounded by these.
+    /// Of the rounded view: depths that the cube's edges span, the greatest speed of a position along
+    /// each edge (times the depth, samples), and the least depth.
     fn speeds(&self, cube: &Cube, c: usize) -> ([f64; 3], [f64; 3], f64) {
         let half = self.unit() / 2.0;
         let span = self.edge.map(|e| (e.z.abs() + half) * cube.side);

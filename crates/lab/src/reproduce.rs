@@ -137,7 +137,6 @@ pub fn rows(
     Ok(rows)
 }
 
-/// Draws the frame of a row on the machine once more, and counts.
 fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), BenchError> {
     let side = row.number("width") as u32;
     let setup = subject.setup((side, side), &options)?;

@@ -68,7 +68,6 @@ pub struct Family {
 /// # Errors
 /// When the machine cannot finish the frame.
 pub fn fetched_nodes(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
-    /// The nodes in the order in which they are read.
     struct Reads(Vec<u32>);
     impl Probe for Reads {
         fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {

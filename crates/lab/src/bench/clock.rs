@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-/// Both clocks at one moment.
 pub(crate) struct Clock {
     wall: Instant,
     thread: Option<Duration>,

@@ -1,9 +1,8 @@
 //! Interleaved runs: each round draws one frame per contender.
 //!
-//! Drift during a measurement (other work, clock rates) then affects all contenders, and none finds
-//! the caches as its own last frame left them. A frame is: clear, traverse, write the colour of each
-//! sample. Buffers are made before the first frame and reused. One frame before those gives the
-//! counters and the picture.
+//! Drift during a measurement then affects all contenders, and none finds the caches as its own last
+//! frame left them. Buffers are made before the first frame. One more frame gives the counters and
+//! the picture. `spec/lab.md` defines a frame.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -27,22 +26,17 @@ pub struct Schedule {
     pub runs: u32,
 }
 
-/// An engine and the frame that it draws.
 pub(super) struct Contender<'c> {
-    /// Its name in errors.
     pub(super) name: String,
     pub(super) graph: &'c Graph,
     pub(super) setup: FrameSetup,
-    /// Threads of its pool, 1 or more.
     pub(super) threads: usize,
     pub(super) drawer: Drawer<'c>,
     /// Nodes whose attributes are read besides those of visible voxels.
     pub(super) attributes: Vec<u32>,
 }
 
-/// The source of a contender's frames.
 pub(super) enum Drawer<'c> {
-    /// An engine, which draws every frame.
     Engine(Box<dyn Engine + Send>),
     /// A viewer, which draws only frames that change.
     Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
@@ -57,7 +51,6 @@ impl Contender<'_> {
     }
 }
 
-/// Times of a contender's frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Times {
     wall: Summary,
@@ -81,7 +74,6 @@ impl Times {
         self.thread.unwrap_or(self.wall)
     }
 
-    /// Sets the columns of times.
     pub(crate) fn put(&self, row: &mut Row) {
         let best = self.best();
         row.put("cpu_ms", self.thread.map(|cpu| Cell::ms(cpu.median_ms)));
@@ -96,7 +88,6 @@ impl Times {
     }
 }
 
-/// Draws one frame per contender and round, by the contenders' places.
 pub(crate) fn interleave<E>(
     contenders: usize,
     schedule: Schedule,
@@ -220,7 +211,6 @@ impl<'p> Harness<'p> {
         }
     }
 
-    /// A frame with voxels and counters, not timed.
     fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
@@ -287,7 +277,6 @@ mod tests {
     use shiftvox::graph::{GraphView, Silent};
     use shiftvox::project::{Camera, SetupOptions};
 
-    /// Notes its name for each frame and how many threads it finds.
     struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
 
     impl Engine for NameRecorder {

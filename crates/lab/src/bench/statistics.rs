@@ -40,7 +40,6 @@ impl Summary {
     }
 }
 
-/// The middle of growing numbers; 0 for none.
 fn middle(sorted: &[f64]) -> f64 {
     let half = sorted.len() / 2;
     match sorted {

@@ -60,11 +60,8 @@ pub struct TimePlan<'p> {
     pub reference: &'p Candidate,
 }
 
-/// Measures all contenders on all subjects in one race: a row for each, in the order of subjects,
-/// sizes, engines, variants and threads.
-///
-/// If sizes or subjects vary, the rows have the exponents of power laws: of time and of work, in
-/// pixels or voxels.
+/// Measures all contenders on all subjects in one race: a row for each. If sizes or subjects vary,
+/// the rows have the exponents of time and of work, in pixels or voxels.
 ///
 /// # Errors
 /// When a frame cannot be set up or drawn, or there are no threads.
@@ -160,7 +157,6 @@ pub fn measure(
     Ok(rows)
 }
 
-/// The columns that identify a contender.
 fn head(
     subject: &Subject,
     (width, height): (u32, u32),
@@ -224,7 +220,6 @@ fn contender(
     })
 }
 
-/// The voxels that a candidate sees, drawn on all threads.
 fn picture_of(
     candidate: &Candidate,
     graph: &Graph,

@@ -74,14 +74,12 @@ impl FloatStep {
     }
 }
 
-/// The ray caster's arithmetic, counted or not.
 pub(super) trait Arithmetic {
     fn count(&mut self, step: FloatStep, times: u32);
 
     /// Counts `times` dependent steps of the ray's longest chain. Steps that can run in parallel are not in it.
     fn wait(&mut self, step: FloatStep, times: u32);
 
-    /// A word of a node is read.
     fn node(&mut self, word: u64);
 
     #[inline(always)]

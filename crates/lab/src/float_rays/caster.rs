@@ -13,14 +13,12 @@ struct StackEntry {
 
 pub(super) struct Caster<'g> {
     pub(super) graph: &'g GraphView<'g>,
-    /// Level at which a node is a voxel.
     pub(super) last_level: u32,
     pub(super) depth: u32,
     pub(super) layout: NodeLayout,
 }
 
 impl Caster<'_> {
-    /// The first solid cell on a ray: its node, and its cell as a frame stores it.
     #[inline]
     pub(super) fn cast<A: Arithmetic>(
         &self,

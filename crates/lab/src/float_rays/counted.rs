@@ -87,9 +87,7 @@ impl Arithmetic for Counting<'_> {
     }
 }
 
-/// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
-/// `layout`: how nodes lie in memory.
-/// `reads` is called for every node and attribute that is read, in order.
+/// Draws a frame in `f32`, its rays in `order`, and counts the steps. `reads` gets every read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,

@@ -1,8 +1,7 @@
 //! A ray caster in `f32`: the stand-in for renderers that are not ours.
 //!
-//! One ray per sample traverses the octree with a stack and visits children in the order in which it meets them (Revelles,
-//! Urena, Lastra 2000, in the form of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). The first leaf ends a ray.
-//! There are no allocations per ray, no packets, and one thread.
+//! One ray per sample traverses the octree with a stack and visits children in order (Revelles, Urena, Lastra 2000, in the
+//! form of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). The first leaf ends a ray.
 //!
 //! The object is the cube `[1, 2]^3`, so that a cell's position along an axis
 //! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
@@ -32,15 +31,13 @@ pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
 /// and products with it stay far from overflow.
 const LEAST_SLOPE: f32 = 1.0 / (1 << MANTISSA_BITS) as f32;
 
-/// The ray caster in floating point. Drawing rule, cage, tolerance and level
-/// of detail of the set-up are ignored: a sample shows what its centre sees,
-/// within the precision of `f32`.
+/// The ray caster in floating point. A sample shows what its centre sees, within the precision of `f32`, whatever rule,
+/// cage, tolerance and level of detail the set-up has.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FloatRays;
 
 impl Engine for FloatRays {
-    /// Never fails. `steps` counts the cells that rays examined. Does not
-    /// fill `frame.records`. Nodes at [`MAX_LEVEL`] are drawn as one voxel.
+    /// Never fails. `steps` counts the cells that rays examined.
     fn render(
         &mut self,
         graph: &GraphView<'_>,

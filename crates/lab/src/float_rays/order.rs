@@ -15,7 +15,6 @@ pub enum RayOrder {
     Morton,
 }
 
-/// Side of a tile, samples.
 const TILE: u32 = 8;
 
 impl RayOrder {
@@ -62,7 +61,6 @@ impl RayOrder {
     }
 }
 
-/// Every second bit of a number, from bit 0 on.
 fn even_bits(number: u64) -> u32 {
     let mut bits = number & 0x5555_5555_5555_5555;
     for (shift, mask) in [

@@ -110,12 +110,10 @@ fn check_sizes(a: Colors<'_>, b: Colors<'_>) -> Result<(), SizeError> {
     (a == b).then_some(()).ok_or(SizeError(a, b))
 }
 
-/// Infinite for 0.
 fn decibel(mse: f64) -> f64 {
     -10.0 * libm::log10(mse)
 }
 
-/// The colour that is seen on black.
 pub(super) fn on_black([r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
     [r, g, b].map(|c| ((u32::from(c) * u32::from(alpha) + 127) / 255) as u8)
 }

@@ -17,9 +17,7 @@ use shiftvox::srgb::to_linear;
 /// The authors' pixels per degree: a display 0.7 m wide with 3840 pixels, seen from 0.7 m away.
 const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 
-/// Exponent of colour distances.
 const COLOR_EXPONENT: f64 = 0.7;
-/// Exponent of feature differences.
 const FEATURE_EXPONENT: f64 = 0.5;
 /// Distances up to this part of the greatest
 const KNEE_DISTANCE: f64 = 0.4;
@@ -41,11 +39,9 @@ const SENSITIVITY: [&[(f64, f64)]; 3] = [
 /// White of the D65 illuminant, XYZ.
 const WHITE: [f64; 3] = [0.950_428_545, 1.0, 1.088_900_371];
 
-/// A picture made ready to be compared with many others.
 pub(crate) struct Flip {
     /// Blurred, in Hunt-adjusted L*a*b*.
     lab: Vec<[f64; 3]>,
-    /// Strength of edges and of points.
     features: Vec<[f64; 2]>,
 }
 
@@ -115,7 +111,6 @@ fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).abs() + libm::hypot(a[1] - b[1], a[2] - b[2])
 }
 
-/// Linear light of a byte of sRGB.
 fn linear(byte: u8) -> f64 {
     to_linear(f64::from(byte) / 255.0)
 }
@@ -223,7 +218,6 @@ fn blur(size: (usize, usize), plane: &[f64], terms: &[(f64, f64)]) -> Vec<f64> {
     sum
 }
 
-/// Strength of edges and of points, over both axes.
 fn features(size: (usize, usize), luma: &[f64]) -> Vec<[f64; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let variance = deviation * deviation;
@@ -242,7 +236,6 @@ fn features(size: (usize, usize), luma: &[f64]) -> Vec<[f64; 2]> {
     edges.into_iter().zip(points).map(|(e, p)| [e, p]).collect()
 }
 
-/// A plane filtered along both axes.
 pub(super) fn filtered(
     (width, height): (usize, usize),
     plane: &[f64],
@@ -282,7 +275,6 @@ mod tests {
 
     const SIZE: (u32, u32) = (48, 40);
 
-    /// The pictures that the authors' program was run on.
     fn picture(kind: u32) -> Vec<[u8; 4]> {
         let pixel = |x: u32, y: u32| {
             let base = [(x * 5) % 256, (y * 6) % 256, (x * y) % 200];

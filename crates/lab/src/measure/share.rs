@@ -4,10 +4,8 @@
 /// Width of a picture, and the covered share of each pixel, 0 to 1.
 pub(crate) type Shares<'s> = (usize, &'s [f32]);
 
-/// Sums over some pixels, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ShareError {
-    /// The reference's shares.
     pub(crate) area: f64,
     /// `test - reference`. Above 0: things are too large.
     signed: f64,
@@ -41,7 +39,6 @@ impl ShareError {
     }
 }
 
-/// The errors on all pixels, and on thin ones alone.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct CoverageBias {
     pub(crate) all: ShareError,
@@ -49,7 +46,6 @@ pub(crate) struct CoverageBias {
 }
 
 impl CoverageBias {
-    /// Compares pictures of the same size.
     pub(crate) fn between(test: &[f32], reference: Shares<'_>) -> Self {
         let mut bias = Self::default();
         for (at, (&t, &r)) in test.iter().zip(reference.1).enumerate() {

@@ -35,7 +35,6 @@ pub(super) fn ssim(width: usize, height: usize, a: &[f64], b: &[f64]) -> f64 {
     (0..mean_a.len()).map(window).sum::<f64>() / mean_a.len() as f64
 }
 
-/// Means of the windows that lie inside the picture.
 fn windows(width: usize, height: usize, plane: &[f64]) -> Vec<f64> {
     let bell: [f64; WINDOW] = std::array::from_fn(|k| {
         let away = k as f64 - RADIUS as f64;

@@ -3,7 +3,6 @@
 use crate::report::plot::dominates;
 use crate::report::{Cell, Row};
 
-/// Less by a smaller part than this is not worth mentioning.
 const WORTH_MENTIONING: f64 = 0.01;
 
 /// Adds the column `beaten_by`. A method beats another of its family if it has no more work, no more
@@ -73,7 +72,6 @@ pub(super) fn add_rivals(rows: &mut [Row]) {
 mod tests {
     use super::*;
 
-    /// Rows of methods with name, family, bytes (also the work), and error.
     fn rows(methods: &[(&'static str, &'static str, u64, f64)]) -> Vec<Row> {
         let row = |&(name, family, bytes, rms): &(&'static str, &'static str, u64, f64)| {
             let mut row = Row::default();

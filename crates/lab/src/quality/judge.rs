@@ -4,7 +4,6 @@ use super::reference::Reference;
 use crate::measure::{ColorError, CoverageBias, Flip, SizeError};
 use crate::report::{Cell, Row};
 
-/// A reference, made ready to be compared with many pictures.
 pub(super) struct Judge<'r> {
     reference: &'r Reference,
     flip: Flip,

@@ -47,7 +47,6 @@ pub struct Scene<'s> {
 
 /// The method of rows that compare a second reference with the first.
 const NOISE_FLOOR: &str = "noise floor";
-/// Seeds of the reference and of the second one.
 const SEEDS: [u64; 2] = [1, 2];
 /// Most methods that draw in turn, and so have their buffers in memory at one time.
 const MOST_IN_TURN: usize = 64;
@@ -87,7 +86,6 @@ impl Scene<'_> {
         ))
     }
 
-    /// The references of a film.
     fn film(
         &self,
         cameras: &[Camera],
@@ -110,7 +108,6 @@ fn truth(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, Set
     FrameSetup::new(camera, &graph.placement, graph.depth, &options)
 }
 
-/// The voxels that exact rays hit at the sample points of a picture.
 struct Exact<'m> {
     graph: &'m Graph,
     aa_log2: u32,
@@ -164,7 +161,6 @@ pub fn measure(
     Ok(rows)
 }
 
-/// The columns that identify a row.
 fn head(scene: Scene<'_>, camera: &Camera, plan: &QualityPlan, method: [&str; 3]) -> Row {
     let mut row = Row::default();
     let samples = match scene.mesh {
@@ -247,12 +243,10 @@ fn at(
     Ok(rows)
 }
 
-/// Linear light in thousandths of white.
 fn thousandths(light: f64) -> Cell {
     Cell::Number(1e3 * light, 2)
 }
 
-/// Films a method.
 fn film(
     row: &mut Row,
     method: &Method<'_>,
@@ -272,7 +266,6 @@ fn film(
     Ok(())
 }
 
-/// Draws and judges a picture.
 fn judged_row<'m>(
     row: &mut Row,
     method: &Method<'m>,
@@ -316,7 +309,6 @@ fn judged_row<'m>(
     Ok(())
 }
 
-/// Times methods, interleaved, on one thread.
 fn race(
     methods: &[Method<'_>],
     rows: &mut [Row],

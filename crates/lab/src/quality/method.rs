@@ -9,26 +9,20 @@ use shiftvox::project::{Camera, Stats};
 pub struct Method<'m> {
     /// Its family, such as `voxels`. Methods of a family have the same settings and counters.
     pub(super) family: &'static str,
-    /// Its name, unlike that of every other method.
     pub(super) name: String,
     pub(super) settings: Vec<(&'static str, Cell)>,
     /// A word by which plots colour it, such as its coverage rule.
     pub(super) kind: String,
-    /// The graph whose voxels it draws, if it draws any.
     pub(super) graph: Option<&'m Graph>,
-    /// Bytes of its data.
     pub(super) bytes: u64,
     /// Time to make its data, milliseconds.
     pub build_ms: Option<f64>,
-    /// Makes a drawing that has drawn no frame.
     pub(super) drawing: Box<dyn Fn() -> Box<dyn Drawable + 'm> + 'm>,
-    /// Examines a drawn frame.
     pub(super) examine: Box<Examine<'m>>,
 }
 
 pub(super) type Examine<'m> = dyn Fn(&Shown<'_>, &Camera) -> Result<Examined, Refused> + 'm;
 
-/// Draws a frame.
 pub(super) fn drawn<'d>(
     drawing: &'d mut (dyn Drawable + '_),
     camera: &Camera,
@@ -55,16 +49,13 @@ impl From<DrawError> for Refused {
     }
 }
 
-/// Properties of a drawn frame beside its colours.
 #[derive(Default)]
 pub(super) struct Examined {
-    /// Share of each pixel that is covered, 0 to 1.
     pub(super) shares: Vec<f32>,
     /// `aa_log2` and the voxels at the samples, as in a frame; `None` for methods without voxels.
     pub(super) samples: Option<(u32, Vec<[i32; 4]>)>,
     /// Counters of the frame. The first is the method's work.
     pub(super) counters: Stats,
-    /// A remark, such as which engine drew in its place.
     pub(super) remark: Option<String>,
 }
 

@@ -13,29 +13,23 @@ use shiftvox_mesh::Surface;
 use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
 use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
 
-/// How a reference is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Sampling {
     /// Strata of a pixel along each axis, as a power of two, 0..=4; one sample each.
     pub(super) strata_log2: u32,
-    /// Seed of the places in the strata.
     pub(super) seed: u64,
 }
 
 /// A picture of many samples, box-filtered in linear light.
 #[derive(Debug, PartialEq)]
 pub(super) struct Reference {
-    /// Pixels across.
     pub(super) width: u32,
-    /// Pixels down.
     pub(super) height: u32,
     /// sRGB, opaque, rounded once after the filter.
     pub(super) rgba: Vec<[u8; 4]>,
-    /// Covered share of each pixel, 0 to 1.
     pub(super) shares: Vec<f32>,
 }
 
-/// Most levels by which places in a stratum are distinguished.
 const MOST_JITTER_LEVELS: u32 = 4;
 
 /// Casts a reference of a frame with one sample per pixel, whose image root has at most
@@ -85,7 +79,6 @@ pub(super) fn cast(
     }
 }
 
-/// Samples per pixel of the reference of a mesh.
 pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 
 /// A reference of a mesh: one random sample in each of 256 equal squares of a pixel.
@@ -122,7 +115,6 @@ struct Pixels<'g> {
 }
 
 impl Pixels<'_> {
-    /// Colour and share of a pixel.
     fn pixel(&self, x: u32, y: u32) -> ([u8; 4], f32) {
         let strata = 1u32 << self.strata_log2;
         let (mut light, mut seen) = ([0u32; 3], 0u32);
@@ -172,7 +164,6 @@ mod tests {
     use shiftvox::project::{Engine, SetupOptions};
     use shiftvox::rays::Rays;
 
-    /// One voxel, `[0, 1]^3`.
     fn cube() -> Graph {
         crate::test_graphs::one_node(0, 0, [200, 40, 90])
     }

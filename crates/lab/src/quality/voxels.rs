@@ -148,7 +148,6 @@ fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
     ])
 }
 
-/// A tolerance in words: `1/8`, `0`, `inf`.
 fn tolerance_in_words(tolerance_px: f64) -> String {
     if tolerance_px.is_infinite() {
         return "inf".to_owned();
@@ -184,7 +183,6 @@ fn name(engine: &str, o: &SetupOptions) -> String {
     name
 }
 
-/// The covered share of each pixel.
 fn shares(frame: &Frame, aa_log2: u32) -> Vec<f32> {
     let (side, across) = (1usize << aa_log2, frame.width as usize);
     let (width, height) = (across >> aa_log2, frame.height as usize >> aa_log2);

@@ -39,7 +39,6 @@ pub struct Page<'p> {
     pub details: &'p [Table],
 }
 
-/// A text with the characters escaped that HTML interprets.
 pub(super) fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")

@@ -41,7 +41,6 @@ impl Cell {
         }
     }
 
-    /// The cell for people: whole numbers have their digits in groups of three.
     pub(crate) fn for_people(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -153,11 +152,8 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// Most letters of a line of text.
 const TEXT_WIDTH: usize = 100;
-/// Most letters of a line of a cell; longer cells have several lines.
 const CELL_WIDTH: usize = 40;
-/// Most letters of columns that blocks repeat.
 const MOST_KEY_WIDTH: usize = 60;
 
 impl Table {
@@ -297,7 +293,6 @@ impl Table {
     }
 }
 
-/// A column as text.
 struct Column {
     is_of_words: bool,
     width: usize,
@@ -349,7 +344,6 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A CSV field, in quotes where it must be.
 fn quoted(field: &str) -> String {
     if field.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

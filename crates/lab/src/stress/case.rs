@@ -129,7 +129,6 @@ fn vector(text: &str) -> Option<DVec3> {
 }
 
 impl Case {
-    /// The camera in world units.
     pub(super) fn world_camera(&self) -> Camera {
         let by = DVec3::splat(self.shift as f64);
         Camera {

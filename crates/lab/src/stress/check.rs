@@ -16,7 +16,6 @@ use shiftvox::rays::Rays;
 pub(super) const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
 /// Every rule must have ended after so many records.
 pub const PATIENCE: u64 = 200_000_000;
-/// Voxels per frame whose vertices are examined.
 const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;
@@ -27,7 +26,6 @@ pub(super) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
 }
 
-/// The oracle's picture.
 fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, false);
     // The oracle has no error to give.
@@ -56,7 +54,6 @@ impl Oracle {
     }
 }
 
-/// Draws a case and checks it.
 pub(super) fn check(
     subject: &dyn Subject,
     case: &Case,
@@ -123,7 +120,6 @@ pub(super) fn check(
     outcome
 }
 
-/// A frame beside the right one.
 struct CheckedFrame<'s> {
     setup: &'s FrameSetup,
     frame: &'s Frame,
@@ -171,7 +167,6 @@ impl CheckedFrame<'_> {
         (low, low.map(|c| c + side))
     }
 
-    /// X, Y, W of a voxel's eight vertices.
     fn vertices(&self, voxel: &Voxel) -> [[i128; 3]; 8] {
         let (low, high) = self.corners(voxel);
         std::array::from_fn(|v| {
@@ -188,7 +183,6 @@ impl CheckedFrame<'_> {
         })
     }
 
-    /// Least and greatest depth.
     fn depths(&self, voxel: &Voxel) -> (i128, i128) {
         let w = self.vertices(voxel).map(|p| p[2]);
         let least = w.iter().copied().min().unwrap_or(0);
@@ -220,7 +214,6 @@ impl CheckedFrame<'_> {
         parted
     }
 
-    /// Fails a check at the first of some samples.
     fn fail_at(
         &self,
         outcome: &mut Outcome,
@@ -334,8 +327,8 @@ impl CheckedFrame<'_> {
             }
         }
         outcome.holes = holes.len() as u64;
-        // The image-order paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that
-        // words are too narrow for the view. Its holes, and those at infinite tolerance, are counted but allowed.
+        // The paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that words are
+        // too narrow for the view. Its holes, and those at infinite tolerance, are allowed.
         let is_promised =
             self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
         if is_promised {
@@ -347,7 +340,6 @@ impl CheckedFrame<'_> {
     }
 }
 
-/// The way from the root to a voxel, and a few levels into it.
 fn path(setup: &FrameSetup, voxel: &Voxel, salt: usize) -> Vec<u8> {
     let octant = |bit: u32| (0..3).fold(0u8, |octant, k| octant << 1 | (voxel[k] >> bit & 1) as u8);
     let mut path: Vec<u8> = (0..setup.depth).rev().map(octant).collect();

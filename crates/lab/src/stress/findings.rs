@@ -137,7 +137,6 @@ pub struct Findings {
     pub failed: Vec<Failed>,
 }
 
-/// Failures that are reported in full, per check and job.
 const TOLD: u64 = 3;
 
 impl Findings {

@@ -1,8 +1,5 @@
 //! Numerical stability: frames of many word formats, cameras, scenes and rules against the oracle, the specification and
-//! the bounds on their error.
-//!
-//! [`sweep()`] runs a [`SweepPlan`]. It shrinks a failure to a small [`Case`], a line of text that [`run_case`] draws again.
-//! `spec/lab.md` describes the method.
+//! the bounds on their error (`spec/lab.md`). A failure is shrunk to a small [`Case`], a line of text.
 
 mod case;
 mod check;

@@ -29,7 +29,6 @@ impl Subject for Mutant {
 
 const SCENES: [&str; 3] = ["gen:shell,depth=3", "gen:random,depth=3", "plane:4,3,5,7"];
 
-/// Small scenes, seen from all standard viewpoints.
 fn sweep(subject: &dyn Subject, scenes: &[&str], bits: &[u32]) -> Findings {
     let plan = SweepPlan {
         scenes: scenes.iter().map(|text| text.parse().unwrap()).collect(),

@@ -43,9 +43,7 @@ pub enum StressScene {
     },
 }
 
-/// Most levels of scenes whose voxels are made one by one.
 const MOST_LISTED_DEPTH: u32 = 20;
-/// Most levels of a plane.
 const MOST_PLANE_DEPTH: u32 = 10;
 
 impl fmt::Display for StressScene {
@@ -190,10 +188,8 @@ impl StressScene {
     }
 }
 
-/// Takes voxels' indices.
 type VoxelSink<'t> = dyn FnMut([i32; 3]) + 't;
 
-/// A graph of the voxels that `give` hands on.
 fn built(give: &mut dyn FnMut(&mut VoxelSink<'_>)) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,

@@ -10,7 +10,6 @@ use super::subject::Subject;
 use shiftvox::project::CageKind;
 use shiftvox::scene::generate::Spec;
 
-/// Most voxels of a scene that is taken apart voxel by voxel.
 const MOST_VOXELS: usize = 6000;
 
 /// Looks for smaller and plainer cases that fail one check, too.
@@ -18,12 +17,10 @@ pub(super) struct Shrinker<'s> {
     pub(super) subject: &'s dyn Subject,
     pub(super) check: Check,
     pub(super) most_records: u64,
-    /// Cases that may still be drawn.
     pub(super) left: u32,
 }
 
 impl Shrinker<'_> {
-    /// Replaces a case by another that fails, too. Returns whether it does.
     fn take(&mut self, best: &mut Case, case: Case) -> bool {
         if self.left == 0 || case == *best {
             return false;
@@ -41,7 +38,6 @@ impl Shrinker<'_> {
         fails
     }
 
-    /// The smallest case that was found, and it fails.
     pub(super) fn shrink(&mut self, failing: &Case) -> Case {
         let mut best = failing.clone();
         loop {
@@ -59,7 +55,6 @@ impl Shrinker<'_> {
         }
     }
 
-    /// Leaves voxels out, first halves of the scene, at last one by one.
     fn fewer_voxels(&mut self, best: &mut Case) {
         if let Some(scene) = best.scene.as_voxels(MOST_VOXELS) {
             let listed = Case {
@@ -96,7 +91,6 @@ impl Shrinker<'_> {
     }
 }
 
-/// Cases that are a little plainer.
 fn plainer(case: &Case) -> Vec<Case> {
     let mut all = Vec::new();
     let mut push = |change: &dyn Fn(&mut Case)| {

@@ -7,7 +7,6 @@ use shiftvox::graph::GraphView;
 use shiftvox::machine::{self, Cage, Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup, Stats};
 
-/// A renderer whose pictures and vertices can be checked.
 pub(super) trait Subject: Sync {
     /// Draws a frame with at most so many records: `None` where that is not enough.
     fn draw(
@@ -22,7 +21,6 @@ pub(super) trait Subject: Sync {
     fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
 }
 
-/// The machine as it is.
 pub(super) struct Product;
 
 impl Subject for Product {

@@ -45,7 +45,6 @@ pub const TOLERANCES: [f64; 6] = [
     f64::INFINITY,
 ];
 
-/// Scenes of the standard sweep.
 const SCENES: [&str; 13] = [
     "gen:sphere,depth=4",
     "gen:shell,depth=5",
@@ -61,7 +60,6 @@ const SCENES: [&str; 13] = [
     "cyclic:9,5",
     "gen:sierpinski,depth=30",
 ];
-/// More of them.
 const MORE_SCENES: [&str; 9] = [
     "gen:sphere,depth=7",
     "gen:shell,depth=8",
@@ -108,7 +106,6 @@ const EXACT_LODS: [f64; 4] = [0.0, 1.0, 0.3, 3.0];
 /// The first rules define the picture at every sample.
 const STRICT_RULES: usize = 2 * EXACT_LODS.len();
 
-/// All rules, the strictest first.
 fn rules() -> Vec<SetupOptions> {
     let mut rules = Vec::new();
     for coverage in Coverage::UNBLENDED {
@@ -130,7 +127,6 @@ fn rules() -> Vec<SetupOptions> {
     rules
 }
 
-/// A scene seen from a viewpoint.
 struct Job<'p> {
     scene: usize,
     graph: &'p Graph,
@@ -146,7 +142,6 @@ pub fn sweep(plan: &SweepPlan, progress: &dyn Progress) -> Result<Findings, Stri
     sweep_of(&Product, plan, progress)
 }
 
-/// Runs a plan on any subject.
 pub(super) fn sweep_of(
     subject: &dyn Subject,
     plan: &SweepPlan,
@@ -237,7 +232,6 @@ fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
     all.iter().position(|other| other == one).unwrap_or(0)
 }
 
-/// Shrinks the first failure of each check.
 fn shrink_failures(
     subject: &dyn Subject,
     plan: &SweepPlan,

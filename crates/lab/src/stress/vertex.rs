@@ -1,5 +1,4 @@
-//! The vertices of a frame: the machine's cages against the specification, bit for bit, and against the true projection,
-//! within the bounds.
+//! The machine's vertices against the specification, bit for bit, and against the true projection.
 
 use glam::DVec3;
 
@@ -73,16 +72,13 @@ impl Worst {
 pub(super) struct Vertices {
     /// By [`Hold`].
     pub(super) worst: [Worst; 3],
-    /// A voxel whose cage is not the specification's.
     pub(super) differs: Option<String>,
-    /// A vertex beyond its bound.
     pub(super) beyond: Option<String>,
 }
 
 /// Error of the check's own arithmetic, samples per sample of the root's side.
 const CHECK_ERROR: f64 = 1e-14;
 
-/// Checks the voxels on the way down `path`.
 pub(super) fn check_path(
     subject: &dyn Subject,
     setup: &FrameSetup,
@@ -193,7 +189,6 @@ fn measure(
     }
 }
 
-/// The bounds of a frame.
 pub(super) fn bounds_of(
     camera: &shiftvox::project::Camera,
     placement: &shiftvox::graph::Placement,

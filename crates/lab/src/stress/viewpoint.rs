@@ -6,7 +6,6 @@ use shiftvox::project::Camera;
 use shiftvox::split_mix::SplitMix;
 
 pub(super) struct Viewpoint {
-    /// The camera, in finest voxels from the object's lowest corner.
     pub(super) camera: Camera,
     /// How far object and camera are from the world's origin, voxels.
     pub(super) shift: i64,

@@ -24,9 +24,7 @@ pub struct Bar {
     pub deviation: f64,
 }
 
-/// Height of a bar with its gap.
 const BAR_HEIGHT: f64 = 26.0;
-/// Where bars begin, and how long the longest is.
 const BAR_LEFT: f64 = 300.0;
 const BAR_LENGTH: f64 = 500.0;
 

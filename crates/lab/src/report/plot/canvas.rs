@@ -4,10 +4,8 @@ use std::fmt::Write;
 
 use crate::report::html::escaped;
 
-/// An sRGB colour, `0xRRGGBB`.
 pub(super) type Color = u32;
 
-/// Where a text stands from its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -15,16 +13,13 @@ pub(super) enum Anchor {
     End,
 }
 
-/// An SVG picture that is being drawn. Places and lengths are pixels.
 #[derive(Debug, Default)]
 pub(super) struct Canvas {
     body: String,
-    /// How far down shapes are moved.
     pub(super) top: f64,
 }
 
 impl Canvas {
-    /// The file's text, on a white ground.
     pub(super) fn finish(self, width: f64, height: f64) -> String {
         format!(
             "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -81,7 +76,6 @@ impl Canvas {
         ));
     }
 
-    /// A text that runs upwards, with its middle at a place.
     pub(super) fn upwards(&mut self, text: &str, (x, y): (f64, f64), size: u32) {
         let (y, text) = (y + self.top, escaped(text));
         self.put(format_args!(

@@ -5,7 +5,6 @@ use std::ops::Range;
 use super::canvas::{Anchor, Canvas, Color};
 use super::{COLORS, GREY, TITLE_HEIGHT, WIDTH, in_short};
 
-/// Height of a chart, pixels.
 pub(super) const HEIGHT: f64 = 540.0;
 
 /// How values lie along an axis.
@@ -145,10 +144,8 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
 /// Pixels of the plot: across, and down from its upper edge.
 const ACROSS: Range<f64> = 88.0..WIDTH - 18.0;
 const DOWN: Range<f64> = TITLE_HEIGHT..HEIGHT - 58.0;
-/// Grid lines.
 const LINES: Color = 0xdc_dcdc;
 
-/// An axis with its ends.
 struct Scaled {
     scale: Scale,
     ends: Range<f64>,
@@ -291,7 +288,6 @@ pub(super) fn draw<'c>(canvas: &mut Canvas, chart: &'c Chart) -> Vec<(&'c str, C
     legend
 }
 
-/// Whether a point lies on both axes.
 fn has_place(chart: &Chart, point: &Point) -> bool {
     let on = |axis: &Axis, at: f64| at.is_finite() && (axis.scale == Scale::Linear || at > 0.0);
     on(&chart.x, point.x) && on(&chart.y, point.y)

@@ -36,16 +36,13 @@ pub enum Panel {
     },
 }
 
-/// Width of a picture, pixels.
 const WIDTH: f64 = 900.0;
-/// Height of a panel's title.
 const TITLE_HEIGHT: f64 = 44.0;
 /// Colours that are distinguishable also to the colour-blind (Okabe and Ito), and two more.
 const COLORS: [Color; 9] = [
     0x00_72b2, 0xd5_5e00, 0x00_9e73, 0xcc_79a7, 0xe6_9f00, 0x56_b4e9, 0x00_0000, 0x96_6e3c,
     0x78_78be,
 ];
-/// The colour of series for comparison.
 const GREY: Color = 0xa8_a8a8;
 
 /// Draws panels below each other.
@@ -88,7 +85,6 @@ fn draw<'p>(canvas: &mut Canvas, panel: &'p Panel) -> (f64, Vec<(&'p str, Color)
     }
 }
 
-/// Draws a legend below a panel, and returns its height.
 fn legend(canvas: &mut Canvas, names: &[(&str, Color)]) -> f64 {
     let (mut left, mut top) = (14.0, 0.0);
     for (name, color) in names {
