@@ -18,7 +18,7 @@ use caster::Caster;
 pub use counted::{FloatRayCounts, RayRead, count};
 pub use order::RayOrder;
 
-use shiftvox::frame::{Frame, NO_NODE};
+use shiftvox::frame::Frame;
 use shiftvox::graph::{GraphView, NodeLayout};
 use shiftvox::project::vector::cross;
 use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
@@ -139,7 +139,7 @@ mod tests {
 
     use super::*;
     use crate::measure::CoverageError;
-    use shiftvox::frame::NO_VOXEL;
+    use shiftvox::frame::{NO_NODE, NO_VOXEL};
     use shiftvox::graph::{Graph, Silent};
     use shiftvox::project::{Camera, SetupOptions};
     use shiftvox::rays::Rays as Oracle;

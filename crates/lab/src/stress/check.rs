@@ -4,6 +4,7 @@ use super::case::Case;
 use super::outcome::{Check, End, Outcome};
 use super::subject::Subject;
 use super::vertex::{self, Vertices};
+use crate::bounds::{Bounds, Widths};
 use crate::measure::CoverageError;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
@@ -355,16 +356,21 @@ fn check_vertices(
     seen: &CheckedFrame<'_>,
     outcome: &mut Outcome,
 ) {
-    let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
-    else {
+    let setup = seen.setup;
+    let widths = Widths {
+        clip_frac: setup.clip_frac,
+        screen_frac: setup.format.frac(),
+        aa_log2: setup.options.aa_log2,
+    };
+    let Ok(bounds) = Bounds::new(&case.world_camera(), &case.placement(graph), widths) else {
         return;
     };
     let shown: Vec<&Voxel> = seen.right.voxel.iter().filter(|v| v[3] >= 0).collect();
     let step = (shown.len() / VOXELS_LOOKED_AT).max(1);
     let mut found = Vertices::default();
     for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
-        let way = path(seen.setup, voxel, salt);
-        vertex::check_path(subject, seen.setup, &bounds, &way, &mut found);
+        let way = path(setup, voxel, salt);
+        vertex::check_path(subject, setup, &bounds, &way, &mut found);
     }
     outcome.worst = found.worst;
     if let Some(detail) = found.differs {

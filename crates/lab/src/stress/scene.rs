@@ -147,11 +147,13 @@ impl StressScene {
         match self {
             Self::Generated(spec) => match spec.linked() {
                 Some(graph) => Ok(graph),
-                None => built(&mut |sink| {
-                    spec.voxels(&mut |voxel| sink(voxel.index), &Silent);
-                }),
+                None => {
+                    let mut at = Vec::new();
+                    spec.voxels(&mut |voxel| at.push(voxel.index), &Silent);
+                    built(at)
+                }
             },
-            Self::Plane { depth, normal } => built(&mut |sink| plane(*depth, *normal, sink)),
+            Self::Plane { depth, normal } => built(plane(*depth, *normal)),
             Self::Solid { depth } => {
                 let mut graph = LinkedGraph::new(*depth);
                 graph.add_node([90, 160, 200], [Some(0); 8]);
@@ -188,22 +190,19 @@ impl StressScene {
     }
 }
 
-type VoxelSink<'t> = dyn FnMut([i32; 3]) + 't;
-
-fn built(give: &mut dyn FnMut(&mut VoxelSink<'_>)) -> Result<Graph, String> {
+fn built(voxels: Vec<[i32; 3]>) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,
     });
-    give(&mut |index| {
+    for index in voxels {
         builder.push(Voxel {
             index,
             color: [200, 120, 60],
             normal: None,
         });
-    });
-    builder
-        .finish(([0.0; 3], 1.0), &Silent)
-        .map_err(|e| e.to_string())
+    }
+    let graph = builder.finish(([0.0; 3], 1.0), &Silent);
+    graph.map_err(|e| e.to_string())
 }
 
 /// A tree of exactly so many levels, whatever the voxels' extent.
@@ -237,7 +236,8 @@ fn listed(depth: u32, at: &[[i32; 3]]) -> Result<Graph, String> {
 }
 
 /// All voxels `p` with `0 <= normal p - middle < |normal|` (the sum of magnitudes).
-fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
+fn plane(depth: u32, normal: [i64; 3]) -> Vec<[i32; 3]> {
+    let mut voxels = Vec::new();
     let side = 1i64 << depth;
     let thickness: i64 = normal.iter().map(|n| n.abs()).sum();
     let offset = normal.iter().sum::<i64>() * side / 2;
@@ -246,11 +246,12 @@ fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
             let rest = normal[0] * x + normal[1] * y - offset;
             for z in 0..side {
                 if (0..thickness).contains(&(rest + normal[2] * z)) {
-                    sink([x as i32, y as i32, z as i32]);
+                    voxels.push([x as i32, y as i32, z as i32]);
                 }
             }
         }
     }
+    voxels
 }
 
 /// Up to eight nodes, a third of whose children exist, any nodes each.

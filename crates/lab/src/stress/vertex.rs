@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::specified::SpecifiedVertices;
 use super::subject::Subject;
-use crate::bounds::{Bounds, Cube, Space, Widths};
+use crate::bounds::{Bounds, Cube, Space};
 use shiftvox::machine::Cage;
 use shiftvox::project::{CageKind, FrameSetup};
 
@@ -155,8 +155,7 @@ fn measure(
         let Some(truth) = bounds.project(u) else {
             continue;
         };
-        let parts = bounds.vertex(space, levels, u);
-        let bound = parts.both();
+        let bound = bounds.vertex(space, levels, u);
         let mut note = |off: f64, bound: f64| {
             let bound = bound + CHECK_ERROR * root;
             let inside = (0..2).all(|c| (0.0..=size[c]).contains(&truth[c]));
@@ -164,7 +163,7 @@ fn measure(
             if off > bound && found.beyond.is_none() {
                 found.beyond = Some(format!(
                     "{}: vertex {vertex} of path {path:?}, changed at {changed:?}, is off by \
-                     {off:.3e} samples, more than {bound:.3e} ({parts:?})",
+                     {off:.3e} samples, more than {bound:.3e}",
                     hold.name()
                 ));
             }
@@ -187,17 +186,4 @@ fn measure(
             }
         }
     }
-}
-
-pub(super) fn bounds_of(
-    camera: &shiftvox::project::Camera,
-    placement: &shiftvox::graph::Placement,
-    setup: &FrameSetup,
-) -> Option<Bounds> {
-    let widths = Widths {
-        clip_frac: setup.clip_frac,
-        screen_frac: setup.format.frac(),
-        aa_log2: setup.options.aa_log2,
-    };
-    Bounds::new(camera, placement, widths).ok()
 }
