@@ -17,7 +17,7 @@ use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{OpenError, Source};
 use shiftvox_lab::bench::{Harness, Schedule, Subject};
 use shiftvox_lab::report::Row;
-use shiftvox_lab::reproduce::{self, List, ReproduceError};
+use shiftvox_lab::reproduce::{self, List};
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
@@ -34,15 +34,6 @@ pub(super) struct ReproduceArgs {
     outdir: Option<PathBuf>,
     #[command(flatten)]
     export: ExportArgs,
-}
-
-impl From<ReproduceError> for CliError {
-    fn from(error: ReproduceError) -> Self {
-        match error {
-            ReproduceError::Bench(error) => error.into(),
-            ReproduceError::Resolve(error) => error.into(),
-        }
-    }
 }
 
 impl ReproduceArgs {

@@ -106,9 +106,6 @@ pub(super) fn run(
             "{}: {detail}\n  shiftvox stress --case '{minimal}'",
             failed.check.name()
         ));
-        if let Some(render) = &failed.render {
-            console.note(format!("  {render}"));
-        }
     }
     Err(CliError::new(
         Kind::Failed,

@@ -1,9 +1,5 @@
-//! How far a vertex can be from where it should be: bounds that are derived
-//! in `spec/bounds.md`, in real numbers, from the camera.
-//!
-//! Nothing here depends on how the machine computes. It uses the
-//! widths of the numbers that the machine holds: the fraction bits of clip
-//! vectors and of screen positions.
+//! How far a vertex can be from where it should be: bounds that are derived in `spec/bounds.md`, in
+//! real numbers, from the camera and the machine's fraction bits.
 
 use glam::DVec3;
 
@@ -51,32 +47,12 @@ pub enum Space {
     Frame(Cube),
 }
 
-/// A bound in its parts, samples along x and y each.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Parts {
-    /// The host's rounding of edges and origin.
-    pub host: [f64; 2],
-    /// The deviation of the screen's straight lines from perspective.
-    pub deviation: [f64; 2],
-    /// Rounding of quotients, midpoints and edges.
-    pub rounding: [f64; 2],
-}
-
-impl Parts {
-    /// The whole, along x and y.
-    #[must_use]
-    pub fn both(&self) -> [f64; 2] {
-        [0, 1].map(|c| self.host[c] + self.deviation[c] + self.rounding[c])
-    }
-}
-
 /// A view in real numbers, and what rounding does to it.
 #[derive(Debug, Clone)]
 pub struct Bounds {
     eye: DVec3,
     /// Clip vectors of a voxel's edges: X, Y in parts of the image root, W in voxels.
     edge: [DVec3; 3],
-    /// Samples a side of the image root.
     root: f64,
     widths: Widths,
     /// Error of the eye in `f64`, voxels along each axis.
@@ -152,7 +128,6 @@ impl Bounds {
         self.unit() / 2.0 * (steps + 1.0) + real
     }
 
-    /// The unit of clip vectors, voxels.
     fn unit(&self) -> f64 {
         libm::ldexp(1.0, -(self.widths.clip_frac as i32))
     }
@@ -171,36 +146,25 @@ impl Bounds {
         })
     }
 
-    /// How far the vertex at `u` may be from its projection, if it is held in
-    /// `space`, `levels` below the level of the cube that changed.
+    /// How far the vertex at `u` may be from its projection along x and y, samples, if it is held in
+    /// `space`, `levels` below the level of the cube that changed. The sum of the host's rounding of
+    /// edges and origin, the deviation of the screen's straight lines from perspective, and the
+    /// rounding of quotients, midpoints and edges.
     #[must_use]
-    pub fn vertex(&self, space: Space, levels: u32, u: DVec3) -> Parts {
-        let host = self.host(u);
+    pub fn vertex(&self, space: Space, levels: u32, u: DVec3) -> [f64; 2] {
         let unit = libm::ldexp(1.0, -(self.widths.screen_frac as i32));
         let levels = f64::from(levels);
-        match space {
-            Space::Clip => Parts {
-                host,
-                ..Parts::default()
-            },
-            Space::Corners(cube) => Parts {
-                host,
-                deviation: self.corner_deviation(&cube),
-                rounding: [(1.0 + 1.5 * levels) * unit; 2],
-            },
-            Space::Frame(cube) => Parts {
-                host,
-                deviation: self.frame_deviation(&cube),
-                rounding: [(3.0 + 3.0 * levels) * unit; 2],
-            },
-        }
+        let (deviation, rounding) = match space {
+            Space::Clip => ([0.0; 2], 0.0),
+            Space::Corners(cube) => (self.corner_deviation(&cube), (1.0 + 1.5 * levels) * unit),
+            Space::Frame(cube) => (self.frame_deviation(&cube), (3.0 + 3.0 * levels) * unit),
+        };
+        let host = self.host(u);
+        [0, 1].map(|c| host[c] + deviation[c] + rounding)
     }
 
-    /// Depths that the cube's edges span, the greatest speed of a position
-    /// along each edge (times the depth, samples), and the least depth.
-    ///
-    /// All of the rounded view, which is a perspective view like the true one:
-    /// what its straight lines deviate from it is bounded by these.
+    /// Of the rounded view: depths that the cube's edges span, the greatest speed of a position along
+    /// each edge (times the depth, samples), and the least depth.
     fn speeds(&self, cube: &Cube, c: usize) -> ([f64; 3], [f64; 3], f64) {
         let half = self.unit() / 2.0;
         let span = self.edge.map(|e| (e.z.abs() + half) * cube.side);

@@ -34,13 +34,6 @@ pub enum Settings {
 }
 
 impl Settings {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Default => "default",
-        }
-    }
-
     fn options(self) -> SetupOptions {
         match self {
             Self::Paper => SetupOptions::paper(),
@@ -93,17 +86,6 @@ impl List {
     }
 }
 
-/// An error of a measurement.
-#[derive(Debug, thiserror::Error)]
-pub enum ReproduceError {
-    /// A frame could not be measured.
-    #[error(transparent)]
-    Bench(#[from] BenchError),
-    /// A picture could not be made.
-    #[error(transparent)]
-    Resolve(#[from] picture::ResolveError),
-}
-
 /// Times of a run, with the paper's beside them. `subjects`: those of the run.
 ///
 /// Rows of the machine with everything on have the hash of the picture, the operations and the
@@ -117,7 +99,7 @@ pub fn rows(
     families: &[Family],
     reference: &Candidate,
     harness: &mut Harness<'_>,
-) -> Result<Vec<Row>, ReproduceError> {
+) -> Result<Vec<Row>, BenchError> {
     let sizes: Vec<(u32, u32)> = run.sizes.iter().map(|&side| (side, side)).collect();
     let plan = TimePlan {
         sizes: &sizes,
@@ -127,16 +109,15 @@ pub fn rows(
         reference,
     };
     let mut rows = measure(subjects, &plan, harness)?;
-    let paper: Vec<(f64, f64)> = paper_points().collect();
-    let paper_law = PowerLaw::fit(&paper);
+    let settings = match run.settings {
+        Settings::Paper => "paper",
+        Settings::Default => "default",
+    };
+    let paper_law = PowerLaw::fit(paper_points());
     for row in &mut rows {
         row.put("table", run.table.as_str());
-        row.put("settings", run.settings.name());
-        let contender = format!(
-            "{}, {} settings",
-            row.text("contender"),
-            run.settings.name()
-        );
+        row.put("settings", settings);
+        let contender = format!("{}, {settings} settings", row.text("contender"));
         row.put("contender", contender);
         let side = row.number("width");
         let found = PAPER_TABLE_I.iter().find(|(of, _)| f64::from(*of) == side);
@@ -156,8 +137,7 @@ pub fn rows(
     Ok(rows)
 }
 
-/// Draws the frame of a row on the machine once more, and counts.
-fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), ReproduceError> {
+fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), BenchError> {
     let side = row.number("width") as u32;
     let setup = subject.setup((side, side), &options)?;
     let graph = &subject.graph;
@@ -167,7 +147,8 @@ fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), 
         source,
     })?;
     let shading = (Shading::Lambert, Background::default());
-    let picture = resolve(&frame, graph, &setup, shading.0, shading.1)?;
+    let picture = resolve(&frame, graph, &setup, shading.0, shading.1);
+    let picture = picture.map_err(|e| BenchError::Picture(e.to_string()))?;
     let covered = frame.drawn() as u64;
     row.put("covered_pixels", covered);
     let us = row.number("ms") * 1e3 / covered.max(1) as f64;
@@ -186,27 +167,9 @@ fn paper_points() -> impl Iterator<Item = (f64, f64)> {
 /// The most important columns of the rows of one table, for people.
 #[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
-    const COLUMNS: [&str; 18] = [
-        "scene",
-        "size",
-        "settings",
-        "engine",
-        "variant",
-        "ms",
-        "paper_ms",
-        "paper_over_ours",
-        "time_ratio",
-        "voxels",
-        "work",
-        "operations",
-        "covered_pixels",
-        "us_per_covered_pixel",
-        "exponent",
-        "paper_exponent",
-        "changed",
-        "hash",
-    ];
-    Table::select(title, rows, &COLUMNS).condensed()
+    const COLUMNS: &str = "scene size settings engine variant ms paper_ms paper_over_ours time_ratio voxels work \
+        operations covered_pixels us_per_covered_pixel exponent paper_exponent changed hash";
+    Table::select(title, rows, COLUMNS).condensed()
 }
 
 /// A plot of the rows of one table: time by pixels (the paper's Figure 5), time by voxels, or how

@@ -170,9 +170,10 @@ impl Made {
                     true => engines::MACHINE.make,
                     false => engines::FAST.make,
                 };
-                graph.map(|(graph, ms)| Method {
-                    build_ms: self.mesh.is_some().then_some(ms),
-                    ..voxel_method(graph, (engine, make), options, style)
+                graph.map(|(graph, ms)| {
+                    let mut method = voxel_method(graph, (engine, make), options, style);
+                    method.build_ms = self.mesh.is_some().then_some(ms);
+                    method
                 })
             }
             Choice::Triangles { one_of, aa_log2 } => {

@@ -14,7 +14,7 @@ use crate::experiment::subjects;
 use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
 use shiftvox_lab::quality::{
-    Motion, PixelStyle, QualityPlan, Scene, answers, at_distance, measure, panels, table,
+    Motion, PixelStyle, QualityPlan, Scene, at_distance, measure, panels, table,
 };
 use shiftvox_lab::report::Row;
 use shiftvox_mesh::{Surface, mesh_box};
@@ -183,8 +183,7 @@ pub(super) fn run(
             console.progress(),
         )?);
     }
-    let mut fields = context.json(plan.schedule, &SetupOptions::default());
-    fields["answers"] = answers(&rows).iter().map(Row::json).collect();
+    let fields = context.json(plan.schedule, &SetupOptions::default());
     let by_picture = |a: &Row, b: &Row| {
         let same = |name: &str| a.get(name) == b.get(name);
         same("scene") && same("size")

@@ -89,11 +89,6 @@ fn all_methods_at_all_distances() {
         assert_eq!(row("textured 16 eroded 0")["primitives"], 0);
         assert_eq!(row("exact frame")["scene_triangles"], 40);
     }
-    let answers = document["answers"].as_array().unwrap();
-    for criterion in ["ms per frame", "kB per frame", "s to build"] {
-        let of = answers.iter().filter(|row| row["criterion"] == criterion);
-        assert!(of.count() > 10, "{criterion}");
-    }
     let csv = fs::read_to_string(at.join("m.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + rows.len());
     let svg = fs::read_to_string(at.join("m.svg")).unwrap();

@@ -25,7 +25,7 @@ pub struct Candidate {
 }
 
 /// The nodes that a traversal fetches, in its order, repeated as often as they are fetched.
-pub type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
+pub(super) type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
 
 /// How a contender gets its frames.
 #[derive(Debug, Clone, Copy, Default)]
@@ -68,7 +68,6 @@ pub struct Family {
 /// # Errors
 /// When the machine cannot finish the frame.
 pub fn fetched_nodes(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
-    /// The nodes in the order in which they are read.
     struct Reads(Vec<u32>);
     impl Probe for Reads {
         fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {

@@ -2,36 +2,28 @@
 
 use std::time::{Duration, Instant};
 
-/// Both clocks at one moment.
-#[derive(Debug, Clone, Copy)]
-pub struct Clock {
+pub(crate) struct Clock {
     wall: Instant,
     thread: Option<Duration>,
 }
 
-/// Elapsed times, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Elapsed {
-    /// On the wall.
-    pub wall_ms: f64,
-    /// On a processor, by the calling thread alone; `None` where the system does not report it.
-    pub thread_ms: Option<f64>,
+pub(crate) struct Elapsed {
+    pub(super) wall_ms: f64,
+    /// By the calling thread alone; `None` where the system does not report it.
+    pub(super) thread_ms: Option<f64>,
 }
 
 impl Clock {
     /// Now. To be read again on the same thread.
-    #[must_use]
-    pub fn start() -> Self {
-        let thread = thread_time();
+    pub(crate) fn start() -> Self {
         Self {
+            thread: thread_time(),
             wall: Instant::now(),
-            thread,
         }
     }
 
-    /// Times since the start.
-    #[must_use]
-    pub fn elapsed(&self) -> Elapsed {
+    pub(crate) fn elapsed(&self) -> Elapsed {
         let wall = self.wall.elapsed();
         let thread = self.thread.zip(thread_time());
         Elapsed {
@@ -41,7 +33,6 @@ impl Clock {
     }
 }
 
-/// Time that this thread has had on a processor.
 #[cfg(unix)]
 fn thread_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

@@ -1,9 +1,8 @@
 //! Interleaved runs: each round draws one frame per contender.
 //!
-//! Drift during a measurement (other work, clock rates) then affects all contenders, and none finds
-//! the caches as its own last frame left them. A frame is: clear, traverse, write the colour of each
-//! sample. Buffers are made before the first frame and reused. One frame before those gives the
-//! counters and the picture.
+//! Drift during a measurement then affects all contenders, and none finds the caches as its own last
+//! frame left them. Buffers are made before the first frame. One more frame gives the counters and
+//! the picture. `spec/lab.md` defines a frame.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -27,25 +26,17 @@ pub struct Schedule {
     pub runs: u32,
 }
 
-/// An engine and the frame that it draws.
-pub struct Contender<'c> {
-    /// Its name in errors.
-    pub name: String,
-    /// The scene.
-    pub graph: &'c Graph,
-    /// The frame.
-    pub setup: FrameSetup,
-    /// Threads of its pool, 1 or more.
-    pub threads: usize,
-    /// Its source of frames.
-    pub drawer: Drawer<'c>,
+pub(super) struct Contender<'c> {
+    pub(super) name: String,
+    pub(super) graph: &'c Graph,
+    pub(super) setup: FrameSetup,
+    pub(super) threads: usize,
+    pub(super) drawer: Drawer<'c>,
     /// Nodes whose attributes are read besides those of visible voxels.
-    pub attributes: Vec<u32>,
+    pub(super) attributes: Vec<u32>,
 }
 
-/// The source of a contender's frames.
-pub enum Drawer<'c> {
-    /// An engine, which draws every frame.
+pub(super) enum Drawer<'c> {
     Engine(Box<dyn Engine + Send>),
     /// A viewer, which draws only frames that change.
     Viewer(Box<Viewer<'c, dyn Engine + Send>>),
@@ -60,14 +51,12 @@ impl Contender<'_> {
     }
 }
 
-/// Times of a contender's frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Times {
-    /// Wall time of a frame.
-    pub wall: Summary,
+pub(crate) struct Times {
+    wall: Summary,
     /// Processor time of the drawing thread: of contenders on one thread, where the system measures
     /// it.
-    pub thread: Option<Summary>,
+    thread: Option<Summary>,
 }
 
 impl Times {
@@ -81,13 +70,11 @@ impl Times {
     }
 
     /// The times that other work disturbs least: processor time, or else wall time.
-    #[must_use]
-    pub fn best(&self) -> Summary {
+    pub(super) fn best(&self) -> Summary {
         self.thread.unwrap_or(self.wall)
     }
 
-    /// Sets the columns of times.
-    pub fn put(&self, row: &mut Row) {
+    pub(crate) fn put(&self, row: &mut Row) {
         let best = self.best();
         row.put("cpu_ms", self.thread.map(|cpu| Cell::ms(cpu.median_ms)));
         row.put("wall_ms", Cell::ms(self.wall.median_ms));
@@ -101,11 +88,7 @@ impl Times {
     }
 }
 
-/// Draws one frame per contender and round, by the contenders' places.
-///
-/// # Errors
-/// When a frame cannot be drawn.
-pub fn interleave<E>(
+pub(crate) fn interleave<E>(
     contenders: usize,
     schedule: Schedule,
     progress: &dyn Progress,
@@ -127,11 +110,7 @@ pub fn interleave<E>(
     Ok(elapsed.iter().map(|elapsed| Times::of(elapsed)).collect())
 }
 
-/// A pool of threads.
-///
-/// # Errors
-/// When the system gives no threads.
-pub fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
+pub(crate) fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|e| BenchError::Threads {
         threads,
@@ -195,10 +174,7 @@ impl<'p> Harness<'p> {
 
     /// Measures all contenders. `look` gets each contender's place in the list and its first frame,
     /// with voxels, outside of the times.
-    ///
-    /// # Errors
-    /// When an engine fails, or there are no threads.
-    pub fn race(
+    pub(super) fn race(
         &mut self,
         contenders: &mut [Contender<'_>],
         look: &mut dyn FnMut(usize, &Frame),
@@ -228,7 +204,6 @@ impl<'p> Harness<'p> {
         Ok(times.into_iter().zip(counters).collect())
     }
 
-    /// Does work in the pool of a contender.
     fn in_pool<T: Send>(&self, threads: usize, work: impl FnOnce() -> T + Send) -> T {
         match self.pools.get(&threads) {
             Some(pool) => pool.install(work),
@@ -236,7 +211,6 @@ impl<'p> Harness<'p> {
         }
     }
 
-    /// A frame with voxels and counters, not timed.
     fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
@@ -287,7 +261,6 @@ impl<'p> Harness<'p> {
     }
 }
 
-/// Reads colour and normal of some nodes.
 fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
     let of = |&node: &u32| {
         let ([red, ..], normal) = (graph.color_of(node), graph.normal_of(node));
@@ -304,7 +277,6 @@ mod tests {
     use shiftvox::graph::{GraphView, Silent};
     use shiftvox::project::{Camera, SetupOptions};
 
-    /// Notes its name for each frame and how many threads it finds.
     struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
 
     impl Engine for NameRecorder {

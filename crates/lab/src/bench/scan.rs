@@ -2,7 +2,6 @@
 
 use std::str::FromStr;
 
-/// Most values of a scan.
 const MAX_VALUES: usize = 1000;
 
 /// The values of a parameter: `NAME=FROM..TO*FACTOR` or `NAME=FROM..TO+STEP`, both ends included.
@@ -14,7 +13,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// The parameter.
+    /// The parameter's name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name

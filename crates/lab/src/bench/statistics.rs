@@ -40,7 +40,6 @@ impl Summary {
     }
 }
 
-/// The middle of growing numbers; 0 for none.
 fn middle(sorted: &[f64]) -> f64 {
     let half = sorted.len() / 2;
     match sorted {
@@ -65,13 +64,5 @@ mod tests {
         assert_eq!((even.median_ms, even.deviation_ms), (3.5, 1.0));
         assert_eq!(Summary::of(&[7.0]).deviation_ms, 0.0);
         assert_eq!(Summary::of(&[]), Summary::default());
-    }
-
-    #[test]
-    fn one_slow_run_does_not_move_the_median() {
-        let quiet = Summary::of(&[10.0, 10.2, 10.1, 9.9, 10.0]);
-        let disturbed = Summary::of(&[10.0, 10.2, 10.1, 9.9, 500.0]);
-        assert!((quiet.median_ms - disturbed.median_ms).abs() <= 0.1);
-        assert!(disturbed.deviation_ms <= 0.2);
     }
 }

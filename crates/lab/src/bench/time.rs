@@ -60,11 +60,8 @@ pub struct TimePlan<'p> {
     pub reference: &'p Candidate,
 }
 
-/// Measures all contenders on all subjects in one race: a row for each, in the order of subjects,
-/// sizes, engines, variants and threads.
-///
-/// If sizes or subjects vary, the rows have the exponents of power laws: of time and of work, in
-/// pixels or voxels.
+/// Measures all contenders on all subjects in one race: a row for each. If sizes or subjects vary,
+/// the rows have the exponents of time and of work, in pixels or voxels.
 ///
 /// # Errors
 /// When a frame cannot be set up or drawn, or there are no threads.
@@ -160,7 +157,6 @@ pub fn measure(
     Ok(rows)
 }
 
-/// The columns that identify a contender.
 fn head(
     subject: &Subject,
     (width, height): (u32, u32),
@@ -224,7 +220,6 @@ fn contender(
     })
 }
 
-/// The voxels that a candidate sees, drawn on all threads.
 fn picture_of(
     candidate: &Candidate,
     graph: &Graph,
@@ -249,47 +244,24 @@ fn add_exponents(rows: &mut [Row], growing: &'static str) {
                 .iter()
                 .zip(&contenders)
                 .filter(|(_, c)| *c == contender);
-            let points: Vec<(f64, f64)> = of
-                .map(|(row, _)| (row.number(growing), row.number(y)))
-                .collect();
-            PowerLaw::fit(&points)
+            PowerLaw::fit(of.map(|(row, _)| (row.number(growing), row.number(y))))
         };
         let (time, work) = (law("ms"), law("work"));
         let row = &mut rows[place];
         row.put("growing", growing);
         row.put("exponent", time.map(|law| Cell::ratio(law.exponent)));
         row.put("work_exponent", work.map(|law| Cell::ratio(law.exponent)));
-        if let Some(law) = work {
-            row.put("work_r_squared", law.r_squared.map(|r| Cell::Number(r, 4)));
-            row.put("work_worst_ratio", Cell::ratio(law.worst_ratio));
-        }
+        let r_squared = work.and_then(|law| law.r_squared);
+        row.put("work_r_squared", r_squared.map(|r| Cell::Number(r, 4)));
     }
 }
 
 /// The most important columns, for people.
 #[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
-    const COLUMNS: [&str; 18] = [
-        "scene",
-        "size",
-        "engine",
-        "variant",
-        "threads",
-        "cpu_ms",
-        "wall_ms",
-        "wall_deviation_ms",
-        "time_ratio",
-        "exponent",
-        "voxels",
-        "work",
-        "work_unit",
-        "work_exponent",
-        "changed",
-        "extra",
-        "missing",
-        "wrong_voxel",
-    ];
-    Table::select(title, rows, &COLUMNS).condensed()
+    const COLUMNS: &str = "scene size engine variant threads cpu_ms wall_ms wall_deviation_ms time_ratio exponent \
+        voxels work work_unit work_exponent changed extra missing wrong_voxel";
+    Table::select(title, rows, COLUMNS).condensed()
 }
 
 /// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;

@@ -74,60 +74,50 @@ impl FloatStep {
     }
 }
 
-/// The ray caster's arithmetic, counted or not.
 pub(super) trait Arithmetic {
-    /// Called for each step.
     fn count(&mut self, step: FloatStep, times: u32);
 
     /// Counts `times` dependent steps of the ray's longest chain. Steps that can run in parallel are not in it.
     fn wait(&mut self, step: FloatStep, times: u32);
 
-    /// A word of a node is read.
     fn node(&mut self, word: u64);
 
-    /// `a + b`.
     #[inline(always)]
     fn add(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatAdd, 1);
         a + b
     }
 
-    /// `a - b`.
     #[inline(always)]
     fn sub(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatAdd, 1);
         a - b
     }
 
-    /// `a b`.
     #[inline(always)]
     fn multiply(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatMultiply, 1);
         a * b
     }
 
-    /// `a / b`.
     #[inline(always)]
     fn divide(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatDivide, 1);
         a / b
     }
 
-    /// The larger.
     #[inline(always)]
     fn max(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatMinMax, 1);
         a.max(b)
     }
 
-    /// The smaller.
     #[inline(always)]
     fn min(&mut self, a: f32, b: f32) -> f32 {
         self.count(FloatStep::FloatMinMax, 1);
         a.min(b)
     }
 
-    /// `a < b`.
     #[inline(always)]
     fn less(&mut self, a: f32, b: f32) -> bool {
         self.count(FloatStep::FloatCompare, 1);
@@ -143,7 +133,6 @@ pub(super) trait Arithmetic {
 }
 
 /// Counts nothing.
-#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Plain;
 
 impl Arithmetic for Plain {

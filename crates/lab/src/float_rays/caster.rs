@@ -13,16 +13,12 @@ struct StackEntry {
 
 pub(super) struct Caster<'g> {
     pub(super) graph: &'g GraphView<'g>,
-    /// Level at which a node is a voxel.
     pub(super) last_level: u32,
-    /// Levels of the object.
     pub(super) depth: u32,
-    /// How nodes lie in memory.
     pub(super) layout: NodeLayout,
 }
 
 impl Caster<'_> {
-    /// The first solid cell on a ray: its node, and its cell as a frame stores it.
     #[inline]
     pub(super) fn cast<A: Arithmetic>(
         &self,
@@ -202,7 +198,6 @@ impl Caster<'_> {
         }
     }
 
-    /// Reads a node at a level, and waits for it.
     #[inline]
     fn read<A: Arithmetic>(&self, node: u32, level: u32, by: &mut A) {
         let words = self.layout.words(node, level);
@@ -219,11 +214,8 @@ impl Caster<'_> {
         let mut cell = [0, 0, 0, level as i32];
         for k in 0..3 {
             let place = low[k].to_bits() >> bit & last;
-            let place = if mirror & (4 >> k) != 0 {
-                last - place
-            } else {
-                place
-            };
+            let is_mirrored = mirror & (4 >> k) != 0;
+            let place = if is_mirrored { last - place } else { place };
             // Places are below 2^level and depth at most 30.
             cell[k] = (place << (self.depth - level)) as i32;
         }

@@ -87,9 +87,7 @@ impl Arithmetic for Counting<'_> {
     }
 }
 
-/// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
-/// `layout`: how nodes lie in memory.
-/// `reads` is called for every node and attribute that is read, in order.
+/// Draws a frame in `f32`, its rays in `order`, and counts the steps. `reads` gets every read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -158,14 +156,14 @@ mod tests {
         (graph, setup)
     }
 
-    fn counts_of(
-        graph: &Graph,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-        order: RayOrder,
-        layout: NodeLayout,
-    ) -> FloatRayCounts {
-        count(&graph.view(), setup, frame, order, layout, &mut |_| ())
+    type Counted = (Frame, FloatRayCounts, Vec<RayRead>);
+
+    fn counted(graph: &Graph, setup: &FrameSetup, order: RayOrder, layout: NodeLayout) -> Counted {
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let mut reads = Vec::new();
+        let mut note = |read| reads.push(read);
+        let counts = count(&graph.view(), setup, &mut frame, order, layout, &mut note);
+        (frame, counts, reads)
     }
 
     fn camera(eye: [f64; 3], target: [f64; 3], side: u32) -> Camera {
@@ -184,41 +182,27 @@ mod tests {
         // All components of all four directions are below 0: nothing is mirrored.
         let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
         let (graph, setup) = setup("gen:sphere,depth=2", &camera);
-        let mut frame = Frame::new(2, 2, false);
-        let counts = counts_of(
-            &graph,
-            &setup,
-            &mut frame,
-            RayOrder::Rows,
-            NodeLayout::default(),
-        );
-        assert_eq!(frame.drawn(), 0);
-        assert_eq!((counts.rays, counts.cells), (4, 0));
+        let (frame, counts, _) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
+        assert_eq!((frame.drawn(), counts.rays, counts.cells), (0, 4, 0));
         let rays = 4;
-        // The inverse of three slopes, and the bias of three planes.
-        assert_eq!(counts.of(FloatStep::FloatDivide), 3 * rays);
-        // Three biases, and the cube's six planes.
-        assert_eq!(counts.of(FloatStep::FloatMultiply), (3 + 6) * rays);
-        // The six planes, and the step to the next ray.
-        assert_eq!(counts.of(FloatStep::FloatAdd), (6 + 3) * rays);
-        // Three least slopes, the last and the first of three planes, and 0.
-        assert_eq!(counts.of(FloatStep::FloatMinMax), (3 + 2 + 2 + 1) * rays);
-        assert_eq!(counts.of(FloatStep::FloatCompare), (3 + 1) * rays);
-        assert_eq!(counts.of(FloatStep::NodeRead), 0);
-        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
-        assert_eq!(counts.of(FloatStep::AttributeRead), 0);
-        // One after the other: a divide, two products, the plane's sum and the next
-        // ray's, four minima and maxima, a compare.
-        for (step, waits) in [
-            (FloatStep::FloatDivide, 1),
-            (FloatStep::FloatMultiply, 2),
-            (FloatStep::FloatAdd, 2),
-            (FloatStep::FloatMinMax, 4),
-            (FloatStep::FloatCompare, 1),
-            (FloatStep::NodeRead, 0),
+        // Steps, and those one after the other.
+        for (step, steps, waits) in [
+            // The inverse of three slopes.
+            (FloatStep::FloatDivide, 3, 1),
+            // Three biases, and the cube's six planes.
+            (FloatStep::FloatMultiply, 3 + 6, 2),
+            // The six planes, and the step to the next ray.
+            (FloatStep::FloatAdd, 6 + 3, 2),
+            // Three least slopes, the last and the first of three planes, and 0.
+            (FloatStep::FloatMinMax, 3 + 2 + 2 + 1, 4),
+            (FloatStep::FloatCompare, 3 + 1, 1),
+            (FloatStep::NodeRead, 0, 0),
+            (FloatStep::AttributeRead, 0, 0),
         ] {
-            assert_eq!(counts.waits(step), waits * rays, "{step:?}");
+            let found = (counts.of(step), counts.waits(step));
+            assert_eq!(found, (steps * rays, waits * rays), "{step:?}");
         }
+        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
     }
 
     #[test]
@@ -226,54 +210,36 @@ mod tests {
         let camera = camera([100.0, -45.0, 80.0], [32.0, 32.0, 20.0], 128);
         let (graph, setup) = setup("gen:terrain,depth=6", &camera);
         let mut plain = Frame::new(128, 128, false);
-        let mut counted = plain.clone();
         let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
-        let (mut nodes, mut attributes) = (0, Vec::new());
-        let mut reads = |read| match read {
-            RayRead::Node(_) => nodes += 1,
-            RayRead::Attribute(node) => attributes.push(node),
-        };
-        let view = graph.view();
-        let counts = count(
-            &view,
-            &setup,
-            &mut counted,
-            RayOrder::Rows,
-            NodeLayout::default(),
-            &mut reads,
-        );
-        let error = CoverageError::between(&counted.voxel, &plain.voxel);
-        assert!(error.covered > 1000);
-        assert!(error.differing() <= 8, "{error:?}");
-        assert_eq!(counts.of(FloatStep::NodeRead), nodes);
-        assert_eq!(counts.of(FloatStep::PixelWrite), counted.drawn() as u64);
+        let (frame, counts, reads) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
+        let error = CoverageError::between(&frame.voxel, &plain.voxel);
+        assert!(error.covered > 1000 && error.differing() <= 8, "{error:?}");
         let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
         assert!(counts.cells.abs_diff(steps) * 100 < steps);
         // Each ray that hits reads the attribute of its voxel.
-        let shown = counted
-            .node
-            .iter()
-            .filter(|&&node| node != shiftvox::frame::NO_NODE);
-        assert!(shown.eq(&attributes));
-        assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
+        let attributes = reads.iter().filter_map(|read| match read {
+            RayRead::Attribute(node) => Some(*node),
+            RayRead::Node(_) => None,
+        });
+        let shown = frame.node.iter().copied();
+        assert!(attributes.eq(shown.filter(|&node| node != shiftvox::frame::NO_NODE)));
+        let hits = frame.drawn() as u64;
+        assert_eq!(counts.of(FloatStep::AttributeRead), hits);
+        assert_eq!(counts.of(FloatStep::PixelWrite), hits);
+        let node_reads = counts.of(FloatStep::NodeRead);
+        assert_eq!(node_reads + hits, reads.len() as u64);
         // A node that says which children are leaves saves each ray that hits the last read.
-        let mut frame = plain.clone();
-        let masks = NodeLayout::new(&view, true, false);
-        let with_leaf_masks = counts_of(&graph, &setup, &mut frame, RayOrder::Rows, masks);
-        assert_eq!(frame, counted);
-        let hits = counted.drawn() as u64;
-        assert_eq!(
-            with_leaf_masks.of(FloatStep::NodeRead) + hits,
-            counts.of(FloatStep::NodeRead)
-        );
+        let masks = NodeLayout::new(&graph.view(), true, false);
+        let (same, with_masks, _) = counted(&graph, &setup, RayOrder::Rows, masks);
+        assert_eq!(same, frame);
+        assert_eq!(with_masks.of(FloatStep::NodeRead) + hits, node_reads);
         // A chain is no longer than all steps of a kind.
         for step in FloatStep::ALL {
             assert!(counts.waits(step) <= counts.of(step), "{step:?}");
         }
         // The other orders draw the same, but for roundings.
         for order in [RayOrder::Tiles, RayOrder::Morton] {
-            let mut frame = plain.clone();
-            let other = counts_of(&graph, &setup, &mut frame, order, NodeLayout::default());
+            let (frame, other, _) = counted(&graph, &setup, order, NodeLayout::default());
             assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
             assert_eq!(other.rays, counts.rays);
             assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());

@@ -15,7 +15,6 @@ pub enum RayOrder {
     Morton,
 }
 
-/// Side of a tile, samples.
 const TILE: u32 = 8;
 
 impl RayOrder {
@@ -62,7 +61,6 @@ impl RayOrder {
     }
 }
 
-/// Every second bit of a number, from bit 0 on.
 fn even_bits(number: u64) -> u32 {
     let mut bits = number & 0x5555_5555_5555_5555;
     for (shift, mask) in [
@@ -81,31 +79,30 @@ fn even_bits(number: u64) -> u32 {
 mod tests {
     use super::*;
 
-    fn order(order: RayOrder, width: u32, height: u32) -> Vec<(u32, u32)> {
+    fn order(of: RayOrder, width: u32, height: u32) -> Vec<(u32, u32)> {
         let mut visited = Vec::new();
-        order.for_each(width, height, |i, j| visited.push((i, j)));
+        of.for_each(width, height, |i, j| visited.push((i, j)));
         visited
     }
 
     #[test]
     fn every_sample_once() {
-        for of in RayOrder::ALL {
-            let mut visited = order(of, 19, 13);
-            assert_eq!(visited.len(), 19 * 13, "{of:?}");
-            visited.sort_unstable();
-            visited.dedup();
-            assert_eq!(visited.len(), 19 * 13, "{of:?}");
-            assert!(visited.iter().all(|&(i, j)| i < 19 && j < 13));
+        let all = order(RayOrder::Rows, 19, 13);
+        for (at, &(i, j)) in all.iter().enumerate() {
+            assert_eq!((i + 19 * j) as usize, at);
         }
-    }
-
-    #[test]
-    fn by_hand() {
-        let first = |of, at: usize| order(of, 16, 16)[at];
-        assert_eq!(first(RayOrder::Rows, 17), (1, 1));
-        assert_eq!(first(RayOrder::Tiles, 9), (1, 1));
-        assert_eq!(first(RayOrder::Tiles, 64), (8, 0));
+        assert_eq!(all.len(), 19 * 13);
+        for of in [RayOrder::Tiles, RayOrder::Morton] {
+            let mut visited = order(of, 19, 13);
+            visited.sort_unstable_by_key(|&(i, j)| (j, i));
+            assert_eq!(visited, all, "{of:?}");
+        }
+        let at = |of, place: usize| order(of, 16, 16)[place];
+        assert_eq!(
+            [9, 64].map(|place| at(RayOrder::Tiles, place)),
+            [(1, 1), (8, 0)]
+        );
         // 13 is 0b1101: bits 0 and 2 are the column 0b11, bits 1 and 3 the row 0b10.
-        assert_eq!(first(RayOrder::Morton, 13), (3, 2));
+        assert_eq!(at(RayOrder::Morton, 13), (3, 2));
     }
 }

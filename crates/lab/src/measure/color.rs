@@ -1,19 +1,26 @@
 //! Colour error between two pictures.
 
-use serde::Serialize;
-
-use super::SizeError;
 use super::ssim::ssim;
 use shiftvox::picture::Linear;
 
 /// Colours of a picture as the metrics take them: size and sRGB with alpha.
 pub type Colors<'p> = (u32, u32, &'p [[u8; 4]]);
 
+/// Two pictures of different sizes, which cannot be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the pictures differ in size: {}x{} and {}x{}", .0.0, .0.1, .1.0, .1.1)]
+pub struct SizeError(
+    /// Width and height of the first.
+    pub (u32, u32),
+    /// Width and height of the second.
+    pub (u32, u32),
+);
+
 /// How far the colours of two pictures are apart.
 ///
 /// `differing` and `max_abs` compare all four stored channels. The others compare the colours on a
 /// black background: red, green and blue, each times alpha.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColorError {
     /// Pixels of a picture.
     pub pixels: u64,
@@ -41,7 +48,7 @@ impl ColorError {
     /// # Errors
     /// When the sizes differ.
     pub fn between(a: Colors<'_>, b: Colors<'_>) -> Result<Self, SizeError> {
-        check_sizes((a.0, a.1), (b.0, b.1))?;
+        check_sizes(a, b)?;
         let linear = Linear::tables();
         let (mut differing, mut max_abs) = (0u64, 0u8);
         let (mut sum_abs, mut sum_srgb) = (0u64, 0u64);
@@ -89,7 +96,7 @@ impl ColorError {
 /// # Errors
 /// When the sizes differ.
 pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeError> {
-    check_sizes((a.0, a.1), (b.0, b.1))?;
+    check_sizes(a, b)?;
     let pixel = |(p, q): (&[u8; 4], &[u8; 4])| {
         let alpha = p[3].abs_diff(q[3]);
         let channel = |c: usize| p[c].abs_diff(q[c]).saturating_add(alpha).saturating_mul(4);
@@ -98,23 +105,15 @@ pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeErro
     Ok(a.2.iter().zip(b.2).map(pixel).collect())
 }
 
-/// Refuses two sizes that are not the same.
-pub(super) fn check_sizes(a: (u32, u32), b: (u32, u32)) -> Result<(), SizeError> {
-    if a == b {
-        return Ok(());
-    }
-    Err(SizeError { a, b })
+fn check_sizes(a: Colors<'_>, b: Colors<'_>) -> Result<(), SizeError> {
+    let (a, b) = ((a.0, a.1), (b.0, b.1));
+    (a == b).then_some(()).ok_or(SizeError(a, b))
 }
 
 fn decibel(mse: f64) -> f64 {
-    if mse == 0.0 {
-        f64::INFINITY
-    } else {
-        -10.0 * libm::log10(mse)
-    }
+    -10.0 * libm::log10(mse)
 }
 
-/// The colour that is seen on black.
 pub(super) fn on_black([r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
     [r, g, b].map(|c| ((u32::from(c) * u32::from(alpha) + 127) / 255) as u8)
 }
@@ -133,23 +132,19 @@ fn luma(rgba: &[[u8; 4]]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    const GREY: [u8; 4] = [100, 100, 100, 255];
-
-    #[test]
-    fn equal_pictures() {
-        let a = vec![GREY; 256];
-        let error = ColorError::between((16, 16, &a), (16, 16, &a)).unwrap();
-        assert_eq!((error.differing, error.max_abs), (0, 0));
-        assert_eq!(
-            (error.psnr_srgb, error.psnr_linear),
-            (f64::INFINITY, f64::INFINITY)
-        );
-        assert!((error.ssim - 1.0).abs() < 1e-12);
+    fn grey() -> Vec<[u8; 4]> {
+        vec![[100, 100, 100, 255]; 4]
     }
 
     #[test]
     fn one_channel_of_one_pixel() {
-        let a = vec![GREY; 4];
+        let a = grey();
+        let same = ColorError::between((2, 2, &a), (2, 2, &a)).unwrap();
+        assert_eq!((same.differing, same.max_abs), (0, 0));
+        assert_eq!(
+            (same.psnr_srgb, same.psnr_linear),
+            (f64::INFINITY, f64::INFINITY)
+        );
         let mut b = a.clone();
         b[2][1] = 151;
         let error = ColorError::between((2, 2, &a), (2, 2, &b)).unwrap();
@@ -163,13 +158,7 @@ mod tests {
         assert!((error.mse_linear / expected - 1.0).abs() < 1e-3);
         assert!(error.ssim < 1.0);
         let apart = difference((2, 2, &a), (2, 2, &b)).unwrap();
-        assert_eq!(apart[2], [0, 204, 0, 255]);
-        assert_eq!(apart[0], [0, 0, 0, 255]);
-    }
-
-    #[test]
-    fn sizes_must_agree() {
-        let a = vec![GREY; 4];
+        assert_eq!((apart[2], apart[0]), ([0, 204, 0, 255], [0, 0, 0, 255]));
         let error = ColorError::between((2, 2, &a), (4, 1, &a)).unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -179,9 +168,8 @@ mod tests {
 
     #[test]
     fn invisible_colours_count_as_differing_only() {
-        let a = [[9, 9, 9, 0]];
-        let b = [[200, 9, 9, 0]];
-        let error = ColorError::between((1, 1, &a), (1, 1, &b)).unwrap();
+        let error =
+            ColorError::between((1, 1, &[[9, 9, 9, 0]]), (1, 1, &[[200, 9, 9, 0]])).unwrap();
         assert_eq!((error.differing, error.mse_srgb), (1, 0.0));
     }
 }

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-/// How far two voxel buffers are apart; the first is the one under test, the
-/// second the reference.
+/// How far a voxel buffer is from that of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct CoverageError {
     /// Pixels of a picture.
@@ -44,12 +43,10 @@ impl CoverageError {
     }
 }
 
-/// Pixels of `test` that show something else than the reference: where both
-/// show something, the voxel of `test` neither is that of `reference` nor holds
-/// it. So a coarser voxel in the right place, as level of detail draws it, is not counted.
-/// Voxels are given as in a frame of an object of `depth` levels.
-#[must_use]
-pub fn count_elsewhere(test: &[[i32; 4]], reference: &[[i32; 4]], depth: u32) -> u64 {
+/// Pixels at which both show something, and the voxel of `test` neither is that of the reference nor
+/// holds it. So a coarser voxel in the right place, as level of detail draws it, is not counted.
+/// The object has `depth` levels.
+pub(crate) fn count_elsewhere(test: &[[i32; 4]], reference: &[[i32; 4]], depth: u32) -> u64 {
     let holds = |outer: &[i32; 4], inner: &[i32; 4]| {
         let levels = (depth as i32 - outer[3]).clamp(0, 31);
         (0..3).all(|k| (outer[k] ^ inner[k]) as u32 >> levels == 0) || levels > 30
@@ -69,11 +66,12 @@ pub fn count_differing<T: PartialEq>(a: &[T], b: &[T]) -> u64 {
 mod tests {
     use super::*;
 
+    const NONE: [i32; 4] = [0, 0, 0, -1];
+
     #[test]
     fn each_kind_of_error() {
-        let none = [0, 0, 0, -1];
         let (v, w) = ([1, 2, 3, 4], [1, 2, 3, 5]);
-        let error = CoverageError::between(&[v, v, none, none, v], &[v, w, v, none, none]);
+        let error = CoverageError::between(&[v, v, NONE, NONE, v], &[v, w, v, NONE, NONE]);
         let expected = CoverageError {
             pixels: 5,
             covered: 3,
@@ -81,20 +79,24 @@ mod tests {
             missing: 1,
             wrong_voxel: 1,
         };
-        assert_eq!(error, expected);
-        assert_eq!(error.differing(), 3);
+        assert_eq!((error, error.differing()), (expected, 3));
         assert_eq!(count_differing(&[1, 2, 3], &[1, 5]), 2);
     }
 
     #[test]
     fn a_coarser_voxel_in_its_place_is_not_elsewhere() {
-        let none = [0, 0, 0, -1];
         let fine = [5, 6, 7, 3];
         // Of a depth of 3: level 2 holds two voxels a side.
-        let reference = [fine, fine, fine, fine, none];
-        let test = [fine, [4, 6, 6, 2], [0, 6, 6, 2], [5, 6, 6, 3], fine];
+        let reference = [fine, fine, fine, fine, NONE, fine, fine];
+        let test = [
+            fine,
+            [4, 6, 6, 2],
+            [0, 6, 6, 2],
+            [5, 6, 6, 3],
+            fine,
+            [0; 4],
+            NONE,
+        ];
         assert_eq!(count_elsewhere(&test, &reference, 3), 2);
-        assert_eq!(count_elsewhere(&[[0, 0, 0, 0]], &[fine], 3), 0);
-        assert_eq!(count_elsewhere(&[none], &[fine], 3), 0);
     }
 }

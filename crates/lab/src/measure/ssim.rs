@@ -4,14 +4,13 @@
 //! of 1.5, `K1 = 0.01`, `K2 = 0.03` and range 255. A picture with a side below 11 pixels is one
 //! window with equal weights.
 
+use super::flip::filtered;
+
 const RADIUS: usize = 5;
 const WINDOW: usize = 2 * RADIUS + 1;
 const SIGMA: f64 = 1.5;
 const C1: f64 = (0.01 * 255.0) * (0.01 * 255.0);
 const C2: f64 = (0.03 * 255.0) * (0.03 * 255.0);
-
-/// Local means of a plane, one for each window.
-type Mean = Box<dyn Fn(&[f64]) -> Vec<f64>>;
 
 /// Mean structural similarity of two luma planes, values 0..=255; 1 for empty ones.
 pub(super) fn ssim(width: usize, height: usize, a: &[f64], b: &[f64]) -> f64 {
@@ -19,51 +18,35 @@ pub(super) fn ssim(width: usize, height: usize, a: &[f64], b: &[f64]) -> f64 {
         return 1.0;
     }
     let product = |p: &[f64], q: &[f64]| p.iter().zip(q).map(|(x, y)| x * y).collect::<Vec<_>>();
-    let mean: Mean = if width < WINDOW || height < WINDOW {
-        Box::new(|plane| vec![plane.iter().sum::<f64>() / plane.len() as f64])
-    } else {
-        Box::new(move |plane| blur(width, height, plane))
+    let mean = |plane: &[f64]| match width < WINDOW || height < WINDOW {
+        true => vec![plane.iter().sum::<f64>() / plane.len() as f64],
+        false => windows(width, height, plane),
     };
     let (mean_a, mean_b) = (mean(a), mean(b));
     let (square_a, square_b) = (mean(&product(a, a)), mean(&product(b, b)));
     let both = mean(&product(a, b));
-    let sum: f64 = (0..mean_a.len())
-        .map(|i| {
-            let (ma, mb) = (mean_a[i], mean_b[i]);
-            let variances = square_a[i] - ma * ma + (square_b[i] - mb * mb);
-            let covariance = both[i] - ma * mb;
-            (2.0 * ma * mb + C1) * (2.0 * covariance + C2)
-                / ((ma * ma + mb * mb + C1) * (variances + C2))
-        })
-        .sum();
-    sum / mean_a.len() as f64
+    let window = |i: usize| {
+        let (ma, mb) = (mean_a[i], mean_b[i]);
+        let variances = square_a[i] - ma * ma + (square_b[i] - mb * mb);
+        let covariance = both[i] - ma * mb;
+        (2.0 * ma * mb + C1) * (2.0 * covariance + C2)
+            / ((ma * ma + mb * mb + C1) * (variances + C2))
+    };
+    (0..mean_a.len()).map(window).sum::<f64>() / mean_a.len() as f64
 }
 
-/// Windowed means, one for each window that lies inside the picture.
-fn blur(width: usize, height: usize, plane: &[f64]) -> Vec<f64> {
-    let weights = weights();
-    let weigh =
-        |at: &dyn Fn(usize) -> f64| -> f64 { (0..WINDOW).map(|k| weights[k] * at(k)).sum() };
-    let across = width - 2 * RADIUS;
-    let down = height - 2 * RADIUS;
-    let mut rows = Vec::with_capacity(across * height);
-    for row in plane.chunks_exact(width) {
-        rows.extend((0..across).map(|x| weigh(&|k| row[x + k])));
-    }
-    let mut means = Vec::with_capacity(across * down);
-    for y in 0..down {
-        means.extend((0..across).map(|x| weigh(&|k| rows[(y + k) * across + x])));
-    }
-    means
-}
-
-fn weights() -> [f64; WINDOW] {
+fn windows(width: usize, height: usize, plane: &[f64]) -> Vec<f64> {
     let bell: [f64; WINDOW] = std::array::from_fn(|k| {
         let away = k as f64 - RADIUS as f64;
         libm::exp(-away * away / (2.0 * SIGMA * SIGMA))
     });
     let sum: f64 = bell.iter().sum();
-    bell.map(|weight| weight / sum)
+    let weights = bell.map(|weight| weight / sum);
+    let all = filtered((width, height), plane, &weights, &weights);
+    let rows = all.chunks_exact(width).take(height - RADIUS).skip(RADIUS);
+    rows.flat_map(|row| &row[RADIUS..width - RADIUS])
+        .copied()
+        .collect()
 }
 
 #[cfg(test)]
@@ -75,12 +58,8 @@ mod tests {
         // No variance: the luminance term alone.
         let expected = (2.0 * 50.0 * 100.0 + C1) / (50.0 * 50.0 + 100.0 * 100.0 + C1);
         for side in [4, 20] {
-            let found = ssim(
-                side,
-                side,
-                &vec![50.0; side * side],
-                &vec![100.0; side * side],
-            );
+            let [a, b] = [50.0, 100.0].map(|value| vec![value; side * side]);
+            let found = ssim(side, side, &a, &b);
             assert!((found - expected).abs() < 1e-9, "{side}: {found}");
         }
     }

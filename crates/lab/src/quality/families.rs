@@ -1,22 +1,20 @@
 //! The methods of meshes: triangles, decimated or not, far voxels, textured voxels, and hybrids.
 
-use super::method::{Examined, Method, Refused, Sum, drawn, sums};
+use super::method::{Examined, Method, Refused, Sum, sums};
 use super::voxels::PixelStyle;
 use crate::report::Cell;
 use shiftvox::drawing::Shown;
 use shiftvox::graph::Silent;
 use shiftvox::picture::Background;
-use shiftvox::project::{Camera, Up};
+use shiftvox::project::Up;
 use shiftvox_mesh::Mesh;
-use shiftvox_mesh::drawing::mesh_view::view_of;
 use shiftvox_mesh::drawing::{
     Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle,
 };
 use shiftvox_mesh::far::FarFile;
-use shiftvox_mesh::far::view::{FarViewer, Opacity};
+use shiftvox_mesh::far::view::Opacity;
 use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox_mesh::textured::TexturedFile;
-use shiftvox_mesh::textured::view::choose;
 
 /// Share and counters of a frame. `solid`: parts without which triangles are drawn alone.
 fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str]) -> Examined {
@@ -68,12 +66,11 @@ pub fn triangles(
         settings: vec![("aa", Cell::Count(1 << aa_log2))],
         kind: family.to_owned(),
         graph: None,
-        bytes: Some(of.bytes),
+        bytes: of.bytes,
         build_ms: Some(of.build_ms),
         // Only fitted cameras use the up axis.
         drawing: Box::new(move || Box::new(TrianglesDrawing::new(of.mesh, Up::Z, style, &Silent))),
         examine: Box::new(|shown, _| Ok(examined(shown, counters, &[]))),
-        with_cut_of: None,
     })
 }
 
@@ -151,16 +148,10 @@ pub fn far(
         ],
         kind,
         graph: None,
-        bytes: Some(file.len()),
+        bytes: file.len(),
         build_ms: Some(build_ms),
         drawing: Box::new(move || Box::new(FarDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, solid))),
-        with_cut_of: Some(Box::new(move |camera, other| {
-            let view = |camera: &Camera| view_of(camera, file.bounds()).map_err(Refused::because);
-            let (view, other) = (view(camera)?, view(other)?);
-            let drawn = FarViewer::new(file).draw_with_cut_of(&view, &other, &style.options(&view));
-            Ok(drawn.map_err(Refused::because)?.0.rgba)
-        })),
     }
 }
 
@@ -200,34 +191,15 @@ pub fn textured(
         ("grid", &["grid"]),
         ("erosion", &["erosion"]),
     ];
-    let with_cut_of = move |texel_px: f64, camera: &Camera, other: &Camera| {
-        let view = view_of(other, file.bounds()).map_err(Refused::because)?;
-        let choice = choose(file, &view, texel_px);
-        let style = TexturedStyle {
-            erosion: Erosion::Level {
-                level: choice.level,
-                cells: Some(file.grid(choice.grid).cell_grid().cells()),
-            },
-            ..style
-        };
-        let mut drawing = TexturedDrawing::new(file, style);
-        Ok(drawn(&mut drawing, camera)?.pixels.rgba())
-    };
     Method {
         family: "textured voxels",
         name,
         settings: vec![("detail", detail.into()), ("aa", Cell::Count(1 << aa_log2))],
         kind: "textured voxels".to_owned(),
         graph: None,
-        bytes: Some(file.len()),
+        bytes: file.len(),
         build_ms: Some(build_ms),
         drawing: Box::new(move || Box::new(TexturedDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, &["surfels"]))),
-        with_cut_of: match erosion {
-            Erosion::Auto { texel_px } => Some(Box::new(move |camera: &Camera, other: &Camera| {
-                with_cut_of(texel_px, camera, other)
-            })),
-            Erosion::Level { .. } => None,
-        },
     }
 }

@@ -2,66 +2,44 @@
 
 use super::reference::Reference;
 use crate::measure::{ColorError, CoverageBias, Flip, SizeError};
+use crate::report::{Cell, Row};
 
-/// Distances of a picture from a reference.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PictureError {
-    /// Root of the mean squared difference of a channel, linear light from 0 to 1.
-    pub rms_linear: f64,
-    /// The same in decibels, `-20 log10`. Infinite for equal pictures.
-    pub psnr_linear: f64,
-    /// Structural similarity of the luma, 1 for equal pictures.
-    pub ssim: f64,
-    /// Mean FLIP error, 0 to 1.
-    pub flip: f64,
-    /// Excess and lack of covered area.
-    pub coverage: CoverageBias,
-}
-
-/// A reference, made ready to be compared with many pictures.
-pub struct Judge<'r> {
+pub(super) struct Judge<'r> {
     reference: &'r Reference,
     flip: Flip,
 }
 
 impl<'r> Judge<'r> {
-    /// Makes a reference ready.
-    #[must_use]
-    pub fn new(reference: &'r Reference) -> Self {
-        let Reference {
-            width,
-            height,
-            rgba,
-            ..
-        } = reference;
-        Self {
-            reference,
-            flip: Flip::new((*width, *height, rgba)),
-        }
+    pub(super) fn new(reference: &'r Reference) -> Self {
+        let flip = Flip::new((reference.width, reference.height, &reference.rgba));
+        Self { reference, flip }
     }
 
-    /// The errors of a picture of the reference's size: colours, and the covered share of each
-    /// pixel.
-    ///
-    /// # Errors
-    /// When the sizes differ.
-    pub fn judge(&self, rgba: &[[u8; 4]], shares: &[f32]) -> Result<PictureError, SizeError> {
+    /// Sets the columns of errors: of colours, and of the covered share of each pixel.
+    pub(super) fn put(
+        &self,
+        row: &mut Row,
+        rgba: &[[u8; 4]],
+        shares: &[f32],
+    ) -> Result<(), SizeError> {
         let (width, height) = (self.reference.width, self.reference.height);
         let picture = (width, height, rgba);
-        let right = (width, height, self.reference.rgba.as_slice());
-        let color = ColorError::between(picture, right)?;
-        let flip = Flip::new(picture).compare(&self.flip)?;
-        let coverage = CoverageBias::between(
-            (width, height, shares),
-            (width, height, &self.reference.shares),
-        )?;
-        Ok(PictureError {
-            rms_linear: libm::sqrt(color.mse_linear),
-            psnr_linear: color.psnr_linear,
-            ssim: color.ssim,
-            flip: flip.mean(),
-            coverage,
-        })
+        let color = ColorError::between(picture, (width, height, &self.reference.rgba))?;
+        let flip = Flip::new(picture).mean_error(&self.flip);
+        let right = (width as usize, self.reference.shares.as_slice());
+        let CoverageBias { all, thin } = CoverageBias::between(shares, right);
+        let percent = |share: f64| Cell::Number(100.0 * share, 2);
+        row.put("psnr", Cell::Number(color.psnr_linear, 2));
+        row.put("flip", Cell::Number(flip, 4));
+        row.put("ssim", Cell::Number(color.ssim, 4));
+        row.put("rms_linear", Cell::Number(libm::sqrt(color.mse_linear), 5));
+        row.put("bias_percent", percent(all.bias()));
+        row.put("coverage_percent", percent(all.relative()));
+        if thin.area > 0.0 {
+            row.put("thin_bias_percent", percent(thin.bias()));
+            row.put("thin_coverage_percent", percent(thin.relative()));
+        }
+        Ok(())
     }
 }
 
@@ -69,42 +47,32 @@ impl<'r> Judge<'r> {
 mod tests {
     use super::*;
 
-    fn reference() -> Reference {
-        let rgba: Vec<_> = (0..256u32)
-            .map(|i| [i as u8, (i * 7 % 256) as u8, 90, 255])
-            .collect();
-        Reference {
-            width: 16,
-            height: 16,
-            rgba,
-            shares: (0..256).map(|i| (i % 5) as f32 / 4.0).collect(),
-        }
-    }
-
-    #[test]
-    fn the_reference_itself_has_no_error() {
-        let reference = reference();
-        let judge = Judge::new(&reference);
-        let error = judge.judge(&reference.rgba, &reference.shares).unwrap();
-        assert_eq!((error.rms_linear, error.flip), (0.0, 0.0));
-        assert_eq!(error.psnr_linear, f64::INFINITY);
-        assert!((error.ssim - 1.0).abs() < 1e-12);
-        assert_eq!(error.coverage.all.absolute, 0.0);
-    }
-
     #[test]
     fn every_number_notices_another_picture() {
-        let reference = reference();
-        let judge = Judge::new(&reference);
+        let reference = Reference {
+            width: 16,
+            height: 16,
+            rgba: (0..256u32)
+                .map(|i| [i as u8, (i * 7 % 256) as u8, 90, 255])
+                .collect(),
+            shares: (0..256).map(|i| (i % 5) as f32 / 4.0).collect(),
+        };
+        let judged = |rgba: &[[u8; 4]], shares: &[f32]| {
+            let mut row = Row::default();
+            Judge::new(&reference).put(&mut row, rgba, shares).unwrap();
+            ["rms_linear", "flip", "ssim", "bias_percent", "psnr"].map(|name| row.number(name))
+        };
+        let [rms, flip, ssim, bias, psnr] = judged(&reference.rgba, &reference.shares);
+        assert_eq!((rms, flip, bias, psnr), (0.0, 0.0, 0.0, f64::INFINITY));
+        assert!((ssim - 1.0).abs() < 1e-12);
         let darker: Vec<_> = reference
             .rgba
             .iter()
-            .map(|p| p.map(|c| c / 2 + 127 * u8::from(c == 255)))
+            .map(|[r, g, b, a]| [r / 2, g / 2, b / 2, *a])
             .collect();
-        let none = vec![0.0; 256];
-        let error = judge.judge(&darker, &none).unwrap();
-        assert!(error.rms_linear > 0.05 && error.flip > 0.05 && error.ssim < 0.95);
-        assert!((error.psnr_linear + 20.0 * libm::log10(error.rms_linear)).abs() < 1e-9);
-        assert_eq!(error.coverage.all.bias(), -1.0);
+        let [rms, flip, ssim, bias, psnr] = judged(&darker, &[0.0; 256]);
+        assert!(rms > 0.05 && flip > 0.05 && ssim < 0.95);
+        assert!((psnr + 20.0 * libm::log10(rms)).abs() < 1e-9);
+        assert_eq!(bias, -100.0);
     }
 }

@@ -1,23 +1,21 @@
 //! `bench quality`: methods on a scene, from one or more cameras, become rows.
 
 use std::hint::black_box;
-use std::sync::Arc;
 
 use super::compare::{add_beaten_by, add_rivals};
-use super::film::{film, flicker};
-use super::judge::{Judge, PictureError};
-use super::method::{Method, Refused, Samples};
+use super::judge::Judge;
+use super::method::{Examined, Method, Refused, drawn};
 use super::motion::Motion;
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::PixelStyle;
 use crate::bench::{BenchError, Clock, Schedule, interleave, pool};
-use crate::measure::{CoverageError, LinearPicture, SizeError, Spread, count_elsewhere};
+use crate::measure::{CoverageError, Light, count_elsewhere, flicker, light_of};
 use crate::report::plot::{Panel, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress, Silent};
-use shiftvox::picture::{Background, Picture, resolve};
-use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::picture::Background;
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupError, SetupOptions};
 use shiftvox::rays::Rays;
 use shiftvox_mesh::Surface;
 
@@ -48,8 +46,7 @@ pub struct Scene<'s> {
 }
 
 /// The method of rows that compare a second reference with the first.
-pub const NOISE_FLOOR: &str = "noise floor";
-/// Seeds of the reference and of the second one.
+const NOISE_FLOOR: &str = "noise floor";
 const SEEDS: [u64; 2] = [1, 2];
 /// Most methods that draw in turn, and so have their buffers in memory at one time.
 const MOST_IN_TURN: usize = 64;
@@ -58,144 +55,89 @@ fn failed(reason: impl std::fmt::Display) -> BenchError {
     BenchError::Picture(reason.to_string())
 }
 
-/// References that were made already.
-struct References<'s> {
-    scene: Scene<'s>,
-    sampling: [Sampling; 2],
-    style: PixelStyle,
-    made: Vec<(Camera, usize, Arc<Reference>)>,
-}
-
-impl References<'_> {
-    /// The first or second reference of a camera.
-    fn of(
-        &mut self,
+impl Scene<'_> {
+    fn reference(
+        &self,
         camera: &Camera,
-        which: usize,
+        seed: u64,
+        plan: &QualityPlan,
         progress: &dyn Progress,
-    ) -> Result<Arc<Reference>, BenchError> {
-        let mut made = self.made.iter();
-        if let Some((.., known)) = made.find(|(from, of, _)| (from, *of) == (camera, which)) {
-            return Ok(Arc::clone(known));
+    ) -> Result<Reference, BenchError> {
+        let style = plan.style;
+        if let Some(mesh) = self.mesh {
+            return of_triangles(mesh, camera, style, seed, progress);
         }
-        let sampling = self.sampling[which];
-        let reference = match (self.scene.mesh, self.scene.graph) {
-            (Some(mesh), _) => of_triangles(mesh, camera, self.style, sampling.seed, progress)?,
-            (None, Some(graph)) => {
-                let background = Background::Color(self.style.background);
-                let setup = truth(graph, camera, 0)?;
-                cast(
-                    graph,
-                    &setup,
-                    self.style.shading,
-                    background,
-                    sampling,
-                    progress,
-                )
-            }
-            (None, None) => return Err(failed("a scene without voxels and triangles")),
+        let graph = self
+            .graph
+            .ok_or_else(|| failed("a scene without voxels and triangles"))?;
+        let sampling = Sampling {
+            strata_log2: plan.strata_log2,
+            seed,
         };
-        let reference = Arc::new(reference);
-        self.made.push((*camera, which, Arc::clone(&reference)));
-        Ok(reference)
+        let background = Background::Color(style.background);
+        let setup = truth(graph, camera, 0)?;
+        Ok(cast(
+            graph,
+            &setup,
+            style.shading,
+            background,
+            sampling,
+            progress,
+        ))
     }
 
-    /// The references of a film, in linear light.
-    fn film(&mut self, cameras: &[Camera], which: usize) -> Result<Vec<LinearPicture>, BenchError> {
-        let light = |camera: &Camera| {
-            let reference = self.of(camera, which, &Silent)?;
-            let (width, height) = (reference.width, reference.height);
-            Ok(LinearPicture::of((width, height, &reference.rgba)))
-        };
+    fn film(
+        &self,
+        cameras: &[Camera],
+        seed: u64,
+        plan: &QualityPlan,
+    ) -> Result<Vec<Light>, BenchError> {
+        let light = |camera| Ok(light_of(&self.reference(camera, seed, plan, &Silent)?.rgba));
         cameras.iter().map(light).collect()
     }
 }
 
 /// The integers that exact rays start from: those of the default format whatever a method has, so
 /// that the view of a narrow format counts as an error.
-fn truth(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, BenchError> {
+fn truth(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, SetupError> {
     let options = SetupOptions {
         aa_log2,
         lod_px: 0.0,
         ..SetupOptions::default()
     };
-    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
-    Ok(setup)
+    FrameSetup::new(camera, &graph.placement, graph.depth, &options)
 }
 
-/// The voxels that exact rays hit at the sample points of a picture.
 struct Exact<'m> {
     graph: &'m Graph,
     aa_log2: u32,
     voxel: Vec<[i32; 4]>,
-    picture: Picture,
 }
 
 impl<'m> Exact<'m> {
-    fn new(
-        graph: &'m Graph,
-        camera: &Camera,
-        aa_log2: u32,
-        style: PixelStyle,
-    ) -> Result<Self, BenchError> {
-        let setup = truth(graph, camera, aa_log2)?;
+    fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, Refused> {
+        let setup = truth(graph, camera, aa_log2).map_err(Refused::because)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn = Rays.render(&graph.view(), &setup, &mut frame);
-        drawn.map_err(failed)?;
-        let background = Background::Color(style.background);
-        let picture = resolve(&frame, graph, &setup, style.shading, background);
+        drawn.map_err(Refused::because)?;
         Ok(Self {
             graph,
             aa_log2,
             voxel: frame.voxel,
-            picture: picture.map_err(failed)?,
         })
     }
 
     /// The errors of samples: false positives and negatives, voxels elsewhere, coarser voxels.
-    fn put(&self, row: &mut Row, samples: &Samples) {
-        let error = CoverageError::between(&samples.voxel, &self.voxel);
-        let elsewhere = count_elsewhere(&samples.voxel, &self.voxel, self.graph.depth);
-        let wrong = error.extra + error.missing;
-        let share = wrong as f64 / error.covered.max(1) as f64;
+    fn put(&self, row: &mut Row, samples: &[[i32; 4]]) {
+        let error = CoverageError::between(samples, &self.voxel);
+        let elsewhere = count_elsewhere(samples, &self.voxel, self.graph.depth);
+        let share = (error.extra + error.missing) as f64 / error.covered.max(1) as f64;
         row.put("extra", error.extra);
         row.put("missing", error.missing);
         row.put("elsewhere", elsewhere);
         row.put("coarser", error.wrong_voxel - elsewhere);
         row.put("wrong_share", Cell::Number(share, 6));
-        row.put("samples_all", error.pixels);
-        row.put("samples_covered", error.covered);
-        let voxel = self.graph.placement.voxel_size;
-        let depth = Spread::of_depths(&samples.depth, &self.picture.depth, voxel);
-        let names = ["depth_mean", "depth_p999", "depth_worst"];
-        put_spread(row, names, depth, 2);
     }
-}
-
-fn put_spread(row: &mut Row, names: [&'static str; 3], spread: Spread, digits: usize) {
-    row.put(names[2], Cell::Number(spread.worst, digits));
-    row.put(names[0], Cell::Number(spread.mean, digits + 1));
-    row.put(names[1], Cell::Number(spread.percentile_99_9, digits));
-}
-
-fn put_picture(row: &mut Row, error: &PictureError) {
-    row.put("psnr", Cell::Number(error.psnr_linear, 2));
-    row.put("flip", Cell::Number(error.flip, 4));
-    row.put("ssim", Cell::Number(error.ssim, 4));
-    row.put("rms_linear", Cell::Number(error.rms_linear, 5));
-    let (all, thin) = (&error.coverage.all, &error.coverage.thin);
-    let percent = |share: f64| Cell::Number(100.0 * share, 2);
-    row.put("bias_percent", percent(all.bias()));
-    row.put("coverage_percent", percent(all.relative()));
-    if thin.area > 0.0 {
-        row.put("thin_bias_percent", percent(thin.bias()));
-        row.put("thin_coverage_percent", percent(thin.relative()));
-    }
-}
-
-/// Linear light in thousandths of white.
-fn thousandths(light: f64) -> Cell {
-    Cell::Number(1e3 * light, 2)
 }
 
 /// Measures methods on a scene from cameras: a row for each camera and method, and one of the noise
@@ -219,6 +161,26 @@ pub fn measure(
     Ok(rows)
 }
 
+fn head(scene: Scene<'_>, camera: &Camera, plan: &QualityPlan, method: [&str; 3]) -> Row {
+    let mut row = Row::default();
+    let samples = match scene.mesh {
+        Some(_) => TRIANGLE_SAMPLES,
+        None => 1 << (2 * plan.strata_log2),
+    };
+    row.put("scene", scene.name);
+    row.put("size", format!("{}x{}", camera.width, camera.height));
+    row.put("height", u64::from(camera.height));
+    row.put("method", method[0]);
+    row.put("family", method[1]);
+    row.put("kind", method[2]);
+    row.put("reference_samples", u64::from(samples));
+    row.put("scene_voxels", scene.graph.map(|graph| graph.voxels));
+    row.put("scene_triangles", scene.mesh.map(|mesh| mesh.len() as u64));
+    let distance = (camera.eye - camera.target).length();
+    row.put("distance", Cell::Number(distance, 3));
+    row
+}
+
 fn at(
     scene: Scene<'_>,
     camera: &Camera,
@@ -226,58 +188,24 @@ fn at(
     plan: &QualityPlan,
     progress: &dyn Progress,
 ) -> Result<Vec<Row>, BenchError> {
-    let mut references = References {
-        scene,
-        sampling: SEEDS.map(|seed| Sampling {
-            strata_log2: plan.strata_log2,
-            seed,
-        }),
-        style: plan.style,
-        made: Vec::new(),
-    };
-    let reference = references.of(camera, 0, progress)?;
-    let second = references.of(camera, 1, progress)?;
+    let reference = scene.reference(camera, SEEDS[0], plan, progress)?;
+    let second = scene.reference(camera, SEEDS[1], plan, progress)?;
     let judge = Judge::new(&reference);
-    let samples = match scene.mesh {
-        Some(_) => TRIANGLE_SAMPLES,
-        None => 1 << (2 * plan.strata_log2),
-    };
-    let blank = |method: &str, family: &str, kind: &str| {
-        let mut row = Row::default();
-        row.put("scene", scene.name);
-        let stem = std::path::Path::new(scene.name).file_stem();
-        row.put("stem", stem.map(|stem| stem.to_string_lossy().into_owned()));
-        row.put("size", format!("{}x{}", camera.width, camera.height));
-        row.put("height", u64::from(camera.height));
-        row.put("method", method);
-        row.put("family", family);
-        row.put("kind", kind);
-        row.put("reference_samples", u64::from(samples));
-        row.put("scene_voxels", scene.graph.map(|graph| graph.voxels));
-        row.put("scene_triangles", scene.mesh.map(|mesh| mesh.len() as u64));
-        row.put(
-            "distance",
-            Cell::Number((camera.eye - camera.target).length(), 3),
-        );
-        row
-    };
-    let mut floor = blank(NOISE_FLOOR, "reference", "reference");
-    let mismatch = |e: SizeError| failed(e);
-    let error = judge.judge(&second.rgba, &second.shares);
-    put_picture(&mut floor, &error.map_err(mismatch)?);
+    let mut floor = head(scene, camera, plan, [NOISE_FLOOR, "reference", "reference"]);
+    let judged = judge.put(&mut floor, &second.rgba, &second.shares);
+    judged.map_err(failed)?;
 
-    let mut films = Vec::new();
+    let mut films: Vec<(&Motion, Vec<Camera>, Vec<Light>)> = Vec::new();
     for motion in &plan.motions {
         progress.begin("drawing references of a film", 2);
         let cameras: Vec<Camera> = (0..plan.frames)
             .map(|frame| motion.after(camera, frame))
             .collect::<Result<_, _>>()
-            .map_err(shiftvox::project::SetupError::from)?;
-        let truth = references.film(&cameras, 0)?;
+            .map_err(SetupError::from)?;
+        let truth = scene.film(&cameras, SEEDS[0], plan)?;
         progress.advance(1);
-        let second = references.film(&cameras, 1)?;
-        let (of_film, _) = flicker(&second, &truth).map_err(mismatch)?;
-        floor.put(motion.columns()[0], thousandths(of_film));
+        let second = scene.film(&cameras, SEEDS[1], plan)?;
+        floor.put(motion.columns()[0], thousandths(flicker(&second, &truth).0));
         films.push((motion, cameras, truth));
         progress.end();
     }
@@ -286,29 +214,15 @@ fn at(
     let mut exact: Vec<Exact<'_>> = Vec::new();
     let mut rows = Vec::new();
     for method in methods {
-        let mut row = blank(&method.name, method.family, &method.kind);
+        let names = [&method.name, method.family, &method.kind];
+        let mut row = head(scene, camera, plan, names);
         for (name, value) in &method.settings {
             row.put(name, value.clone());
         }
-        let judged = judged(&mut row, method, camera, plan.style, &judge, &mut exact)?;
+        let judged = judged_row(&mut row, method, camera, &judge, &mut exact);
         let filmed = judged.and_then(|()| {
-            let mut films = films.iter();
-            films.try_for_each(|(motion, cameras, truth)| {
-                let film = film(method, cameras, truth)?;
-                let [flicker, flicker_worst, pop, pop_worst, popped] = motion.columns();
-                let most = |steps: &[f64]| steps.iter().copied().fold(0.0, f64::max);
-                row.put(flicker, thousandths(film.flicker.0));
-                row.put(flicker_worst, thousandths(most(&film.flicker.1)));
-                if let Some((of_film, steps)) = &film.pop {
-                    row.put(pop, thousandths(*of_film));
-                    row.put(pop_worst, thousandths(most(steps)));
-                    row.put(
-                        popped,
-                        steps.iter().filter(|&&pop| pop > 0.0).count() as u64,
-                    );
-                }
-                row.put("film_error", thousandths(film.error));
-                Ok(())
+            films.iter().try_for_each(|(motion, cameras, truth)| {
+                film(&mut row, method, motion, cameras, truth)
             })
         });
         if let Err(Refused(reason)) = filmed {
@@ -319,10 +233,8 @@ fn at(
     }
     progress.end();
 
-    for (methods, rows) in methods
-        .chunks(MOST_IN_TURN)
-        .zip(rows.chunks_mut(MOST_IN_TURN))
-    {
+    let in_turn = methods.chunks(MOST_IN_TURN);
+    for (methods, rows) in in_turn.zip(rows.chunks_mut(MOST_IN_TURN)) {
         race(methods, rows, camera, plan.schedule, progress)?;
     }
     add_beaten_by(&mut rows);
@@ -331,58 +243,72 @@ fn at(
     Ok(rows)
 }
 
-/// Draws and judges a picture.
-fn judged<'m>(
+fn thousandths(light: f64) -> Cell {
+    Cell::Number(1e3 * light, 2)
+}
+
+fn film(
+    row: &mut Row,
+    method: &Method<'_>,
+    motion: &Motion,
+    cameras: &[Camera],
+    truth: &[Light],
+) -> Result<(), Refused> {
+    let mut drawing = (method.drawing)();
+    let film: Vec<Light> = cameras
+        .iter()
+        .map(|camera| Ok(light_of(&drawn(drawing.as_mut(), camera)?.pixels.rgba())))
+        .collect::<Result<_, Refused>>()?;
+    let (whole, worst) = flicker(&film, truth);
+    let columns = motion.columns();
+    row.put(columns[0], thousandths(whole));
+    row.put(columns[1], thousandths(worst));
+    Ok(())
+}
+
+fn judged_row<'m>(
     row: &mut Row,
     method: &Method<'m>,
     camera: &Camera,
-    style: PixelStyle,
     judge: &Judge<'_>,
     exact: &mut Vec<Exact<'m>>,
-) -> Result<Result<(), Refused>, BenchError> {
-    let (rgba, examined) = match method.show(camera) {
-        Ok(shown) => shown,
-        Err(refused) => return Ok(Err(refused)),
-    };
-    put_picture(row, &judge.judge(&rgba, &examined.shares).map_err(failed)?);
-    if let (Some(graph), Some(samples)) = (method.graph, &examined.samples) {
-        let is_same = |exact: &Exact<'_>| {
-            std::ptr::eq(exact.graph, graph) && exact.aa_log2 == samples.aa_log2
-        };
-        let place = match exact.iter().position(is_same) {
-            Some(place) => place,
-            None => {
-                exact.push(Exact::new(graph, camera, samples.aa_log2, style)?);
-                exact.len() - 1
-            }
-        };
-        exact[place].put(row, samples);
+) -> Result<(), Refused> {
+    let mut drawing = (method.drawing)();
+    let shown = drawn(drawing.as_mut(), camera)?;
+    let Examined {
+        shares,
+        samples,
+        counters,
+        remark,
+    } = (method.examine)(&shown, camera)?;
+    let judged = judge.put(row, &shown.pixels.rgba(), &shares);
+    judged.map_err(Refused::because)?;
+    if let (Some(graph), Some((aa_log2, voxels))) = (method.graph, samples) {
+        let is_same =
+            |exact: &Exact<'_>| std::ptr::eq(exact.graph, graph) && exact.aa_log2 == aa_log2;
+        if !exact.iter().any(is_same) {
+            exact.push(Exact::new(graph, camera, aa_log2)?);
+        }
+        if let Some(exact) = exact.iter().find(|exact| is_same(exact)) {
+            exact.put(row, &voxels);
+        }
     }
-    if let Some(spread) = examined.vertices {
-        put_spread(
-            row,
-            ["vertex_mean", "vertex_p999", "vertex_worst"],
-            spread,
-            4,
-        );
-    }
-    if let Some((name, count)) = examined.counters.first() {
+    if let Some((name, count)) = counters.first() {
         row.put("work", *count);
         row.put("work_unit", *name);
     }
     // Bytes that the frame reads: those of its level of detail, if there are levels.
     row.put("read_bytes", method.bytes);
-    for (name, count) in &examined.counters {
+    for (name, count) in &counters {
         let name = if *name == "bytes" { "read_bytes" } else { name };
         row.put(name, *count);
     }
     row.put("bytes", method.bytes);
     row.put("build_ms", method.build_ms.map(Cell::ms));
-    row.put("remark", examined.remark);
-    Ok(Ok(()))
+    row.put("remark", remark);
+    Ok(())
 }
 
-/// Times methods, interleaved, on one thread.
 fn race(
     methods: &[Method<'_>],
     rows: &mut [Row],
@@ -415,33 +341,9 @@ fn race(
 /// The most important columns of the rows of one scene and camera, for people.
 #[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
-    const COLUMNS: [&str; 24] = [
-        "method",
-        "ms",
-        "work",
-        "psnr",
-        "flip",
-        "bias_percent",
-        "flicker_turntable",
-        "flicker_dolly",
-        "flicker_pan",
-        "pop_turntable",
-        "pop_dolly",
-        "pop_pan",
-        "popped_dolly",
-        "extra",
-        "missing",
-        "elsewhere",
-        "vertex_worst",
-        "read_bytes",
-        "build_ms",
-        "ahead",
-        "beaten_by",
-        "ssim",
-        "remark",
-        "refused",
-    ];
-    Table::select(title, rows, &COLUMNS).condensed()
+    const COLUMNS: &str = "method ms work psnr flip bias_percent flicker_turntable flicker_dolly flicker_pan extra \
+        missing elsewhere read_bytes build_ms ahead beaten_by ssim remark refused";
+    Table::select(title, rows, COLUMNS).condensed()
 }
 
 /// Plots of the rows of one scene and camera: time and machine-independent work against errors and

@@ -1,7 +1,5 @@
 //! Cameras that move, and cameras farther off.
 
-use glam::DVec3;
-
 use shiftvox::project::{Camera, CameraError};
 
 /// How a camera moves from frame to frame.
@@ -19,41 +17,12 @@ impl Motion {
     /// Half a degree, a hundredth, an eighth of a pixel.
     pub const ALL: [Self; 3] = [Self::Turntable(0.5), Self::Dolly(0.01), Self::Pan(0.125)];
 
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
+    /// Columns of its film: flicker, and that of the worst step.
+    pub(super) fn columns(&self) -> [&'static str; 2] {
         match self {
-            Self::Turntable(_) => "turntable",
-            Self::Dolly(_) => "dolly",
-            Self::Pan(_) => "pan",
-        }
-    }
-
-    /// Columns of its film: flicker, the greatest of a step, pop, the greatest of a step, and steps
-    /// that popped.
-    pub(super) fn columns(&self) -> [&'static str; 5] {
-        match self {
-            Self::Turntable(_) => [
-                "flicker_turntable",
-                "flicker_turntable_worst",
-                "pop_turntable",
-                "pop_turntable_worst",
-                "popped_turntable",
-            ],
-            Self::Dolly(_) => [
-                "flicker_dolly",
-                "flicker_dolly_worst",
-                "pop_dolly",
-                "pop_dolly_worst",
-                "popped_dolly",
-            ],
-            Self::Pan(_) => [
-                "flicker_pan",
-                "flicker_pan_worst",
-                "pop_pan",
-                "pop_pan_worst",
-                "popped_pan",
-            ],
+            Self::Turntable(_) => ["flicker_turntable", "flicker_turntable_worst"],
+            Self::Dolly(_) => ["flicker_dolly", "flicker_dolly_worst"],
+            Self::Pan(_) => ["flicker_pan", "flicker_pan_worst"],
         }
     }
 
@@ -68,7 +37,11 @@ impl Motion {
         let mut moved = *camera;
         match self {
             Self::Turntable(degrees) => {
-                moved = turned(camera, degrees * frames);
+                let (sin, cos) = libm::sincos((degrees * frames).to_radians());
+                let axis = camera.up.normalize_or_zero();
+                let along = axis * axis.dot(to_eye);
+                moved.eye =
+                    camera.target + along + (to_eye - along) * cos + axis.cross(to_eye) * sin;
             }
             Self::Dolly(share) => {
                 moved.eye = camera.target + to_eye * libm::pow(1.0 - share, frames);
@@ -81,19 +54,6 @@ impl Motion {
             }
         }
         Ok(moved)
-    }
-}
-
-/// A camera turned around its target, about its up direction.
-fn turned(camera: &Camera, degrees: f64) -> Camera {
-    let axis = camera.up.normalize_or_zero();
-    let (sin, cos) = libm::sincos(degrees.to_radians());
-    let offset = camera.eye - camera.target;
-    let along = axis * axis.dot(offset);
-    let around: DVec3 = (offset - along) * cos + axis.cross(offset) * sin;
-    Camera {
-        eye: camera.target + along + around,
-        ..*camera
     }
 }
 
@@ -115,13 +75,15 @@ pub fn at_distance(camera: &Camera, height: u32) -> Camera {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn camera() -> Camera {
         Camera {
             eye: DVec3::new(0.0, -10.0, 0.0),
             target: DVec3::ZERO,
-            up: DVec3::Z,
+            up: DVec3::Z * 4.0,
             fov_degrees: 90.0,
             width: 100,
             height: 100,
@@ -130,33 +92,43 @@ mod tests {
 
     #[test]
     fn motions_end_where_they_should() {
+        let tilted = Camera {
+            eye: DVec3::new(5.0, 1.0, 7.0),
+            target: DVec3::new(2.0, 1.0, 3.0),
+            ..camera()
+        };
         // 90 degrees over 100 pixels from 10 away: a pixel is a fifth.
-        let cases = [
-            (Motion::Turntable(45.0), 2, [10.0, 0.0, 0.0], [0.0; 3]),
-            (Motion::Dolly(0.5), 2, [0.0, -2.5, 0.0], [0.0; 3]),
-            (Motion::Pan(0.5), 3, [0.3, -10.0, 0.0], [0.3, 0.0, 0.0]),
-        ];
-        for (motion, frames, eye, target) in cases {
-            let still = motion.after(&camera(), 0).unwrap();
-            assert!((still.eye - camera().eye).length() < 1e-12, "{motion:?}");
-            let moved = motion.after(&camera(), frames).unwrap();
+        for (from, motion, frames, eye, target) in [
+            (
+                camera(),
+                Motion::Turntable(45.0),
+                2,
+                [10.0, 0.0, 0.0],
+                [0.0; 3],
+            ),
+            (
+                tilted,
+                Motion::Turntable(45.0),
+                2,
+                [2.0, 4.0, 7.0],
+                [2.0, 1.0, 3.0],
+            ),
+            (camera(), Motion::Dolly(0.5), 2, [0.0, -2.5, 0.0], [0.0; 3]),
+            (
+                camera(),
+                Motion::Pan(0.5),
+                3,
+                [0.3, -10.0, 0.0],
+                [0.3, 0.0, 0.0],
+            ),
+        ] {
+            let still = motion.after(&from, 0).unwrap();
+            assert!((still.eye - from.eye).length() < 1e-12, "{motion:?}");
+            let moved = motion.after(&from, frames).unwrap();
             let off = (moved.eye - DVec3::from(eye)).length()
                 + (moved.target - DVec3::from(target)).length();
             assert!(off < 1e-12, "{motion:?}: {moved:?}");
         }
-    }
-
-    #[test]
-    fn a_turn_keeps_height_and_distance() {
-        let camera = Camera {
-            eye: DVec3::new(5.0, 1.0, 7.0),
-            target: DVec3::new(2.0, 1.0, 3.0),
-            up: DVec3::Z * 4.0,
-            ..camera()
-        };
-        let quarter = turned(&camera, 90.0).eye;
-        assert!((quarter - DVec3::new(2.0, 4.0, 7.0)).length() < 1e-12);
-        assert_eq!(turned(&camera, 0.0), camera);
     }
 
     #[test]

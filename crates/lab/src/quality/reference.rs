@@ -13,43 +13,32 @@ use shiftvox_mesh::Surface;
 use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
 use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
 
-/// How a reference is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sampling {
+pub(super) struct Sampling {
     /// Strata of a pixel along each axis, as a power of two, 0..=4; one sample each.
-    pub strata_log2: u32,
-    /// Seed of the places in the strata.
-    pub seed: u64,
+    pub(super) strata_log2: u32,
+    pub(super) seed: u64,
 }
 
 /// A picture of many samples, box-filtered in linear light.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
+#[derive(Debug, PartialEq)]
+pub(super) struct Reference {
+    pub(super) width: u32,
+    pub(super) height: u32,
     /// sRGB, opaque, rounded once after the filter.
-    pub rgba: Vec<[u8; 4]>,
-    /// Covered share of each pixel, 0 to 1.
-    pub shares: Vec<f32>,
+    pub(super) rgba: Vec<[u8; 4]>,
+    pub(super) shares: Vec<f32>,
 }
 
-/// Most levels by which places in a stratum are distinguished.
 const MOST_JITTER_LEVELS: u32 = 4;
 
-/// Most levels of the image root of a picture that has a reference.
-pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
-
-/// Casts a reference of a frame with one sample per pixel (`setup.options.aa_log2` is 0) whose image
-/// root has at most [`MAX_REFERENCE_LEVELS`] levels.
+/// Casts a reference of a frame with one sample per pixel, whose image root has at most
+/// `MAX_CASTER_LEVELS - 4` levels.
 ///
 /// Samples are points of a grid up to 256 times as fine as the pixels, so that the exact rays start
-/// from the same integers as the frame. Rays go down to the finest voxels whatever the frame's
-/// level of detail. A pixel's strata are squares of that grid, and one random grid point of each is
-/// taken. The result depends on frame and sampling alone. `progress` advances by rows.
-#[must_use]
-pub fn cast(
+/// from the same integers as the frame. Rays go down to the finest voxels. A pixel's strata are
+/// squares of that grid, and one random grid point of each is taken. `progress` advances by rows.
+pub(super) fn cast(
     graph: &Graph,
     setup: &FrameSetup,
     shading: Shading,
@@ -90,14 +79,9 @@ pub fn cast(
     }
 }
 
-/// Samples per pixel of the reference of a mesh.
 pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 
-/// A reference of a mesh: its triangles at 256 samples per pixel, one random sample in each of equal
-/// squares.
-///
-/// # Errors
-/// When the camera cannot see, or the picture is too large.
+/// A reference of a mesh: one random sample in each of 256 equal squares of a pixel.
 pub(super) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
@@ -131,7 +115,6 @@ struct Pixels<'g> {
 }
 
 impl Pixels<'_> {
-    /// Colour and share of a pixel.
     fn pixel(&self, x: u32, y: u32) -> ([u8; 4], f32) {
         let strata = 1u32 << self.strata_log2;
         let (mut light, mut seen) = ([0u32; 3], 0u32);
@@ -181,7 +164,6 @@ mod tests {
     use shiftvox::project::{Engine, SetupOptions};
     use shiftvox::rays::Rays;
 
-    /// One voxel, `[0, 1]^3`.
     fn cube() -> Graph {
         crate::test_graphs::one_node(0, 0, [200, 40, 90])
     }
@@ -201,17 +183,16 @@ mod tests {
         }
     }
 
+    fn set_up(camera: &Camera, graph: &Graph) -> FrameSetup {
+        let options = SetupOptions::default();
+        FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap()
+    }
+
     fn cast_at(camera: &Camera, strata_log2: u32, seed: u64) -> Reference {
         let graph = cube();
-        let setup = FrameSetup::new(
-            camera,
-            &graph.placement,
-            graph.depth,
-            &SetupOptions::default(),
-        )
-        .unwrap();
         let sampling = Sampling { strata_log2, seed };
         let black = Background::Color([0; 3]);
+        let setup = set_up(camera, &graph);
         cast(&graph, &setup, Shading::Flat, black, sampling, &Silent)
     }
 
@@ -236,8 +217,7 @@ mod tests {
 
     #[test]
     fn seeds_differ_a_little_and_runs_do_not() {
-        let camera = facing(2.3, 3.1);
-        let [a, again, b] = [7, 7, 8].map(|seed| cast_at(&camera, 3, seed));
+        let [a, again, b] = [7, 7, 8].map(|seed| cast_at(&facing(2.3, 3.1), 3, seed));
         assert_eq!(a, again);
         assert_ne!(a, b);
         let apart = a.shares.iter().zip(&b.shares).map(|(a, b)| (a - b).abs());
@@ -247,14 +227,7 @@ mod tests {
     #[test]
     fn one_stratum_without_jitter_is_the_oracles_picture() {
         let graph = cube();
-        let camera = facing(2.3, 3.1);
-        let setup = FrameSetup::new(
-            &camera,
-            &graph.placement,
-            graph.depth,
-            &SetupOptions::default(),
-        )
-        .unwrap();
+        let setup = set_up(&facing(2.3, 3.1), &graph);
         let mut frame = Frame::new(8, 8, false);
         Rays.render(&graph.view(), &setup, &mut frame).unwrap();
         let background = Background::default();

@@ -1,21 +1,18 @@
 //! The image-order engines as methods.
 
+use hwmodel::Memory;
 use hwmodel::count::Counter;
 use hwmodel::cycles::Organisation;
-use hwmodel::{Memory, Stage};
 
-use super::cut::cut_at;
-use super::method::{Examined, Method, Refused, Samples, drawn};
-use super::vertices::vertex_errors;
+use super::method::{Examined, Method, Refused};
 use crate::bench::MakeEngine;
 use crate::model::record::{record_bits, record_fields};
 use crate::report::Cell;
-use shiftvox::drawing::{Buffers, Drawable, GraphDrawing, GraphStyle, Shown};
+use shiftvox::drawing::{Buffers, GraphDrawing, GraphStyle, Shown};
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
-use shiftvox::picture::npy::Values;
-use shiftvox::picture::{Background, Buffer, Rows, Shading};
+use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
 
 /// Shading and background.
@@ -57,17 +54,15 @@ pub fn voxel_method<'g>(
     options: SetupOptions,
     style: PixelStyle,
 ) -> Method<'g> {
-    let drawing = move |graph: &'g Graph| of_voxels(graph, make, options, style);
-    let with_cut_of = move |camera: &Camera, other: &Camera| {
-        let cut = cut_at(graph, &setup(graph, other, &options)?);
-        // Solids are exactly the nodes that the cut stops at.
-        let options = SetupOptions {
-            lod_px: 0.0,
-            ..options
-        };
-        let mut on_cut = of_voxels(&cut, make, options, style);
-        Ok(drawn(&mut on_cut, camera)?.pixels.rgba())
+    let drawn_as = GraphStyle {
+        options,
+        shading: style.shading,
+        background: Background::Color(style.background),
+        buffers: vec![Buffer::Voxel],
+        is_hashed: false,
     };
+    // Only fitted cameras use the up axis.
+    let drawing = move || GraphDrawing::new(graph, Up::Z, drawn_as.clone(), move || make(1));
     let samples = 1 << options.aa_log2;
     Method {
         family: "voxels",
@@ -86,33 +81,11 @@ pub fn voxel_method<'g>(
             _ => format!("{}, aa {samples}", options.coverage.name()),
         },
         graph: Some(graph),
-        bytes: Some(graph.bytes()),
+        bytes: graph.bytes(),
         build_ms: None,
-        drawing: Box::new(move || Box::new(drawing(graph)) as Box<dyn Drawable>),
+        drawing: Box::new(move || Box::new(drawing())),
         examine: Box::new(move |shown, camera| examine(graph, &options, shown, camera)),
-        with_cut_of: (options.lod_px != 0.0).then(|| Box::new(with_cut_of) as _),
     }
-}
-
-fn of_voxels(
-    graph: &Graph,
-    make: MakeEngine,
-    options: SetupOptions,
-    style: PixelStyle,
-) -> GraphDrawing<'_> {
-    let style = GraphStyle {
-        options,
-        shading: style.shading,
-        background: Background::Color(style.background),
-        buffers: vec![Buffer::Voxel],
-        is_hashed: false,
-    };
-    // Only fitted cameras use the up axis.
-    GraphDrawing::new(graph, Up::Z, style, move || make(1))
-}
-
-fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> Result<FrameSetup, Refused> {
-    FrameSetup::new(camera, &graph.placement, graph.depth, options).map_err(Refused::because)
 }
 
 fn examine(
@@ -124,23 +97,15 @@ fn examine(
     let Buffers::Resolved(resolver) = &shown.buffers else {
         return Err(Refused::because("no engine of voxels"));
     };
-    let (frame, (_, height)) = (resolver.frame(), resolver.size());
-    let depth = shown.buffers.rows(Buffer::Depth, 0..height);
-    let Values::F32(depth) = depth.map_err(Refused::because)? else {
-        return Err(Refused::because("no depths"));
-    };
-    let setup = setup(graph, camera, options)?;
+    let frame = resolver.frame();
+    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, options);
+    let setup = setup.map_err(Refused::because)?;
     let aa_log2 = options.aa_log2;
     let handed = |(name, _): &(&str, _)| *name == "handed_to_machine";
     Ok(Examined {
         shares: shares(frame, aa_log2),
-        vertices: vertex_errors(camera, &setup, &frame.voxel),
         counters: counters(graph, &setup)?,
-        samples: Some(Samples {
-            aa_log2,
-            voxel: frame.voxel.clone(),
-            depth,
-        }),
+        samples: Some((aa_log2, frame.voxel.clone())),
         remark: remark(options, shown.counters.iter().any(handed)),
     })
 }
@@ -161,8 +126,7 @@ fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
     let mut frame = Frame::nodes_only(setup.width, setup.height);
     let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Counter::new());
     let (stats, counter) = drawn.map_err(Refused::because)?;
-    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
-    let at = |stages: &[Stage]| counter.sum(|cell| stages.contains(&cell.stage));
+    let records = stats.iter().find(|(name, _)| *name == "records");
     let record = u64::from(
         record_bits(&record_fields(setup, graph.len(), Organisation::default())).div_ceil(8),
     );
@@ -179,20 +143,12 @@ fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
         .map(|&(memory, size)| size * (counter.reads(memory) + counter.writes(memory)));
     Ok(vec![
         ("operations", counter.ops()),
-        ("records", stat("records")),
-        (
-            "vertex_operations",
-            at(&[Stage::VertexPool, Stage::ChildBox, Stage::ToScreen]),
-        ),
-        ("quadtree_operations", at(&[Stage::QuadtreeFit])),
+        ("records", records.map_or(0, |of| of.1)),
         ("bytes_touched", touched.sum()),
-        ("changed_to_screen", stat("changed_to_screen")),
     ])
 }
 
-/// A tolerance in words: `1/8`, `0`, `inf`.
-#[must_use]
-pub fn tolerance_in_words(tolerance_px: f64) -> String {
+fn tolerance_in_words(tolerance_px: f64) -> String {
     if tolerance_px.is_infinite() {
         return "inf".to_owned();
     }
@@ -227,7 +183,6 @@ fn name(engine: &str, o: &SetupOptions) -> String {
     name
 }
 
-/// The covered share of each pixel.
 fn shares(frame: &Frame, aa_log2: u32) -> Vec<f32> {
     let (side, across) = (1usize << aa_log2, frame.width as usize);
     let (width, height) = (across >> aa_log2, frame.height as usize >> aa_log2);

@@ -39,8 +39,7 @@ pub struct Page<'p> {
     pub details: &'p [Table],
 }
 
-/// A text with the characters escaped that HTML interprets.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
 }

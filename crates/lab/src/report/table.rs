@@ -19,8 +19,7 @@ pub enum Cell {
 
 impl Cell {
     /// A time in milliseconds with three significant digits.
-    #[must_use]
-    pub fn ms(time: f64) -> Self {
+    pub(crate) fn ms(time: f64) -> Self {
         let digits = match time {
             t if t < 1.0 => 3,
             t if t < 10.0 => 2,
@@ -30,15 +29,11 @@ impl Cell {
         Self::Number(time, digits)
     }
 
-    /// A ratio or an exponent.
-    #[must_use]
-    pub fn ratio(value: f64) -> Self {
+    pub(crate) fn ratio(value: f64) -> Self {
         Self::Number(value, 3)
     }
 
-    /// The value as a number, if it is one.
-    #[must_use]
-    pub fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Count(count) => Some(*count as f64),
             Self::Number(value, _) => Some(*value),
@@ -46,9 +41,7 @@ impl Cell {
         }
     }
 
-    /// The cell for people: whole numbers have their digits in groups of three.
-    #[must_use]
-    pub fn for_people(&self) -> String {
+    pub(crate) fn for_people(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
             Self::Count(count) => grouped(*count),
@@ -76,12 +69,6 @@ impl Cell {
             Self::Number(value, _) => (*value).into(),
             Self::None => Value::Null,
         }
-    }
-}
-
-impl serde::Serialize for Cell {
-    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        self.json().serialize(to)
     }
 }
 
@@ -154,9 +141,6 @@ impl Row {
     }
 }
 
-/// Most letters of columns that blocks repeat.
-const MOST_KEY_WIDTH: usize = 60;
-
 /// A table. Every row is as long as `columns`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
@@ -168,10 +152,9 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// Most letters of a line of text.
 const TEXT_WIDTH: usize = 100;
-/// Most letters of a line of a cell; longer cells have several lines.
 const CELL_WIDTH: usize = 40;
+const MOST_KEY_WIDTH: usize = 60;
 
 impl Table {
     /// A table without rows.
@@ -184,13 +167,6 @@ impl Table {
         }
     }
 
-    /// A table without rows. `columns` has the names with blanks between them.
-    #[must_use]
-    pub fn of(title: impl Into<String>, columns: &'static str) -> Self {
-        let columns: Vec<&'static str> = columns.split_whitespace().collect();
-        Self::new(title, &columns)
-    }
-
     /// A table of measurements, with every column that any of them has.
     #[must_use]
     pub fn collect(title: impl Into<String>, rows: &[Row]) -> Self {
@@ -200,12 +176,16 @@ impl Table {
                 columns.push(name);
             }
         }
-        Self::select(title, rows, &columns)
+        Self::of_columns(title, rows, &columns)
     }
 
-    /// A table of some columns of measurements.
-    #[must_use]
-    pub fn select(title: impl Into<String>, rows: &[Row], columns: &[&'static str]) -> Self {
+    /// A table of some columns of measurements, named with blanks between them.
+    pub(crate) fn select(title: &str, rows: &[Row], columns: &'static str) -> Self {
+        let columns: Vec<&'static str> = columns.split_whitespace().collect();
+        Self::of_columns(title, rows, &columns)
+    }
+
+    fn of_columns(title: impl Into<String>, rows: &[Row], columns: &[&'static str]) -> Self {
         let cells = |row: &Row| columns.iter().map(|name| row.get(name).clone()).collect();
         Self {
             rows: rows.iter().map(cells).collect(),
@@ -214,122 +194,74 @@ impl Table {
     }
 
     /// Whether a column has an entry in words, which are set to the left.
-    #[must_use]
-    pub fn is_of_words(&self, column: usize) -> bool {
+    pub(super) fn is_of_words(&self, column: usize) -> bool {
         let words = |row: &Vec<Cell>| matches!(row.get(column), Some(Cell::Text(_)));
         self.rows.iter().any(words)
     }
 
-    /// The table without some columns.
-    #[must_use]
-    pub fn without(&self, names: &[&str]) -> Self {
-        self.keep(|column| !names.contains(&self.columns[column]))
-    }
-
-    fn keep(&self, is_kept: impl Fn(usize) -> bool) -> Self {
-        let kept: Vec<usize> = (0..self.columns.len()).filter(|&c| is_kept(c)).collect();
-        let rows = self.rows.iter();
-        Self {
-            title: self.title.clone(),
-            columns: kept.iter().map(|&column| self.columns[column]).collect(),
-            rows: rows
-                .map(|row| kept.iter().map(|&column| row[column].clone()).collect())
-                .collect(),
-        }
-    }
-
     /// The table without columns that are empty or the same in every row. Their values are in the
     /// title.
-    #[must_use]
-    pub fn condensed(&self) -> Self {
+    pub(crate) fn condensed(mut self) -> Self {
         let is_constant = |column: usize| {
             let mut rows = self.rows.iter().map(|row| &row[column]);
             let first = rows.next();
             self.rows.len() > 1 && rows.all(|cell| Some(cell) == first)
         };
-        let constants = (0..self.columns.len()).filter(|&c| is_constant(c));
-        let told: Vec<String> = constants
-            .filter(|&column| self.rows[0][column] != Cell::None)
-            .map(|column| {
-                let name = self.columns[column].replace('_', " ");
-                format!("{name} {}", self.rows[0][column].for_people())
-            })
-            .collect();
-        let mut kept = self.keep(|column| !is_constant(column));
-        if !told.is_empty() {
-            kept.title = format!("{}: {}", kept.title, told.join(", "));
+        let constants: Vec<bool> = (0..self.columns.len()).map(is_constant).collect();
+        let mut told = Vec::new();
+        for (column, _) in constants.iter().enumerate().filter(|(_, is)| **is) {
+            let (name, cell) = (self.columns[column], &self.rows[0][column]);
+            if *cell != Cell::None {
+                told.push(format!("{} {}", name.replace('_', " "), cell.for_people()));
+            }
         }
-        kept
+        if !told.is_empty() {
+            self.title = format!("{}: {}", self.title, told.join(", "));
+        }
+        let mut is_constant = constants.iter();
+        self.columns.retain(|_| is_constant.next() == Some(&false));
+        for row in &mut self.rows {
+            let mut is_constant = constants.iter();
+            row.retain(|_| is_constant.next() == Some(&false));
+        }
+        self
     }
 
     /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
     /// Columns without room go to a second block, which begins with the first columns of words again.
     #[must_use]
     pub fn text(&self) -> String {
-        let mut columns: Vec<Vec<Vec<String>>> = Vec::new();
-        for (column, name) in self.columns.iter().enumerate() {
+        let column = |(column, name): (usize, &&'static str)| {
             let head = name.split('_').map(str::to_owned).collect();
             let cells = self.rows.iter().map(|row| &row[column]);
             let cells = cells.map(|cell| wrapped(&cell.for_people(), CELL_WIDTH));
-            columns.push(std::iter::once(head).chain(cells).collect());
-        }
-        let width = |column: usize| {
-            let lines = columns[column].iter().flatten();
-            lines.map(|line| line.chars().count()).max().unwrap_or(0)
+            let cells: Vec<Vec<String>> = std::iter::once(head).chain(cells).collect();
+            let widths = cells.iter().flatten().map(|line| line.chars().count());
+            Column {
+                is_of_words: self.is_of_words(column),
+                width: widths.max().unwrap_or(0),
+                cells,
+            }
         };
-        let mut text = wrapped(&self.title, TEXT_WIDTH).join("\n");
-        let mut keys: Vec<usize> = vec![0];
-        let mut key_width = width(0);
-        for column in (1..columns.len()).take_while(|&column| self.is_of_words(column)) {
-            key_width += width(column) + 2;
-            if key_width < MOST_KEY_WIDTH {
-                keys.push(column);
+        let columns: Vec<Column> = self.columns.iter().enumerate().map(column).collect();
+        let width = |block: &[&Column]| block.iter().map(|of| of.width + 2).sum::<usize>();
+        let mut keys: Vec<&Column> = columns.iter().take(1).collect();
+        let further = columns.iter().skip(1);
+        for key in further.take_while(|column| column.is_of_words) {
+            if width(&keys) + key.width < MOST_KEY_WIDTH {
+                keys.push(key);
             }
         }
-        let taken = |block: &[usize]| block.iter().map(|&c| width(c) + 2).sum::<usize>();
-        let mut block: Vec<usize> = Vec::new();
-        for column in 0..columns.len() {
-            if taken(&block) + width(column) > TEXT_WIDTH && block.len() > keys.len() {
-                text += &self.block(&columns, &block, width);
-                text.push('\n');
+        let mut text = wrapped(&self.title, TEXT_WIDTH).join("\n");
+        let mut block: Vec<&Column> = Vec::new();
+        for column in &columns {
+            if width(&block) + column.width > TEXT_WIDTH && block.len() > keys.len() {
+                text += &(of_block(&block) + "\n");
                 block.clone_from(&keys);
             }
             block.push(column);
         }
-        text + &self.block(&columns, &block, width)
-    }
-
-    fn block(
-        &self,
-        columns: &[Vec<Vec<String>>],
-        block: &[usize],
-        width: impl Fn(usize) -> usize,
-    ) -> String {
-        let mut text = String::from("\n");
-        for row in 0..=self.rows.len() {
-            let lines = block.iter().map(|&column| columns[column][row].len()).max();
-            let lines = lines.unwrap_or(0);
-            for at in 0..lines {
-                let mut line = String::new();
-                for &column in block {
-                    let cell = &columns[column][row];
-                    // Heads stand on the table, cells hang from their line.
-                    let at = match row {
-                        0 => (at + cell.len()).checked_sub(lines),
-                        _ => Some(at),
-                    };
-                    let cell = at.and_then(|at| cell.get(at)).map_or("", String::as_str);
-                    let width = width(column);
-                    // Writing to a string does not fail.
-                    let _ = match self.is_of_words(column) {
-                        true => write!(line, "{cell:<width$}  "),
-                        false => write!(line, "{cell:>width$}  "),
-                    };
-                }
-                text = text + "\n" + line.trim_end();
-            }
-        }
-        text
+        text + &of_block(&block)
     }
 
     /// The table in CSV (RFC 4180): a line of names, then the rows.
@@ -349,11 +281,7 @@ impl Table {
     pub fn markdown(&self) -> String {
         let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
         for column in 0..self.columns.len() {
-            text += if self.is_of_words(column) {
-                "---|"
-            } else {
-                "--:|"
-            };
+            text += ["--:|", "---|"][usize::from(self.is_of_words(column))];
         }
         text.push('\n');
         for row in &self.rows {
@@ -363,6 +291,40 @@ impl Table {
         }
         text
     }
+}
+
+struct Column {
+    is_of_words: bool,
+    width: usize,
+    /// The name and the cells, each in lines.
+    cells: Vec<Vec<String>>,
+}
+
+fn of_block(block: &[&Column]) -> String {
+    let mut text = String::from("\n");
+    for row in 0..block.first().map_or(0, |column| column.cells.len()) {
+        let lines = block.iter().map(|column| column.cells[row].len()).max();
+        let lines = lines.unwrap_or(0);
+        for at in 0..lines {
+            let mut line = String::new();
+            for column in block {
+                let (cell, width) = (&column.cells[row], column.width);
+                // Heads stand on the table, cells hang from their line.
+                let at = match row {
+                    0 => (at + cell.len()).checked_sub(lines),
+                    _ => Some(at),
+                };
+                let cell = at.and_then(|at| cell.get(at)).map_or("", String::as_str);
+                // Writing to a string does not fail.
+                let _ = match column.is_of_words {
+                    true => write!(line, "{cell:<width$}  "),
+                    false => write!(line, "{cell:>width$}  "),
+                };
+            }
+            text = text + "\n" + line.trim_end();
+        }
+    }
+    text
 }
 
 /// A text in lines of at most so many letters, broken at blanks; longer words stay whole.
@@ -382,7 +344,6 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A CSV field, in quotes where it must be.
 fn quoted(field: &str) -> String {
     if field.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
@@ -434,7 +395,7 @@ mod tests {
             "scene,frame_ms,size,records\r\n\"gen:menger,depth=2\",12.345,64,1234567\r\n\
              \"a \"\"b\"\" | c\",0.5,64,\r\n"
         );
-        let less = table.without(&["size", "nothing"]);
+        let less = Table::select("Two", &rows(), "scene frame_ms records");
         assert_eq!(
             less.markdown(),
             "**Two**\n\n| scene | frame_ms | records |\n|---|--:|--:|\n\
@@ -457,23 +418,18 @@ mod tests {
 
     #[test]
     fn wide_tables_fit_a_terminal() {
-        let names = ["a_first", "b", "c", "d"];
-        let mut table = Table::new("word ".repeat(40), &names);
         let long = "letters ".repeat(5);
-        table.rows.push(vec![Cell::from(long.as_str()); 4]);
-        let text = table.text();
+        let long = || Cell::from(long.as_str());
+        let table = |name: &'static str, cells: [Cell; 4]| Table {
+            rows: vec![cells.to_vec()],
+            ..Table::new("word ".repeat(40), &[name, "b", "c", "d"])
+        };
+        let wide = table("a_first", [long(), long(), long(), long()]);
+        let text = wide.text();
         assert!(text.lines().all(|line| line.len() <= TEXT_WIDTH), "{text}");
         assert_eq!(text.matches("first").count(), 3, "{text}");
-        let keyed = Table {
-            rows: vec![vec![
-                "k".into(),
-                long.as_str().into(),
-                Cell::None,
-                long.as_str().into(),
-            ]],
-            ..Table::of("t", "key a b c")
-        };
-        assert_eq!(keyed.text().matches("key").count(), 1, "{}", keyed.text());
+        let keyed = table("key", ["k".into(), long(), Cell::None, long()]).text();
+        assert_eq!(keyed.matches("key").count(), 1, "{keyed}");
     }
 
     #[test]

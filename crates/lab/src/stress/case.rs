@@ -22,38 +22,29 @@ pub struct Case {
     pub options: SetupOptions,
 }
 
-impl Case {
-    /// Camera and settings by their keys, seen from another origin.
-    fn settings(&self, origin: DVec3) -> Vec<(&'static str, String)> {
-        let (camera, options) = (&self.camera, &self.options);
-        let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
-        let mut all = vec![
-            ("eye", vector(camera.eye + origin)),
-            ("target", vector(camera.target + origin)),
-            ("up", vector(camera.up)),
-            ("fov", camera.fov_degrees.to_string()),
-            ("size", format!("{}x{}", camera.width, camera.height)),
-            ("bits", options.bits.to_string()),
-        ];
-        all.extend(options.frac.map(|frac| ("frac", frac.to_string())));
-        all.extend([
-            ("cage", options.cage.name().to_owned()),
-            ("tolerance", options.tolerance_px.to_string()),
-            ("coverage", options.coverage.name().to_owned()),
-            ("lod", options.lod_px.to_string()),
-        ]);
-        all
-    }
-}
-
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (camera, options) = (&self.camera, &self.options);
         write!(f, "scene={}", self.scene)?;
         if self.shift != 0 {
             write!(f, ";shift={}", self.shift)?;
         }
-        let mut settings = self.settings(DVec3::ZERO).into_iter();
-        settings.try_for_each(|(key, value)| write!(f, ";{key}={value}"))
+        for (key, v) in [
+            ("eye", camera.eye),
+            ("target", camera.target),
+            ("up", camera.up),
+        ] {
+            write!(f, ";{key}={},{},{}", v.x, v.y, v.z)?;
+        }
+        let (width, height) = (camera.width, camera.height);
+        write!(f, ";fov={};size={width}x{height}", camera.fov_degrees)?;
+        write!(f, ";bits={}", options.bits)?;
+        if let Some(frac) = options.frac {
+            write!(f, ";frac={frac}")?;
+        }
+        let (cage, coverage) = (options.cage.name(), options.coverage.name());
+        write!(f, ";cage={cage};tolerance={}", options.tolerance_px)?;
+        write!(f, ";coverage={coverage};lod={}", options.lod_px)
     }
 }
 
@@ -84,14 +75,9 @@ impl FromStr for Case {
             };
             match key {
                 "scene" => scene = Some(value.parse()?),
-                "eye" | "target" | "up" => {
-                    let vector = vector(value).ok_or_else(|| wrong("x,y,z"))?;
-                    match key {
-                        "eye" => camera.eye = vector,
-                        "target" => camera.target = vector,
-                        _ => camera.up = vector,
-                    }
-                }
+                "eye" => camera.eye = vector(value).ok_or_else(|| wrong("x,y,z"))?,
+                "target" => camera.target = vector(value).ok_or_else(|| wrong("x,y,z"))?,
+                "up" => camera.up = vector(value).ok_or_else(|| wrong("x,y,z"))?,
                 "fov" => camera.fov_degrees = real("degrees")?,
                 "size" => {
                     let (width, height) = value.split_once('x').unwrap_or((value, value));
@@ -143,9 +129,7 @@ fn vector(text: &str) -> Option<DVec3> {
 }
 
 impl Case {
-    /// The camera in world units.
-    #[must_use]
-    pub fn world_camera(&self) -> Camera {
+    pub(super) fn world_camera(&self) -> Camera {
         let by = DVec3::splat(self.shift as f64);
         Camera {
             eye: self.camera.eye + by,
@@ -154,45 +138,21 @@ impl Case {
         }
     }
 
-    /// The placement of the object.
-    #[must_use]
-    pub fn placement(&self, graph: &Graph) -> Placement {
-        let mut placement = graph.placement;
-        // Cameras count from the object's lowest corner.
-        placement.origin_index = [self.shift; 3];
-        placement
+    /// The placement of the object. Cameras count from its lowest corner.
+    pub(super) fn placement(&self, graph: &Graph) -> Placement {
+        Placement {
+            origin_index: [self.shift; 3],
+            ..graph.placement
+        }
     }
 
-    /// The frame.
-    ///
-    /// # Errors
-    /// When it cannot be set up.
-    pub fn setup(&self, graph: &Graph) -> Result<FrameSetup, SetupError> {
+    pub(super) fn setup(&self, graph: &Graph) -> Result<FrameSetup, SetupError> {
         FrameSetup::new(
             &self.world_camera(),
             &self.placement(graph),
             graph.depth,
             &self.options,
         )
-    }
-
-    /// The command that draws the picture, where `render` can.
-    #[must_use]
-    pub fn render_line(&self, graph: &Graph) -> Option<String> {
-        let StressScene::Generated(spec) = &self.scene else {
-            return None;
-        };
-        if self.shift != 0 {
-            return None;
-        }
-        let lowest = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
-        let flags = self.settings(lowest).into_iter();
-        let flags: String = flags
-            .map(|(key, value)| format!(" --{key} {value}"))
-            .collect();
-        Some(format!(
-            "shiftvox render {spec} --engine machine{flags} -o failing.png"
-        ))
     }
 }
 

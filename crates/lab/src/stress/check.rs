@@ -4,6 +4,7 @@ use super::case::Case;
 use super::outcome::{Check, End, Outcome};
 use super::subject::Subject;
 use super::vertex::{self, Vertices};
+use crate::bounds::{Bounds, Widths};
 use crate::measure::CoverageError;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
@@ -13,24 +14,30 @@ use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
 use shiftvox::rays::Rays;
 
 /// Largest tolerance, samples, at which a hole is a failure.
-pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
+pub(super) const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
 /// Every rule must have ended after so many records.
 pub const PATIENCE: u64 = 200_000_000;
-/// Voxels per frame whose vertices are examined.
 const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;
 
 /// The oracle's last picture without level of detail, which cases with the same integers share.
-#[derive(Debug, Default)]
-pub(crate) struct Oracle {
+#[derive(Default)]
+pub(super) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
+}
+
+fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    // The oracle has no error to give.
+    let _ = Rays.render(&graph.view(), setup, &mut frame);
+    frame
 }
 
 impl Oracle {
     fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        // The integers that the oracle uses.
         let same = |last: &FrameSetup| {
-            // The integers that the oracle uses.
             last.origin_clip == setup.origin_clip
                 && last.edge_clip == setup.edge_clip
                 && last.sub_levels == setup.sub_levels
@@ -42,27 +49,13 @@ impl Oracle {
         {
             return frame.clone();
         }
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        // The oracle has no error to give.
-        let _ = Rays.render(&graph.view(), &setup.without_detail(), &mut frame);
+        let frame = cast(graph, &setup.without_detail());
         self.last = Some((setup.clone(), frame.clone()));
-        frame
-    }
-
-    /// The picture that `exact` must show: at the frame's level of detail.
-    fn picture_with_detail(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
-        if setup.lod_limit.is_none() {
-            return self.picture(graph, setup);
-        }
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        // The oracle has no error to give.
-        let _ = Rays.render(&graph.view(), setup, &mut frame);
         frame
     }
 }
 
-/// Draws a case and checks it.
-pub(crate) fn check(
+pub(super) fn check(
     subject: &dyn Subject,
     case: &Case,
     graph: &Graph,
@@ -78,7 +71,7 @@ pub(crate) fn check(
                 SetupError::Depth(_) => "too deep",
                 _ => "not a view",
             };
-            return Outcome::new(End::Refused(kind.to_owned()));
+            return Outcome::new(End::Refused(kind.to_owned()), 0);
         }
     };
     let mut frame = Frame::new(setup.width, setup.height, false);
@@ -86,8 +79,7 @@ pub(crate) fn check(
     let stats = match drawn {
         Ok(Some(stats)) => stats,
         Ok(None) => {
-            let mut outcome = Outcome::new(End::CutOff);
-            outcome.records = most_records;
+            let mut outcome = Outcome::new(End::CutOff, most_records);
             if case.options.coverage == Coverage::Exact || most_records >= PATIENCE {
                 let left = format!("records are left after {most_records}");
                 outcome.fail(Check::Ends, left);
@@ -95,10 +87,10 @@ pub(crate) fn check(
             return outcome;
         }
         Err(EngineError::Memory(short)) => {
-            return Outcome::new(End::Refused(short.to_string()));
+            return Outcome::new(End::Refused(short.to_string()), 0);
         }
         Err(EngineError::Trap(trap)) => {
-            let mut outcome = Outcome::new(End::Trapped(trap.to_string()));
+            let mut outcome = Outcome::new(End::Trapped(trap.to_string()), 0);
             if setup.has_headroom {
                 outcome.fail(Check::Headroom, trap.to_string());
             }
@@ -106,8 +98,7 @@ pub(crate) fn check(
         }
     };
     let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
-    let mut outcome = Outcome::new(End::Drawn);
-    outcome.records = stat("records");
+    let mut outcome = Outcome::new(End::Drawn, stat("records"));
     let right = oracle.picture(graph, &setup);
     outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
     let seen = CheckedFrame {
@@ -117,8 +108,8 @@ pub(crate) fn check(
         is_at_bound: stat("at_level_bound") > 0,
     };
     if seen.is_exact() {
-        let defined = oracle.picture_with_detail(graph, &setup);
-        seen.check_exact(&defined, &mut outcome);
+        let defined = setup.lod_limit.is_some().then(|| cast(graph, &setup));
+        seen.check_exact(defined.as_ref().unwrap_or(&right), &mut outcome);
     }
     seen.check_place(&mut outcome);
     seen.check_order(&mut outcome);
@@ -130,7 +121,6 @@ pub(crate) fn check(
     outcome
 }
 
-/// A frame beside the right one.
 struct CheckedFrame<'s> {
     setup: &'s FrameSetup,
     frame: &'s Frame,
@@ -178,7 +168,6 @@ impl CheckedFrame<'_> {
         (low, low.map(|c| c + side))
     }
 
-    /// X, Y, W of a voxel's eight vertices.
     fn vertices(&self, voxel: &Voxel) -> [[i128; 3]; 8] {
         let (low, high) = self.corners(voxel);
         std::array::from_fn(|v| {
@@ -195,7 +184,6 @@ impl CheckedFrame<'_> {
         })
     }
 
-    /// Least and greatest depth.
     fn depths(&self, voxel: &Voxel) -> (i128, i128) {
         let w = self.vertices(voxel).map(|p| p[2]);
         let least = w.iter().copied().min().unwrap_or(0);
@@ -227,38 +215,38 @@ impl CheckedFrame<'_> {
         parted
     }
 
+    fn fail_at(
+        &self,
+        outcome: &mut Outcome,
+        check: Check,
+        samples: &[usize],
+        detail: impl Fn(usize) -> String,
+    ) {
+        if let Some(&first) = samples.first() {
+            let (count, place) = (samples.len(), self.at(first));
+            let detail = detail(first);
+            outcome.fail(
+                check,
+                format!("{count} samples, the first at {place:?}: {detail}"),
+            );
+        }
+    }
+
     /// Of a frame under `exact`: it is the one that is `defined`, and has all
     /// samples that are covered without level of detail.
     fn check_exact(&self, defined: &Frame, outcome: &mut Outcome) {
-        let differs = |sample: &usize| {
-            self.frame.voxel[*sample] != defined.voxel[*sample]
-                || self.frame.node[*sample] != defined.node[*sample]
+        let (frame, right) = (self.frame, self.right);
+        let all = 0..frame.voxel.len();
+        let differs = |&at: &usize| {
+            frame.voxel[at] != defined.voxel[at] || frame.node[at] != defined.node[at]
         };
-        let all = 0..self.frame.voxel.len();
-        if let Some(sample) = all.clone().find(differs) {
-            outcome.fail(
-                Check::Exact,
-                format!(
-                    "{} samples differ, the first at {:?}: {:?}, should be {:?}",
-                    all.clone().filter(differs).count(),
-                    self.at(sample),
-                    self.frame.voxel[sample],
-                    defined.voxel[sample]
-                ),
-            );
-        }
-        let missing =
-            |sample: &usize| self.right.voxel[*sample][3] >= 0 && self.frame.voxel[*sample][3] < 0;
-        if let Some(sample) = all.clone().find(missing) {
-            outcome.fail(
-                Check::Missing,
-                format!(
-                    "{} samples missing, the first at {:?}",
-                    outcome.coverage.missing,
-                    self.at(sample)
-                ),
-            );
-        }
+        let differing: Vec<usize> = all.clone().filter(differs).collect();
+        self.fail_at(outcome, Check::Exact, &differing, |at| {
+            format!("{:?}, should be {:?}", frame.voxel[at], defined.voxel[at])
+        });
+        let is_missing = |&at: &usize| right.voxel[at][3] >= 0 && frame.voxel[at][3] < 0;
+        let missing: Vec<usize> = all.filter(is_missing).collect();
+        self.fail_at(outcome, Check::Missing, &missing, |_| "missing".to_owned());
     }
 
     /// A voxel that is seen lies before the eye, and not wholly to one side
@@ -310,67 +298,49 @@ impl CheckedFrame<'_> {
         if !self.tolerance().is_finite() {
             return;
         }
-        let strict = self.is_exact();
-        let mut first = None;
-        for sample in 0..self.frame.voxel.len() {
+        let is_wrong = |&sample: &usize| {
             let (shown, right) = (&self.frame.voxel[sample], &self.right.voxel[sample]);
             if shown[3] < 0 || right[3] < 0 || shown == right || !self.hides(right, shown) {
-                continue;
+                return false;
             }
-            let middle = || {
-                self.around(sample)
-                    .is_some_and(|all| all.iter().all(|v| v == right))
-            };
-            if strict || (!self.is_at_bound && middle()) {
-                outcome.order += 1;
-                first.get_or_insert((sample, *shown, *right));
-            }
-        }
-        if let Some((sample, shown, right)) = first {
-            outcome.fail(
-                Check::Order,
-                format!(
-                    "{} samples, the first at {:?}: {shown:?} is seen, {right:?} hides it",
-                    outcome.order,
-                    self.at(sample)
-                ),
-            );
-        }
+            let around = || self.around(sample);
+            let is_middle = || around().is_some_and(|all| all.iter().all(|v| v == right));
+            self.is_exact() || (!self.is_at_bound && is_middle())
+        };
+        let wrong: Vec<usize> = (0..self.frame.voxel.len()).filter(is_wrong).collect();
+        outcome.order = wrong.len() as u64;
+        self.fail_at(outcome, Check::Order, &wrong, |at| {
+            let (shown, right) = (self.frame.voxel[at], self.right.voxel[at]);
+            format!("{shown:?} is seen, {right:?} hides it")
+        });
     }
 
     fn check_holes(&self, outcome: &mut Outcome) {
-        let mut first = None;
+        let mut holes = Vec::new();
         for sample in 0..self.frame.voxel.len() {
             let Some(around) = self.around(sample) else {
                 continue;
             };
             outcome.inside += 1;
             let shown = &self.frame.voxel[sample];
-            let through = || around.iter().all(|front| self.hides(front, shown));
-            if shown[3] < 0 || through() {
-                outcome.holes += 1;
-                first.get_or_insert(sample);
+            if shown[3] < 0 || around.iter().all(|front| self.hides(front, shown)) {
+                holes.push(sample);
             }
         }
-        // The image-order paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that
-        // words are too narrow for the view. Its holes, and those at infinite tolerance, are counted but allowed.
+        outcome.holes = holes.len() as u64;
+        // The paper's rules subdivide a voxel down to the level bound. A record that meets the bound shows that words are
+        // too narrow for the view. Its holes, and those at infinite tolerance, are allowed.
         let is_promised =
             self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
-        if let Some(sample) = first.filter(|_| is_promised) {
-            outcome.fail(
-                Check::Holes,
-                format!(
-                    "{} of {} samples inside a closed surface, the first at {:?}",
-                    outcome.holes,
-                    outcome.inside,
-                    self.at(sample)
-                ),
-            );
+        if is_promised {
+            let inside = outcome.inside;
+            self.fail_at(outcome, Check::Holes, &holes, |_| {
+                format!("of {inside} inside a closed surface")
+            });
         }
     }
 }
 
-/// The way from the root to a voxel, and a few levels into it.
 fn path(setup: &FrameSetup, voxel: &Voxel, salt: usize) -> Vec<u8> {
     let octant = |bit: u32| (0..3).fold(0u8, |octant, k| octant << 1 | (voxel[k] >> bit & 1) as u8);
     let mut path: Vec<u8> = (0..setup.depth).rev().map(octant).collect();
@@ -386,16 +356,21 @@ fn check_vertices(
     seen: &CheckedFrame<'_>,
     outcome: &mut Outcome,
 ) {
-    let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
-    else {
+    let setup = seen.setup;
+    let widths = Widths {
+        clip_frac: setup.clip_frac,
+        screen_frac: setup.format.frac(),
+        aa_log2: setup.options.aa_log2,
+    };
+    let Ok(bounds) = Bounds::new(&case.world_camera(), &case.placement(graph), widths) else {
         return;
     };
     let shown: Vec<&Voxel> = seen.right.voxel.iter().filter(|v| v[3] >= 0).collect();
     let step = (shown.len() / VOXELS_LOOKED_AT).max(1);
     let mut found = Vertices::default();
     for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
-        let way = path(seen.setup, voxel, salt);
-        vertex::check_path(subject, seen.setup, &bounds, &way, &mut found);
+        let way = path(setup, voxel, salt);
+        vertex::check_path(subject, setup, &bounds, &way, &mut found);
     }
     outcome.worst = found.worst;
     if let Some(detail) = found.differs {

@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::case::Case;
+use super::check::STRICT_TOLERANCE;
 use super::outcome::{Check, End, Outcome};
 use super::sweep::{SweepPlan, TOLERANCES};
 use super::vertex::{Hold, Worst};
@@ -95,8 +96,7 @@ impl Tally {
         ]
     }
 
-    /// Adds another tally.
-    pub fn merge(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         let mut other = other.clone();
         self.most_records = self.most_records.max(other.most_records);
         for (sum, more) in self.sums().into_iter().zip(other.sums()) {
@@ -118,8 +118,6 @@ pub struct Failed {
     pub minimal: Option<String>,
     /// The smaller case's details.
     pub minimal_detail: Option<String>,
-    /// A command that draws its picture, where `render` can.
-    pub render: Option<String>,
 }
 
 /// The results of a sweep.
@@ -129,8 +127,6 @@ pub struct Findings {
     pub tallies: BTreeMap<Key, Tally>,
     /// Worst vertices by [`Hold`] and word width.
     pub worst: BTreeMap<(Hold, u32), Worst>,
-    /// Outcomes by viewpoint.
-    pub viewpoints: BTreeMap<&'static str, Tally>,
     /// Traps by place, without the record.
     pub traps: BTreeMap<String, u64>,
     /// Refusals by reason.
@@ -141,7 +137,6 @@ pub struct Findings {
     pub failed: Vec<Failed>,
 }
 
-/// Failures that are reported in full, per check and job.
 const TOLD: u64 = 3;
 
 impl Findings {
@@ -159,13 +154,7 @@ impl Findings {
         sum
     }
 
-    pub(super) fn note(
-        &mut self,
-        key: Key,
-        viewpoint: &'static str,
-        case: &Case,
-        outcome: &Outcome,
-    ) {
+    pub(super) fn note(&mut self, key: Key, case: &Case, outcome: &Outcome) {
         for (hold, worst) in Hold::ALL.into_iter().zip(&outcome.worst) {
             if worst.vertices > 0 {
                 self.worst.entry((hold, key.bits)).or_default().merge(worst);
@@ -173,7 +162,6 @@ impl Findings {
         }
         let tally = Tally::of(outcome);
         self.tallies.entry(key).or_default().merge(&tally);
-        self.viewpoints.entry(viewpoint).or_default().merge(&tally);
         match &outcome.end {
             End::Drawn | End::CutOff => {}
             End::Trapped(trap) => *self.traps.entry(place_of(trap)).or_default() += 1,
@@ -189,7 +177,6 @@ impl Findings {
                     case: case.to_string(),
                     minimal: None,
                     minimal_detail: None,
-                    render: None,
                 });
             }
         }
@@ -208,7 +195,6 @@ impl Findings {
         let count = |to: &mut u64, from: &u64| *to += from;
         add(&mut self.worst, other.worst, Worst::merge);
         add(&mut self.tallies, other.tallies, Tally::merge);
-        add(&mut self.viewpoints, other.viewpoints, Tally::merge);
         add(&mut self.traps, other.traps, count);
         add(&mut self.refusals, other.refusals, count);
         add(&mut self.failures, other.failures, count);
@@ -227,7 +213,7 @@ impl Findings {
         };
         let rule = |coverage: usize, tolerance: usize| {
             let (rule, px) = (Coverage::UNBLENDED[coverage], TOLERANCES[tolerance]);
-            let must_be_0 = match (rule.draws_outlines(), px <= super::STRICT_TOLERANCE) {
+            let must_be_0 = match (rule.draws_outlines(), px <= STRICT_TOLERANCE) {
                 (true, _) => "yes",
                 (_, true) => "except at the level bound",
                 _ => "no",
@@ -269,16 +255,12 @@ impl Findings {
         }
         let checks = Check::ALL.map(|check| {
             let failures = self.failures.get(&check).copied().unwrap_or(0);
-            json!({ "check": check.name(), "failures": failures, "about": check.about() })
+            json!({ "check": check, "failures": failures })
         });
-        let counts = |of: &BTreeMap<String, u64>| -> Vec<Value> {
-            let counts = of.iter();
-            counts
-                .map(|(what, frames)| json!({ "what": what, "frames": frames }))
-                .collect()
+        let counts = |of: &BTreeMap<String, u64>| -> Value {
+            let count = |(what, frames)| json!({ "what": what, "frames": frames });
+            of.iter().map(count).collect()
         };
-        let viewpoints = self.viewpoints.iter();
-        let viewpoints = viewpoints.map(|(name, tally)| named(json!({ "viewpoint": name }), tally));
         json!({
             "seed": plan.seed,
             "total": self.total(),
@@ -288,7 +270,6 @@ impl Findings {
             "refusals": counts(&self.refusals),
             "scenes": scenes.collect::<Vec<_>>(),
             "rules": rules.collect::<Vec<_>>(),
-            "viewpoints": viewpoints.collect::<Vec<_>>(),
             "vertices": vertices,
             "results": results.collect::<Vec<_>>(),
         })

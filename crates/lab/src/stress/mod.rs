@@ -1,26 +1,23 @@
 //! Numerical stability: frames of many word formats, cameras, scenes and rules against the oracle, the specification and
-//! the bounds on their error.
-//!
-//! [`sweep()`] runs a [`SweepPlan`]. It shrinks a failure to a small [`Case`], a line of text that [`run_case`] draws again.
-//! `spec/lab.md` describes the method.
+//! the bounds on their error (`spec/lab.md`). A failure is shrunk to a small [`Case`], a line of text.
 
-pub mod case;
+mod case;
 mod check;
 mod findings;
 #[cfg(test)]
 mod mutants;
 mod outcome;
-pub mod scene;
+mod scene;
 mod shrink;
 mod specified;
-pub(crate) mod subject;
-pub(crate) mod sweep;
+mod subject;
+mod sweep;
 mod tables;
 mod vertex;
-pub mod viewpoint;
+mod viewpoint;
 
 pub use case::Case;
-pub use check::{PATIENCE, STRICT_TOLERANCE};
+pub use check::PATIENCE;
 pub use findings::{Failed, Findings, Key, Tally};
 pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;

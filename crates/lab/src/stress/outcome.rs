@@ -33,8 +33,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// All, in order.
-    pub const ALL: [Self; 10] = [
+    pub(super) const ALL: [Self; 10] = [
         Self::Ends,
         Self::Headroom,
         Self::Exact,
@@ -47,47 +46,10 @@ impl Check {
         Self::Engines,
     ];
 
-    /// Name and meaning.
-    const fn words(self) -> [&'static str; 2] {
-        match self {
-            Self::Ends => ["ends", "a frame ends within a bound on records"],
-            Self::Headroom => ["headroom", "a frame with proven headroom does not trap"],
-            Self::Exact => [
-                "exact",
-                "exact: the oracle's picture at every level of detail",
-            ],
-            Self::Missing => ["missing", "exact: no covered sample is missing"],
-            Self::Holes => [
-                "holes",
-                "no holes in closed surfaces under exact, nor at tolerance 0 to 1/64 above the level bound",
-            ],
-            Self::Order => [
-                "order",
-                "no sample shows a voxel that the oracle's voxel occludes",
-            ],
-            Self::Place => [
-                "place",
-                "visible voxels are before the eye, and as near to their samples as the rule demands",
-            ],
-            Self::Specification => [
-                "specification",
-                "vertices are the specification's, bit for bit",
-            ],
-            Self::Bound => ["bound", "vertices are within the bounds on their error"],
-            Self::Engines => ["engines", "the fast engine draws the machine's bits"],
-        }
-    }
-
     /// Its name.
     #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.words()[0]
-    }
-
-    /// Its meaning.
-    #[must_use]
-    pub const fn about(self) -> &'static str {
-        self.words()[1]
+    pub fn name(self) -> String {
+        format!("{self:?}").to_lowercase()
     }
 }
 
@@ -137,11 +99,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn new(end: End) -> Self {
+    pub(super) fn new(end: End, records: u64) -> Self {
         Self {
             end,
             failures: Vec::new(),
-            records: 0,
+            records,
             inside: 0,
             holes: 0,
             order: 0,
@@ -151,10 +113,8 @@ impl Outcome {
     }
 
     pub(super) fn fail(&mut self, check: Check, detail: impl Into<String>) {
-        self.failures.push(Failure {
-            check,
-            detail: detail.into(),
-        });
+        let detail = detail.into();
+        self.failures.push(Failure { check, detail });
     }
 
     /// Whether the case violates a property.

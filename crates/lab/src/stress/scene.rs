@@ -43,9 +43,7 @@ pub enum StressScene {
     },
 }
 
-/// Most levels of scenes whose voxels are made one by one.
 const MOST_LISTED_DEPTH: u32 = 20;
-/// Most levels of a plane.
 const MOST_PLANE_DEPTH: u32 = 10;
 
 impl fmt::Display for StressScene {
@@ -136,8 +134,7 @@ impl FromStr for StressScene {
 impl StressScene {
     /// Whether its surface is closed: no line of sight passes between its
     /// voxels where the oracle's rays next to it do not.
-    #[must_use]
-    pub fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         match self {
             Self::Plane { .. } | Self::Solid { .. } => true,
             Self::Generated(spec) => matches!(spec.generator().name, "sphere" | "shell"),
@@ -145,37 +142,18 @@ impl StressScene {
         }
     }
 
-    /// Levels.
-    #[must_use]
-    pub fn depth(&self) -> u32 {
-        match self {
-            Self::Generated(spec) if spec.generator().name == "menger" => {
-                // A step triples the voxels; the cube's side is a power of two.
-                3u64.saturating_pow(spec.settings().depth)
-                    .next_power_of_two()
-                    .trailing_zeros()
-            }
-            Self::Generated(spec) => spec.settings().depth,
-            Self::Plane { depth, .. }
-            | Self::Solid { depth }
-            | Self::Cyclic { depth, .. }
-            | Self::Voxels { depth, .. } => *depth,
-        }
-    }
-
-    /// Makes it.
-    ///
-    /// # Errors
-    /// In words, where there is nothing to draw or too much.
-    pub fn graph(&self) -> Result<Graph, String> {
+    /// Makes it. Fails in words, where there is nothing to draw or too much.
+    pub(super) fn graph(&self) -> Result<Graph, String> {
         match self {
             Self::Generated(spec) => match spec.linked() {
                 Some(graph) => Ok(graph),
-                None => built(&mut |sink| {
-                    spec.voxels(&mut |voxel| sink(voxel.index), &Silent);
-                }),
+                None => {
+                    let mut at = Vec::new();
+                    spec.voxels(&mut |voxel| at.push(voxel.index), &Silent);
+                    built(at)
+                }
             },
-            Self::Plane { depth, normal } => built(&mut |sink| plane(*depth, *normal, sink)),
+            Self::Plane { depth, normal } => built(plane(*depth, *normal)),
             Self::Solid { depth } => {
                 let mut graph = LinkedGraph::new(*depth);
                 graph.add_node([90, 160, 200], [Some(0); 8]);
@@ -187,8 +165,7 @@ impl StressScene {
     }
 
     /// The same scene as a list of voxels, if it has no more than `most`.
-    #[must_use]
-    pub fn as_voxels(&self, most: usize) -> Option<Self> {
+    pub(super) fn as_voxels(&self, most: usize) -> Option<Self> {
         let graph = self.graph().ok()?;
         // A cyclic scene's voxels may be too many to walk through.
         if graph.voxels > most as u64 || graph.depth > MOST_LISTED_DEPTH {
@@ -213,24 +190,19 @@ impl StressScene {
     }
 }
 
-/// Takes voxels' indices.
-type VoxelSink<'t> = dyn FnMut([i32; 3]) + 't;
-
-/// A graph of the voxels that `give` hands on.
-fn built(give: &mut dyn FnMut(&mut VoxelSink<'_>)) -> Result<Graph, String> {
+fn built(voxels: Vec<[i32; 3]>) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,
     });
-    give(&mut |index| {
+    for index in voxels {
         builder.push(Voxel {
             index,
             color: [200, 120, 60],
             normal: None,
         });
-    });
-    builder
-        .finish(([0.0; 3], 1.0), &Silent)
-        .map_err(|e| e.to_string())
+    }
+    let graph = builder.finish(([0.0; 3], 1.0), &Silent);
+    graph.map_err(|e| e.to_string())
 }
 
 /// A tree of exactly so many levels, whatever the voxels' extent.
@@ -238,8 +210,6 @@ fn listed(depth: u32, at: &[[i32; 3]]) -> Result<Graph, String> {
     if at.is_empty() {
         return Err("a scene needs a voxel".to_owned());
     }
-    let mut graph = LinkedGraph::new(depth);
-    graph.add_node([200, 120, 60], [None; 8]);
     let mut children: Vec<[Option<u32>; 8]> = vec![[None; 8]];
     for voxel in at {
         let mut node = 0usize;
@@ -266,7 +236,8 @@ fn listed(depth: u32, at: &[[i32; 3]]) -> Result<Graph, String> {
 }
 
 /// All voxels `p` with `0 <= normal p - middle < |normal|` (the sum of magnitudes).
-fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
+fn plane(depth: u32, normal: [i64; 3]) -> Vec<[i32; 3]> {
+    let mut voxels = Vec::new();
     let side = 1i64 << depth;
     let thickness: i64 = normal.iter().map(|n| n.abs()).sum();
     let offset = normal.iter().sum::<i64>() * side / 2;
@@ -275,11 +246,12 @@ fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
             let rest = normal[0] * x + normal[1] * y - offset;
             for z in 0..side {
                 if (0..thickness).contains(&(rest + normal[2] * z)) {
-                    sink([x as i32, y as i32, z as i32]);
+                    voxels.push([x as i32, y as i32, z as i32]);
                 }
             }
         }
     }
+    voxels
 }
 
 /// Up to eight nodes, a third of whose children exist, any nodes each.
@@ -304,25 +276,18 @@ mod tests {
 
     #[test]
     fn scenes_are_what_their_text_says() {
-        for text in [
-            "gen:shell,depth=4",
-            "plane:4,3,5,7",
-            "solid:30",
-            "cyclic:6,3",
-            "voxels:2,0.0.0+3.1.2",
+        for (text, depth) in [
+            ("gen:shell,depth=4", 4),
+            ("plane:4,3,5,7", 4),
+            ("solid:30", 30),
+            ("cyclic:6,3", 6),
+            ("voxels:2,0.0.0+3.1.2", 2),
         ] {
             let scene: StressScene = text.parse().unwrap();
             assert_eq!(scene.to_string(), text);
-            assert_eq!(scene.graph().unwrap().depth, scene.depth(), "{text}");
+            assert_eq!(scene.graph().unwrap().depth, depth, "{text}");
         }
-        for bad in [
-            "plane:4,1,1,0",
-            "solid:31",
-            "voxels:2,4.0.0",
-            "voxels:2,",
-            "cube",
-            "gen:x",
-        ] {
+        for bad in "plane:4,1,1,0 solid:31 voxels:2,4.0.0 voxels:2, cube gen:x".split(' ') {
             assert!(bad.parse::<StressScene>().is_err(), "{bad}");
         }
     }

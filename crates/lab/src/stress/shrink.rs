@@ -10,36 +10,19 @@ use super::subject::Subject;
 use shiftvox::project::CageKind;
 use shiftvox::scene::generate::Spec;
 
-/// Most voxels of a scene that is taken apart voxel by voxel.
 const MOST_VOXELS: usize = 6000;
 
-/// Looks for smaller and plainer cases that fail too.
-pub(crate) struct Shrinker<'s> {
-    subject: &'s dyn Subject,
-    check: Check,
-    most_records: u64,
-    /// Cases that may still be drawn.
-    left: u32,
+/// Looks for smaller and plainer cases that fail one check, too.
+pub(super) struct Shrinker<'s> {
+    pub(super) subject: &'s dyn Subject,
+    pub(super) check: Check,
+    pub(super) most_records: u64,
+    pub(super) left: u32,
 }
 
-impl<'s> Shrinker<'s> {
-    /// For failures of one check; draws no more than `budget` cases.
-    pub(crate) fn new(
-        subject: &'s dyn Subject,
-        check: Check,
-        most_records: u64,
-        budget: u32,
-    ) -> Self {
-        Self {
-            subject,
-            check,
-            most_records,
-            left: budget,
-        }
-    }
-
-    fn fails(&mut self, case: &Case) -> bool {
-        if self.left == 0 {
+impl Shrinker<'_> {
+    fn take(&mut self, best: &mut Case, case: Case) -> bool {
+        if self.left == 0 || case == *best {
             return false;
         }
         self.left -= 1;
@@ -47,45 +30,38 @@ impl<'s> Shrinker<'s> {
             return false;
         };
         let mut oracle = Oracle::default();
-        let outcome = check(self.subject, case, &graph, self.most_records, &mut oracle);
-        outcome.fails(self.check)
+        let outcome = check(self.subject, &case, &graph, self.most_records, &mut oracle);
+        let fails = outcome.fails(self.check);
+        if fails {
+            *best = case;
+        }
+        fails
     }
 
-    /// The smallest case that was found, and it fails.
-    pub(crate) fn shrink(&mut self, failing: &Case) -> Case {
+    pub(super) fn shrink(&mut self, failing: &Case) -> Case {
         let mut best = failing.clone();
         loop {
             let before = best.clone();
             for plainer in plainer(&best) {
-                if plainer != best && self.fails(&plainer) {
-                    best = plainer;
-                }
+                self.take(&mut best, plainer);
             }
-            self.fewer_voxels(&mut best);
+            // Holes are holes of a closed surface: a list of voxels need not be one.
+            if self.check != Check::Holes {
+                self.fewer_voxels(&mut best);
+            }
             if best == before || self.left == 0 {
                 return best;
             }
         }
     }
 
-    /// Leaves voxels out, first halves of the scene, at last one by one.
     fn fewer_voxels(&mut self, best: &mut Case) {
-        // Holes are holes of a closed surface: a list of voxels need not be one.
-        if self.check == Check::Holes {
-            return;
-        }
-        if !matches!(best.scene, StressScene::Voxels { .. }) {
-            let Some(listed) = best.scene.as_voxels(MOST_VOXELS) else {
-                return;
-            };
+        if let Some(scene) = best.scene.as_voxels(MOST_VOXELS) {
             let listed = Case {
-                scene: listed,
+                scene,
                 ..best.clone()
             };
-            if !self.fails(&listed) {
-                return;
-            }
-            *best = listed;
+            self.take(best, listed);
         }
         let StressScene::Voxels { depth, at } = best.scene.clone() else {
             return;
@@ -95,18 +71,17 @@ impl<'s> Shrinker<'s> {
         while chunk > 0 && self.left > 0 {
             let mut from = 0;
             while from < kept.len() && kept.len() > 1 {
-                let mut fewer = kept.clone();
-                fewer.drain(from..(from + chunk).min(kept.len()));
-                let case = Case {
+                let mut at = kept.clone();
+                at.drain(from..(from + chunk).min(kept.len()));
+                let fewer = Case {
                     scene: StressScene::Voxels {
                         depth,
-                        at: fewer.clone(),
+                        at: at.clone(),
                     },
                     ..best.clone()
                 };
-                if !fewer.is_empty() && self.fails(&case) {
-                    kept = fewer;
-                    *best = case;
+                if !at.is_empty() && self.take(best, fewer) {
+                    kept = at;
                 } else {
                     from += chunk;
                 }
@@ -116,7 +91,6 @@ impl<'s> Shrinker<'s> {
     }
 }
 
-/// Cases that are a little plainer.
 fn plainer(case: &Case) -> Vec<Case> {
     let mut all = Vec::new();
     let mut push = |change: &dyn Fn(&mut Case)| {
@@ -131,10 +105,10 @@ fn plainer(case: &Case) -> Vec<Case> {
         });
     }
     push(&|c| {
-        if let Some((scene, scale)) = coarser(&c.scene) {
+        if let Some(scene) = coarser(&c.scene) {
             c.scene = scene;
-            c.camera.eye *= scale;
-            c.camera.target *= scale;
+            c.camera.eye *= 0.5;
+            c.camera.target *= 0.5;
         }
     });
     push(&|c| c.shift = 0);
@@ -156,26 +130,19 @@ fn plainer(case: &Case) -> Vec<Case> {
     all
 }
 
-/// A scene of one level less, and what that makes of lengths.
-fn coarser(scene: &StressScene) -> Option<(StressScene, f64)> {
-    let scene = match scene {
+/// A scene of one level less, half as large.
+fn coarser(scene: &StressScene) -> Option<StressScene> {
+    let mut scene = scene.clone();
+    match &mut scene {
         StressScene::Generated(spec) => {
             let depth = spec.settings().depth.checked_sub(1)?;
             let text = format!("gen:{},depth={depth}", spec.generator().name);
-            StressScene::Generated(Spec::parse(&text).ok()?)
+            *spec = Spec::parse(&text).ok()?;
         }
-        StressScene::Plane { depth, normal } => StressScene::Plane {
-            depth: depth.checked_sub(1)?,
-            normal: *normal,
-        },
-        StressScene::Solid { depth } => StressScene::Solid {
-            depth: depth.checked_sub(1)?,
-        },
-        StressScene::Cyclic { depth, seed } => StressScene::Cyclic {
-            depth: depth.checked_sub(1)?,
-            seed: *seed,
-        },
+        StressScene::Plane { depth, .. }
+        | StressScene::Solid { depth }
+        | StressScene::Cyclic { depth, .. } => *depth = depth.checked_sub(1)?,
         StressScene::Voxels { .. } => return None,
-    };
-    Some((scene, 0.5))
+    }
+    Some(scene)
 }

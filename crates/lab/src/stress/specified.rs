@@ -5,8 +5,6 @@
 use shiftvox::machine::Cage;
 use shiftvox::project::{CageKind, FrameSetup};
 
-/// The vertices that the specification gives a voxel.
-#[derive(Debug, Clone)]
 pub(super) struct SpecifiedVertices<'s> {
     setup: &'s FrameSetup,
 }

@@ -7,8 +7,7 @@ use shiftvox::graph::GraphView;
 use shiftvox::machine::{self, Cage, Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup, Stats};
 
-/// A renderer whose pictures and vertices can be checked.
-pub(crate) trait Subject: Sync {
+pub(super) trait Subject: Sync {
     /// Draws a frame with at most so many records: `None` where that is not enough.
     fn draw(
         &self,
@@ -18,14 +17,11 @@ pub(crate) trait Subject: Sync {
         most_records: u64,
     ) -> Result<Option<Stats>, EngineError>;
 
-    /// The cages of the voxels on a way down from the root, as
-    /// [`machine::cages_along`].
+    /// As [`machine::cages_along`].
     fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
 }
 
-/// The machine as it is.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Product;
+pub(super) struct Product;
 
 impl Subject for Product {
     fn draw(

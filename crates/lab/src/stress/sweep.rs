@@ -45,7 +45,6 @@ pub const TOLERANCES: [f64; 6] = [
     f64::INFINITY,
 ];
 
-/// Scenes of the standard sweep.
 const SCENES: [&str; 13] = [
     "gen:sphere,depth=4",
     "gen:shell,depth=5",
@@ -61,7 +60,6 @@ const SCENES: [&str; 13] = [
     "cyclic:9,5",
     "gen:sierpinski,depth=30",
 ];
-/// More of them.
 const MORE_SCENES: [&str; 9] = [
     "gen:sphere,depth=7",
     "gen:shell,depth=8",
@@ -108,23 +106,16 @@ const EXACT_LODS: [f64; 4] = [0.0, 1.0, 0.3, 3.0];
 /// The first rules define the picture at every sample.
 const STRICT_RULES: usize = 2 * EXACT_LODS.len();
 
-/// All rules, the strictest first.
 fn rules() -> Vec<SetupOptions> {
     let mut rules = Vec::new();
-    for coverage in Coverage::ALL.into_iter().rev().filter(|of| !of.blends()) {
-        let tolerances = &TOLERANCES[..if coverage.draws_outlines() {
-            1
-        } else {
-            TOLERANCES.len()
-        }];
-        let lods = &EXACT_LODS[..if coverage.draws_outlines() {
-            EXACT_LODS.len()
-        } else {
-            2
-        }];
-        for &tolerance_px in tolerances {
+    for coverage in Coverage::UNBLENDED {
+        let (tolerances, lods) = match coverage.draws_outlines() {
+            true => (1, EXACT_LODS.len()),
+            false => (TOLERANCES.len(), 2),
+        };
+        for &tolerance_px in &TOLERANCES[..tolerances] {
             for cage in CageKind::ALL.into_iter().rev() {
-                rules.extend(lods.iter().map(|&lod_px| SetupOptions {
+                rules.extend(EXACT_LODS[..lods].iter().map(|&lod_px| SetupOptions {
                     cage,
                     tolerance_px,
                     lod_px,
@@ -136,7 +127,6 @@ fn rules() -> Vec<SetupOptions> {
     rules
 }
 
-/// A scene seen from a viewpoint.
 struct Job<'p> {
     scene: usize,
     graph: &'p Graph,
@@ -152,8 +142,7 @@ pub fn sweep(plan: &SweepPlan, progress: &dyn Progress) -> Result<Findings, Stri
     sweep_of(&Product, plan, progress)
 }
 
-/// Runs a plan on any subject.
-pub(crate) fn sweep_of(
+pub(super) fn sweep_of(
     subject: &dyn Subject,
     plan: &SweepPlan,
     progress: &dyn Progress,
@@ -232,7 +221,7 @@ fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
                     coverage: place_of(&Coverage::UNBLENDED, &options.coverage),
                     tolerance: place_of(&TOLERANCES, &options.tolerance_px),
                 };
-                findings.note(key, job.viewpoint.name, &case, &outcome);
+                findings.note(key, &case, &outcome);
             }
         }
     }
@@ -243,7 +232,6 @@ fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
     all.iter().position(|other| other == one).unwrap_or(0)
 }
 
-/// Shrinks the first failure of each check.
 fn shrink_failures(
     subject: &dyn Subject,
     plan: &SweepPlan,
@@ -257,14 +245,18 @@ fn shrink_failures(
         if let Some(failed) = first
             && let Ok(case) = failed.case.parse::<Case>()
         {
-            let mut shrinker = Shrinker::new(subject, kind, plan.most_records, plan.shrink_budget);
+            let mut shrinker = Shrinker {
+                subject,
+                check: kind,
+                most_records: plan.most_records,
+                left: plan.shrink_budget,
+            };
             let minimal = shrinker.shrink(&case);
             if let Ok(graph) = minimal.scene.graph() {
                 let mut oracle = Oracle::default();
                 let again = check(subject, &minimal, &graph, plan.most_records, &mut oracle);
                 let failure = again.failures.into_iter().find(|f| f.check == kind);
                 failed.minimal_detail = failure.map(|f| f.detail);
-                failed.render = minimal.render_line(&graph);
             }
             failed.minimal = Some(minimal.to_string());
         }
@@ -281,13 +273,8 @@ fn shrink_failures(
 /// In words, where its scene cannot be made.
 pub fn run_case(case: &Case, most_records: u64) -> Result<Outcome, String> {
     let graph = case.scene.graph()?;
-    Ok(check(
-        &Product,
-        case,
-        &graph,
-        most_records,
-        &mut Oracle::default(),
-    ))
+    let mut oracle = Oracle::default();
+    Ok(check(&Product, case, &graph, most_records, &mut oracle))
 }
 
 #[cfg(test)]

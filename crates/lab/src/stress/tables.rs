@@ -3,7 +3,7 @@
 use crate::model::tables::TableSpec;
 
 /// The tables of [`Findings::document`](super::Findings::document) for a terminal.
-pub const TABLES: [TableSpec; 7] = [
+pub const TABLES: [TableSpec; 6] = [
     TableSpec {
         title: "By scene",
         rows: "scenes",
@@ -22,14 +22,9 @@ pub const TABLES: [TableSpec; 7] = [
                   largest_quotient=worst.tightest::3",
     },
     TableSpec {
-        title: "By viewpoint",
-        rows: "viewpoints",
-        columns: "viewpoint frames=cases drawn trapped refused cut_off failed most_records",
-    },
-    TableSpec {
         title: "Checks",
         rows: "checks",
-        columns: "check failures about",
+        columns: "check failures",
     },
     TableSpec {
         title: "Traps, by operation and stage",

@@ -1,11 +1,10 @@
-//! The vertices of a frame: the machine's cages against the specification, bit for bit, and against the true projection,
-//! within the bounds.
+//! The machine's vertices against the specification, bit for bit, and against the true projection.
 
 use glam::DVec3;
 
 use super::specified::SpecifiedVertices;
 use super::subject::Subject;
-use crate::bounds::{Bounds, Cube, Space, Widths};
+use crate::bounds::{Bounds, Cube, Space};
 use shiftvox::machine::Cage;
 use shiftvox::project::{CageKind, FrameSetup};
 
@@ -50,8 +49,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Adds other vertices.
-    pub fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.vertices += other.vertices;
         self.tightest = self.tightest.max(other.tightest);
         if other.error_px > self.error_px {
@@ -70,21 +68,17 @@ impl Worst {
     }
 }
 
-/// Results of a frame's vertices.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 pub(super) struct Vertices {
     /// By [`Hold`].
     pub(super) worst: [Worst; 3],
-    /// A voxel whose cage is not the specification's.
     pub(super) differs: Option<String>,
-    /// A vertex beyond its bound.
     pub(super) beyond: Option<String>,
 }
 
 /// Error of the check's own arithmetic, samples per sample of the root's side.
 const CHECK_ERROR: f64 = 1e-14;
 
-/// Checks the voxels on the way down `path`.
 pub(super) fn check_path(
     subject: &dyn Subject,
     setup: &FrameSetup,
@@ -99,24 +93,25 @@ pub(super) fn check_path(
     let specified = SpecifiedVertices::new(setup);
     let mut changed: Option<usize> = None;
     for (level, held) in way.iter().enumerate() {
+        let here = &path[..level];
         if changed.is_none() && !matches!(held, Cage::Clip(_)) {
             changed = Some(level);
-            let (is, least) = specified.change_depths(&path[..level]);
-            if is < least && found.differs.is_none() {
-                found.differs = Some(format!(
-                    "the voxel at path {:?} changed to screen space at depth {is}, nearer than \
-                     {least}",
-                    &path[..level]
-                ));
+            let (is, least) = specified.change_depths(here);
+            if is < least {
+                found.differs.get_or_insert_with(|| {
+                    format!(
+                        "the voxel at path {here:?} changed to screen space at depth {is}, nearer than {least}"
+                    )
+                });
             }
         }
-        let here = &path[..level];
-        let specified_cage = specified.held(here, changed);
-        if specified_cage.as_ref() != Some(held) && found.differs.is_none() {
-            found.differs = Some(format!(
-                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the \
-                 specification {specified_cage:?}"
-            ));
+        let right = specified.held(here, changed);
+        if right.as_ref() != Some(held) {
+            found.differs.get_or_insert_with(|| {
+                format!(
+                    "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the specification {right:?}"
+                )
+            });
         }
         measure(setup, bounds, &specified, here, changed, held, found);
     }
@@ -160,8 +155,7 @@ fn measure(
         let Some(truth) = bounds.project(u) else {
             continue;
         };
-        let parts = bounds.vertex(space, levels, u);
-        let bound = parts.both();
+        let bound = bounds.vertex(space, levels, u);
         let mut note = |off: f64, bound: f64| {
             let bound = bound + CHECK_ERROR * root;
             let inside = (0..2).all(|c| (0.0..=size[c]).contains(&truth[c]));
@@ -169,7 +163,7 @@ fn measure(
             if off > bound && found.beyond.is_none() {
                 found.beyond = Some(format!(
                     "{}: vertex {vertex} of path {path:?}, changed at {changed:?}, is off by \
-                     {off:.3e} samples, more than {bound:.3e} ({parts:?})",
+                     {off:.3e} samples, more than {bound:.3e}",
                     hold.name()
                 ));
             }
@@ -192,18 +186,4 @@ fn measure(
             }
         }
     }
-}
-
-/// The bounds of a frame.
-pub(super) fn bounds_of(
-    camera: &shiftvox::project::Camera,
-    placement: &shiftvox::graph::Placement,
-    setup: &FrameSetup,
-) -> Option<Bounds> {
-    let widths = Widths {
-        clip_frac: setup.clip_frac,
-        screen_frac: setup.format.frac(),
-        aa_log2: setup.options.aa_log2,
-    };
-    Bounds::new(camera, placement, widths).ok()
 }

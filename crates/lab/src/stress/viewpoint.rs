@@ -5,20 +5,19 @@ use glam::DVec3;
 use shiftvox::project::Camera;
 use shiftvox::split_mix::SplitMix;
 
-/// A camera by name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Viewpoint {
-    /// Its name.
-    pub name: &'static str,
-    /// The camera, in finest voxels from the object's lowest corner.
-    pub camera: Camera,
+pub(super) struct Viewpoint {
+    pub(super) camera: Camera,
     /// How far object and camera are from the world's origin, voxels.
-    pub shift: i64,
+    pub(super) shift: i64,
 }
 
 /// The standard viewpoints of a cube of `2^depth` voxels, in pictures of `pixels` per side, and `random` more.
-#[must_use]
-pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut SplitMix) -> Vec<Viewpoint> {
+pub(super) fn viewpoints(
+    depth: u32,
+    pixels: u32,
+    random: u32,
+    numbers: &mut SplitMix,
+) -> Vec<Viewpoint> {
     let side = (1u64 << depth) as f64;
     let v = DVec3::new;
     let middle = DVec3::splat(side / 2.0);
@@ -41,38 +40,33 @@ pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut SplitMix) 
     let centre = lattice + DVec3::splat(0.5);
     let corner = v(side, side, side * 0.9);
     let mut views = vec![
-        ("outside", outside, middle, 60.0, 0),
-        ("in front", front, middle, 60.0, 0),
-        ("grazing", grazing[0], grazing[1], 60.0, 0),
-        ("on a voxel face", face, lattice + v(3.0, 1.0, 0.5), 70.0, 0),
-        ("on a corner", lattice, corner, 80.0, 0),
-        (
-            "at a voxel's centre",
-            centre,
-            lattice + v(0.5, 2.5, 0.5),
-            90.0,
-            0,
-        ),
-        ("inside", odd, v(0.1, 0.9, 0.3) * side, 90.0, 0),
-        ("one pixel", one_pixel, middle, 60.0, 0),
-        ("1 degree", far, middle, 1.0, 0),
-        ("170 degrees", near, middle, 170.0, 0),
-        ("170 degrees inside", odd, middle, 170.0, 0),
-        ("shifted 10^9", outside, middle, 60.0, 1_000_000_007),
-        ("shifted 10^12", outside, middle, 60.0, -1_000_000_000_039),
+        (outside, middle, 60.0, 0),
+        (front, middle, 60.0, 0),
+        (grazing[0], grazing[1], 60.0, 0),
+        // On a voxel's face, on a corner, and at a voxel's centre.
+        (face, lattice + v(3.0, 1.0, 0.5), 70.0, 0),
+        (lattice, corner, 80.0, 0),
+        (centre, lattice + v(0.5, 2.5, 0.5), 90.0, 0),
+        // Inside.
+        (odd, v(0.1, 0.9, 0.3) * side, 90.0, 0),
+        (one_pixel, middle, 60.0, 0),
+        (far, middle, 1.0, 0),
+        (near, middle, 170.0, 0),
+        (odd, middle, 170.0, 0),
+        (outside, middle, 60.0, 1_000_000_007),
+        (outside, middle, 60.0, -1_000_000_000_039),
     ];
     for _ in 0..random {
         let mut point = |low: f64, high: f64| {
             DVec3::from_array([0; 3].map(|_| low + (high - low) * numbers.unit()))
         };
         let (eye, target) = (point(-1.2, 2.2) * side, point(0.0, 1.0) * side);
-        views.push(("random", eye, target, 20.0 + 100.0 * numbers.unit(), 0));
+        views.push((eye, target, 20.0 + 100.0 * numbers.unit(), 0));
     }
-    let viewpoint = |(name, eye, target, fov_degrees, shift): (_, DVec3, DVec3, _, _)| {
+    let viewpoint = |(eye, target, fov_degrees, shift): (DVec3, DVec3, _, _)| {
         let forward = target - eye;
         let is_vertical = forward.x.abs() + forward.y.abs() < 1e-3 * forward.length();
         Viewpoint {
-            name,
             camera: Camera {
                 eye,
                 target,

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-/// An sRGB colour, `0xRRGGBB`.
+use crate::report::html::escaped;
+
 pub(super) type Color = u32;
 
-/// Where a text stands from its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -13,16 +13,13 @@ pub(super) enum Anchor {
     End,
 }
 
-/// An SVG picture that is being drawn. Places and lengths are pixels.
 #[derive(Debug, Default)]
 pub(super) struct Canvas {
     body: String,
-    /// How far down shapes are moved.
     pub(super) top: f64,
 }
 
 impl Canvas {
-    /// The file's text, on a white ground.
     pub(super) fn finish(self, width: f64, height: f64) -> String {
         format!(
             "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -37,7 +34,6 @@ impl Canvas {
         let _ = writeln!(self.body, "{element}");
     }
 
-    /// A filled rectangle.
     pub(super) fn rectangle(&mut self, [left, top, width, height]: [f64; 4], fill: Color) {
         let top = top + self.top;
         self.put(format_args!(
@@ -45,7 +41,6 @@ impl Canvas {
         ));
     }
 
-    /// A line through places.
     pub(super) fn line(&mut self, places: &[(f64, f64)], color: Color, width: u32, dashes: &str) {
         let mut points = String::new();
         for (x, y) in places {
@@ -61,7 +56,6 @@ impl Canvas {
         ));
     }
 
-    /// A dot.
     pub(super) fn dot(&mut self, (x, y): (f64, f64), color: Color) {
         let y = y + self.top;
         self.put(format_args!(
@@ -82,7 +76,6 @@ impl Canvas {
         ));
     }
 
-    /// A text that runs upwards, with its middle at a place.
     pub(super) fn upwards(&mut self, text: &str, (x, y): (f64, f64), size: u32) {
         let (y, text) = (y + self.top, escaped(text));
         self.put(format_args!(
@@ -90,10 +83,4 @@ impl Canvas {
              text-anchor=\"middle\">{text}</text>"
         ));
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

@@ -5,7 +5,6 @@ use std::ops::Range;
 use super::canvas::{Anchor, Canvas, Color};
 use super::{COLORS, GREY, TITLE_HEIGHT, WIDTH, in_short};
 
-/// Height of a chart, pixels.
 pub(super) const HEIGHT: f64 = 540.0;
 
 /// How values lie along an axis.
@@ -145,10 +144,8 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
 /// Pixels of the plot: across, and down from its upper edge.
 const ACROSS: Range<f64> = 88.0..WIDTH - 18.0;
 const DOWN: Range<f64> = TITLE_HEIGHT..HEIGHT - 58.0;
-/// Grid lines, and the frame of the legend.
 const LINES: Color = 0xdc_dcdc;
 
-/// An axis with its ends.
 struct Scaled {
     scale: Scale,
     ends: Range<f64>,
@@ -205,24 +202,24 @@ impl Scaled {
     }
 }
 
-pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
-    let level = chart.level.iter().map(|(at, _)| *at);
-    let level = level.filter(|&at| chart.y.scale == Scale::Linear || at > 0.0);
-    let points = |series: &'_ Series| -> Vec<Point> {
-        let points = series.points.iter();
-        points
-            .filter(|point| has_place(chart, point))
-            .cloned()
-            .collect()
-    };
-    let shown: Vec<(&Series, Vec<Point>)> = chart
+/// Draws a chart. Returns the names and colours of its legend.
+pub(super) fn draw<'c>(canvas: &mut Canvas, chart: &'c Chart) -> Vec<(&'c str, Color)> {
+    let level = chart.level.as_ref();
+    let level = level.filter(|level| chart.y.scale == Scale::Linear || level.0 > 0.0);
+    let shown: Vec<(&Series, Vec<&Point>)> = chart
         .series
         .iter()
-        .map(|series| (series, points(series)))
+        .map(|of| {
+            (
+                of,
+                of.points.iter().filter(|p| has_place(chart, p)).collect(),
+            )
+        })
         .collect();
     let all = || shown.iter().flat_map(|(_, points)| points);
     let x = Scaled::new(chart.x.scale, all().map(|p| p.x));
-    let y = Scaled::new(chart.y.scale, all().map(|p| p.y).chain(level.clone()));
+    let levels = level.iter().map(|level| level.0);
+    let y = Scaled::new(chart.y.scale, all().map(|p| p.y).chain(levels));
     let right_of = |value| ACROSS.start + x.share(value) * (ACROSS.end - ACROSS.start);
     let below = |value| DOWN.end - y.share(value) * (DOWN.end - DOWN.start);
     let place = |p: &Point| (right_of(p.x), below(p.y));
@@ -238,52 +235,38 @@ pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
         canvas.text(&in_short(tick), (ACROSS.start - 6.0, at), 14, Anchor::End);
     }
     let corner = (ACROSS.start, DOWN.end);
-    canvas.line(
-        &[(corner.0, DOWN.start), corner, (ACROSS.end, corner.1)],
-        0,
-        1,
-        "",
-    );
-    let middle = (ACROSS.start + ACROSS.end) / 2.0;
-    canvas.text(
-        &chart.x.label,
-        (middle, DOWN.end + 40.0),
-        14,
-        Anchor::Middle,
-    );
+    let axes = [(corner.0, DOWN.start), corner, (ACROSS.end, corner.1)];
+    canvas.line(&axes, 0, 1, "");
+    let middle = ((ACROSS.start + ACROSS.end) / 2.0, DOWN.end + 40.0);
+    canvas.text(&chart.x.label, middle, 14, Anchor::Middle);
     canvas.upwards(&chart.y.label, (20.0, (DOWN.start + DOWN.end) / 2.0), 14);
-    let mut legend: Vec<(&str, Color, u32)> = Vec::new();
-    if let (Some((_, name)), Some(at)) = (&chart.level, level.clone().next()) {
-        let at = below(at);
+    let mut legend: Vec<(&str, Color)> = Vec::new();
+    if let Some((level, name)) = level {
+        let at = below(*level);
         canvas.line(&[(ACROSS.start, at), (ACROSS.end, at)], GREY, 1, "6 5");
-        legend.push((name, GREY, 1));
+        legend.push((name, GREY));
     }
-    let mut labels: Vec<Room> = Vec::new();
-    let pixel = |p: &Point| {
+    let dotted = shown.iter().filter(|(series, _)| series.dots);
+    let dots = dotted.flat_map(|(_, points)| points).map(|p| {
         let (x, y) = place(p);
-        (x as i32, y as i32)
+        [x - 3.0, x + 3.0, y - 3.0, y + 3.0]
+    });
+    let mut labels = Labels {
+        dots: dots.collect(),
+        placed: Vec::new(),
     };
-    let dots: Vec<(i32, i32)> = shown
-        .iter()
-        .filter(|(series, _)| series.dots)
-        .flat_map(|(_, points)| points.iter().map(pixel))
-        .collect();
-    let mut colored = 0;
+    let mut colors = COLORS.into_iter().cycle();
     for (series, points) in &shown {
-        let (color, stroke) = if series.grey {
-            (GREY, 1)
-        } else {
-            colored += 1;
-            // The second time round the colours, lines are thin.
-            let stroke = if colored <= COLORS.len() { 2 } else { 1 };
-            (COLORS[(colored - 1) % COLORS.len()], stroke)
+        let color = match series.grey {
+            true => GREY,
+            false => colors.next().unwrap_or(GREY),
         };
-        let places: Vec<(f64, f64)> = points.iter().map(place).collect();
+        let places: Vec<(f64, f64)> = points.iter().map(|p| place(p)).collect();
         if series.line && places.len() > 1 {
-            canvas.line(&places, color, stroke, "");
+            canvas.line(&places, color, if series.grey { 1 } else { 2 }, "");
         }
         if !series.name.is_empty() {
-            legend.push((&series.name, color, stroke));
+            legend.push((&series.name, color));
         }
         if series.dots {
             places.iter().for_each(|&at| canvas.dot(at, color));
@@ -295,131 +278,55 @@ pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
                 canvas.line(&ends.map(|end| (across, below(end))), color, 1, "");
             }
         }
-        for point in points {
+        for (point, &at) in points.iter().zip(&places) {
             let Some(label) = &point.label else { continue };
-            let (at, letters) = (pixel(point), label.chars().count());
-            let across = ACROSS.start as i32..ACROSS.end as i32;
-            if let Some((x, y)) = free_place(at, letters, &across, &mut labels, &dots) {
-                // Its line has its upper left corner there.
-                let at = (f64::from(at.0 + x), f64::from(at.1 + y) + 7.0);
-                canvas.text(label, at, 12, Anchor::Start);
+            if let Some((x, y)) = labels.place(at, label.chars().count()) {
+                canvas.text(label, (x, y + LETTER.1 / 2.0), 12, Anchor::Start);
             }
         }
     }
-    let places: Vec<(i32, i32)> = all().map(pixel).collect();
-    draw_legend(canvas, &legend, &places);
+    legend
 }
 
-/// Height of a line of the legend.
-const LINE: f64 = 18.0;
-
-fn draw_legend(canvas: &mut Canvas, legend: &[(&str, Color, u32)], places: &[(i32, i32)]) {
-    let letters = legend.iter().map(|(name, ..)| name.chars().count()).max();
-    let Some(letters) = letters else { return };
-    let (width, height) = (
-        44.0 + 7.0 * letters as f64,
-        LINE * legend.len() as f64 + 8.0,
-    );
-    let across = ACROSS.start as i32..ACROSS.end as i32;
-    let (is_right, is_lower) = legend_corner((across, DOWN.start as i32..DOWN.end as i32), places);
-    let left = match is_right {
-        true => ACROSS.end - width - 6.0,
-        false => ACROSS.start + 6.0,
-    };
-    let top = match is_lower {
-        true => DOWN.end - height - 6.0,
-        false => DOWN.start + 6.0,
-    };
-    canvas.rectangle([left, top, width, height], LINES);
-    canvas.rectangle(
-        [left + 1.0, top + 1.0, width - 2.0, height - 2.0],
-        0xff_ffff,
-    );
-    for (number, (name, color, stroke)) in legend.iter().enumerate() {
-        let middle = top + 4.0 + LINE * (number as f64 + 0.5);
-        canvas.line(
-            &[(left + 8.0, middle), (left + 26.0, middle)],
-            *color,
-            *stroke,
-            "",
-        );
-        canvas.text(name, (left + 32.0, middle), 13, Anchor::Start);
-    }
-}
-
-/// Whether a point lies on both axes.
 fn has_place(chart: &Chart, point: &Point) -> bool {
     let on = |axis: &Axis, at: f64| at.is_finite() && (axis.scale == Scale::Linear || at > 0.0);
     on(&chart.x, point.x) && on(&chart.y, point.y)
 }
 
-/// The rectangle of a label, pixels: left, right, top, bottom.
-type Room = [i32; 4];
+/// A rectangle, pixels: left, right, top, bottom.
+type Room = [f64; 4];
 
-/// Height of a label, and width of one of its letters, pixels.
-const LETTER: (i32, i32) = (13, 7);
+/// Width of a label's letter, and its height, pixels.
+const LETTER: (f64, f64) = (7.0, 13.0);
 
-/// The offset of a label of so many letters from its point: the first free place. A place without
-/// labels and dots is best, a place without labels is second. `None` if there is no place within
-/// the plot.
-fn free_place(
-    at: (i32, i32),
-    letters: usize,
-    across: &Range<i32>,
-    labels: &mut Vec<Room>,
-    dots: &[(i32, i32)],
-) -> Option<(i32, i32)> {
-    let (height, letter) = LETTER;
-    // A label is a line.
-    let width = letter * letters as i32;
-    let sides = [6, -width - 4, -width / 2];
-    let heights = [-6, -20, 8];
-    let offsets = heights
-        .iter()
-        .flat_map(|&y| sides.iter().map(move |&x| (x, y)));
-    let room = |(x, y): (i32, i32)| {
-        let (left, top) = (at.0 + x, at.1 + y);
-        [left, left + width, top, top + height]
-    };
-    let is_apart = |[l, r, t, b]: Room| {
-        let others = labels.iter();
-        others
-            .into_iter()
-            .all(|o| r <= o[0] || o[1] <= l || b <= o[2] || o[3] <= t)
-    };
-    let has_dot = |[l, r, t, b]: Room| {
-        let mut dots = dots.iter().filter(|dot| **dot != at);
-        dots.any(|&(x, y)| l - 3 < x && x < r + 3 && t - 3 < y && y < b + 3)
-    };
-    // Over its own dot there is no place.
-    let own = |&(x, y): &(i32, i32)| y == -6 && x == -width / 2;
-    let is_within = |[l, r, ..]: Room| across.start <= l && r <= across.end;
-    let able: Vec<(i32, i32)> = offsets
-        .filter(|o| !own(o) && is_within(room(*o)) && is_apart(room(*o)))
-        .collect();
-    let free = able.iter().find(|o| !has_dot(room(**o)));
-    let chosen = *free.or(able.first())?;
-    labels.push(room(chosen));
-    Some(chosen)
+struct Labels {
+    dots: Vec<Room>,
+    placed: Vec<Room>,
 }
 
-/// The corner of the plotting area with the fewest points in it, as whether it is right and whether
-/// it is lower; of equal ones the upper left comes first. Everything in pixels of the picture.
-fn legend_corner((across, down): (Range<i32>, Range<i32>), places: &[(i32, i32)]) -> (bool, bool) {
-    // The size of a legend of seven lines.
-    const ROOM: (i32, i32) = (240, 180);
-    let is_near = |at: i32, ends: &Range<i32>, is_end: bool, room: i32| match is_end {
-        true => (ends.end - room..ends.end).contains(&at),
-        false => (ends.start..ends.start + room).contains(&at),
-    };
-    let points = |&(is_right, is_lower): &(bool, bool)| {
-        let near = places.iter().filter(|(x, y)| {
-            is_near(*x, &across, is_right, ROOM.0) && is_near(*y, &down, is_lower, ROOM.1)
-        });
-        near.count()
-    };
-    let corners = [(false, false), (true, false), (false, true), (true, true)];
-    corners.into_iter().min_by_key(points).unwrap_or_default()
+impl Labels {
+    /// The upper left corner of a label beside its dot: the first place without labels and dots, or
+    /// else without labels. `None` if there is none within the plot.
+    fn place(&mut self, (x, y): (f64, f64), letters: usize) -> Option<(f64, f64)> {
+        let width = LETTER.0 * letters as f64;
+        let (right, left, over) = (6.0, -width - 4.0, -width / 2.0);
+        let level = [(right, -6.0), (left, -6.0)];
+        let others = [-20.0, 8.0].map(|down| [right, left, over].map(|across| (across, down)));
+        let offsets = level.into_iter().chain(others.into_iter().flatten());
+        let room = |(dx, dy): (f64, f64)| [x + dx, x + dx + width, y + dy, y + dy + LETTER.1];
+        let is_apart = |rooms: &[Room], [l, r, t, b]: Room| {
+            let apart = |o: &Room| r <= o[0] || o[1] <= l || b <= o[2] || o[3] <= t;
+            rooms.iter().all(apart)
+        };
+        let able: Vec<Room> = offsets
+            .map(room)
+            .filter(|o| ACROSS.start <= o[0] && o[1] <= ACROSS.end && is_apart(&self.placed, *o))
+            .collect();
+        let free = able.iter().find(|o| is_apart(&self.dots, **o));
+        let chosen = *free.or(able.first())?;
+        self.placed.push(chosen);
+        Some((chosen[0], chosen[2]))
+    }
 }
 
 #[cfg(test)]
@@ -427,35 +334,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn legends_go_where_no_points_are() {
-        let area = || (60..880, 40..500);
-        let corner = |places: &[(i32, i32)]| legend_corner(area(), places);
-        assert_eq!(corner(&[]), (false, false));
-        let upper = [(100, 60), (800, 60)];
-        assert_eq!(corner(&upper[..1]), (true, false));
-        assert_eq!(corner(&upper), (false, true));
-    }
-
-    #[test]
     fn labels_move_aside_for_each_other_and_for_dots() {
-        let mut labels = Vec::new();
-        let dots = [(100, 100), (120, 98)];
-        // A dot is on its right: it goes left; the next one above; then each where it has room.
-        let first = free_place((100, 100), 3, &(0..900), &mut labels, &dots);
-        assert_eq!(first, Some((-25, -6)));
-        let places: Vec<_> = (0..8)
-            .map(|_| free_place((100, 100), 3, &(0..900), &mut labels, &dots))
-            .collect();
+        let mut labels = Labels {
+            dots: vec![[97.0, 103.0, 97.0, 103.0], [117.0, 123.0, 95.0, 101.0]],
+            placed: Vec::new(),
+        };
+        // A dot is on its right: the label goes left. The plot's left end is too near for most others.
+        assert_eq!(labels.place((200.0, 100.0), 3), Some((206.0, 94.0)));
+        let places: Vec<_> = (0..9).map(|_| labels.place((120.0, 98.0), 3)).collect();
+        assert_eq!((places[0], places[8]), (Some((126.0, 92.0)), None));
         assert!(places.iter().flatten().count() >= 4, "{places:?}");
-        assert_eq!(places.last(), Some(&None));
-        // At the end of the plot there is room on the left alone.
-        let at_end = free_place((100, 300), 3, &(0..110), &mut labels, &[]);
-        assert_eq!(at_end, Some((-25, -6)));
-        for (i, a) in labels.iter().enumerate() {
-            for b in &labels[..i] {
+        for (i, a) in labels.placed.iter().enumerate() {
+            for b in &labels.placed[..i] {
                 assert!(a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2]);
             }
         }
+        // At the end of the plot there is room on the left alone, and a dot there sends it up.
+        labels.dots.push([860.0, 866.0, 298.0, 304.0]);
+        assert_eq!(labels.place((879.0, 400.0), 3), Some((854.0, 394.0)));
+        assert_eq!(labels.place((879.0, 300.0), 3), Some((854.0, 280.0)));
     }
 
     #[test]
@@ -484,27 +381,5 @@ mod tests {
         assert_eq!(around([16.0, 32.0].into_iter()), 0.0..34.0);
         assert_eq!(around([-1.0, 15.0].into_iter()), -2.0..16.0);
         assert_eq!(around(std::iter::empty()), 0.0..1.0);
-    }
-
-    #[test]
-    fn points_without_a_place_are_left_out() {
-        let point = |x, y, label: &str| Point {
-            x,
-            y,
-            label: Some(label.to_owned()),
-        };
-        let points = vec![
-            (1.0, 2.0).into(),
-            (0.0, 2.0).into(),
-            point(2.0, f64::INFINITY, "gone"),
-            point(3.0, 4.0, "here"),
-        ];
-        let chart = Chart {
-            level: Some((0.5, "noise".to_owned())),
-            ..Chart::growth("t", "x", "y", vec![Series::dots("s", points)])
-        };
-        let text = super::super::svg(&[super::super::Panel::Chart(chart)]);
-        assert_eq!(text.matches("<circle").count(), 2);
-        assert!(text.contains("here") && text.contains("noise") && !text.contains("gone"));
     }
 }

@@ -1,20 +1,17 @@
 //! Charts and bars made of the columns of measurements.
 
-use super::{Axis, Bar, Chart, Panel, Point, Scale, Series};
+use super::{Bar, Chart, Panel, Point, Series};
 use crate::report::Row;
-
-/// An axis: its column and its label.
-pub type ColumnAxis<'a> = (&'a str, &'a str);
 
 /// The columns of a plot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RowPlot<'a> {
     /// Above the plot.
     pub title: &'a str,
-    /// Across.
-    pub x: ColumnAxis<'a>,
+    /// Across: column and label.
+    pub x: (&'a str, &'a str),
     /// Up.
-    pub y: ColumnAxis<'a>,
+    pub y: (&'a str, &'a str),
     /// The column by which points make series.
     pub series: &'a str,
     /// The column with half the length of error bars.
@@ -26,22 +23,9 @@ pub struct RowPlot<'a> {
     pub level: Option<(f64, &'a str)>,
 }
 
-/// Points nearer to each other than this part of their values would have overlapping names.
-const CLOSE: f64 = 0.12;
-
-/// For each point, whether another is at most as far along every axis and nearer along one.
-/// Points with a coordinate that is not a number neither dominate nor are dominated.
-#[must_use]
-pub fn dominated<const N: usize>(points: &[[f64; N]]) -> Vec<bool> {
-    points
-        .iter()
-        .map(|p| points.iter().any(|q| dominates(q, p)))
-        .collect()
-}
-
-/// Whether `q` is nowhere worse than `p`, and somewhere better.
-#[must_use]
-pub fn dominates<const N: usize>(q: &[f64; N], p: &[f64; N]) -> bool {
+/// Whether `q` is nowhere worse than `p`, and somewhere better. A
+/// coordinate that is not a number makes it false.
+pub(crate) fn dominates<const N: usize>(q: &[f64; N], p: &[f64; N]) -> bool {
     let pairs = || q.iter().zip(p);
     pairs().all(|(q, p)| q <= p) && pairs().any(|(q, p)| q < p)
 }
@@ -59,21 +43,17 @@ impl RowPlot<'_> {
             return None;
         }
         let places: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
-        let is_dominated = dominated(&places);
         let mut grey = Series::dots("dominated", Vec::new());
         grey.grey = true;
         let mut front: Vec<(f64, f64)> = Vec::new();
         let mut all: Vec<Series> = Vec::new();
-        for ((row, [x, y]), is_dominated) in rows.iter().zip(places).zip(is_dominated) {
-            if self.front.is_some() && is_dominated {
+        for (row, own) in rows.iter().zip(&places) {
+            let [x, y] = *own;
+            if self.front.is_some() && places.iter().any(|other| dominates(other, own)) {
                 grey.points.push((x, y).into());
                 continue;
             }
-            let near = |a: f64, b: f64| (a / b - 1.0).abs() < CLOSE;
-            let has_twin = front.iter().any(|&(u, v)| near(u, x) && near(v, y));
             front.push((x, y));
-            // Of points beside each other the first is named.
-            let label = self.front.filter(|_| !has_twin).map(|name| row.text(name));
             let name = row.text(self.series);
             let found = all.iter().position(|series| series.name == name);
             let at = found.unwrap_or_else(|| {
@@ -83,6 +63,7 @@ impl RowPlot<'_> {
                 });
                 all.len() - 1
             });
+            let label = self.front.map(|name| row.text(name));
             all[at].points.push(Point { x, y, label });
             let deviation = self.deviation.map(|name| row.number(name));
             all[at].deviations.extend(deviation);
@@ -93,16 +74,9 @@ impl RowPlot<'_> {
             (line.dots, line.grey) = (false, true);
             all.splice(0..0, [grey, line]);
         }
-        let axis = |label: &str| Axis {
-            label: label.to_owned(),
-            scale: Scale::Log,
-        };
         Some(Panel::Chart(Chart {
-            title: self.title.to_owned(),
-            x: axis(self.x.1),
-            y: axis(self.y.1),
-            series: all,
             level: self.level.map(|(at, name)| (at, name.to_owned())),
+            ..Chart::growth(self.title, self.x.1, self.y.1, all)
         }))
     }
 
@@ -127,10 +101,17 @@ mod tests {
 
     #[test]
     fn domination() {
-        let points = [[1., 5.], [2., 2.], [2., 3.], [5., 1.], [6., 1.], [2., 2.]];
-        let expected = [false, false, true, false, true, false];
-        assert_eq!(dominated(&points), expected);
-        assert_eq!(dominated(&[[f64::NAN, 0.0], [1.0, 1.0]]), [false, false]);
+        let points = [
+            [1., 5.],
+            [2., 2.],
+            [2., 3.],
+            [5., 1.],
+            [6., 1.],
+            [f64::NAN, 0.],
+        ];
+        let is_dominated = points.map(|p| points.iter().any(|q| dominates(q, &p)));
+        assert_eq!(is_dominated, [false, false, true, false, true, false]);
+        assert!(!dominates(&points[1], &points[1]));
     }
 
     #[test]
