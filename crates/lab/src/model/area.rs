@@ -27,19 +27,13 @@ use shiftvox::project::FrameSetup;
 /// Area of a design, NAND2 equivalents, line by line.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct DesignArea {
-    /// Of units that compute.
     pub units: Breakdown,
-    /// Of pipelines and contexts.
     pub registers: Breakdown,
-    /// Of memories on the chip.
     pub memories: Breakdown,
-    /// Of control.
     pub control: Breakdown,
     /// All of it: the middle of its range.
     pub total: f64,
-    /// Its low end.
     pub low: f64,
-    /// Its high end.
     pub high: f64,
 }
 
@@ -143,22 +137,14 @@ fn depth(unit: &cycles::Unit) -> u64 {
 /// The counts of a frame on the light hardware.
 #[derive(Debug, Clone, Copy)]
 pub struct LightFrame<'a> {
-    /// Operations.
     pub counter: &'a Counter,
-    /// Shifts.
     pub shifts: &'a ShiftProbe,
-    /// Cycles.
     pub cycles: &'a CycleReport,
-    /// The view.
     pub setup: &'a FrameSetup,
-    /// Bits of a stack's entry.
     pub record_bits: u32,
 }
 
 /// Area of the light hardware, as far as the frame uses it.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn light(
     frame: LightFrame<'_>,
     hardware: &Hardware,
@@ -246,9 +232,6 @@ fn shifters(
 }
 
 /// Area of the ray caster.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn of_rays(
     rays: &RayHardware,
     hardware: &Hardware,

@@ -17,21 +17,14 @@ use super::cost::Prices;
 /// A unit against the clock.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitDelay {
-    /// Stage whose block has it.
     pub stage: Stage,
-    /// Its class of operation.
     pub class: OpClass,
-    /// Its width, bits.
     pub width: u32,
-    /// Delay of its gates, ps.
     pub delay_ps: f64,
     /// Steps of its pipeline: latency and one.
     pub depth: u32,
-    /// Steps that it needs at this clock.
     pub depth_needed: u32,
-    /// Rows of the table.
     pub rows: String,
-    /// Their source.
     pub source: String,
 }
 
@@ -46,11 +39,8 @@ impl UnitDelay {
 /// All units that a frame uses against the clock.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClockCheck {
-    /// A period of the clock, ps.
     pub period_ps: f64,
-    /// Fastest clock that every unit meets as it is, MHz.
     pub fastest_mhz: f64,
-    /// The units, by stage and class.
     pub units: Vec<UnitDelay>,
 }
 
@@ -90,9 +80,6 @@ impl ClockCheck {
 }
 
 /// Compares units that a frame uses with the clock.
-///
-/// # Errors
-/// When the tables lack a delay.
 pub fn check(
     counter: &Counter,
     hardware: &Hardware,

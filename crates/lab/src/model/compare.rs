@@ -12,28 +12,19 @@ use super::range::{Range, Winner};
 /// A design and the cost of a frame on it.
 #[derive(Debug, Clone, Copy)]
 pub struct Design<'a> {
-    /// Energy and traffic.
     pub cost: &'a FrameCost,
-    /// Area.
     pub area: &'a DesignArea,
-    /// Cycles of a frame.
     pub cycles: u64,
-    /// Frames per second.
     pub frames_per_second: f64,
 }
 
 /// A figure of both designs.
 #[derive(Debug, Clone, Serialize)]
 pub struct ComparedLine {
-    /// Its name.
     pub what: &'static str,
-    /// Its unit.
     pub unit: &'static str,
-    /// Of the light hardware.
     pub light: Range,
-    /// Of the ray caster.
     pub ray_caster: Range,
-    /// Whether the ranges overlap.
     pub overlap: bool,
     /// The design with less, if they do not overlap.
     pub less: Winner,

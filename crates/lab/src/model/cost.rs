@@ -20,24 +20,17 @@ use shiftvox::project::FrameSetup;
 /// The tables, and choices that do not follow from counts.
 #[derive(Debug, Clone)]
 pub struct Prices {
-    /// Areas and energies.
     pub table: CostTable,
-    /// How shifts and spans are built.
     pub costing: Costing,
-    /// Small area or short delay of gates.
     pub goal: Goal,
 }
 
 /// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
-    /// Energy of the operations, pJ.
     pub operations: Breakdown,
-    /// Energy of the memories on the chip, pJ.
     pub on_chip: Breakdown,
-    /// Energy of outer memory, pJ.
     pub outer: Breakdown,
-    /// Traffic to outer memory.
     pub traffic: OuterTraffic,
 }
 
@@ -69,13 +62,10 @@ pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
 /// Traffic to outer memory, bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct OuterTraffic {
-    /// Lines of nodes, read.
     pub node_bits: u64,
-    /// Lines of attributes, read.
     pub attribute_bits: u64,
     /// Records without an entry on the stack: written, and read as many.
     pub spilled_bits: u64,
-    /// Pixels, written.
     pub pixel_bits: u64,
 }
 
@@ -91,9 +81,6 @@ impl OuterTraffic {
 const OUTER_WORD_BITS: u32 = 64;
 
 /// Energy of traffic to outer memory, pJ, by purpose.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for (name, operation, bits) in [
@@ -112,9 +99,6 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
 
 /// Energy of a frame. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
 /// are written there and read back. Pixels are written there.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn frame_cost(
     counted: &Counted,
     cycles: &CycleReport,
@@ -171,9 +155,6 @@ pub fn frame_cost(
 
 /// Energy of a stack of `bytes`, pJ. A record moves the bits that it holds:
 /// the stack is taken to be written and read field by field, in parallel.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn stack_energy(
     records: &RecordProbe,
     bytes: u64,
@@ -198,9 +179,6 @@ pub fn stack_energy(
 
 /// Energy of the operations, pJ: those of the counter, and of its shifts those
 /// that are no wires.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn operations_energy(
     counter: &Counter,
     shifts: &ShiftProbe,

@@ -13,19 +13,13 @@ use shiftvox::project::FrameSetup;
 /// The costs of a frame on the light hardware.
 #[derive(Debug, Clone)]
 pub struct LightDesign {
-    /// Energy and traffic.
     pub cost: FrameCost,
-    /// Area.
     pub area: DesignArea,
-    /// Its units against its clock.
     pub clock: ClockCheck,
 }
 
 impl LightDesign {
     /// Prices a frame.
-    ///
-    /// # Errors
-    /// When the cost tables lack a figure.
     pub fn price(
         graph: &Graph,
         setup: &FrameSetup,

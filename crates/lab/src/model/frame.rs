@@ -22,19 +22,12 @@ use shiftvox::rays::Rays;
 /// A frame and its counts.
 #[derive(Debug)]
 pub struct Counted {
-    /// The picture, with records by sample.
     pub frame: Frame,
-    /// Operations and accesses.
     pub counter: Counter,
-    /// Where accesses went.
     pub memory: MemoryProbe,
-    /// Shifts by source line.
     pub shifts: ShiftProbe,
-    /// Stack traffic by kind of record.
     pub records: RecordProbe,
-    /// The machine's own counters.
     pub stats: Stats,
-    /// The fields of a record.
     pub fields: Vec<RecordField>,
 }
 
@@ -96,9 +89,6 @@ fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetu
 }
 
 /// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn count(
     graph: &Graph,
     setup: &FrameSetup,
@@ -132,9 +122,6 @@ pub fn count(
 }
 
 /// Draws a frame and counts operations alone.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn count_operations(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -175,9 +162,6 @@ fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) 
 
 /// Records a frame's turns where they do not depend on the hardware, but for its organisation, and take no
 /// more than `most_bytes`. With them, the picture.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn record_turns(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -211,9 +195,6 @@ pub fn replay(
 }
 
 /// The view against which errors are measured: 64 bits, the exact rule.
-///
-/// # Errors
-/// When the camera sees nothing.
 pub fn true_setup(
     graph: &Graph,
     camera: &Camera,
@@ -228,9 +209,6 @@ pub fn true_setup(
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.
-///
-/// # Errors
-/// Never; the oracle's errors are the engines'.
 pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     Rays.render(graph, &setup.without_detail(), &mut frame)?;

@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Range {
     /// The figure: the middle of its parts' ranges.
     pub value: f64,
-    /// Its low end.
     pub low: f64,
-    /// Its high end.
     pub high: f64,
 }
 
@@ -54,9 +52,7 @@ impl std::ops::Add for Range {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Winner {
-    /// The light hardware.
     Light,
-    /// The ray caster.
     RayCaster,
     /// Neither: the ranges overlap.
     Neither,

@@ -21,34 +21,23 @@ use shiftvox::project::FrameSetup;
 /// The costs of the ray caster, its rays in one order.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
-    /// The order of its rays.
     pub order: RayOrder,
-    /// Steps by kind.
     pub counts: FloatRayCounts,
-    /// Hits of nodes in a cache like the hardware's.
     pub node_hits: u64,
-    /// Misses of nodes.
     pub node_misses: u64,
-    /// Misses of attributes in a cache like the hardware's.
     pub attribute_misses: u64,
-    /// Energy of the frame.
     pub cost: FrameCost,
     /// Lower bound on its cycles.
     pub cycles: RayCycles,
-    /// Its area, NAND2 equivalents.
     pub area: DesignArea,
-    /// Coverage against exact rays.
     pub error: CoverageError,
-    /// The orders that were tried, and the frame's energy in each, pJ.
     pub orders: Vec<OrderEnergy>,
 }
 
 /// Energy of a frame whose rays come in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnergy {
-    /// The order.
     pub order: RayOrder,
-    /// Energy, pJ.
     pub energy_pj: f64,
 }
 
@@ -71,9 +60,6 @@ fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
 }
 
 /// Casts a frame's rays beside node caches of several sizes. `exact` is the true picture.
-///
-/// # Errors
-/// When a size is no cache's.
 pub fn cast(
     graph: &Graph,
     setup: &FrameSetup,
@@ -121,9 +107,6 @@ pub fn cast(
 }
 
 /// Prices a run with the node cache of `hardware`, which was the `at`th that it had.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn price(
     run: &RayRun,
     at: usize,
@@ -164,9 +147,6 @@ pub fn price(
 
 /// Casts a frame's rays in an order, or, where none is chosen, in the order of
 /// least energy. `exact`: the true picture.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn measure(
     graph: &Graph,
     setup: &FrameSetup,
@@ -191,9 +171,6 @@ pub fn measure(
 }
 
 /// Of runs in several orders, the one of least energy, priced as [`price`] does. There must be one.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn cheapest(
     runs: &[RayRun],
     at: usize,

@@ -28,11 +28,9 @@ const ASIDE_ENTRIES: u64 = 24;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayHardware {
-    /// Rays in flight per lane.
     pub contexts: u32,
     /// Units by kind of step; minima and maxima are `float_compare`'s.
     pub units: BTreeMap<FloatStep, Unit>,
-    /// The rays' stacks.
     pub stack: RayStack,
 }
 
@@ -40,9 +38,7 @@ pub struct RayHardware {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayStack {
-    /// Accesses a cycle.
     pub ports: u32,
-    /// Cycles of a read.
     pub latency: u32,
 }
 
@@ -51,9 +47,6 @@ const SHIPPED: &str = include_str!("ray_hardware.toml");
 
 impl RayHardware {
     /// The description that ships.
-    ///
-    /// # Panics
-    /// Never: a test reads it.
     #[must_use]
     pub fn shipped() -> Self {
         match toml::from_str(SHIPPED) {
@@ -81,20 +74,15 @@ pub fn unit_of(step: FloatStep) -> FloatStep {
 /// Cycles of a frame of the ray caster: a lower bound.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCycles {
-    /// The largest of the bounds.
     pub cycles: u64,
-    /// Frames a second at the hardware's clock: an upper bound.
     pub frames_per_second: f64,
-    /// Cycles of each part, most first.
     pub bounds: Vec<Bound>,
 }
 
 /// Misses of the caches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RayMisses {
-    /// Lines of nodes.
     pub node: u64,
-    /// Lines of attributes.
     pub attribute: u64,
 }
 

@@ -16,23 +16,17 @@ use shiftvox::project::{CageKind, EngineError, FrameSetup};
 /// A field of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RecordField {
-    /// Its name.
     #[serde(rename = "field")]
     pub name: &'static str,
-    /// Its bits, all parts of it together.
     pub bits: u32,
-    /// The poses in which a record has it.
     pub held: FieldPresence,
 }
 
 /// The records that have a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum FieldPresence {
-    /// Always.
     Always,
-    /// In clip space.
     InClipSpace,
-    /// In screen space.
     InScreenSpace,
     /// As a finest voxel, which has no children and needs no vertices.
     AsFinestVoxel,
@@ -167,9 +161,7 @@ pub fn record_fields(
 /// Bits of one of a record's numbers, or of a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct NumberWidths {
-    /// Its name.
     pub name: &'static str,
-    /// How many of them there are.
     pub count: u32,
     /// Bits that the frame's records took.
     pub seen: u32,
@@ -207,9 +199,6 @@ fn setup_constants(setup: &FrameSetup) -> [(&'static str, NumberSpan, NumberSpan
 }
 
 /// The widths of a record's numbers in a frame, and of set-up's constants; none under the rules that do not draw outlines.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn number_widths(
     graph: &Graph,
     setup: &FrameSetup,

@@ -7,7 +7,6 @@ use crate::report::{Cell, Table};
 /// A table of a document.
 #[derive(Debug, Clone, Copy)]
 pub struct TableSpec {
-    /// Its title.
     pub title: &'static str,
     /// The array of its rows, as a path with dots. A `*` matches every field of an object.
     pub rows: &'static str,

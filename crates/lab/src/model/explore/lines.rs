@@ -11,13 +11,9 @@ use super::{PointFigures, PointOutcome};
 /// A point of a scene, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointLine {
-    /// The scene's name.
     pub scene: String,
-    /// The point's number.
     pub point: usize,
-    /// Its values.
     pub values: BTreeMap<String, Value>,
-    /// Its outcome.
     #[serde(flatten)]
     pub outcome: PointOutcome,
 }
@@ -74,24 +70,13 @@ const BEGIN: &[u8] = br#"{"kind":""#;
 /// Errors in a file of results.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinesError {
-    /// A line that no run writes.
     #[error("line {line}: {why}")]
-    Line {
-        /// Its number, from 1.
-        line: usize,
-        /// The fault.
-        why: String,
-    },
-    /// Results of another run.
+    Line { line: usize, why: String },
     #[error("line {line}: these are other results: their `{what}` is {there}, not {here}")]
     Other {
-        /// The line's number, from 1.
         line: usize,
-        /// The field that differs.
         what: String,
-        /// Its value in the file.
         there: String,
-        /// Its value in this run.
         here: String,
     },
 }
@@ -99,9 +84,7 @@ pub enum LinesError {
 /// The contents of a file of results.
 #[derive(Debug, Clone, Default)]
 pub struct Recorded {
-    /// The points, each once.
     pub points: BTreeMap<(String, usize), PointLine>,
-    /// Scenes with headers.
     pub scenes: BTreeSet<String>,
     /// Bytes of complete lines.
     pub bytes: usize,

@@ -46,17 +46,13 @@ use space::{Drawing, Point};
 /// The frame, and the prices.
 #[derive(Debug, Clone, Copy)]
 pub struct Explored<'a> {
-    /// The scene.
     pub graph: &'a Graph,
-    /// The camera and the size of the picture.
     pub camera: &'a Camera,
     /// Rules and words, where the points do not set others.
     pub options: &'a SetupOptions,
-    /// The overflow policy.
     pub overflow: Overflow,
     /// The order of the ray caster's rays; by default, for each point the order of least energy.
     pub order: Option<RayOrder>,
-    /// Prices.
     pub prices: &'a Prices,
 }
 
@@ -64,9 +60,7 @@ pub struct Explored<'a> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
-    /// The frame was drawn.
     Drawn(Box<PointFigures>),
-    /// The frame cannot be drawn.
     Refused {
         /// The reason: an impossible frame, or a word or a stack that overflows.
         reason: String,
@@ -76,41 +70,26 @@ pub enum PointOutcome {
 /// The figures of a point. They equal those of `shiftvox model` for the same hardware.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointFigures {
-    /// Cycles of the frame.
     pub cycles: u64,
-    /// Time of the frame at the hardware's clock, ms.
     pub time_ms: f64,
-    /// Area, NAND2 equivalents.
     pub area_nand2: Range,
-    /// Energy of the frame, pJ.
     pub energy_pj: Range,
     /// Samples that differ from the exact picture in any way.
     pub wrong_samples: u64,
     /// Samples that differ from the serial machine's picture.
     pub differing_samples: u64,
-    /// Whether all units that the frame uses keep up with the clock.
     pub meets_clock: bool,
-    /// The resource that limits the frame.
     pub limits: String,
-    /// Counts behind these figures.
     pub counts: PointCounts,
-    /// Energy of the operations, pJ.
     pub operations_pj: Range,
-    /// Energy of the memories on the chip, pJ.
     pub on_chip_pj: Range,
-    /// Energy of outer memory, pJ.
     pub outer_pj: Range,
-    /// Area of the units that compute, NAND2 equivalents.
     pub units_nand2: f64,
-    /// The word format.
     pub format: Format,
-    /// The ray caster with the same caches, nodes and clock.
     pub ray_caster: RivalFigures,
-    /// The design with less energy, if the ranges do not overlap.
     pub less_energy: Winner,
     /// The design with less energy if both pay the same low, or the same high, price for outer memory.
     pub less_at_equal_prices: Winner,
-    /// Lower bound on the energy of every design, pJ: [`floor`].
     pub floor_pj: Range,
     /// Whether that bound exceeds half of the ray caster's energy at both ends of the prices.
     pub half_is_impossible: bool,
@@ -119,25 +98,17 @@ pub struct PointFigures {
 /// Counts of a frame on a point's hardware.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PointCounts {
-    /// Records of the serial machine.
     pub records: u64,
     /// Records of the hardware: some are processed that are hidden by the time they would have their turn serially.
     pub hardware_records: u64,
     /// Operations without shifts.
     pub operations: u64,
-    /// Steps of the restoring divide, among the operations.
     pub divide_steps: u64,
-    /// Bits of an entry of the stack.
     pub record_bits: u32,
-    /// Records on the deepest stack of the serial machine.
     pub deepest_stack: u64,
-    /// Words of nodes that are read.
     pub node_reads: u64,
-    /// Lines of nodes that are fetched.
     pub node_misses: u64,
-    /// Accesses to fill vectors.
     pub fill_accesses: u64,
-    /// Bits of fill vectors on the chip.
     pub fill_bits: u64,
     /// Samples covered, but empty in the exact picture.
     pub extra: u64,
@@ -150,17 +121,12 @@ pub struct PointCounts {
 /// The ray caster's figures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RivalFigures {
-    /// The order of its rays.
     pub order: RayOrder,
     /// Cycles of the frame: a lower bound.
     pub cycles: u64,
-    /// Lines of nodes that are fetched.
     pub node_misses: u64,
-    /// Area, NAND2 equivalents.
     pub area_nand2: Range,
-    /// Energy of the frame, pJ.
     pub energy_pj: Range,
-    /// Energy in each order of its rays.
     pub orders: Vec<OrderEnergy>,
 }
 

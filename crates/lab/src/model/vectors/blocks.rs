@@ -12,7 +12,6 @@ use shiftvox::project::FrameSetup;
 /// The contents of `blocks.toml`.
 #[derive(Debug, Deserialize)]
 pub(super) struct Descriptions {
-    /// The ports of a record.
     pub(super) record: String,
     meanings: BTreeMap<String, String>,
     block: Vec<Description>,
@@ -23,16 +22,12 @@ pub(super) struct Descriptions {
 pub struct Description {
     /// Its name, and that of its file.
     pub name: String,
-    /// The stages that contain it.
     pub stages: Vec<Stage>,
-    /// Its section of `SPEC.md`.
     pub section: String,
-    /// Its function.
     pub function: String,
     /// Its inputs: see [`Ports::new`](super::Ports::new).
     #[serde(rename = "in")]
     pub inputs: String,
-    /// Its outputs.
     #[serde(rename = "out")]
     pub outputs: String,
 }

@@ -9,11 +9,8 @@ use shiftvox::project::CageKind;
 /// A port: one or several numbers of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Port {
-    /// Its name in Verilog.
     pub name: String,
-    /// Width and sign of each number.
     pub kind: SignalKind,
-    /// Count of its numbers.
     pub count: usize,
 }
 

@@ -75,7 +75,6 @@ impl Lines {
 pub(super) struct Recording {
     pub(super) block: Block,
     pub(super) description: &'static Description,
-    /// Inputs and outputs.
     pub(super) ports: [Ports; 2],
     pub(super) rows: u64,
     /// Rows from the frame's records. They come first.
@@ -101,7 +100,6 @@ pub(super) struct Turns {
 pub(super) struct Recorder {
     folder: PathBuf,
     setup: FrameSetup,
-    /// By the block's number.
     blocks: Vec<Recording>,
     turns: Option<Turns>,
     records: u64,

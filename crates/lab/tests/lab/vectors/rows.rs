@@ -44,6 +44,16 @@ impl Row {
     pub(super) fn cage(&self, name: &str) -> Cage {
         Cage(self.of(name).to_vec())
     }
+
+    /// The row with other numbers of a port.
+    pub(super) fn map(&self, name: &str, change: impl FnMut(i128) -> i128) -> Self {
+        let (first, count) = self.names[name];
+        let mut changed = self.clone();
+        let values = &mut changed.values[first..first + count];
+        let new: Vec<i128> = values.iter().copied().map(change).collect();
+        values.copy_from_slice(&new);
+        changed
+    }
 }
 
 /// One coordinate of eight vertices: themselves, or a corner and three edges.
@@ -148,27 +158,14 @@ impl Ports {
         let mut end = side["bits"].as_u64().unwrap();
         for port in side["ports"].as_array().unwrap() {
             let number = |key: &str| port[key].as_u64().unwrap();
-            let (name, count, bits) = (
-                port["name"].as_str().unwrap(),
-                number("count"),
-                number("bits"),
-            );
-            assert_eq!(
-                number("lowest_bit") + count * bits,
-                end,
-                "{name}: ports without gaps"
-            );
+            let name = port["name"].as_str().unwrap().to_owned();
+            let (count, bits) = (number("count"), number("bits"));
+            // Ports lie side by side.
+            assert_eq!(number("lowest_bit") + count * bits, end, "{name}");
             end = number("lowest_bit");
+            let one = (name.clone(), bits as u32, port["signed"] == true);
             let place = (numbers.len(), count as usize);
-            assert!(
-                names.insert(name.to_owned(), place).is_none(),
-                "{name} twice"
-            );
-            let one = (
-                name.to_owned(),
-                bits as u32,
-                port["signed"].as_bool().unwrap(),
-            );
+            assert_eq!(names.insert(name, place), None);
             numbers.extend(vec![one; count as usize]);
         }
         assert_eq!(end, 0);
@@ -221,13 +218,12 @@ pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
 }
 
 pub(super) fn constants_of(manifest: &Value) -> Constants {
-    let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
+    let constants = &manifest["constants"];
+    let number = |value: &Value| i128::from(value.as_i64().unwrap());
+    let shifts = constants["size_shifts"].as_array().unwrap();
     Constants {
-        fraction: manifest["constants"]["screen_fraction_bits"]
-            .as_i64()
-            .unwrap()
-            .into(),
-        shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
+        fraction: number(&constants["screen_fraction_bits"]),
+        shifts: shifts.iter().map(number).collect(),
     }
 }
 
