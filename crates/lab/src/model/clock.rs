@@ -14,7 +14,6 @@ use serde::Serialize;
 
 use super::cost::Prices;
 
-/// A unit against the clock.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitDelay {
     pub stage: Stage,
@@ -29,7 +28,6 @@ pub struct UnitDelay {
 }
 
 impl UnitDelay {
-    /// Whether the delay fits into the pipeline's steps.
     #[must_use]
     pub fn meets(&self) -> bool {
         self.depth >= self.depth_needed
@@ -45,33 +43,31 @@ pub struct ClockCheck {
 }
 
 impl ClockCheck {
-    /// The units that miss the clock.
     pub fn misses(&self) -> impl Iterator<Item = &UnitDelay> {
         self.units.iter().filter(|unit| !unit.meets())
     }
 
-    /// The result in words, with the pipeline depths that would help.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let missing: Vec<String> = self
-            .misses()
-            .map(|unit| {
-                format!(
-                    "{} of {} bits in {} ({:.2} ns in {} x {:.2} ns; a pipeline {} deep would)",
-                    unit.class.name(),
-                    unit.width,
-                    unit.stage.name(),
-                    unit.delay_ps / 1e3,
-                    unit.depth,
-                    self.period_ps / 1e3,
-                    unit.depth_needed
-                )
-            })
-            .collect();
+        let period = self.period_ps / 1e3;
+        let told = |unit: &UnitDelay| {
+            let (class, stage) = (unit.class.name(), unit.stage.name());
+            let UnitDelay {
+                width,
+                depth,
+                depth_needed,
+                ..
+            } = unit;
+            let delay = unit.delay_ps / 1e3;
+            format!(
+                "{class} of {width} bits in {stage} ({delay:.2} ns in {depth} x {period:.2} ns; a pipeline {depth_needed} \
+                 deep would)"
+            )
+        };
+        let missing: Vec<String> = self.misses().map(told).collect();
         if missing.is_empty() {
             format!(
-                "no unit's gates are too slow for {:.2} ns; wires and flip-flops are not in it",
-                self.period_ps / 1e3
+                "no unit's gates are too slow for {period:.2} ns; wires and flip-flops are not in it"
             )
         } else {
             format!("too slow, even without wires: {}", missing.join("; "))
@@ -85,16 +81,13 @@ pub fn check(
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<ClockCheck, CostError> {
-    let used: BTreeSet<(Stage, OpClass)> = counter
-        .cells()
-        .map(|cell| (cell.stage, cell.class))
-        .collect();
-    let used = used.into_iter();
+    let cells = counter.cells();
+    let used: BTreeSet<(Stage, OpClass)> = cells.map(|cell| (cell.stage, cell.class)).collect();
     compare(used, hardware, &prices.table, prices.goal)
 }
 
 fn compare(
-    used: impl Iterator<Item = (Stage, OpClass)>,
+    used: impl IntoIterator<Item = (Stage, OpClass)>,
     hardware: &Hardware,
     table: &CostTable,
     goal: Goal,
@@ -147,7 +140,7 @@ mod tests {
             (Stage::Centre, OpClass::Add),
             (Stage::Centre, OpClass::Shift),
         ];
-        compare(used.into_iter(), &hardware, &table, Goal::Area).unwrap()
+        compare(used, &hardware, &table, Goal::Area).unwrap()
     }
 
     /// The row: an adder of 32 bits takes 4680.73 ps. Shifts are wires.

@@ -25,7 +25,6 @@ pub struct Prices {
     pub goal: Goal,
 }
 
-/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     pub operations: Breakdown,
@@ -35,7 +34,6 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    /// The sum, pJ.
     #[must_use]
     pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
@@ -44,7 +42,6 @@ impl FrameCost {
     }
 }
 
-/// Bits of all stacks.
 #[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
@@ -70,7 +67,6 @@ pub struct OuterTraffic {
 }
 
 impl OuterTraffic {
-    /// All bits that are moved.
     #[must_use]
     pub fn bits(&self) -> u64 {
         self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
@@ -80,7 +76,6 @@ impl OuterTraffic {
 /// Bits of a word of outer memory. Neighbours share words.
 const OUTER_WORD_BITS: u32 = 64;
 
-/// Energy of traffic to outer memory, pJ, by purpose.
 pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for (name, operation, bits) in [
@@ -128,15 +123,8 @@ pub fn frame_cost(
     accesses.remove(&Memory::Stack);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
     let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
-    let others = memory_energy_of(&accesses, widths, store, table)?;
-    for line in others.lines {
-        on_chip.push(
-            &line.name,
-            &line.operation,
-            line.width,
-            line.times,
-            line.each,
-        );
+    for of in memory_energy_of(&accesses, widths, store, table)?.lines {
+        on_chip.push(&of.name, &of.operation, of.width, of.times, of.each);
     }
     let traffic = OuterTraffic {
         node_bits: 8 * cycles.node_cache.bytes_in,
@@ -163,10 +151,8 @@ pub fn stack_energy(
     let mut sum = Breakdown::default();
     for kind in RecordKind::ALL {
         let (bits, accesses) = (records.bits().of(kind), records.of(kind));
-        for (operation, times) in [
-            ("sram_read", accesses.reads),
-            ("sram_write", accesses.writes),
-        ] {
+        let (reads, writes) = (accesses.reads, accesses.writes);
+        for (operation, times) in [("sram_read", reads), ("sram_write", writes)] {
             if times > 0 {
                 let each = table.memory_energy(operation, bytes, bits)?;
                 let name = format!("stack, {}", kind.name());
@@ -223,25 +209,15 @@ mod tests {
         dp.add(word, word);
         let (counter, shifts) = probes;
         assert_eq!(counter.ops_of(OpClass::Shift), 10);
-        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
-        assert!(
-            (sum.total - (0.1 + 5.0 * 0.1334)).abs() < 1e-9,
-            "{}",
-            sum.total
-        );
-        let all = Costing {
-            shifts: ShiftUnits::Variable,
-        };
-        let prices = Prices {
-            costing: all,
-            ..prices
-        };
-        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
-        assert!(
-            (sum.total - (0.1 + 10.0 * 0.1334)).abs() < 1e-9,
-            "{}",
-            sum.total
-        );
+        for (shifts_are, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
+            let prices = Prices {
+                costing: Costing { shifts: shifts_are },
+                ..prices.clone()
+            };
+            let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+            let expected = 0.1 + billed * 0.1334;
+            assert!((sum.total - expected).abs() < 1e-9, "{}", sum.total);
+        }
     }
 
     /// 64 bits from 8 KB are 10 pJ, and so is writing them.
@@ -272,9 +248,6 @@ mod tests {
         let sum = stack_energy(&records, 8192, &table).unwrap();
         // Of the object 100 pJ twice; of the voxels 10 pJ three times and once.
         assert!((sum.total - (200.0 + 40.0)).abs() < 1e-9, "{}", sum.total);
-        // As the widest, all six accesses would be 100 pJ.
-        let widest = RecordBits::uniform(640);
-        assert_eq!(widest.widest(), bits.widest());
     }
 
     /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.

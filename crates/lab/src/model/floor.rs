@@ -19,7 +19,6 @@ use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{Graph, NodeLayout};
 
-/// The least traffic of a frame, and its energy.
 #[derive(Debug, Clone, Serialize)]
 pub struct Floor {
     pub node_lines: u64,

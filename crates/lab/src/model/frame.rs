@@ -19,7 +19,6 @@ use shiftvox::picture::{Shading, lights};
 use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 use shiftvox::rays::Rays;
 
-/// A frame and its counts.
 #[derive(Debug)]
 pub struct Counted {
     pub frame: Frame,
@@ -32,7 +31,6 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// Bits of a record on the stack.
     #[must_use]
     pub fn record_bits(&self) -> u32 {
         record_bits(&self.fields)
@@ -45,14 +43,12 @@ impl Counted {
         found.map_or(0, |&(_, count)| count)
     }
 
-    /// Samples that differ in another picture.
     #[must_use]
     pub fn differing(&self, other: &Frame) -> u64 {
         let pairs = self.frame.voxel.iter().zip(&other.voxel);
         pairs.filter(|(a, b)| a != b).count() as u64
     }
 
-    /// Operations per record.
     #[must_use]
     pub fn operations_per_record(&self) -> f64 {
         self.counter.ops() as f64 / self.counter.records().max(1) as f64
@@ -71,7 +67,6 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
     }
 }
 
-/// A machine with an overflow policy and an organisation.
 fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
         overflow,
@@ -153,7 +148,6 @@ pub fn simulate(
     Ok((frame, simulated))
 }
 
-/// A hardware, with the bits of a frame's records.
 fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) -> Hardware {
     let mut hardware = hardware.clone();
     hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
@@ -215,7 +209,6 @@ pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, Eng
     Ok(frame)
 }
 
-/// How far a frame is from the exact one.
 #[must_use]
 pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
     CoverageError::between(&frame.voxel, &exact.voxel)

@@ -3,7 +3,6 @@
 use hwmodel::cost::Breakdown;
 use serde::{Deserialize, Serialize};
 
-/// A figure and the ends of its range.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Range {
     /// The figure: the middle of its parts' ranges.
@@ -13,7 +12,6 @@ pub struct Range {
 }
 
 impl Range {
-    /// A figure, and its ends.
     #[must_use]
     pub const fn new((value, low, high): (f64, f64, f64)) -> Self {
         Self { value, low, high }
@@ -48,7 +46,6 @@ impl std::ops::Add for Range {
     }
 }
 
-/// The design that needs less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Winner {
@@ -84,7 +81,6 @@ impl Winner {
         }
     }
 
-    /// The winner in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

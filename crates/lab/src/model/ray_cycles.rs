@@ -24,7 +24,6 @@ pub const ASIDE_BITS: u32 = 64;
 /// Entries of a ray's stack: one a level.
 const ASIDE_ENTRIES: u64 = 24;
 
-/// The parts of a lane of the ray caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayHardware {
@@ -34,7 +33,6 @@ pub struct RayHardware {
     pub stack: RayStack,
 }
 
-/// The memory of a lane's stacks of rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayStack {
@@ -42,11 +40,9 @@ pub struct RayStack {
     pub latency: u32,
 }
 
-/// The description that ships.
 const SHIPPED: &str = include_str!("ray_hardware.toml");
 
 impl RayHardware {
-    /// The description that ships.
     #[must_use]
     pub fn shipped() -> Self {
         match toml::from_str(SHIPPED) {
@@ -62,7 +58,6 @@ impl RayHardware {
     }
 }
 
-/// The kind of unit that does a step.
 #[must_use]
 pub fn unit_of(step: FloatStep) -> FloatStep {
     match step {
@@ -71,7 +66,6 @@ pub fn unit_of(step: FloatStep) -> FloatStep {
     }
 }
 
-/// Cycles of a frame of the ray caster: a lower bound.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCycles {
     pub cycles: u64,
@@ -79,14 +73,12 @@ pub struct RayCycles {
     pub bounds: Vec<Bound>,
 }
 
-/// Misses of the caches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RayMisses {
     pub node: u64,
     pub attribute: u64,
 }
 
-/// The bound for a frame's counts.
 #[must_use]
 pub fn cycles(
     counts: &FloatRayCounts,

@@ -27,7 +27,6 @@ use shiftvox::graph::Graph;
 use shiftvox::machine::Simulated;
 use shiftvox::project::FrameSetup;
 
-/// The report.
 #[derive(Debug, Serialize)]
 pub struct Report {
     pub hardware: Hardware,
@@ -70,7 +69,6 @@ pub(super) struct MissCurve {
     pub(super) points: Vec<MissPoint>,
 }
 
-/// A frame drawn by the serial machine, by the hardware, and by rays.
 #[derive(Debug)]
 pub struct Drawn<'a> {
     pub graph: &'a Graph,
@@ -84,7 +82,6 @@ pub struct Drawn<'a> {
 }
 
 impl Report {
-    /// Prices a frame and collects its counts.
     pub fn new(drawn: Drawn<'_>, hardware: Hardware, prices: &Prices) -> Result<Self, ModelError> {
         let Drawn {
             graph,

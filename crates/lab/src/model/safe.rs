@@ -29,7 +29,6 @@ pub struct Format {
 }
 
 impl Format {
-    /// The format of a frame's set-up.
     #[must_use]
     pub fn new(graph: &Graph, camera: &Camera, own: &FrameSetup) -> Self {
         let is_safe = |camera: &Camera, placement: &Placement, depth: u32| {

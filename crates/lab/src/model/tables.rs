@@ -103,7 +103,6 @@ pub const LONG: [TableSpec; 9] = [
 ];
 
 impl TableSpec {
-    /// The table.
     #[must_use]
     pub fn of(&self, document: &Value) -> Table {
         let columns: Vec<Column> = self.columns.split_whitespace().map(Column::new).collect();
@@ -124,7 +123,6 @@ impl TableSpec {
     }
 }
 
-/// A column of a [`TableSpec`].
 struct Column {
     head: &'static str,
     path: &'static str,

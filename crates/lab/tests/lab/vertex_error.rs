@@ -10,7 +10,6 @@ use shiftvox::graph::Placement;
 use shiftvox::machine::{Cage, cages_along};
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 
-/// Half the diagonal of a unit cube.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
 
 /// Four views of the unit cube, 1024 x 1024, with its centre in the middle. Three are in direction

@@ -9,7 +9,6 @@ use crate::report::plot::dominates;
 /// The ratio from which a difference matters.
 const WORTH: f64 = 1.1;
 
-/// A point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontPoint {
     #[serde(flatten)]
@@ -18,7 +17,6 @@ pub struct FrontPoint {
     pub stands_out: bool,
 }
 
-/// A point, and its measures: less is better.
 type Measured<'a> = (&'a PointLine, [f64; 4]);
 
 fn measures(figures: &PointFigures) -> [f64; 4] {

@@ -41,9 +41,8 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use space::{Drawing, Point};
+use space::Point;
 
-/// The frame, and the prices.
 #[derive(Debug, Clone, Copy)]
 pub struct Explored<'a> {
     pub graph: &'a Graph,
@@ -56,7 +55,6 @@ pub struct Explored<'a> {
     pub prices: &'a Prices,
 }
 
-/// The result of a point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
@@ -91,11 +89,10 @@ pub struct PointFigures {
     /// The design with less energy if both pay the same low, or the same high, price for outer memory.
     pub less_at_equal_prices: Winner,
     pub floor_pj: Range,
-    /// Whether that bound exceeds half of the ray caster's energy at both ends of the prices.
+    /// Whether the floor exceeds half of the ray caster's energy at both ends of the prices.
     pub half_is_impossible: bool,
 }
 
-/// Counts of a frame on a point's hardware.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PointCounts {
     pub records: u64,
@@ -118,7 +115,6 @@ pub struct PointCounts {
     pub wrong_voxel: u64,
 }
 
-/// The ray caster's figures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RivalFigures {
     pub order: RayOrder,
@@ -130,13 +126,11 @@ pub struct RivalFigures {
     pub orders: Vec<OrderEnergy>,
 }
 
-/// A value, or the reason why there is none.
 type OrReason<T> = Result<T, String>;
 
 /// Most bytes of all recorded turns.
 const MOST_RECORDED: usize = 1 << 30;
 
-/// Results that points share.
 struct Shared<'a> {
     of: Explored<'a>,
     /// By side of the picture.
@@ -209,7 +203,6 @@ pub fn explore<E: From<ModelError> + Send>(
     done
 }
 
-/// Passes outcomes on in the order of their points.
 struct InOrder<S> {
     waiting: BTreeMap<usize, PointOutcome>,
     next: usize,
@@ -248,9 +241,14 @@ impl<'a> Shared<'a> {
         let mut machines = BTreeMap::<String, &Point>::new();
         let mut casts = BTreeMap::<String, (&Point, Vec<u32>)>::new();
         for point in points {
-            let camera = camera_of(of.camera, point.drawing);
+            let size = point.drawing.size;
+            let camera = Camera {
+                width: size.unwrap_or(of.camera.width),
+                height: size.unwrap_or(of.camera.height),
+                ..*of.camera
+            };
             let options = point.drawing.options(of.options);
-            if let Entry::Vacant(place) = shared.exact.entry(point.drawing.size) {
+            if let Entry::Vacant(place) = shared.exact.entry(size) {
                 let setup = frame::true_setup(of.graph, &camera, of.options)?;
                 place.insert(frame::reference(&of.graph.view(), &setup)?);
             }
@@ -329,19 +327,16 @@ impl<'a> Shared<'a> {
     }
 
     fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
-        match &self.setups[&format!("{:?}", point.drawing)] {
-            Ok((setup, format)) => Ok((setup, format)),
-            Err(reason) => Err(reason.clone()),
-        }
+        let setup = self.setups[&format!("{:?}", point.drawing)].as_ref();
+        setup
+            .map(|(setup, format)| (setup, format))
+            .map_err(String::clone)
     }
 
-    /// A point's frame as the serial machine draws it.
     fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted)> {
         let (setup, format) = self.setup(point)?;
-        match &self.counted[&machine_key(point)] {
-            Ok(counted) => Ok((setup, format, counted)),
-            Err(reason) => Err(reason.clone()),
-        }
+        let counted = self.counted[&machine_key(point)].as_ref();
+        Ok((setup, format, counted.map_err(String::clone)?))
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
@@ -436,15 +431,6 @@ impl<'a> Shared<'a> {
                 orders: rays.orders,
             },
         })))
-    }
-}
-
-/// The camera of a point.
-fn camera_of(camera: &Camera, drawing: Drawing) -> Camera {
-    Camera {
-        width: drawing.size.unwrap_or(camera.width),
-        height: drawing.size.unwrap_or(camera.height),
-        ..*camera
     }
 }
 

@@ -8,10 +8,8 @@ use serde::Deserialize;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use toml::{Table, Value};
 
-/// Most points of a space.
 pub const MAX_POINTS: usize = 1 << 16;
 
-/// Names and texts of the spaces that ship.
 pub const SPACES: [(&str, &str); 7] = [
     ("bundled", include_str!("spaces/bundled.toml")),
     ("caches", include_str!("spaces/caches.toml")),
@@ -42,7 +40,6 @@ fn unknown(key: &str, instead: impl fmt::Display) -> SpaceError {
     SpaceError(format!("there is no `{key}`; {instead}"))
 }
 
-/// A key and its values.
 #[derive(Debug, Clone, PartialEq)]
 struct Axis {
     /// With dots: `node_cache.bytes`.
@@ -65,7 +62,6 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Options with the settings of the space.
     #[must_use]
     pub fn options(&self, base: &SetupOptions) -> SetupOptions {
         SetupOptions {
@@ -88,7 +84,6 @@ pub struct Space {
     axes: Vec<Axis>,
 }
 
-/// A point of a space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Its number, from 0.
@@ -167,14 +162,12 @@ impl Space {
         Ok(space)
     }
 
-    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         let sizes = self.axes.iter().map(|axis| axis.values.len());
         sizes.fold(1, usize::saturating_mul)
     }
 
-    /// Never: every axis has a value.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -288,7 +281,6 @@ fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
     hardware
 }
 
-/// Checks one value of a setting of [`Drawing`].
 fn check_drawing(key: &str, setting: &str, value: &Value) -> Result<(), SpaceError> {
     let one = Table::from_iter([(setting.to_owned(), value.clone())]);
     let drawing: Drawing = one
@@ -312,7 +304,6 @@ fn table_of(hardware: &Hardware) -> Table {
     }
 }
 
-/// The place of a dotted key in a description.
 fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     match key.split_once('.') {
         None => description.get_mut(key),
@@ -320,7 +311,6 @@ fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     }
 }
 
-/// The keys beside the unknown key `key`.
 fn neighbours(description: Table, key: &str) -> String {
     let mut here = description;
     for part in key.split('.') {
@@ -333,7 +323,6 @@ fn neighbours(description: Table, key: &str) -> String {
     keys.join(", ")
 }
 
-/// Names and settings of the variants.
 fn variants_of(list: Option<Value>) -> Result<(Vec<Value>, Vec<Vec<Axis>>), SpaceError> {
     let must = "it must be a list: [[variants]], each with a `name` and the keys that it sets";
     let list = match list {

@@ -16,9 +16,7 @@ use std::path::{Path, PathBuf};
 use hwmodel::Overflow;
 use hwmodel::cycles::Organisation;
 
-pub use blocks::{Description, describe};
 pub use folder::check_free;
-pub use ports::{Port, Ports};
 
 use recorder::Recorder;
 use shiftvox::frame::Frame;
@@ -33,7 +31,6 @@ pub const SCHEMA: u32 = 6;
 /// Rounds of inputs that are made for the blocks.
 const DIRECTED_ROUNDS: u32 = 200;
 
-/// The frame's records that are recorded, and the folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     pub scene: &'a str,
@@ -45,7 +42,6 @@ pub struct Request<'a> {
     pub overwrite: bool,
 }
 
-/// Size of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Recorded {
     pub blocks: usize,
@@ -68,7 +64,6 @@ pub enum VectorsError {
     Manifest(#[from] serde_json::Error),
 }
 
-/// Draws a frame and records the machine's blocks.
 pub fn write(
     graph: &GraphView<'_>,
     setup: &FrameSetup,

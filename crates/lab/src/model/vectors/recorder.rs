@@ -14,15 +14,12 @@ use shiftvox::machine::{Block, NumberSpan, Port};
 use shiftvox::project::FrameSetup;
 use shiftvox::whole::WholeError;
 
-/// The file of turns.
 pub(super) const TURNS: &str = "turns.jsonl";
 
-/// The file of a block.
 pub(super) fn file_name(block: &str) -> String {
     format!("{block}.jsonl")
 }
 
-/// The name of a memory's port in events.
 fn name_of(port: Port) -> &'static str {
     match port {
         Port::Pop => "pop",
@@ -36,7 +33,6 @@ fn name_of(port: Port) -> &'static str {
     }
 }
 
-/// A file of lines.
 #[derive(Debug)]
 struct Lines {
     path: PathBuf,
@@ -70,7 +66,6 @@ impl Lines {
     }
 }
 
-/// The rows of a block.
 #[derive(Debug)]
 pub(super) struct Recording {
     pub(super) block: Block,
@@ -84,7 +79,6 @@ pub(super) struct Recording {
     file: Option<Lines>,
 }
 
-/// The turns of a frame.
 #[derive(Debug)]
 pub(super) struct Turns {
     pub(super) record: Ports,
@@ -212,7 +206,6 @@ impl Recorder {
 }
 
 impl Turns {
-    /// Writes an event of a port.
     fn record(
         &mut self,
         port: Port,

@@ -77,7 +77,6 @@ fn stuck_mutants(block: &BlockRows, constants: &Constants) -> (usize, usize) {
     (all, alive)
 }
 
-/// Bits of a word.
 const BITS: u32 = 32;
 
 /// Faults that a block has which gets other inputs.

@@ -11,7 +11,6 @@ pub(super) fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b).div_euclid(2 * b)
 }
 
-/// The outputs of a block.
 pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128> {
     let get = |name: &str| row.get(name);
     match block {

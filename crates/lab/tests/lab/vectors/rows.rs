@@ -45,7 +45,6 @@ impl Row {
         Cage(self.of(name).to_vec())
     }
 
-    /// The row with other numbers of a port.
     pub(super) fn map(&self, name: &str, change: impl FnMut(i128) -> i128) -> Self {
         let (first, count) = self.names[name];
         let mut changed = self.clone();
@@ -129,7 +128,6 @@ pub(super) fn scaled(a: i128, places: i128) -> i128 {
     }
 }
 
-/// Constants of the manifest.
 pub(super) struct Constants {
     pub(super) fraction: i128,
     shifts: Vec<i128>,
@@ -175,20 +173,17 @@ impl Ports {
 
     /// A row from its hexadecimal digits.
     pub(super) fn row(&self, text: &str) -> Row {
-        let digits = text
-            .chars()
-            .map(|digit| digit.to_digit(16).expect("hexadecimal"));
-        let all: Vec<bool> = digits
-            .flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1 == 1))
-            .collect();
+        let digits = text.chars().map(|digit| digit.to_digit(16).unwrap());
+        let bits = digits.flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1));
+        let bits: Vec<i128> = bits.map(i128::from).collect();
         let width: u32 = self.numbers.iter().map(|(_, bits, _)| bits).sum();
-        let (padding, mut all) = all.split_at(all.len() - width as usize);
-        assert!(padding.len() < 4 && !padding.contains(&true), "{text}");
+        let (padding, mut rest) = bits.split_at(bits.len() - width as usize);
+        assert!(padding.len() < 4 && !padding.contains(&1), "{text}");
         let number = |(_, bits, signed): &Number| {
-            let (part, rest) = all.split_at(*bits as usize);
-            all = rest;
-            let value = part.iter().fold(0i128, |v, &bit| v << 1 | i128::from(bit));
-            value - (i128::from(*signed && part[0]) << bits)
+            let (part, after) = rest.split_at(*bits as usize);
+            rest = after;
+            let value = part.iter().fold(0, |v, bit| v << 1 | bit);
+            value - (i128::from(*signed) * part[0] << bits)
         };
         Row {
             names: self.names.clone(),
@@ -197,10 +192,8 @@ impl Ports {
     }
 }
 
-/// The rows of a block.
 pub(super) struct BlockRows {
     pub(super) name: String,
-    /// Inputs and outputs.
     pub(super) ports: [Ports; 2],
     pub(super) rows: Vec<[Row; 2]>,
 }
@@ -227,7 +220,6 @@ pub(super) fn constants_of(manifest: &Value) -> Constants {
     }
 }
 
-/// A block's rows.
 pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
     let ports = ["in", "out"].map(|side| Ports::new(&block[side]));
     let row = |line: Value| {
