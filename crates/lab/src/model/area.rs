@@ -231,17 +231,9 @@ fn caches(
 
 #[cfg(test)]
 mod tests {
-    use hwmodel::cost::{CostTable, Costing, Goal, Line};
+    use hwmodel::cost::Line;
 
     use super::*;
-
-    fn prices() -> Prices {
-        Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        }
-    }
 
     #[test]
     fn tags_by_hand() {
@@ -257,7 +249,7 @@ mod tests {
     /// bits 128, and one of 8 bits 32.
     #[test]
     fn parts_by_hand() {
-        let prices = prices();
+        let prices = Prices::shipped().unwrap();
         let mut area = DesignArea::default();
         area.units("centre", ("add", 32), 3, 2, &prices).unwrap();
         area.register_bits("contexts", 20, &prices).unwrap();
@@ -285,7 +277,7 @@ mod tests {
     fn a_divider_of_many_cycles_has_no_pipeline() {
         let hardware = Hardware::preset("paper").unwrap();
         let rays = RayHardware::shipped();
-        let area = of_rays(&rays, &hardware, &prices()).unwrap();
+        let area = of_rays(&rays, &hardware, &Prices::shipped().unwrap()).unwrap();
         let lines = &area.registers.lines;
         assert!(lines.iter().all(|line| !line.name.contains("divide")));
         let times = |lines: &[Line], name: &str| {

@@ -25,6 +25,18 @@ pub struct Prices {
     pub goal: Goal,
 }
 
+impl Prices {
+    /// The tables that ship, for a small area.
+    pub fn shipped() -> Result<Self, CostError> {
+        Ok(Self {
+            table: CostTable::load_shipped()?,
+            costing: Costing::default(),
+            goal: Goal::Area,
+        })
+    }
+}
+
+/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     pub operations: Breakdown,
@@ -192,11 +204,7 @@ mod tests {
     /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
     #[test]
     fn shifts_that_vary_are_billed_and_wires_are_not() {
-        let prices = Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        };
+        let prices = Prices::shipped().unwrap();
         let mut probes = (Counter::new(), ShiftProbe::new());
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);

@@ -229,8 +229,6 @@ fn cost_of(
 
 #[cfg(test)]
 mod tests {
-    use hwmodel::cost::{CostTable, Costing, Goal};
-
     use super::*;
 
     /// Ten reads of attributes and two lines of them, nothing else.
@@ -246,11 +244,7 @@ mod tests {
             attribute_misses: 2,
             error: CoverageError::default(),
         };
-        let prices = Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        };
+        let prices = Prices::shipped().unwrap();
         let report = price(&run, 0, &hardware, &RayHardware::shipped(), &prices).unwrap();
         // 64 bits from 8 KB are 10 pJ; a line of 64 bytes is eight words of 1950 pJ.
         assert!((report.cost.on_chip.total - 100.0).abs() < 1e-9);

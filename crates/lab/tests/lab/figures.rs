@@ -1,7 +1,6 @@
 //! Figures of the hardware model, computed again without the model. The tables are read as plain
 //! TOML, a probe of this file counts the machine's events, and the rest is arithmetic.
 
-use hwmodel::cost::{CostTable, Costing, Goal};
 use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
@@ -213,11 +212,7 @@ fn figures_of_a_terrain() {
     hardware.units.insert(OpClass::Add, unit(3, 32));
     (hardware.node_cache.bytes, hardware.node_cache.ways) = (1024, 2);
     hardware.stack.entries = 8;
-    let prices = Prices {
-        table: CostTable::load_shipped().unwrap(),
-        costing: Costing::default(),
-        goal: Goal::Area,
-    };
+    let prices = Prices::shipped().unwrap();
     let view = graph.view();
     let counted = frame::count(&graph, &setup, &hardware, Overflow::Trap).unwrap();
     let (_, simulated) =

@@ -19,7 +19,7 @@ pub mod space;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow};
@@ -131,6 +131,9 @@ type OrReason<T> = Result<T, String>;
 /// Most bytes of all recorded turns.
 const MOST_RECORDED: usize = 1 << 30;
 
+/// Turns that are the same on every hardware, and the samples that differ from the serial machine's.
+type Turns = (Recording, u64);
+
 struct Shared<'a> {
     of: Explored<'a>,
     /// By side of the picture.
@@ -138,10 +141,7 @@ struct Shared<'a> {
     /// By drawing settings.
     setups: BTreeMap<String, OrReason<(FrameSetup, Format)>>,
     /// The machine's counts, by [`machine_key`].
-    counted: BTreeMap<String, OrReason<Counted>>,
-    /// Turns that are the same on every hardware, and the samples that differ from the serial machine's, by
-    /// [`machine_key`].
-    turns: BTreeMap<String, (Recording, u64)>,
+    counted: BTreeMap<String, OrReason<(Counted, Option<Turns>)>>,
     /// Sizes of the node cache, and the rays in every order, by [`ray_key`].
     rays: BTreeMap<String, (Vec<u32>, Vec<RayRun>)>,
     ray_hardware: RayHardware,
@@ -176,11 +176,8 @@ pub fn explore<E: From<ModelError> + Send>(
         groups[place].push(at);
     }
     progress.begin("points", points.len() as u64);
-    let in_order = Mutex::new(InOrder {
-        waiting: BTreeMap::new(),
-        next: 0,
-        sink,
-    });
+    // What waits for points before it, the next point, and the sink.
+    let in_order = Mutex::new((BTreeMap::new(), 0, sink));
     // One after the other, so that the points for which the sink waits come first.
     let done = groups.into_iter().par_bridge().try_for_each(|group| {
         let simulated = shared.simulate(&points[group[0]])?;
@@ -191,34 +188,19 @@ pub fn explore<E: From<ModelError> + Send>(
                     reason: reason.clone(),
                 },
             };
-            let mut in_order = in_order
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            in_order.put(at, outcome, points)?;
+            let mut in_order = in_order.lock().unwrap_or_else(PoisonError::into_inner);
+            let (waiting, next, sink) = &mut *in_order;
+            waiting.insert(at, outcome);
+            while let Some(outcome) = waiting.remove(next) {
+                *next += 1;
+                sink(&points[*next - 1], outcome)?;
+            }
             progress.advance(1);
         }
         Ok(())
     });
     progress.end();
     done
-}
-
-struct InOrder<S> {
-    waiting: BTreeMap<usize, PointOutcome>,
-    next: usize,
-    sink: S,
-}
-
-impl<E, S: FnMut(&Point, PointOutcome) -> Result<(), E>> InOrder<S> {
-    fn put(&mut self, at: usize, outcome: PointOutcome, points: &[Point]) -> Result<(), E> {
-        self.waiting.insert(at, outcome);
-        while let Some(outcome) = self.waiting.remove(&self.next) {
-            let point = &points[self.next];
-            self.next += 1;
-            (self.sink)(point, outcome)?;
-        }
-        Ok(())
-    }
 }
 
 impl<'a> Shared<'a> {
@@ -233,7 +215,6 @@ impl<'a> Shared<'a> {
             exact: BTreeMap::new(),
             setups: BTreeMap::new(),
             counted: BTreeMap::new(),
-            turns: BTreeMap::new(),
             rays: BTreeMap::new(),
             ray_hardware: RayHardware::shipped(),
         };
@@ -269,61 +250,42 @@ impl<'a> Shared<'a> {
                 sizes.push(bytes);
             }
         }
-        let machines: Vec<_> = machines.into_iter().collect();
-        let is_recorded = |point: &&Point| {
+        let is_recorded = |point: &&&Point| {
             let organisation = point.hardware.organisation;
             organisation.stack != StackHolds::Children && !point.hardware.sequential
         };
-        let recorded = machines.iter().map(|(_, point)| *point);
-        let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
+        let most_bytes = MOST_RECORDED / machines.values().filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
-            let hardware = &point.hardware;
             let draw = || -> OrReason<_> {
                 let (setup, _) = shared.setup(point)?;
-                let counted = frame::count(of.graph, setup, hardware, of.overflow)
+                let counted = frame::count(of.graph, setup, &point.hardware, of.overflow)
                     .map_err(|error| error.to_string())?;
                 let view = of.graph.view();
                 // A failure here recurs in the simulation and is reported there.
-                let kind = hardware.organisation;
+                let kind = point.hardware.organisation;
                 let turns = frame::record_turns(&view, setup, kind, of.overflow, most_bytes);
                 let turns = turns.ok().flatten();
                 let turns = turns.map(|(frame, turns)| (turns, counted.differing(&frame)));
                 Ok((counted, turns))
             };
-            match draw() {
-                Ok((counted, turns)) => (key, Ok(counted), turns),
-                Err(reason) => (key, Err(reason), None),
-            }
+            (key, draw())
         };
-        let drawn: Vec<_> = machines.into_par_iter().map(count).collect();
+        let counted = machines.into_par_iter().map(count).collect();
         let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
         let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
-            let Ok((setup, _)) = shared.setup(point) else {
-                return Ok(None);
-            };
-            let exact = shared.exact(point);
+            let (setup, _) = shared.setup(point).ok()?;
+            let exact = &shared.exact[&point.drawing.size];
             let cast = |&order: &RayOrder| {
                 ray_caster::cast(of.graph, setup, &point.hardware, &sizes, order, exact)
             };
-            let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>()?;
-            Ok(Some((key, (sizes, runs))))
+            let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>();
+            Some(runs.map(|runs| (key, (sizes, runs))))
         };
-        let casts: Vec<_> = casts.into_iter().collect();
-        let rays: Vec<_> = casts
-            .into_par_iter()
-            .map(cast)
-            .collect::<Result<_, ModelError>>()?;
-        for (key, counted, turns) in drawn {
-            shared.turns.extend(turns.map(|turns| (key.clone(), turns)));
-            shared.counted.insert(key, counted);
-        }
-        shared.rays = rays.into_iter().flatten().collect();
+        let rays = casts.into_par_iter().filter_map(cast);
+        let rays = rays.collect::<Result<_, ModelError>>()?;
+        (shared.counted, shared.rays) = (counted, rays);
         progress.end();
         Ok(shared)
-    }
-
-    fn exact(&self, point: &Point) -> &Frame {
-        &self.exact[&point.drawing.size]
     }
 
     fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
@@ -333,22 +295,23 @@ impl<'a> Shared<'a> {
             .map_err(String::clone)
     }
 
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted)> {
+    /// A point's frame as the serial machine draws it, and its turns.
+    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted, Option<&Turns>)> {
         let (setup, format) = self.setup(point)?;
         let counted = self.counted[&machine_key(point)].as_ref();
-        Ok((setup, format, counted.map_err(String::clone)?))
+        let (counted, turns) = counted.map_err(String::clone)?;
+        Ok((setup, format, counted, turns.as_ref()))
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
     fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
-        let (setup, _, counted) = match self.drawn(point) {
+        let (setup, _, counted, turns) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
         let (hardware, overflow) = (&point.hardware, self.of.overflow);
         let view = self.of.graph.view();
         // Recorded turns do not keep the order of their steps.
-        let turns = self.turns.get(&machine_key(point));
         let report = match turns.filter(|_| !hardware.sequential) {
             Some((turns, differing)) => {
                 frame::replay(turns, &view, setup, hardware).map(|cycles| (cycles, *differing))
@@ -370,12 +333,12 @@ impl<'a> Shared<'a> {
         point: &Point,
         (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
-        let (setup, format, counted) = match self.drawn(point) {
+        let (setup, format, counted, _) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };
         let (graph, hardware, prices) = (self.of.graph, &point.hardware, self.of.prices);
-        let exact = self.exact(point);
+        let exact = &self.exact[&point.drawing.size];
         let light = LightDesign::price(graph, setup, counted, cycles, hardware, prices)?;
         let (sizes, runs) = &self.rays[&ray_key(point)];
         let bytes = hardware.node_cache.bytes;

@@ -9,7 +9,7 @@ use shiftvox::whole::{self, WholeError};
 
 pub(super) const MANIFEST: &str = "manifest.json";
 
-fn failed(path: &Path, source: io::Error) -> VectorsError {
+pub(super) fn failed(path: &Path, source: io::Error) -> VectorsError {
     VectorsError::Store(WholeError::Io {
         path: path.to_owned(),
         source,

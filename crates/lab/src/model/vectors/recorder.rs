@@ -1,7 +1,7 @@
 //! A probe that writes the inputs and outputs of blocks, and the events of the ports to memories, as lines of JSON.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use hwmodel::cycles::StackHolds;
@@ -9,10 +9,10 @@ use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
 use super::blocks::{Description, Descriptions, absence, describe};
+use super::folder::failed;
 use super::ports::Ports;
 use shiftvox::machine::{Block, NumberSpan, Port};
 use shiftvox::project::FrameSetup;
-use shiftvox::whole::WholeError;
 
 pub(super) const TURNS: &str = "turns.jsonl";
 
@@ -41,28 +41,17 @@ struct Lines {
 
 impl Lines {
     fn create(path: PathBuf) -> Result<Self, VectorsError> {
-        match File::create(&path) {
-            Ok(file) => Ok(Self {
-                path,
-                file: BufWriter::new(file),
-            }),
-            Err(source) => Err(WholeError::Io { path, source }.into()),
-        }
-    }
-
-    fn checked(&self, result: io::Result<()>) -> Result<(), VectorsError> {
-        let path = self.path.clone();
-        result.map_err(|source| WholeError::Io { path, source }.into())
+        let file = File::create(&path).map_err(|e| failed(&path, e))?;
+        let file = BufWriter::new(file);
+        Ok(Self { path, file })
     }
 
     fn write(&mut self, line: &str) -> Result<(), VectorsError> {
-        let written = writeln!(self.file, "{line}");
-        self.checked(written)
+        writeln!(self.file, "{line}").map_err(|e| failed(&self.path, e))
     }
 
     fn finish(&mut self) -> Result<(), VectorsError> {
-        let flushed = self.file.flush();
-        self.checked(flushed)
+        self.file.flush().map_err(|e| failed(&self.path, e))
     }
 }
 
@@ -223,11 +212,8 @@ impl Turns {
                 row.ok_or(VectorsError::Misfit(TURNS))?
             }
             false => {
-                let bits = |signal: &Signal| signal.kind.bits(format);
-                let all = data
-                    .iter()
-                    .fold(0, |all, of| all << bits(of) | of.value as u64);
-                format!("{all:x}")
+                let join = |all, of: &Signal| all << of.kind.bits(format) | of.value as u64;
+                format!("{:x}", data.iter().fold(0, join))
             }
         };
         self.turns += u64::from(port == Port::Made || port == Port::Pop && self.stacks_records);

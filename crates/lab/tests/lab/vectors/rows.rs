@@ -45,12 +45,12 @@ impl Row {
         Cage(self.of(name).to_vec())
     }
 
-    pub(super) fn map(&self, name: &str, change: impl FnMut(i128) -> i128) -> Self {
+    pub(super) fn map(&self, name: &str, mut change: impl FnMut(i128) -> i128) -> Self {
         let (first, count) = self.names[name];
         let mut changed = self.clone();
-        let values = &mut changed.values[first..first + count];
-        let new: Vec<i128> = values.iter().copied().map(change).collect();
-        values.copy_from_slice(&new);
+        for value in &mut changed.values[first..first + count] {
+            *value = change(*value);
+        }
         changed
     }
 }
