@@ -212,7 +212,7 @@ impl Turns {
                 row.ok_or(VectorsError::Misfit(TURNS))?
             }
             false => {
-                let join = |all, of: &Signal| all << of.kind.bits(format) | of.value as u64;
+                let join = |all: u64, of: &Signal| all << of.kind.bits(format) | of.value as u64;
                 format!("{:x}", data.iter().fold(0, join))
             }
         };
