@@ -11,14 +11,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
-use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
-use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, stack_bits};
 use super::fill_bits::fill_store_bits;
+use super::frame::Counted;
 use super::range::Range;
 use super::ray_cycles::{self, RayHardware};
 use super::record::context_bits;
@@ -27,30 +26,22 @@ use shiftvox::project::FrameSetup;
 /// Area of a design, NAND2 equivalents, line by line.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct DesignArea {
-    /// Of units that compute.
     pub units: Breakdown,
-    /// Of pipelines and contexts.
     pub registers: Breakdown,
-    /// Of memories on the chip.
     pub memories: Breakdown,
-    /// Of control.
     pub control: Breakdown,
     /// All of it: the middle of its range.
     pub total: f64,
-    /// Its low end.
     pub low: f64,
-    /// Its high end.
     pub high: f64,
 }
 
 impl DesignArea {
-    /// All of it.
     #[must_use]
     pub fn range(&self) -> Range {
         Range::new((self.total, self.low, self.high))
     }
 
-    /// Adds control, and the parts up.
     fn finish(mut self, prices: &Prices) -> Result<Self, CostError> {
         let share = prices.table.area("control", 1, prices.goal)?;
         let logic = self.units.total + self.registers.total;
@@ -64,13 +55,14 @@ impl DesignArea {
     }
 
     /// Adds units with their pipelines: `depth` results on their way in each.
-    fn units(&mut self, name: &str, of: Units<'_>, prices: &Prices) -> Result<(), CostError> {
-        let Units {
-            operation,
-            width,
-            count,
-            depth,
-        } = of;
+    fn units(
+        &mut self,
+        name: &str,
+        (operation, width): (&str, u32),
+        count: u64,
+        depth: u64,
+        prices: &Prices,
+    ) -> Result<(), CostError> {
         let each = prices.table.area(operation, width, prices.goal)?;
         self.units.push(name, operation, width, count, each);
         if depth > 0 {
@@ -82,7 +74,6 @@ impl DesignArea {
         Ok(())
     }
 
-    /// Adds registers of so many bits.
     fn register_bits(&mut self, name: &str, bits: u64, prices: &Prices) -> Result<(), CostError> {
         let each = prices.table.area("register", REGISTER_BITS, prices.goal)?;
         let registers = bits.div_ceil(u64::from(REGISTER_BITS));
@@ -91,7 +82,6 @@ impl DesignArea {
         Ok(())
     }
 
-    /// Adds a memory of so many bits, if there are any.
     fn memory(&mut self, name: &str, bits: u64, prices: &Prices) -> Result<(), CostError> {
         if bits > 0 {
             let each = prices.table.area("sram_bit", 1, prices.goal)?;
@@ -100,29 +90,18 @@ impl DesignArea {
         Ok(())
     }
 
-    /// Adds a cache: its lines and their tags.
     fn cache(&mut self, name: &str, cache: &Cache, prices: &Prices) -> Result<(), CostError> {
         self.memory(name, 8 * u64::from(cache.bytes), prices)?;
         self.memory(&format!("{name}, tags"), tag_bits(cache), prices)
     }
 }
 
-/// Units of one kind.
-struct Units<'a> {
-    operation: &'a str,
-    width: u32,
-    count: u64,
-    depth: u64,
-}
-
 /// Registers of contexts are billed by bytes.
 const REGISTER_BITS: u32 = 8;
-/// Bits of an address in outer memory.
 const ADDRESS_BITS: u32 = 32;
 /// Bits of a ray in its context. Three words each: slopes, planes' constants, corner, next direction. A word each: entry,
 /// exit, exit of the parent, side. Then node, mask, two octants, level.
 const RAY_BITS: u64 = 32 * (3 + 3 + 3 + 4 + 3) + 32 + 8 + 3 + 3 + 5;
-/// Bits of a brick's voxels in a ray's context, and of their place.
 const BRICK_BITS: u64 = 64 + 32;
 
 /// Bits beside a cache's lines: the rest of the address, whether the line is
@@ -135,109 +114,80 @@ pub fn tag_bits(cache: &Cache) -> u64 {
     lines * u64::from(ADDRESS_BITS.saturating_sub(found) + 1 + turn)
 }
 
-/// Results on their way in a unit.
 fn depth(unit: &cycles::Unit) -> u64 {
     u64::from(unit.latency.div_ceil(unit.interval.max(1)))
 }
 
-/// The counts of a frame on the light hardware.
-#[derive(Debug, Clone, Copy)]
-pub struct LightFrame<'a> {
-    /// Operations.
-    pub counter: &'a Counter,
-    /// Shifts.
-    pub shifts: &'a ShiftProbe,
-    /// Cycles.
-    pub cycles: &'a CycleReport,
-    /// The view.
-    pub setup: &'a FrameSetup,
-    /// Bits of a stack's entry.
-    pub record_bits: u32,
-}
-
 /// Area of the light hardware, as far as the frame uses it.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn light(
-    frame: LightFrame<'_>,
+    counted: &Counted,
+    cycles: &CycleReport,
+    setup: &FrameSetup,
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
     let mut area = DesignArea::default();
     let lanes = u64::from(hardware.lanes);
-    let used: BTreeSet<(Stage, OpClass)> = frame
-        .counter
-        .cells()
-        .map(|cell| (cell.stage, cell.class))
-        .collect();
+    let cells = counted.counter.cells();
+    let used: BTreeSet<(Stage, OpClass)> = cells.map(|cell| (cell.stage, cell.class)).collect();
+    let report_of = |stage: Stage| cycles.stages.iter().find(|of| of.stage == stage);
     for (stage, class) in used {
         let Some(unit) = hardware.unit(stage, class) else {
             continue;
         };
-        let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
-        let most = report.map_or(u64::MAX, |of| of.most_passes[class as usize]);
-        let count = lanes * u64::from(unit.count).min(most.max(1));
-        let (operation, width, count) = match (stage, class) {
+        let most = report_of(stage).map_or(u64::MAX, |of| of.most_passes[class as usize]);
+        let (operation, count) = match (stage, class) {
             // Of eight constants: one inversion of the octant.
-            (Stage::Order, OpClass::Logic) => ("invert", unit.width, lanes),
-            _ => (operation_of(class, ShiftUnits::Variable), unit.width, count),
+            (Stage::Order, OpClass::Logic) => ("invert", lanes),
+            _ => (
+                operation_of(class, ShiftUnits::Variable),
+                lanes * u64::from(unit.count).min(most.max(1)),
+            ),
         };
-        let of = Units {
-            operation,
-            width,
-            count,
-            depth: depth(&unit),
-        };
-        area.units(stage.name(), of, prices)?;
+        let kind = (operation, unit.width);
+        area.units(stage.name(), kind, count, depth(&unit), prices)?;
     }
-    for ((stage, width), times) in shifters(&frame, hardware, prices) {
-        let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
+    let shift = operation_of(OpClass::Shift, ShiftUnits::Variable);
+    for ((stage, width), times) in shifters(counted, hardware, prices) {
         // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
         let cycles_of = |of: &StageReport| match hardware.sequential {
             true => of.alone,
             false => of.busy,
         };
-        let busy = report.map_or(1, cycles_of).max(1);
-        let of = Units {
-            operation: operation_of(OpClass::Shift, ShiftUnits::Variable),
-            width,
-            count: lanes * times.div_ceil(busy),
-            depth: 0,
-        };
-        area.units(&format!("{}, shifters", stage.name()), of, prices)?;
+        let busy = report_of(stage).map_or(1, cycles_of).max(1);
+        let name = format!("{}, shifters", stage.name());
+        let count = lanes * times.div_ceil(busy);
+        area.units(&name, (shift, width), count, 0, prices)?;
     }
-    let each = context_bits(frame.setup, frame.record_bits, hardware.organisation);
+    let record_bits = counted.record_bits();
+    let each = context_bits(setup, record_bits, hardware.organisation);
     let contexts = hardware.all_contexts() * each;
     area.register_bits("records of the contexts", contexts, prices)?;
-    area.memory(
-        "record stack",
-        stack_bits(hardware, frame.record_bits),
-        prices,
-    )?;
-    area.memory(
-        "fill vectors",
-        fill_store_bits(frame.setup, hardware),
-        prices,
-    )?;
-    area.memory("accumulators", accumulator_bits(frame.setup), prices)?;
+    for (name, bits) in [
+        ("record stack", stack_bits(hardware, record_bits)),
+        ("fill vectors", fill_store_bits(setup, hardware)),
+        ("accumulators", accumulator_bits(setup)),
+    ] {
+        area.memory(name, bits, prices)?;
+    }
     caches(area, hardware, prices)
 }
 
 /// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
 fn shifters(
-    frame: &LightFrame<'_>,
+    counted: &Counted,
     hardware: &Hardware,
     prices: &Prices,
 ) -> BTreeMap<(Stage, u32), u64> {
     match prices.costing.shifts {
-        ShiftUnits::Wires if hardware.sequential => frame.shifts.variable_in_steps(),
-        ShiftUnits::Wires => frame.shifts.variable(),
+        ShiftUnits::Wires if hardware.sequential => counted.shifts.variable_in_steps(),
+        ShiftUnits::Wires => counted.shifts.variable(),
         ShiftUnits::Variable => {
-            let cells = frame
+            let mut cells = counted
                 .counter
                 .sum_by(|cell| (cell.class, cell.stage, cell.bits));
-            let shifts = cells.into_iter().filter(|(key, _)| key.0 == OpClass::Shift);
+            cells.retain(|key, _| key.0 == OpClass::Shift);
+            let shifts = cells.into_iter();
             shifts
                 .map(|((_, stage, bits), times)| ((stage, bits), times))
                 .collect()
@@ -245,10 +195,6 @@ fn shifters(
     }
 }
 
-/// Area of the ray caster.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn of_rays(
     rays: &RayHardware,
     hardware: &Hardware,
@@ -260,35 +206,19 @@ pub fn of_rays(
         let Some((operation, _)) = ray_cycles::operation(step) else {
             continue;
         };
-        let of = Units {
-            operation,
-            width: unit.width,
-            count: lanes * u64::from(unit.count),
-            // An iterative unit keeps its remainder in registers that its row has.
-            depth: if unit.interval > 1 { 0 } else { depth(unit) },
-        };
-        area.units(step.name(), of, prices)?;
+        let count = lanes * u64::from(unit.count);
+        // An iterative unit keeps its remainder in registers that its row has.
+        let depth = if unit.interval > 1 { 0 } else { depth(unit) };
+        area.units(step.name(), (operation, unit.width), count, depth, prices)?;
     }
-    let contexts = lanes * u64::from(rays.contexts);
-    let brick = if hardware.organisation.bricks {
-        BRICK_BITS
-    } else {
-        0
-    };
-    area.register_bits(
-        "rays of the contexts",
-        contexts * (RAY_BITS + brick),
-        prices,
-    )?;
-    area.memory(
-        "stacks of rays",
-        lanes * ray_cycles::stack_bits(rays),
-        prices,
-    )?;
+    let bits = RAY_BITS + u64::from(hardware.organisation.bricks) * BRICK_BITS;
+    let contexts = lanes * u64::from(rays.contexts) * bits;
+    area.register_bits("rays of the contexts", contexts, prices)?;
+    let stacks = lanes * ray_cycles::stack_bits(rays);
+    area.memory("stacks of rays", stacks, prices)?;
     caches(area, hardware, prices)
 }
 
-/// Adds the caches and control.
 fn caches(
     mut area: DesignArea,
     hardware: &Hardware,
@@ -301,17 +231,9 @@ fn caches(
 
 #[cfg(test)]
 mod tests {
-    use hwmodel::cost::{CostTable, Costing, Goal};
+    use hwmodel::cost::Line;
 
     use super::*;
-
-    fn prices() -> Prices {
-        Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        }
-    }
 
     #[test]
     fn tags_by_hand() {
@@ -327,60 +249,45 @@ mod tests {
     /// bits 128, and one of 8 bits 32.
     #[test]
     fn parts_by_hand() {
-        let prices = prices();
+        let prices = Prices::shipped().unwrap();
         let mut area = DesignArea::default();
-        let of = Units {
-            operation: "add",
-            width: 32,
-            count: 3,
-            depth: 2,
-        };
-        area.units("centre", of, &prices).unwrap();
+        area.units("centre", ("add", 32), 3, 2, &prices).unwrap();
         area.register_bits("contexts", 20, &prices).unwrap();
         area.memory("stack", 1000, &prices).unwrap();
         area.memory("nothing", 0, &prices).unwrap();
         let area = area.finish(&prices).unwrap();
-        assert!((area.units.total - 3.0 * 232.9).abs() < 1e-9);
-        assert!((area.registers.total - (6.0 * 128.0 + 3.0 * 32.0)).abs() < 1e-9);
-        // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2.
-        assert!(
-            (area.memories.low - 236.3).abs() < 1e-9,
-            "{}",
-            area.memories.low
-        );
-        assert!(
-            (area.memories.high - 582.3).abs() < 1e-9,
-            "{}",
-            area.memories.high
-        );
         assert_eq!(area.memories.lines.len(), 1);
-        // 10 to 30 % of 698.7 + 864, rounded.
-        assert!(
-            (area.control.low - 156.3).abs() < 1e-9,
-            "{}",
-            area.control.low
-        );
         let low = 698.7 + 864.0 + 236.3 + 156.3;
-        assert!((area.low - low).abs() < 1e-6 && area.low < area.total && area.total < area.high);
+        for (found, expected) in [
+            (area.units.total, 3.0 * 232.9),
+            (area.registers.total, 6.0 * 128.0 + 3.0 * 32.0),
+            // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2.
+            (area.memories.low, 236.3),
+            (area.memories.high, 582.3),
+            // 10 to 30 % of 698.7 + 864, rounded.
+            (area.control.low, 156.3),
+            (area.low, low),
+        ] {
+            assert!((found - expected).abs() < 1e-6, "{found}, {expected}");
+        }
+        assert!(area.low < area.total && area.total < area.high);
     }
 
     #[test]
     fn a_divider_of_many_cycles_has_no_pipeline() {
         let hardware = Hardware::preset("paper").unwrap();
         let rays = RayHardware::shipped();
-        let area = of_rays(&rays, &hardware, &prices()).unwrap();
+        let area = of_rays(&rays, &hardware, &Prices::shipped().unwrap()).unwrap();
         let lines = &area.registers.lines;
         assert!(lines.iter().all(|line| !line.name.contains("divide")));
-        let adders = lines
-            .iter()
-            .find(|line| line.name.contains("float_add"))
-            .unwrap();
-        assert_eq!(adders.times, 4 * 2);
-        let stacks = area
-            .memories
-            .lines
-            .iter()
-            .find(|line| line.name == "stacks of rays");
-        assert_eq!(stacks.unwrap().times, 16 * 24 * 64);
+        let times = |lines: &[Line], name: &str| {
+            lines
+                .iter()
+                .find(|line| line.name.contains(name))
+                .unwrap()
+                .times
+        };
+        assert_eq!(times(lines, "float_add"), 4 * 2);
+        assert_eq!(times(&area.memories.lines, "stacks of rays"), 16 * 24 * 64);
     }
 }

@@ -9,31 +9,20 @@ use super::area::DesignArea;
 use super::cost::FrameCost;
 use super::range::{Range, Winner};
 
-/// A design and the cost of a frame on it.
 #[derive(Debug, Clone, Copy)]
 pub struct Design<'a> {
-    /// Energy and traffic.
     pub cost: &'a FrameCost,
-    /// Area.
     pub area: &'a DesignArea,
-    /// Cycles of a frame.
     pub cycles: u64,
-    /// Frames per second.
     pub frames_per_second: f64,
 }
 
-/// A figure of both designs.
 #[derive(Debug, Clone, Serialize)]
 pub struct ComparedLine {
-    /// Its name.
     pub what: &'static str,
-    /// Its unit.
     pub unit: &'static str,
-    /// Of the light hardware.
     pub light: Range,
-    /// Of the ray caster.
     pub ray_caster: Range,
-    /// Whether the ranges overlap.
     pub overlap: bool,
     /// The design with less, if they do not overlap.
     pub less: Winner,
@@ -108,8 +97,9 @@ mod tests {
     use super::*;
     use crate::model::cost::OuterTraffic;
 
-    fn cost(picojoules: f64, node_bits: u64) -> FrameCost {
-        FrameCost {
+    #[test]
+    fn by_hand() {
+        let cost = |picojoules: f64, node_bits: u64| FrameCost {
             operations: Breakdown {
                 total: picojoules,
                 low: picojoules / 2.0,
@@ -122,18 +112,14 @@ mod tests {
                 node_bits,
                 ..OuterTraffic::default()
             },
-        }
-    }
-
-    #[test]
-    fn by_hand() {
-        let costs = [cost(1e9, 8_000_000), cost(1e10, 800_000)];
+        };
         let area = DesignArea {
             total: 5.0,
             low: 5.0,
             high: 5.0,
             ..DesignArea::default()
         };
+        let costs = [cost(1e9, 8_000_000), cost(1e10, 800_000)];
         let design = |at: usize, cycles, frames_per_second| Design {
             cost: &costs[at],
             area: &area,
@@ -141,32 +127,39 @@ mod tests {
             frames_per_second,
         };
         let lines = lines(design(0, 4_000_000, 50.0), design(1, 2_000_000, 100.0));
-        let of = |what: &str| lines.iter().find(|line| line.what == what).unwrap();
         // A millijoule fifty times per second is 50 mW; ten of them a hundred times are 1 W. A megabyte fifty times per
-        // second; two bits per cycle.
-        for (what, light, ray_caster) in [
-            ("power at its own speed, without leakage", 0.05, 1.0),
+        // second; two bits per cycle. Energies differ tenfold, and their ranges fourfold either way.
+        let (own, slower) = (
+            "power at its own speed, without leakage",
+            "power at the slower one's speed, without leakage",
+        );
+        for (what, light, rival, low, less) in [
+            (own, 0.05, 1.0, 0.5, Winner::Light),
+            (slower, 0.05, 0.5, 0.25, Winner::Light),
             (
-                "power at the slower one's speed, without leakage",
+                "bandwidth at its own speed",
                 0.05,
-                0.5,
+                0.01,
+                0.01,
+                Winner::RayCaster,
             ),
-            ("bandwidth at its own speed", 0.05, 0.01),
-            ("bandwidth", 2.0, 0.4),
+            ("bandwidth", 2.0, 0.4, 0.4, Winner::RayCaster),
+            (
+                "energy of the frame",
+                1000.0,
+                10_000.0,
+                5000.0,
+                Winner::Light,
+            ),
+            ("area", 5.0, 5.0, 5.0, Winner::Neither),
         ] {
-            let line = of(what);
-            assert!((line.light.value - light).abs() < 1e-12, "{line:?}");
-            assert!(
-                (line.ray_caster.value - ray_caster).abs() < 1e-12,
-                "{line:?}"
-            );
+            let line = lines.iter().find(|line| line.what == what).unwrap();
+            let found = [line.light.value, line.ray_caster.value, line.ray_caster.low];
+            for (found, expected) in found.into_iter().zip([light, rival, low]) {
+                assert!((found - expected).abs() < 1e-9 * expected, "{line:?}");
+            }
+            let is_neither = less == Winner::Neither;
+            assert_eq!((line.less, line.overlap), (less, is_neither), "{line:?}");
         }
-        let power = of("power at its own speed, without leakage");
-        assert!((power.ray_caster.low - 0.5).abs() < 1e-12);
-        assert_eq!((power.less, power.overlap), (Winner::Light, false));
-        assert_eq!(of("bandwidth").less, Winner::RayCaster);
-        // Energies differ tenfold, and their ranges fourfold either way.
-        assert_eq!(of("energy of the frame").less, Winner::Light);
-        assert!(of("area").overlap);
     }
 }

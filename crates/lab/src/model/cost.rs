@@ -20,29 +20,32 @@ use shiftvox::project::FrameSetup;
 /// The tables, and choices that do not follow from counts.
 #[derive(Debug, Clone)]
 pub struct Prices {
-    /// Areas and energies.
     pub table: CostTable,
-    /// How shifts and spans are built.
     pub costing: Costing,
-    /// Small area or short delay of gates.
     pub goal: Goal,
+}
+
+impl Prices {
+    /// The tables that ship, for a small area.
+    pub fn shipped() -> Result<Self, CostError> {
+        Ok(Self {
+            table: CostTable::load_shipped()?,
+            costing: Costing::default(),
+            goal: Goal::Area,
+        })
+    }
 }
 
 /// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
-    /// Energy of the operations, pJ.
     pub operations: Breakdown,
-    /// Energy of the memories on the chip, pJ.
     pub on_chip: Breakdown,
-    /// Energy of outer memory, pJ.
     pub outer: Breakdown,
-    /// Traffic to outer memory.
     pub traffic: OuterTraffic,
 }
 
 impl FrameCost {
-    /// The sum, pJ.
     #[must_use]
     pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
@@ -51,7 +54,6 @@ impl FrameCost {
     }
 }
 
-/// Bits of all stacks.
 #[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
@@ -69,18 +71,14 @@ pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
 /// Traffic to outer memory, bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct OuterTraffic {
-    /// Lines of nodes, read.
     pub node_bits: u64,
-    /// Lines of attributes, read.
     pub attribute_bits: u64,
     /// Records without an entry on the stack: written, and read as many.
     pub spilled_bits: u64,
-    /// Pixels, written.
     pub pixel_bits: u64,
 }
 
 impl OuterTraffic {
-    /// All bits that are moved.
     #[must_use]
     pub fn bits(&self) -> u64 {
         self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
@@ -90,10 +88,6 @@ impl OuterTraffic {
 /// Bits of a word of outer memory. Neighbours share words.
 const OUTER_WORD_BITS: u32 = 64;
 
-/// Energy of traffic to outer memory, pJ, by purpose.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for (name, operation, bits) in [
@@ -112,9 +106,6 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
 
 /// Energy of a frame. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
 /// are written there and read back. Pixels are written there.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn frame_cost(
     counted: &Counted,
     cycles: &CycleReport,
@@ -144,15 +135,8 @@ pub fn frame_cost(
     accesses.remove(&Memory::Stack);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
     let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
-    let others = memory_energy_of(&accesses, widths, store, table)?;
-    for line in others.lines {
-        on_chip.push(
-            &line.name,
-            &line.operation,
-            line.width,
-            line.times,
-            line.each,
-        );
+    for of in memory_energy_of(&accesses, widths, store, table)?.lines {
+        on_chip.push(&of.name, &of.operation, of.width, of.times, of.each);
     }
     let traffic = OuterTraffic {
         node_bits: 8 * cycles.node_cache.bytes_in,
@@ -171,9 +155,6 @@ pub fn frame_cost(
 
 /// Energy of a stack of `bytes`, pJ. A record moves the bits that it holds:
 /// the stack is taken to be written and read field by field, in parallel.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn stack_energy(
     records: &RecordProbe,
     bytes: u64,
@@ -182,10 +163,8 @@ pub fn stack_energy(
     let mut sum = Breakdown::default();
     for kind in RecordKind::ALL {
         let (bits, accesses) = (records.bits().of(kind), records.of(kind));
-        for (operation, times) in [
-            ("sram_read", accesses.reads),
-            ("sram_write", accesses.writes),
-        ] {
+        let (reads, writes) = (accesses.reads, accesses.writes);
+        for (operation, times) in [("sram_read", reads), ("sram_write", writes)] {
             if times > 0 {
                 let each = table.memory_energy(operation, bytes, bits)?;
                 let name = format!("stack, {}", kind.name());
@@ -198,9 +177,6 @@ pub fn stack_energy(
 
 /// Energy of the operations, pJ: those of the counter, and of its shifts those
 /// that are no wires.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn operations_energy(
     counter: &Counter,
     shifts: &ShiftProbe,
@@ -228,11 +204,7 @@ mod tests {
     /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
     #[test]
     fn shifts_that_vary_are_billed_and_wires_are_not() {
-        let prices = Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        };
+        let prices = Prices::shipped().unwrap();
         let mut probes = (Counter::new(), ShiftProbe::new());
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);
@@ -245,25 +217,15 @@ mod tests {
         dp.add(word, word);
         let (counter, shifts) = probes;
         assert_eq!(counter.ops_of(OpClass::Shift), 10);
-        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
-        assert!(
-            (sum.total - (0.1 + 5.0 * 0.1334)).abs() < 1e-9,
-            "{}",
-            sum.total
-        );
-        let all = Costing {
-            shifts: ShiftUnits::Variable,
-        };
-        let prices = Prices {
-            costing: all,
-            ..prices
-        };
-        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
-        assert!(
-            (sum.total - (0.1 + 10.0 * 0.1334)).abs() < 1e-9,
-            "{}",
-            sum.total
-        );
+        for (shifts_are, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
+            let prices = Prices {
+                costing: Costing { shifts: shifts_are },
+                ..prices.clone()
+            };
+            let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+            let expected = 0.1 + billed * 0.1334;
+            assert!((sum.total - expected).abs() < 1e-9, "{}", sum.total);
+        }
     }
 
     /// 64 bits from 8 KB are 10 pJ, and so is writing them.
@@ -294,9 +256,6 @@ mod tests {
         let sum = stack_energy(&records, 8192, &table).unwrap();
         // Of the object 100 pJ twice; of the voxels 10 pJ three times and once.
         assert!((sum.total - (200.0 + 40.0)).abs() < 1e-9, "{}", sum.total);
-        // As the widest, all six accesses would be 100 pJ.
-        let widest = RecordBits::uniform(640);
-        assert_eq!(widest.widest(), bits.widest());
     }
 
     /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.

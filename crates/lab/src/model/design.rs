@@ -3,29 +3,21 @@
 use hwmodel::cycles::{CycleReport, Hardware};
 
 use super::ModelError;
-use super::area::{self, DesignArea, LightFrame};
+use super::area::{self, DesignArea};
 use super::clock::{self, ClockCheck};
 use super::cost::{self, FrameCost, Prices};
 use super::frame::{self, Counted};
 use shiftvox::graph::Graph;
 use shiftvox::project::FrameSetup;
 
-/// The costs of a frame on the light hardware.
 #[derive(Debug, Clone)]
 pub struct LightDesign {
-    /// Energy and traffic.
     pub cost: FrameCost,
-    /// Area.
     pub area: DesignArea,
-    /// Its units against its clock.
     pub clock: ClockCheck,
 }
 
 impl LightDesign {
-    /// Prices a frame.
-    ///
-    /// # Errors
-    /// When the cost tables lack a figure.
     pub fn price(
         graph: &Graph,
         setup: &FrameSetup,
@@ -35,16 +27,9 @@ impl LightDesign {
         prices: &Prices,
     ) -> Result<Self, ModelError> {
         let widths = frame::widths(setup, graph, hardware);
-        let used = LightFrame {
-            counter: &counted.counter,
-            shifts: &counted.shifts,
-            cycles,
-            setup,
-            record_bits: counted.record_bits(),
-        };
         Ok(Self {
             cost: cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?,
-            area: area::light(used, hardware, prices)?,
+            area: area::light(counted, cycles, setup, hardware, prices)?,
             clock: clock::check(&counted.counter, hardware, prices)?,
         })
     }

@@ -5,7 +5,6 @@ use hwmodel::cycles::{Hardware, Organisation};
 use shiftvox::frame::quadtree::nodes_to;
 use shiftvox::project::FrameSetup;
 
-/// Bits of a fill vector.
 const FILL_VECTOR_BITS: u32 = 4;
 /// Bits of a word that takes the place of the vectors of a node two levels above the samples and of all below it.
 const JOINED_FILL_BITS: u32 = 16;
@@ -17,7 +16,6 @@ fn fill_levels(setup: &FrameSetup, organisation: Organisation) -> (u32, bool) {
     (above, joined)
 }
 
-/// Bits that an access to the fill vectors moves.
 #[must_use]
 pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
     match fill_levels(setup, organisation).1 {

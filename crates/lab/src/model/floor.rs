@@ -19,29 +19,19 @@ use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{Graph, NodeLayout};
 
-/// The least traffic of a frame, and its energy.
 #[derive(Debug, Clone, Serialize)]
 pub struct Floor {
-    /// Lines of the nodes above visible voxels.
     pub node_lines: u64,
-    /// Lines of the attributes of visible voxels.
     pub attribute_lines: u64,
     /// Samples that show something.
     pub pixels: u64,
-    /// Energy of the nodes' lines, pJ.
     pub nodes_pj: Range,
-    /// Of the attributes' lines.
     pub attributes_pj: Range,
-    /// Of the pixels.
     pub pixels_pj: Range,
-    /// All of it.
     pub energy_pj: Range,
 }
 
 /// The bound for a frame, the node format and the cache lines of a hardware.
-///
-/// # Errors
-/// When the tables lack a figure.
 pub fn floor(
     graph: &Graph,
     frame: &Frame,

@@ -19,27 +19,18 @@ use shiftvox::picture::{Shading, lights};
 use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 use shiftvox::rays::Rays;
 
-/// A frame and its counts.
 #[derive(Debug)]
 pub struct Counted {
-    /// The picture, with records by sample.
     pub frame: Frame,
-    /// Operations and accesses.
     pub counter: Counter,
-    /// Where accesses went.
     pub memory: MemoryProbe,
-    /// Shifts by source line.
     pub shifts: ShiftProbe,
-    /// Stack traffic by kind of record.
     pub records: RecordProbe,
-    /// The machine's own counters.
     pub stats: Stats,
-    /// The fields of a record.
     pub fields: Vec<RecordField>,
 }
 
 impl Counted {
-    /// Bits of a record on the stack.
     #[must_use]
     pub fn record_bits(&self) -> u32 {
         record_bits(&self.fields)
@@ -52,14 +43,12 @@ impl Counted {
         found.map_or(0, |&(_, count)| count)
     }
 
-    /// Samples that differ in another picture.
     #[must_use]
     pub fn differing(&self, other: &Frame) -> u64 {
         let pairs = self.frame.voxel.iter().zip(&other.voxel);
         pairs.filter(|(a, b)| a != b).count() as u64
     }
 
-    /// Operations per record.
     #[must_use]
     pub fn operations_per_record(&self) -> f64 {
         self.counter.ops() as f64 / self.counter.records().max(1) as f64
@@ -78,7 +67,6 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
     }
 }
 
-/// A machine with an overflow policy and an organisation.
 fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
         overflow,
@@ -96,9 +84,6 @@ fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetu
 }
 
 /// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn count(
     graph: &Graph,
     setup: &FrameSetup,
@@ -132,9 +117,6 @@ pub fn count(
 }
 
 /// Draws a frame and counts operations alone.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn count_operations(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -166,7 +148,6 @@ pub fn simulate(
     Ok((frame, simulated))
 }
 
-/// A hardware, with the bits of a frame's records.
 fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) -> Hardware {
     let mut hardware = hardware.clone();
     hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
@@ -175,9 +156,6 @@ fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) 
 
 /// Records a frame's turns where they do not depend on the hardware, but for its organisation, and take no
 /// more than `most_bytes`. With them, the picture.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn record_turns(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -211,9 +189,6 @@ pub fn replay(
 }
 
 /// The view against which errors are measured: 64 bits, the exact rule.
-///
-/// # Errors
-/// When the camera sees nothing.
 pub fn true_setup(
     graph: &Graph,
     camera: &Camera,
@@ -228,16 +203,12 @@ pub fn true_setup(
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.
-///
-/// # Errors
-/// Never; the oracle's errors are the engines'.
 pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     Rays.render(graph, &setup.without_detail(), &mut frame)?;
     Ok(frame)
 }
 
-/// How far a frame is from the exact one.
 #[must_use]
 pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
     CoverageError::between(&frame.voxel, &exact.voxel)

@@ -1,84 +1,13 @@
 //! Plots of a report.
 
 use hwmodel::OpClass;
-use hwmodel::cycles::Cause;
 
-use super::cost::FrameCost;
 use super::report::Report;
-use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series, Stack};
+use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
-/// All plots.
 #[must_use]
 pub fn panels(report: &Report) -> Vec<Panel> {
-    vec![
-        operations(report),
-        cycles(report),
-        roofline(report),
-        energy(report),
-        miss_curve(report),
-    ]
-}
-
-fn stacked<N: Into<String>>(
-    title: &str,
-    parts: &[&str],
-    stacks: impl IntoIterator<Item = (N, Vec<f64>)>,
-) -> Panel {
-    let stack = |(name, values): (N, Vec<f64>)| Stack {
-        name: name.into(),
-        values,
-    };
-    Panel::Stacked {
-        title: title.to_owned(),
-        parts: parts.iter().map(|&part| part.to_owned()).collect(),
-        stacks: stacks.into_iter().map(stack).collect(),
-    }
-}
-
-/// Millions.
-fn mega(count: u64) -> f64 {
-    count as f64 / 1e6
-}
-
-fn operations(report: &Report) -> Panel {
-    let stages = report.operations_by_stage.iter().map(|of| {
-        let count = |class| of.operations.get(class).copied().unwrap_or(0);
-        let values = OpClass::ALL.iter().map(|class| mega(count(class)));
-        (of.stage.name(), values.collect())
-    });
-    let parts = OpClass::ALL.map(OpClass::name);
-    stacked("Operations by stage (millions)", &parts, stages)
-}
-
-fn cycles(report: &Report) -> Panel {
-    let used = report
-        .simulated
-        .cycles
-        .stages
-        .iter()
-        .filter(|of| of.visits > 0);
-    let stages = used.map(|of| {
-        let waits = Cause::ALL.iter().map(|&cause| mega(of.stalls.of(cause)));
-        let values = std::iter::once(mega(of.alone)).chain(waits);
-        (of.stage.name(), values.collect())
-    });
-    let mut parts = vec!["worked on"];
-    parts.extend(Cause::ALL.iter().map(|cause| cause.name()));
-    let title = "Cycles that records spend in each stage, and their waiting by cause (millions)";
-    stacked(title, &parts, stages)
-}
-
-fn energy(report: &Report) -> Panel {
-    let values = |cost: &FrameCost| {
-        let parts = [&cost.operations, &cost.on_chip, &cost.outer];
-        parts.map(|part| part.total / 1e6).to_vec()
-    };
-    let designs = [
-        ("light hardware", values(&report.cost)),
-        ("ray caster, 32-bit float", values(&report.ray_caster.cost)),
-    ];
-    let parts = ["operations", "memories on the chip", "outer memory"];
-    stacked("Energy of the frame (microjoules)", &parts, designs)
+    vec![roofline(report), miss_curve(report)]
 }
 
 /// Operations per cycle over operations per byte of outer memory.
@@ -91,10 +20,8 @@ fn roofline(report: &Report) -> Panel {
     let cache = &hardware.node_cache;
     let bytes_per_cycle = f64::from(cache.misses) * f64::from(cache.line_bytes)
         / f64::from(cache.hit_latency + cache.miss_latency).max(1.0);
-    let by_class = report
-        .operations
-        .iter()
-        .filter(|of| of.class != OpClass::Shift);
+    let by_class = report.operations.iter();
+    let by_class = by_class.filter(|of| of.class != OpClass::Shift);
     let operations = by_class.map(|of| of.times).sum::<u64>() as f64;
     // Spilled records are written and read.
     let lines = cycles.node_cache.bytes_in + cycles.attribute_cache.bytes_in;
@@ -132,10 +59,8 @@ fn miss_curve(report: &Report) -> Panel {
         scale,
     };
     let curve = |of: &super::report::MissCurve| {
-        let points = of
-            .points
-            .iter()
-            .map(|p| (p.bytes as f64, 100.0 * p.miss_rate));
+        let points = of.points.iter();
+        let points = points.map(|p| (p.bytes as f64, 100.0 * p.miss_rate));
         Series {
             dots: false,
             ..Series::curve(format!("lines of {} bytes", of.line_bytes), points)

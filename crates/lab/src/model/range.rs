@@ -3,19 +3,15 @@
 use hwmodel::cost::Breakdown;
 use serde::{Deserialize, Serialize};
 
-/// A figure and the ends of its range.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Range {
     /// The figure: the middle of its parts' ranges.
     pub value: f64,
-    /// Its low end.
     pub low: f64,
-    /// Its high end.
     pub high: f64,
 }
 
 impl Range {
-    /// A figure, and its ends.
     #[must_use]
     pub const fn new((value, low, high): (f64, f64, f64)) -> Self {
         Self { value, low, high }
@@ -50,13 +46,10 @@ impl std::ops::Add for Range {
     }
 }
 
-/// The design that needs less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Winner {
-    /// The light hardware.
     Light,
-    /// The ray caster.
     RayCaster,
     /// Neither: the ranges overlap.
     Neither,
@@ -88,7 +81,6 @@ impl Winner {
         }
     }
 
-    /// The winner in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

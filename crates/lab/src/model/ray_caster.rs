@@ -2,7 +2,7 @@
 //! the same node format and caches, counted and priced by the same tables.
 
 use hwmodel::Memory;
-use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
+use hwmodel::cost::{Breakdown, CostError, CostTable, Tally, energy_of_tallies};
 use hwmodel::cycles::{self, Hardware, HardwareError};
 use hwmodel::memory::{Cache, PIXEL_BITS};
 use serde::{Deserialize, Serialize};
@@ -18,37 +18,24 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, NodeLayout};
 use shiftvox::project::FrameSetup;
 
-/// The costs of the ray caster, its rays in one order.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
-    /// The order of its rays.
     pub order: RayOrder,
-    /// Steps by kind.
     pub counts: FloatRayCounts,
-    /// Hits of nodes in a cache like the hardware's.
     pub node_hits: u64,
-    /// Misses of nodes.
     pub node_misses: u64,
-    /// Misses of attributes in a cache like the hardware's.
     pub attribute_misses: u64,
-    /// Energy of the frame.
     pub cost: FrameCost,
     /// Lower bound on its cycles.
     pub cycles: RayCycles,
-    /// Its area, NAND2 equivalents.
     pub area: DesignArea,
-    /// Coverage against exact rays.
     pub error: CoverageError,
-    /// The orders that were tried, and the frame's energy in each, pJ.
     pub orders: Vec<OrderEnergy>,
 }
 
-/// Energy of a frame whose rays come in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnergy {
-    /// The order.
     pub order: RayOrder,
-    /// Energy, pJ.
     pub energy_pj: f64,
 }
 
@@ -71,9 +58,6 @@ fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
 }
 
 /// Casts a frame's rays beside node caches of several sizes. `exact` is the true picture.
-///
-/// # Errors
-/// When a size is no cache's.
 pub fn cast(
     graph: &Graph,
     setup: &FrameSetup,
@@ -121,9 +105,6 @@ pub fn cast(
 }
 
 /// Prices a run with the node cache of `hardware`, which was the `at`th that it had.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn price(
     run: &RayRun,
     at: usize,
@@ -164,9 +145,6 @@ pub fn price(
 
 /// Casts a frame's rays in an order, or, where none is chosen, in the order of
 /// least energy. `exact`: the true picture.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn measure(
     graph: &Graph,
     setup: &FrameSetup,
@@ -177,23 +155,13 @@ pub fn measure(
 ) -> Result<RayCasterReport, ModelError> {
     let tried = order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
     let sizes = [hardware.node_cache.bytes];
-    let runs = tried
-        .into_iter()
-        .map(|order| cast(graph, setup, hardware, &sizes, order, exact));
-    let runs = runs.collect::<Result<Vec<_>, _>>()?;
-    Ok(cheapest(
-        &runs,
-        0,
-        hardware,
-        &RayHardware::shipped(),
-        prices,
-    )?)
+    let cast = |order| cast(graph, setup, hardware, &sizes, order, exact);
+    let runs: Vec<RayRun> = tried.into_iter().map(cast).collect::<Result<_, _>>()?;
+    let rays = RayHardware::shipped();
+    Ok(cheapest(&runs, 0, hardware, &rays, prices)?)
 }
 
 /// Of runs in several orders, the one of least energy, priced as [`price`] does. There must be one.
-///
-/// # Errors
-/// When the cost tables lack a figure.
 pub fn cheapest(
     runs: &[RayRun],
     at: usize,
@@ -201,19 +169,14 @@ pub fn cheapest(
     rays: &RayHardware,
     prices: &Prices,
 ) -> Result<RayCasterReport, CostError> {
-    let mut best: Option<RayCasterReport> = None;
-    let mut orders = Vec::new();
-    for run in runs {
-        let report = price(run, at, hardware, rays, prices)?;
-        orders.extend(report.orders.iter().copied());
-        let energy = |report: &RayCasterReport| report.cost.total().value;
-        if best
-            .as_ref()
-            .is_none_or(|best| energy(&report) < energy(best))
-        {
-            best = Some(report);
-        }
-    }
+    let price = |run| price(run, at, hardware, rays, prices);
+    let reports: Vec<RayCasterReport> = runs.iter().map(price).collect::<Result<_, _>>()?;
+    let orders = reports.iter().flat_map(|report| report.orders.clone());
+    let orders = orders.collect();
+    let energy = |report: &RayCasterReport| report.cost.total().value;
+    let best = reports
+        .into_iter()
+        .min_by(|a, b| energy(a).total_cmp(&energy(b)));
     let Some(best) = best else {
         unreachable!("there is an order");
     };
@@ -227,54 +190,34 @@ fn cost_of(
     rays: &RayHardware,
     table: &CostTable,
 ) -> Result<FrameCost, CostError> {
-    let operations: Vec<Tally> = FloatStep::ALL
-        .iter()
-        .filter_map(|&step| {
-            let (name, width) = ray_cycles::operation(step)?;
-            Some(Tally {
-                operation: name.to_owned(),
-                width,
-                times: counts.of(step),
-            })
+    let tally = |&step: &FloatStep| {
+        let (name, width) = ray_cycles::operation(step)?;
+        Some(Tally {
+            operation: name.to_owned(),
+            width,
+            times: counts.of(step),
         })
-        .collect();
+    };
+    let operations: Vec<Tally> = FloatStep::ALL.iter().filter_map(tally).collect();
     let mut on_chip = Breakdown::default();
-    let sram = |bytes: u64| Store::Sram { bytes };
-    let nodes = sram(u64::from(hardware.node_cache.bytes));
-    let node_bits = 8 * hardware.node_cache.entry_bytes;
-    let attributes = sram(u64::from(hardware.attribute_cache.bytes));
-    let attribute_bits = 8 * hardware.attribute_cache.entry_bytes;
-    let stack = sram(ray_cycles::stack_bits(rays) / 8);
+    let cache = |of: &cycles::Cache| (u64::from(of.bytes), 8 * of.entry_bytes);
+    let nodes = cache(&hardware.node_cache);
+    let attributes = cache(&hardware.attribute_cache);
+    let stack = (ray_cycles::stack_bits(rays) / 8, ray_cycles::ASIDE_BITS);
     let (read, write) = ("sram_read", "sram_write");
-    let accesses = [
-        (Memory::Node, read, nodes, node_bits, FloatStep::NodeRead),
+    for (memory, operation, (bytes, bits), step) in [
+        (Memory::Node, read, nodes, FloatStep::NodeRead),
         (
             Memory::Attribute,
             read,
             attributes,
-            attribute_bits,
             FloatStep::AttributeRead,
         ),
-        (
-            Memory::Stack,
-            read,
-            stack,
-            ray_cycles::ASIDE_BITS,
-            FloatStep::StackRead,
-        ),
-        (
-            Memory::Stack,
-            write,
-            stack,
-            ray_cycles::ASIDE_BITS,
-            FloatStep::StackWrite,
-        ),
-    ];
-    for (memory, operation, store, bits, step) in accesses {
-        if let Store::Sram { bytes } = store {
-            let each = table.memory_energy(operation, bytes, bits)?;
-            on_chip.push(memory.name(), operation, bits, counts.of(step), each);
-        }
+        (Memory::Stack, read, stack, FloatStep::StackRead),
+        (Memory::Stack, write, stack, FloatStep::StackWrite),
+    ] {
+        let each = table.memory_energy(operation, bytes, bits)?;
+        on_chip.push(memory.name(), operation, bits, counts.of(step), each);
     }
     Ok(FrameCost {
         operations: energy_of_tallies(&operations, table)?,
@@ -286,8 +229,6 @@ fn cost_of(
 
 #[cfg(test)]
 mod tests {
-    use hwmodel::cost::{CostTable, Costing, Goal};
-
     use super::*;
 
     /// Ten reads of attributes and two lines of them, nothing else.
@@ -303,11 +244,7 @@ mod tests {
             attribute_misses: 2,
             error: CoverageError::default(),
         };
-        let prices = Prices {
-            table: CostTable::load_shipped().unwrap(),
-            costing: Costing::default(),
-            goal: Goal::Area,
-        };
+        let prices = Prices::shipped().unwrap();
         let report = price(&run, 0, &hardware, &RayHardware::shipped(), &prices).unwrap();
         // 64 bits from 8 KB are 10 pJ; a line of 64 bytes is eight words of 1950 pJ.
         assert!((report.cost.on_chip.total - 100.0).abs() < 1e-9);

@@ -24,36 +24,25 @@ pub const ASIDE_BITS: u32 = 64;
 /// Entries of a ray's stack: one a level.
 const ASIDE_ENTRIES: u64 = 24;
 
-/// The parts of a lane of the ray caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayHardware {
-    /// Rays in flight per lane.
     pub contexts: u32,
     /// Units by kind of step; minima and maxima are `float_compare`'s.
     pub units: BTreeMap<FloatStep, Unit>,
-    /// The rays' stacks.
     pub stack: RayStack,
 }
 
-/// The memory of a lane's stacks of rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayStack {
-    /// Accesses a cycle.
     pub ports: u32,
-    /// Cycles of a read.
     pub latency: u32,
 }
 
-/// The description that ships.
 const SHIPPED: &str = include_str!("ray_hardware.toml");
 
 impl RayHardware {
-    /// The description that ships.
-    ///
-    /// # Panics
-    /// Never: a test reads it.
     #[must_use]
     pub fn shipped() -> Self {
         match toml::from_str(SHIPPED) {
@@ -69,7 +58,6 @@ impl RayHardware {
     }
 }
 
-/// The kind of unit that does a step.
 #[must_use]
 pub fn unit_of(step: FloatStep) -> FloatStep {
     match step {
@@ -78,27 +66,19 @@ pub fn unit_of(step: FloatStep) -> FloatStep {
     }
 }
 
-/// Cycles of a frame of the ray caster: a lower bound.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCycles {
-    /// The largest of the bounds.
     pub cycles: u64,
-    /// Frames a second at the hardware's clock: an upper bound.
     pub frames_per_second: f64,
-    /// Cycles of each part, most first.
     pub bounds: Vec<Bound>,
 }
 
-/// Misses of the caches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RayMisses {
-    /// Lines of nodes.
     pub node: u64,
-    /// Lines of attributes.
     pub attribute: u64,
 }
 
-/// The bound for a frame's counts.
 #[must_use]
 pub fn cycles(
     counts: &FloatRayCounts,

@@ -13,26 +13,18 @@ use shiftvox::machine::{Machine, MachineOptions, NumberSpan, RecordNumber, prove
 use shiftvox::project::vector::cross;
 use shiftvox::project::{CageKind, EngineError, FrameSetup};
 
-/// A field of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RecordField {
-    /// Its name.
     #[serde(rename = "field")]
     pub name: &'static str,
-    /// Its bits, all parts of it together.
     pub bits: u32,
-    /// The poses in which a record has it.
     pub held: FieldPresence,
 }
 
-/// The records that have a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum FieldPresence {
-    /// Always.
     Always,
-    /// In clip space.
     InClipSpace,
-    /// In screen space.
     InScreenSpace,
     /// As a finest voxel, which has no children and needs no vertices.
     AsFinestVoxel,
@@ -43,6 +35,14 @@ fn bits_to(greatest: u64) -> u32 {
     u64::BITS - greatest.leading_zeros()
 }
 
+/// Numbers of corners and of edges that a cage keeps.
+fn cage_parts(setup: &FrameSetup) -> (u32, u32) {
+    match setup.options.cage {
+        CageKind::Corners => (8, 0),
+        CageKind::Frame => (1, 3),
+    }
+}
+
 /// The fields of a frame's records, as an organisation stores them. `nodes`: of the graph.
 #[must_use]
 pub fn record_fields(
@@ -50,126 +50,84 @@ pub fn record_fields(
     nodes: usize,
     organisation: Organisation,
 ) -> Vec<RecordField> {
+    use FieldPresence::{Always, AsFinestVoxel, InClipSpace, InScreenSpace};
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
-    let (corners, edges) = match setup.options.cage {
-        CageKind::Corners => (8, 0),
-        CageKind::Frame => (1, 3),
-    };
-    let vertices = corners + edges;
+    let (corners, edges) = cage_parts(setup);
     let exact = setup.options.coverage.draws_outlines();
     let organisation = if exact {
         organisation
     } else {
         organisation.without_outlines()
     };
-    let proven = match organisation.packed {
-        true => proven_widths(setup, nodes),
-        false => None,
-    };
+    let proven = proven_widths(setup, nodes).filter(|_| organisation.packed);
     let bits_of = |number: RecordNumber, otherwise: u32| match &proven {
         Some(proven) => proven.numbers[&number].bits().min(otherwise),
         None => otherwise,
     };
     let position = bits_to(1 << setup.level_bound());
-    let field = |name, bits, held| RecordField { name, bits, held };
-    let mut fields = vec![
-        field(
-            "octree node",
-            bits_to(nodes.saturating_sub(1) as u64),
-            FieldPresence::Always,
-        ),
-        field(
-            "octree level",
-            bits_to(u64::from(setup.level_bound())),
-            FieldPresence::Always,
-        ),
-    ];
+    let places = bits_to(nodes.saturating_sub(1) as u64);
+    let mut fields = Vec::new();
+    let mut put = |held, name, bits| fields.push(RecordField { name, bits, held });
+    put(Always, "octree node", places);
+    let level = bits_to(u64::from(setup.level_bound()));
+    put(Always, "octree level", level);
     if organisation.stack != StackHolds::Children {
         // Its node need not be read again: the place of its children stands where the node's would.
         if organisation.bricks {
-            let places = bits_to(nodes.saturating_sub(1) as u64);
-            fields.push(field("voxels of a brick", 64, FieldPresence::Always));
-            fields.push(field("where they begin", places, FieldPresence::Always));
+            put(Always, "voxels of a brick", 64);
+            put(Always, "where they begin", places);
         }
         // Of a brick, which children it has follows from its voxels.
-        let masks = match (organisation.leaf_masks, organisation.bricks) {
-            (true, false) => 16,
-            _ => 8,
-        };
-        fields.push(field("which children it has", masks, FieldPresence::Always));
-        fields.push(field("children left", 8, FieldPresence::Always));
+        let has_leaf_mask = organisation.leaf_masks && !organisation.bricks;
+        let masks = if has_leaf_mask { 16 } else { 8 };
+        put(Always, "which children it has", masks);
+        put(Always, "children left", 8);
     }
     let quad_level = bits_to(u64::from(setup.levels));
     if organisation.stack == StackHolds::Path {
-        fields.push(field("inside", 1, FieldPresence::Always));
-        fields.push(field("quadtree level", quad_level, FieldPresence::Always));
+        put(Always, "inside", 1);
+        put(Always, "quadtree level", quad_level);
         return fields;
     }
-    fields.extend([
-        // A part of a solid is below its voxel's level; under the exact rule
-        // solids have no parts.
-        field(
-            "level of the voxel",
-            if exact {
-                0
-            } else {
-                bits_to(u64::from(setup.depth))
-            },
-            FieldPresence::Always,
-        ),
-        match exact {
-            true => field("solid, inside", 2, FieldPresence::Always),
-            false => field("solid, inside, pose", 3, FieldPresence::Always),
-        },
-        field(
-            "lowest vertex",
-            3 * bits_of(RecordNumber::Lowest, position),
-            FieldPresence::Always,
-        ),
-        // It can be had from the lowest vertex and the level; the image-order paper keeps it.
-        field("highest vertex", 3 * position, FieldPresence::Always),
-        field("quadtree level", quad_level, FieldPresence::Always),
-        field("quadtree place", 2 * setup.levels, FieldPresence::Always),
-        field(
-            "clip X, Y, W",
-            corners
-                * (2 * bits_of(RecordNumber::ClipXy, word) + bits_of(RecordNumber::ClipW, word))
-                + edges
-                    * (2 * bits_of(RecordNumber::EdgeXy, word)
-                        + bits_of(RecordNumber::EdgeW, word)),
-            FieldPresence::InClipSpace,
-        ),
-        field(
-            "least W",
-            bits_of(RecordNumber::LeastW, word),
-            FieldPresence::InClipSpace,
-        ),
-    ]);
+    // A part of a solid is below its voxel's level; under the exact rule solids have no parts.
+    let voxel_level = bits_to(u64::from(setup.depth));
+    put(
+        Always,
+        "level of the voxel",
+        if exact { 0 } else { voxel_level },
+    );
+    match exact {
+        true => put(Always, "solid, inside", 2),
+        false => put(Always, "solid, inside, pose", 3),
+    }
+    let lowest = bits_of(RecordNumber::Lowest, position);
+    put(Always, "lowest vertex", 3 * lowest);
+    // It can be had from the lowest vertex and the level; the image-order paper keeps it.
+    put(Always, "highest vertex", 3 * position);
+    put(Always, "quadtree level", quad_level);
+    put(Always, "quadtree place", 2 * setup.levels);
+    let corner = 2 * bits_of(RecordNumber::ClipXy, word) + bits_of(RecordNumber::ClipW, word);
+    let edge = 2 * bits_of(RecordNumber::EdgeXy, word) + bits_of(RecordNumber::EdgeW, word);
+    put(InClipSpace, "clip X, Y, W", corners * corner + edges * edge);
+    put(InClipSpace, "least W", bits_of(RecordNumber::LeastW, word));
     if exact {
         // Three planes of three coefficients, and three constants.
         let planes = 6 * bits_of(RecordNumber::PlaneAb, wide)
             + 3 * bits_of(RecordNumber::PlaneC, wide)
             + 3 * bits_of(RecordNumber::AxisC, wide);
-        fields.push(field("silhouette planes", planes, FieldPresence::Always));
-        fields.push(field("least W above 0", 1, FieldPresence::AsFinestVoxel));
+        put(Always, "silhouette planes", planes);
+        put(AsFinestVoxel, "least W above 0", 1);
     } else {
-        fields.push(field(
-            "screen x, y",
-            2 * vertices * word,
-            FieldPresence::InScreenSpace,
-        ));
-        fields.push(field("box", 4 * word, FieldPresence::InScreenSpace));
+        put(InScreenSpace, "screen x, y", 2 * (corners + edges) * word);
+        put(InScreenSpace, "box", 4 * word);
     }
     fields
 }
 
-/// Bits of one of a record's numbers, or of a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct NumberWidths {
-    /// Its name.
     pub name: &'static str,
-    /// How many of them there are.
     pub count: u32,
     /// Bits that the frame's records took.
     pub seen: u32,
@@ -207,9 +165,6 @@ fn setup_constants(setup: &FrameSetup) -> [(&'static str, NumberSpan, NumberSpan
 }
 
 /// The widths of a record's numbers in a frame, and of set-up's constants; none under the rules that do not draw outlines.
-///
-/// # Errors
-/// When a word overflows under the trap policy.
 pub fn number_widths(
     graph: &Graph,
     setup: &FrameSetup,
@@ -226,11 +181,12 @@ pub fn number_widths(
     let seen = machine.seen_numbers(&graph.view(), setup, &mut frame)?;
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
-    let (corners, edges) = match setup.options.cage {
-        CageKind::Corners => (8, 0),
-        CageKind::Frame => (1, 3),
-    };
+    let (corners, edges) = cage_parts(setup);
     let position = bits_to(1 << setup.level_bound());
+    let used = |proven: u32, plain: u32| match organisation.packed {
+        true => proven.min(plain),
+        false => plain,
+    };
     let row = |number: RecordNumber| {
         let bits = proven.numbers[&number].bits();
         // How many there are, and their bits without packing; what is not a coordinate has its proven bits anyway.
@@ -251,10 +207,7 @@ pub fn number_widths(
             count,
             seen: seen.get(&number).map_or(0, |span| span.bits()),
             proven: bits,
-            used: match organisation.packed {
-                true => bits.min(plain),
-                false => plain,
-            },
+            used: used(bits, plain),
         }
     };
     let rows = RecordNumber::ALL.into_iter().map(row);
@@ -263,10 +216,7 @@ pub fn number_widths(
         count: 6,
         seen: span.bits(),
         proven: bound.bits(),
-        used: match organisation.packed {
-            true => bound.bits().min(plain),
-            false => plain,
-        },
+        used: used(bound.bits(), plain),
     });
     Ok(rows.filter(|row| row.count > 0).chain(constants).collect())
 }
@@ -294,19 +244,15 @@ pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisa
                 stack: StackHolds::Parents,
                 ..organisation
             };
-            let nodes = u32::MAX as usize;
-            let record = record_bits_of(setup, nodes, whole);
+            let fields = record_fields(setup, u32::MAX as usize, whole);
+            let records = 2 * u64::from(bits_held(&fields, None).widest());
             match cage {
-                CageKind::Corners => 2 * record + 3 * 27 * word,
+                CageKind::Corners => records + 3 * 27 * word,
                 // The parent's numbers are its lowest child's, the edges doubled: wires.
-                CageKind::Frame => 2 * record,
+                CageKind::Frame => records,
             }
         }
     }
-}
-
-fn record_bits_of(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> u64 {
-    u64::from(record_bits(&record_fields(setup, nodes, organisation)))
 }
 
 /// Bits of a frame's records by kind. Under the rules that draw outlines, a finest voxel has no parts. Its turn only needs

@@ -15,11 +15,8 @@ const MOST_ROUNDING_PX: f64 = 0.25;
 /// The word format of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Format {
-    /// Fraction bits of clip vectors.
     pub clip_fraction_bits: u32,
-    /// Fraction bits of screen positions.
     pub screen_fraction_bits: u32,
-    /// Whether bounds prove that no word of the frame overflows.
     pub has_headroom: bool,
     /// The rounding error of the view, pixels, seen from the object's own size away.
     pub rounding_px: f64,
@@ -32,7 +29,6 @@ pub struct Format {
 }
 
 impl Format {
-    /// The format of a frame's set-up.
     #[must_use]
     pub fn new(graph: &Graph, camera: &Camera, own: &FrameSetup) -> Self {
         let is_safe = |camera: &Camera, placement: &Placement, depth: u32| {

@@ -7,7 +7,6 @@ use crate::report::{Cell, Table};
 /// A table of a document.
 #[derive(Debug, Clone, Copy)]
 pub struct TableSpec {
-    /// Its title.
     pub title: &'static str,
     /// The array of its rows, as a path with dots. A `*` matches every field of an object.
     pub rows: &'static str,
@@ -104,13 +103,12 @@ pub const LONG: [TableSpec; 9] = [
 ];
 
 impl TableSpec {
-    /// The table.
     #[must_use]
     pub fn of(&self, document: &Value) -> Table {
         let columns: Vec<Column> = self.columns.split_whitespace().map(Column::new).collect();
         let heads: Vec<&'static str> = columns.iter().map(|column| column.head).collect();
         let mut table = Table::new(self.title, &heads);
-        for (name, row) in rows(document, self.rows) {
+        for (name, row) in rows("", document, self.rows) {
             let cells: Vec<Cell> = columns.iter().map(|of| of.cell(name, row)).collect();
             let is_zero = |cell: &Cell| match cell {
                 Cell::Count(count) => *count == 0,
@@ -125,7 +123,6 @@ impl TableSpec {
     }
 }
 
-/// A column of a [`TableSpec`].
 struct Column {
     head: &'static str,
     path: &'static str,
@@ -176,31 +173,18 @@ impl Column {
 }
 
 /// The rows at a path, each with the name of the field that matched a `*`.
-fn rows<'v>(document: &'v Value, path: &str) -> Vec<(&'v str, &'v Value)> {
-    let mut found = vec![("", document)];
-    for key in path.split('.') {
-        let below = found
-            .iter()
-            .flat_map(|&(name, value)| -> Vec<(&str, &Value)> {
-                match (key, value) {
-                    ("*", Value::Object(fields)) => fields
-                        .iter()
-                        .map(|(name, of)| (name.as_str(), of))
-                        .collect(),
-                    _ => value
-                        .get(key)
-                        .map(|value| (name, value))
-                        .into_iter()
-                        .collect(),
-                }
-            });
-        found = below.collect();
+fn rows<'v>(name: &'v str, value: &'v Value, path: &str) -> Vec<(&'v str, &'v Value)> {
+    let (key, rest) = path.split_once('.').unwrap_or((path, ""));
+    match value {
+        Value::Array(all) if path.is_empty() => all.iter().map(|row| (name, row)).collect(),
+        Value::Object(fields) if key == "*" => {
+            let fields = fields.iter();
+            fields.flat_map(|(name, of)| rows(name, of, rest)).collect()
+        }
+        _ => value
+            .get(key)
+            .map_or_else(Vec::new, |of| rows(name, of, rest)),
     }
-    let of_array = |(name, value): (&'v str, &'v Value)| {
-        let rows = value.as_array().into_iter().flatten();
-        rows.map(move |row| (name, row))
-    };
-    found.into_iter().flat_map(of_array).collect()
 }
 
 /// Every figure of a document as a row: its path and its value.

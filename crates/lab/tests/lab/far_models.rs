@@ -9,7 +9,6 @@ use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::{Instances, generate};
 
-/// Frames of the walk.
 const FRAMES: u32 = 10;
 
 /// The camera of a frame of Wagner et al. 2007, Fig. 5: once around, from two and a half sizes away

@@ -1,21 +1,18 @@
 //! Figures of the hardware model, computed again without the model. The tables are read as plain
 //! TOML, a probe of this file counts the machine's events, and the rest is arithmetic.
 
-use hwmodel::cost::{CostTable, Costing, Goal};
 use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use shiftvox_lab::model::area::{self, LightFrame};
 use shiftvox_lab::model::compare::{self, Design};
 use shiftvox_lab::model::cost::{self, Prices};
-use shiftvox_lab::model::{clock, frame};
+use shiftvox_lab::model::{area, clock, frame};
 
 use crate::scenes::*;
 
-/// The events of a frame.
 #[derive(Default)]
 struct Log {
     /// Class, bits, times.
@@ -101,46 +98,35 @@ fn additions_of_a_frame_of_one_voxel() {
     assert_eq!((log.pixels, log.nodes.len()), (1, 1));
 }
 
-/// Figure 2: its cycles on a hardware that has a unit for every operation: the only fill vector is cleared, and the
-/// object made in three visits of a cycle;
-/// the record is taken, compared with its fill vector, reads its node (a miss), is drawn (a miss of its attribute) and
-/// marks its sample.
+/// Figure 2: its cycles on a hardware that has a unit for every operation.
 #[test]
 fn cycles_of_a_frame_of_one_voxel() {
-    assert_eq!(
-        cycles_of_one_voxel(1, Organisation::default()),
-        1 + 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1
-    );
-}
-
-/// The same with parents on the stack, or the path: the object is not stored, its node is not read, and it is drawn in
-/// the turn that makes it. Three visits of a cycle, the attribute's miss, the sample's vector cleared and marked.
-#[test]
-fn cycles_of_a_voxel_that_is_never_stored() {
-    for stack in [StackHolds::Parents, StackHolds::Path] {
-        let organisation = Organisation {
-            stack,
-            leaf_masks: true,
-            bricks: true,
-            hidden_unread: true,
-            ..Organisation::default()
-        };
-        assert_eq!(cycles_of_one_voxel(1, organisation), 3 + (1 + 20) + 2);
-    }
-}
-
-/// Four by four samples, all of the voxel, with joined fill vectors: one word is read when the voxel is
-/// made, and stays in its register. The attribute is read for each sample; all wait for the first one's
-/// line. Then the word is written seventeen times, once a cycle: it is cleared, and marked.
-#[test]
-fn cycles_of_a_word_of_samples() {
-    let organisation = Organisation {
-        stack: StackHolds::Path,
+    // The only fill vector is cleared, and the object made in three visits of a cycle; the record is taken, compared with its
+    // fill vector, reads its node (a miss), is drawn (a miss of its attribute) and marks its sample.
+    let stored = 1 + 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1;
+    // With parents or the path on the stack the object is not stored, its node is not read, and it is drawn in the turn that
+    // makes it: three visits of a cycle, the attribute's miss, the sample's vector cleared and marked.
+    let never_stored = 3 + (1 + 20) + 2;
+    // Four by four samples: the attribute is read for each, and all wait for the first one's line. Then the joined word is
+    // written seventeen times, once a cycle: it is cleared, and marked.
+    let joined = 3 + (1 + 20) + 17;
+    let of = |stack, bricks, hidden_unread, joined_fill| Organisation {
+        stack,
         leaf_masks: true,
-        joined_fill: true,
+        bricks,
+        hidden_unread,
+        joined_fill,
         ..Organisation::default()
     };
-    assert_eq!(cycles_of_one_voxel(4, organisation), 3 + (1 + 20) + 17);
+    for (side, organisation, cycles) in [
+        (1, Organisation::default(), stored),
+        (1, of(StackHolds::Parents, true, true, false), never_stored),
+        (1, of(StackHolds::Path, true, true, false), never_stored),
+        (4, of(StackHolds::Path, false, false, true), joined),
+    ] {
+        let found = cycles_of_one_voxel(side, organisation);
+        assert_eq!(found, cycles, "{organisation:?}");
+    }
 }
 
 fn cycles_of_one_voxel(side: u32, organisation: Organisation) -> u64 {
@@ -151,21 +137,11 @@ fn cycles_of_one_voxel(side: u32, organisation: Organisation) -> u64 {
     for unit in hardware.units.values_mut() {
         (unit.count, unit.latency, unit.interval, unit.width) = (1000, 0, 1, 64);
     }
-    (
-        hardware.node_cache.hit_latency,
-        hardware.node_cache.miss_latency,
-    ) = (2, 30);
-    (
-        hardware.attribute_cache.hit_latency,
-        hardware.attribute_cache.miss_latency,
-    ) = (1, 20);
-    let simulated = frame::simulate(
-        &graph.view(),
-        &setup,
-        &hardware,
-        Overflow::Trap,
-        &mut NoObserver,
-    );
+    let (nodes, attributes) = (&mut hardware.node_cache, &mut hardware.attribute_cache);
+    (nodes.hit_latency, nodes.miss_latency) = (2, 30);
+    (attributes.hit_latency, attributes.miss_latency) = (1, 20);
+    let (view, observer) = (graph.view(), &mut NoObserver);
+    let simulated = frame::simulate(&view, &setup, &hardware, Overflow::Trap, observer);
     simulated.unwrap().1.cycles.cycles
 }
 
@@ -195,19 +171,15 @@ fn naive_misses(addresses: &[u64], entry: u64, (bytes, ways, line): (u64, usize,
 
 /// The row of a table for an operation and a width, and optionally a goal, as the file has it.
 fn row(table: &str, operation: &str, width: i64, figure: &str) -> (f64, f64) {
-    let path = format!(
-        "{}/hwmodel/tables/{table}.toml",
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../..")
-    );
-    let text = std::fs::read_to_string(path).unwrap();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../hwmodel/tables");
+    let text = std::fs::read_to_string(format!("{path}/{table}.toml")).unwrap();
     let table: toml::Table = text.parse().unwrap();
     let rows = table["row"].as_array().unwrap();
+    let is = |row: &toml::Value, key: &str, value: &toml::Value| row.get(key) == Some(value);
     let found = rows.iter().find(|row| {
-        row["operation"].as_str() == Some(operation)
-            && row.get("width").and_then(toml::Value::as_integer) == Some(width)
-            && row
-                .get("goal")
-                .is_none_or(|goal| goal.as_str() == Some("area"))
+        is(row, "operation", &operation.into())
+            && is(row, "width", &width.into())
+            && (row.get("goal").is_none() || is(row, "goal", &"area".into()))
     });
     let number = |value: &toml::Value| value.as_float().unwrap();
     match &found.unwrap()[figure] {
@@ -240,11 +212,7 @@ fn figures_of_a_terrain() {
     hardware.units.insert(OpClass::Add, unit(3, 32));
     (hardware.node_cache.bytes, hardware.node_cache.ways) = (1024, 2);
     hardware.stack.entries = 8;
-    let prices = Prices {
-        table: CostTable::load_shipped().unwrap(),
-        costing: Costing::default(),
-        goal: Goal::Area,
-    };
+    let prices = Prices::shipped().unwrap();
     let view = graph.view();
     let counted = frame::count(&graph, &setup, &hardware, Overflow::Trap).unwrap();
     let (_, simulated) =
@@ -252,53 +220,34 @@ fn figures_of_a_terrain() {
     let cycles = &simulated.cycles;
     let widths = frame::widths(&setup, &graph, &hardware);
     let cost = cost::frame_cost(&counted, cycles, &widths, &setup, &hardware, &prices).unwrap();
-    let used = LightFrame {
-        counter: &counted.counter,
-        shifts: &counted.shifts,
-        cycles,
-        setup: &setup,
-        record_bits: counted.record_bits(),
-    };
-    let area = area::light(used, &hardware, &prices).unwrap();
+    let area = area::light(&counted, cycles, &setup, &hardware, &prices).unwrap();
     let log = logged(&graph, &setup);
 
     // 3. Energy of the additions of 32 bits.
-    let line = cost.operations.lines.iter();
-    let line = line
-        .clone()
-        .find(|line| (line.name.as_str(), line.width) == ("add", 32));
+    let mut lines = cost.operations.lines.iter();
+    let line = lines.find(|line| (line.name.as_str(), line.width) == ("add", 32));
     let (low, high) = row("energy", "add", 32, "energy_pj");
     assert_eq!(low, high);
-    close(
-        line.unwrap().total,
-        log.times(OpClass::Add, 32) as f64 * low,
-    );
+    let additions = log.times(OpClass::Add, 32) as f64;
+    close(line.unwrap().total, additions * low);
 
     // 4. Area of the three adders that find a child's span.
-    let line = area.units.lines.iter();
-    let line = line
-        .clone()
-        .find(|line| (line.name.as_str(), line.operation.as_str()) == ("child box", "add"));
+    let mut lines = area.units.lines.iter();
+    let line = lines.find(|line| line.name == "child box" && line.operation == "add");
     let (nand2, _) = row("area", "add", 32, "nand2");
     close(line.unwrap().total, 3.0 * nand2);
 
     // 5. Delay of such an adder.
     let clock = clock::check(&counted.counter, &hardware, &prices).unwrap();
-    let adder = clock
-        .units
-        .iter()
-        .find(|unit| unit.class == OpClass::Add)
-        .unwrap();
-    close(adder.delay_ps, row("area", "add", 32, "delay_ps").0);
+    let adder = clock.units.iter().find(|unit| unit.class == OpClass::Add);
+    let (delay, _) = row("area", "add", 32, "delay_ps");
+    close(adder.unwrap().delay_ps, delay);
 
     // 6. Misses of both caches.
     let node_misses = naive_misses(&log.nodes, 8, (1024, 2, 32));
     let of = hardware.attribute_cache;
-    let shape = (
-        u64::from(of.bytes),
-        of.ways as usize,
-        u64::from(of.line_bytes),
-    );
+    let line_bytes = u64::from(of.line_bytes);
+    let shape = (u64::from(of.bytes), of.ways as usize, line_bytes);
     let attribute_misses = naive_misses(&log.attributes, u64::from(of.entry_bytes), shape);
     assert_eq!(cycles.node_cache.misses, node_misses);
     assert_eq!(cycles.attribute_cache.misses, attribute_misses);
@@ -311,11 +260,8 @@ fn figures_of_a_terrain() {
     assert_eq!(counted.record_bits(), bits);
 
     // 8. Bytes to and from outer memory: lines, pixels of three bytes, spilled records both ways.
-    assert!(
-        cycles.stack.spilled > 0,
-        "the stack is too large for this test"
-    );
-    let moved = 8 * (32 * node_misses + u64::from(of.line_bytes) * attribute_misses)
+    assert!(cycles.stack.spilled > 0);
+    let moved = 8 * (32 * node_misses + line_bytes * attribute_misses)
         + 24 * log.pixels
         + 2 * cycles.stack.spilled_bits;
     assert_eq!(cost.traffic.bits(), moved);
@@ -323,7 +269,7 @@ fn figures_of_a_terrain() {
     // 9. Their energy, in words of 64 bits.
     let (low, high) = row("energy", "dram_read", 64, "energy_pj");
     let words = 4 * node_misses
-        + u64::from(of.line_bytes) / 8 * attribute_misses
+        + line_bytes / 8 * attribute_misses
         + (24 * log.pixels).div_ceil(64)
         + 2 * cycles.stack.spilled_bits.div_ceil(64);
     close(cost.outer.low, words as f64 * low);
@@ -337,22 +283,13 @@ fn figures_of_a_terrain() {
         frames_per_second: cycles.frames_per_second,
     };
     let lines = compare::lines(design, design);
-    let of = |what: &str| {
-        lines
-            .iter()
-            .find(|line| line.what == what)
-            .unwrap()
-            .light
-            .value
-    };
     let seconds = cycles.cycles as f64 / (hardware.clock_mhz * 1e6);
     let joules = (cost.operations.total + cost.on_chip.total + cost.outer.total) * 1e-12;
-    close(
-        of("power at its own speed, without leakage"),
-        joules / seconds,
-    );
-    close(
-        of("bandwidth at its own speed"),
-        moved as f64 / 8e9 / seconds,
-    );
+    for (what, expected) in [
+        ("power at its own speed, without leakage", joules / seconds),
+        ("bandwidth at its own speed", moved as f64 / 8e9 / seconds),
+    ] {
+        let line = lines.iter().find(|line| line.what == what);
+        close(line.unwrap().light.value, expected);
+    }
 }

@@ -40,7 +40,7 @@ const FRONT: TableSpec = TableSpec {
     title: "",
     rows: "front",
     columns: "point hardware=hardware_says time_ms area_nand2=area_nand2.value::0 energy_uj=energy_pj.value:1e-6:1 \
-              wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1 what_others_have_less_of=gives_up_says",
+              wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1",
 };
 
 /// Writes all files, then prints.
@@ -84,8 +84,6 @@ fn front_json(of: &Explorations) -> Value {
     let point = |point: &FrontPoint| {
         let mut fields = json!(point);
         fields["hardware_says"] = json!(values(&point.line, &of.points));
-        let exchanges = point.gives_up.iter().map(ToString::to_string);
-        fields["gives_up_says"] = json!(exchanges.collect::<Vec<_>>().join("; "));
         fields
     };
     json!({

@@ -8,36 +8,28 @@ use serde_json::Value;
 use super::space::Point;
 use super::{PointFigures, PointOutcome};
 
-/// A point of a scene, measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointLine {
-    /// The scene's name.
     pub scene: String,
-    /// The point's number.
     pub point: usize,
-    /// Its values.
     pub values: BTreeMap<String, Value>,
-    /// Its outcome.
     #[serde(flatten)]
     pub outcome: PointOutcome,
 }
 
 impl PointLine {
-    /// A point's line.
     #[must_use]
     pub fn new(scene: &str, point: &Point, outcome: PointOutcome) -> Self {
         let values = point.values.iter();
+        let values = values.map(|(key, value)| (key.clone(), in_json(value)));
         Self {
             scene: scene.to_owned(),
             point: point.number,
-            values: values
-                .map(|(key, value)| (key.clone(), in_json(value)))
-                .collect(),
+            values: values.collect(),
             outcome,
         }
     }
 
-    /// Its figures, if the frame was drawn.
     #[must_use]
     pub fn figures(&self) -> Option<&PointFigures> {
         match &self.outcome {
@@ -46,7 +38,6 @@ impl PointLine {
         }
     }
 
-    /// The line, without its end.
     #[must_use]
     pub fn to_json(&self) -> String {
         kind_first("point", &serde_json::json!(self))
@@ -61,47 +52,22 @@ fn in_json(value: &toml::Value) -> Value {
     }
 }
 
-/// A line whose first field is its kind.
 #[must_use]
 pub fn kind_first(kind: &str, fields: &Value) -> String {
     let fields = fields.to_string();
     format!(r#"{{"kind":"{kind}",{}"#, &fields[1..])
 }
 
-/// The beginning of every line.
 const BEGIN: &[u8] = br#"{"kind":""#;
 
-/// Errors in a file of results.
+/// A line that no run writes, or results of another run: the line's number, from 1, and the fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum LinesError {
-    /// A line that no run writes.
-    #[error("line {line}: {why}")]
-    Line {
-        /// Its number, from 1.
-        line: usize,
-        /// The fault.
-        why: String,
-    },
-    /// Results of another run.
-    #[error("line {line}: these are other results: their `{what}` is {there}, not {here}")]
-    Other {
-        /// The line's number, from 1.
-        line: usize,
-        /// The field that differs.
-        what: String,
-        /// Its value in the file.
-        there: String,
-        /// Its value in this run.
-        here: String,
-    },
-}
+#[error("line {0}: {1}")]
+pub struct LinesError(usize, String);
 
-/// The contents of a file of results.
 #[derive(Debug, Clone, Default)]
 pub struct Recorded {
-    /// The points, each once.
     pub points: BTreeMap<(String, usize), PointLine>,
-    /// Scenes with headers.
     pub scenes: BTreeSet<String>,
     /// Bytes of complete lines.
     pub bytes: usize,
@@ -119,10 +85,7 @@ pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
     };
     let lines = text[..recorded.bytes].split_inclusive(|&byte| byte == b'\n');
     for (at, line) in lines.enumerate() {
-        let wrong = |why: &str| LinesError::Line {
-            line: at + 1,
-            why: why.to_owned(),
-        };
+        let wrong = |why: &str| LinesError(at + 1, why.to_owned());
         let no_result = |error: serde_json::Error| wrong(&format!("this is no result: {error}"));
         let mut value: Value = serde_json::from_slice(line).map_err(no_result)?;
         match value["kind"].as_str() {
@@ -148,10 +111,8 @@ pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
     // Only what could have become a line of ours is cut off.
     let rest = &text[recorded.bytes..];
     if !rest.iter().zip(BEGIN).all(|(there, ours)| there == ours) {
-        return Err(LinesError::Line {
-            line: text.iter().filter(|&&byte| byte == b'\n').count() + 1,
-            why: "this is no result".to_owned(),
-        });
+        let complete = text.iter().filter(|&&byte| byte == b'\n').count();
+        return Err(LinesError(complete + 1, "this is no result".to_owned()));
     }
     Ok(recorded)
 }
@@ -160,7 +121,6 @@ fn name(scene: &Value) -> Option<String> {
     scene["name"].as_str().map(str::to_owned)
 }
 
-/// Whether a header equals that of a scene of this run.
 fn compare(found: &Value, asked: &[Value], line: usize) -> Result<(), LinesError> {
     let scene = |of: &Value| name(&of["scene"]);
     let like = asked.iter().find(|of| scene(of) == scene(found));
@@ -168,12 +128,8 @@ fn compare(found: &Value, asked: &[Value], line: usize) -> Result<(), LinesError
     for (what, here) in asked.into_iter().flatten() {
         let there = &found[what];
         if there != here {
-            return Err(LinesError::Other {
-                line,
-                what: what.clone(),
-                there: there.to_string(),
-                here: here.to_string(),
-            });
+            let why = format!("these are other results: their `{what}` is {there}, not {here}");
+            return Err(LinesError(line, why));
         }
     }
     Ok(())

@@ -19,7 +19,7 @@ pub mod space;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow};
@@ -41,32 +41,24 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use space::{Drawing, Point};
+use space::Point;
 
-/// The frame, and the prices.
 #[derive(Debug, Clone, Copy)]
 pub struct Explored<'a> {
-    /// The scene.
     pub graph: &'a Graph,
-    /// The camera and the size of the picture.
     pub camera: &'a Camera,
     /// Rules and words, where the points do not set others.
     pub options: &'a SetupOptions,
-    /// The overflow policy.
     pub overflow: Overflow,
     /// The order of the ray caster's rays; by default, for each point the order of least energy.
     pub order: Option<RayOrder>,
-    /// Prices.
     pub prices: &'a Prices,
 }
 
-/// The result of a point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
-    /// The frame was drawn.
     Drawn(Box<PointFigures>),
-    /// The frame cannot be drawn.
     Refused {
         /// The reason: an impossible frame, or a word or a stack that overflows.
         reason: String,
@@ -76,68 +68,44 @@ pub enum PointOutcome {
 /// The figures of a point. They equal those of `shiftvox model` for the same hardware.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointFigures {
-    /// Cycles of the frame.
     pub cycles: u64,
-    /// Time of the frame at the hardware's clock, ms.
     pub time_ms: f64,
-    /// Area, NAND2 equivalents.
     pub area_nand2: Range,
-    /// Energy of the frame, pJ.
     pub energy_pj: Range,
     /// Samples that differ from the exact picture in any way.
     pub wrong_samples: u64,
     /// Samples that differ from the serial machine's picture.
     pub differing_samples: u64,
-    /// Whether all units that the frame uses keep up with the clock.
     pub meets_clock: bool,
-    /// The resource that limits the frame.
     pub limits: String,
-    /// Counts behind these figures.
     pub counts: PointCounts,
-    /// Energy of the operations, pJ.
     pub operations_pj: Range,
-    /// Energy of the memories on the chip, pJ.
     pub on_chip_pj: Range,
-    /// Energy of outer memory, pJ.
     pub outer_pj: Range,
-    /// Area of the units that compute, NAND2 equivalents.
     pub units_nand2: f64,
-    /// The word format.
     pub format: Format,
-    /// The ray caster with the same caches, nodes and clock.
     pub ray_caster: RivalFigures,
-    /// The design with less energy, if the ranges do not overlap.
     pub less_energy: Winner,
     /// The design with less energy if both pay the same low, or the same high, price for outer memory.
     pub less_at_equal_prices: Winner,
-    /// Lower bound on the energy of every design, pJ: [`floor`].
     pub floor_pj: Range,
-    /// Whether that bound exceeds half of the ray caster's energy at both ends of the prices.
+    /// Whether the floor exceeds half of the ray caster's energy at both ends of the prices.
     pub half_is_impossible: bool,
 }
 
-/// Counts of a frame on a point's hardware.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PointCounts {
-    /// Records of the serial machine.
     pub records: u64,
     /// Records of the hardware: some are processed that are hidden by the time they would have their turn serially.
     pub hardware_records: u64,
     /// Operations without shifts.
     pub operations: u64,
-    /// Steps of the restoring divide, among the operations.
     pub divide_steps: u64,
-    /// Bits of an entry of the stack.
     pub record_bits: u32,
-    /// Records on the deepest stack of the serial machine.
     pub deepest_stack: u64,
-    /// Words of nodes that are read.
     pub node_reads: u64,
-    /// Lines of nodes that are fetched.
     pub node_misses: u64,
-    /// Accesses to fill vectors.
     pub fill_accesses: u64,
-    /// Bits of fill vectors on the chip.
     pub fill_bits: u64,
     /// Samples covered, but empty in the exact picture.
     pub extra: u64,
@@ -147,30 +115,25 @@ pub struct PointCounts {
     pub wrong_voxel: u64,
 }
 
-/// The ray caster's figures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RivalFigures {
-    /// The order of its rays.
     pub order: RayOrder,
     /// Cycles of the frame: a lower bound.
     pub cycles: u64,
-    /// Lines of nodes that are fetched.
     pub node_misses: u64,
-    /// Area, NAND2 equivalents.
     pub area_nand2: Range,
-    /// Energy of the frame, pJ.
     pub energy_pj: Range,
-    /// Energy in each order of its rays.
     pub orders: Vec<OrderEnergy>,
 }
 
-/// A value, or the reason why there is none.
 type OrReason<T> = Result<T, String>;
 
 /// Most bytes of all recorded turns.
 const MOST_RECORDED: usize = 1 << 30;
 
-/// Results that points share.
+/// Turns that are the same on every hardware, and the samples that differ from the serial machine's.
+type Turns = (Recording, u64);
+
 struct Shared<'a> {
     of: Explored<'a>,
     /// By side of the picture.
@@ -178,10 +141,7 @@ struct Shared<'a> {
     /// By drawing settings.
     setups: BTreeMap<String, OrReason<(FrameSetup, Format)>>,
     /// The machine's counts, by [`machine_key`].
-    counted: BTreeMap<String, OrReason<Counted>>,
-    /// Turns that are the same on every hardware, and the samples that differ from the serial machine's, by
-    /// [`machine_key`].
-    turns: BTreeMap<String, (Recording, u64)>,
+    counted: BTreeMap<String, OrReason<(Counted, Option<Turns>)>>,
     /// Sizes of the node cache, and the rays in every order, by [`ray_key`].
     rays: BTreeMap<String, (Vec<u32>, Vec<RayRun>)>,
     ray_hardware: RayHardware,
@@ -216,11 +176,8 @@ pub fn explore<E: From<ModelError> + Send>(
         groups[place].push(at);
     }
     progress.begin("points", points.len() as u64);
-    let in_order = Mutex::new(InOrder {
-        waiting: BTreeMap::new(),
-        next: 0,
-        sink,
-    });
+    // What waits for points before it, the next point, and the sink.
+    let in_order = Mutex::new((BTreeMap::new(), 0, sink));
     // One after the other, so that the points for which the sink waits come first.
     let done = groups.into_iter().par_bridge().try_for_each(|group| {
         let simulated = shared.simulate(&points[group[0]])?;
@@ -231,35 +188,19 @@ pub fn explore<E: From<ModelError> + Send>(
                     reason: reason.clone(),
                 },
             };
-            let mut in_order = in_order
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            in_order.put(at, outcome, points)?;
+            let mut in_order = in_order.lock().unwrap_or_else(PoisonError::into_inner);
+            let (waiting, next, sink) = &mut *in_order;
+            waiting.insert(at, outcome);
+            while let Some(outcome) = waiting.remove(next) {
+                *next += 1;
+                sink(&points[*next - 1], outcome)?;
+            }
             progress.advance(1);
         }
         Ok(())
     });
     progress.end();
     done
-}
-
-/// Passes outcomes on in the order of their points.
-struct InOrder<S> {
-    waiting: BTreeMap<usize, PointOutcome>,
-    next: usize,
-    sink: S,
-}
-
-impl<E, S: FnMut(&Point, PointOutcome) -> Result<(), E>> InOrder<S> {
-    fn put(&mut self, at: usize, outcome: PointOutcome, points: &[Point]) -> Result<(), E> {
-        self.waiting.insert(at, outcome);
-        while let Some(outcome) = self.waiting.remove(&self.next) {
-            let point = &points[self.next];
-            self.next += 1;
-            (self.sink)(point, outcome)?;
-        }
-        Ok(())
-    }
 }
 
 impl<'a> Shared<'a> {
@@ -274,7 +215,6 @@ impl<'a> Shared<'a> {
             exact: BTreeMap::new(),
             setups: BTreeMap::new(),
             counted: BTreeMap::new(),
-            turns: BTreeMap::new(),
             rays: BTreeMap::new(),
             ray_hardware: RayHardware::shipped(),
         };
@@ -282,9 +222,14 @@ impl<'a> Shared<'a> {
         let mut machines = BTreeMap::<String, &Point>::new();
         let mut casts = BTreeMap::<String, (&Point, Vec<u32>)>::new();
         for point in points {
-            let camera = camera_of(of.camera, point.drawing);
+            let size = point.drawing.size;
+            let camera = Camera {
+                width: size.unwrap_or(of.camera.width),
+                height: size.unwrap_or(of.camera.height),
+                ..*of.camera
+            };
             let options = point.drawing.options(of.options);
-            if let Entry::Vacant(place) = shared.exact.entry(point.drawing.size) {
+            if let Entry::Vacant(place) = shared.exact.entry(size) {
                 let setup = frame::true_setup(of.graph, &camera, of.options)?;
                 place.insert(frame::reference(&of.graph.view(), &setup)?);
             }
@@ -305,89 +250,68 @@ impl<'a> Shared<'a> {
                 sizes.push(bytes);
             }
         }
-        let machines: Vec<_> = machines.into_iter().collect();
-        let is_recorded = |point: &&Point| {
+        let is_recorded = |point: &&&Point| {
             let organisation = point.hardware.organisation;
             organisation.stack != StackHolds::Children && !point.hardware.sequential
         };
-        let recorded = machines.iter().map(|(_, point)| *point);
-        let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
+        let most_bytes = MOST_RECORDED / machines.values().filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
-            let hardware = &point.hardware;
             let draw = || -> OrReason<_> {
                 let (setup, _) = shared.setup(point)?;
-                let counted = frame::count(of.graph, setup, hardware, of.overflow)
+                let counted = frame::count(of.graph, setup, &point.hardware, of.overflow)
                     .map_err(|error| error.to_string())?;
                 let view = of.graph.view();
                 // A failure here recurs in the simulation and is reported there.
-                let kind = hardware.organisation;
+                let kind = point.hardware.organisation;
                 let turns = frame::record_turns(&view, setup, kind, of.overflow, most_bytes);
                 let turns = turns.ok().flatten();
                 let turns = turns.map(|(frame, turns)| (turns, counted.differing(&frame)));
                 Ok((counted, turns))
             };
-            match draw() {
-                Ok((counted, turns)) => (key, Ok(counted), turns),
-                Err(reason) => (key, Err(reason), None),
-            }
+            (key, draw())
         };
-        let drawn: Vec<_> = machines.into_par_iter().map(count).collect();
+        let counted = machines.into_par_iter().map(count).collect();
         let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
         let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
-            let Ok((setup, _)) = shared.setup(point) else {
-                return Ok(None);
-            };
-            let exact = shared.exact(point);
+            let (setup, _) = shared.setup(point).ok()?;
+            let exact = &shared.exact[&point.drawing.size];
             let cast = |&order: &RayOrder| {
                 ray_caster::cast(of.graph, setup, &point.hardware, &sizes, order, exact)
             };
-            let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>()?;
-            Ok(Some((key, (sizes, runs))))
+            let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>();
+            Some(runs.map(|runs| (key, (sizes, runs))))
         };
-        let casts: Vec<_> = casts.into_iter().collect();
-        let rays: Vec<_> = casts
-            .into_par_iter()
-            .map(cast)
-            .collect::<Result<_, ModelError>>()?;
-        for (key, counted, turns) in drawn {
-            shared.turns.extend(turns.map(|turns| (key.clone(), turns)));
-            shared.counted.insert(key, counted);
-        }
-        shared.rays = rays.into_iter().flatten().collect();
+        let rays = casts.into_par_iter().filter_map(cast);
+        let rays = rays.collect::<Result<_, ModelError>>()?;
+        (shared.counted, shared.rays) = (counted, rays);
         progress.end();
         Ok(shared)
     }
 
-    fn exact(&self, point: &Point) -> &Frame {
-        &self.exact[&point.drawing.size]
-    }
-
     fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
-        match &self.setups[&format!("{:?}", point.drawing)] {
-            Ok((setup, format)) => Ok((setup, format)),
-            Err(reason) => Err(reason.clone()),
-        }
+        let setup = self.setups[&format!("{:?}", point.drawing)].as_ref();
+        setup
+            .map(|(setup, format)| (setup, format))
+            .map_err(String::clone)
     }
 
-    /// A point's frame as the serial machine draws it.
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted)> {
+    /// A point's frame as the serial machine draws it, and its turns.
+    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted, Option<&Turns>)> {
         let (setup, format) = self.setup(point)?;
-        match &self.counted[&machine_key(point)] {
-            Ok(counted) => Ok((setup, format, counted)),
-            Err(reason) => Err(reason.clone()),
-        }
+        let counted = self.counted[&machine_key(point)].as_ref();
+        let (counted, turns) = counted.map_err(String::clone)?;
+        Ok((setup, format, counted, turns.as_ref()))
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
     fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
-        let (setup, _, counted) = match self.drawn(point) {
+        let (setup, _, counted, turns) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
         let (hardware, overflow) = (&point.hardware, self.of.overflow);
         let view = self.of.graph.view();
         // Recorded turns do not keep the order of their steps.
-        let turns = self.turns.get(&machine_key(point));
         let report = match turns.filter(|_| !hardware.sequential) {
             Some((turns, differing)) => {
                 frame::replay(turns, &view, setup, hardware).map(|cycles| (cycles, *differing))
@@ -409,12 +333,12 @@ impl<'a> Shared<'a> {
         point: &Point,
         (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
-        let (setup, format, counted) = match self.drawn(point) {
+        let (setup, format, counted, _) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };
         let (graph, hardware, prices) = (self.of.graph, &point.hardware, self.of.prices);
-        let exact = self.exact(point);
+        let exact = &self.exact[&point.drawing.size];
         let light = LightDesign::price(graph, setup, counted, cycles, hardware, prices)?;
         let (sizes, runs) = &self.rays[&ray_key(point)];
         let bytes = hardware.node_cache.bytes;
@@ -470,15 +394,6 @@ impl<'a> Shared<'a> {
                 orders: rays.orders,
             },
         })))
-    }
-}
-
-/// The camera of a point.
-fn camera_of(camera: &Camera, drawing: Drawing) -> Camera {
-    Camera {
-        width: drawing.size.unwrap_or(camera.width),
-        height: drawing.size.unwrap_or(camera.height),
-        ..*camera
     }
 }
 

@@ -8,10 +8,8 @@ use serde::Deserialize;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use toml::{Table, Value};
 
-/// Most points of a space.
 pub const MAX_POINTS: usize = 1 << 16;
 
-/// Names and texts of the spaces that ship.
 pub const SPACES: [(&str, &str); 7] = [
     ("bundled", include_str!("spaces/bundled.toml")),
     ("caches", include_str!("spaces/caches.toml")),
@@ -29,58 +27,24 @@ const VARIANT: &str = "variant";
 /// Width of the words for which the shipped hardware is built, bits.
 const BUILT_FOR_BITS: u32 = 32;
 
-/// Why a space cannot be explored.
+/// Why a space cannot be explored: the key or the point to blame, and the fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SpaceError {
-    /// Not TOML.
-    #[error("space: {0}")]
-    Syntax(String),
-    /// An unknown key.
-    #[error("space: there is no `{key}`; {instead}")]
-    Unknown {
-        /// The key, as in the file.
-        key: String,
-        /// The keys that exist there.
-        instead: String,
-    },
-    /// A range without valid values.
-    #[error("space: {key}: {why}")]
-    Range {
-        /// The key, as in the file.
-        key: String,
-        /// The fault.
-        why: String,
-    },
-    /// A description that cannot be read.
-    #[error("space: hardware `{name}`: {why}")]
-    Base {
-        /// Its name.
-        name: String,
-        /// The fault.
-        why: String,
-    },
-    /// A point that no hardware can be.
-    #[error("space: point {point}, {values}: {source}")]
-    Impossible {
-        /// Its number.
-        point: usize,
-        /// Its values.
-        values: String,
-        /// The fault.
-        source: HardwareError,
-    },
-    /// More points than [`MAX_POINTS`].
-    #[error("space: it has more than {MAX_POINTS} points; take values out of its ranges")]
-    TooLarge,
+#[error("space: {0}")]
+pub struct SpaceError(String);
+
+fn wrong(key: &str, why: impl fmt::Display) -> SpaceError {
+    SpaceError(format!("{key}: {why}"))
 }
 
-/// A key and its values.
+fn unknown(key: &str, instead: impl fmt::Display) -> SpaceError {
+    SpaceError(format!("there is no `{key}`; {instead}"))
+}
+
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// The key, with dots: `node_cache.bytes`.
-    pub key: String,
-    /// The values, in the order of the file.
-    pub values: Vec<Value>,
+struct Axis {
+    /// With dots: `node_cache.bytes`.
+    key: String,
+    values: Vec<Value>,
 }
 
 /// How the frame of a point is drawn, as far as the space says it.
@@ -89,9 +53,7 @@ pub struct Axis {
 pub struct Drawing {
     /// Width of a word, bits.
     pub bits: Option<u32>,
-    /// The cage of a record.
     pub cage: Option<CageKind>,
-    /// The drawing rule.
     pub coverage: Option<Coverage>,
     /// Side of the picture, pixels.
     pub size: Option<u32>,
@@ -100,7 +62,6 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Options with the settings of the space.
     #[must_use]
     pub fn options(&self, base: &SetupOptions) -> SetupOptions {
         SetupOptions {
@@ -123,16 +84,12 @@ pub struct Space {
     axes: Vec<Axis>,
 }
 
-/// A point of a space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Its number, from 0.
     pub number: usize,
-    /// Its value on each axis.
     pub values: Vec<(String, Value)>,
-    /// How its frame is drawn.
     pub drawing: Drawing,
-    /// The hardware.
     pub hardware: Hardware,
 }
 
@@ -159,7 +116,7 @@ impl Space {
         open: impl Fn(&str) -> Result<Hardware, String>,
     ) -> Result<Self, SpaceError> {
         let mut file: Table =
-            toml::from_str(text).map_err(|error| SpaceError::Syntax(error.to_string()))?;
+            toml::from_str(text).map_err(|error| SpaceError(error.to_string()))?;
         let paper = || Value::Array(vec!["paper".into()]);
         let names = file.remove(HARDWARE).unwrap_or_else(paper);
         let names = match hardware {
@@ -173,20 +130,17 @@ impl Space {
         };
         let variants = file.remove("variants");
         if let Some(key) = file.keys().next() {
-            return Err(SpaceError::Unknown {
-                key: key.clone(),
-                instead: "a space has `hardware`, [[variants]] and [ranges]".to_owned(),
-            });
+            return Err(unknown(
+                key,
+                "a space has `hardware`, [[variants]] and [ranges]",
+            ));
         }
         let mut bases = Vec::new();
         for name in &names {
             let Value::String(name) = name else {
                 return Err(wrong(HARDWARE, "it must be a list of names or files"));
             };
-            let base = |why| SpaceError::Base {
-                name: name.clone(),
-                why,
-            };
+            let base = |why| wrong(&format!("hardware `{name}`"), why);
             bases.push(open(name).map_err(base)?);
         }
         let axis = |key: &str, values| Axis {
@@ -208,20 +162,12 @@ impl Space {
         Ok(space)
     }
 
-    /// The axes.
-    #[must_use]
-    pub fn axes(&self) -> &[Axis] {
-        &self.axes
-    }
-
-    /// Number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         let sizes = self.axes.iter().map(|axis| axis.values.len());
         sizes.fold(1, usize::saturating_mul)
     }
 
-    /// Never: every axis has a value.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -258,11 +204,8 @@ impl Space {
             }
             !is_drawing
         });
-        let impossible = |source| SpaceError::Impossible {
-            point: number,
-            values: in_words(&values),
-            source,
-        };
+        let impossible =
+            |error: HardwareError| wrong(&format!("point {number}, {}", in_words(&values)), error);
         let syntax = |error: toml::de::Error| HardwareError::Syntax(error.message().to_owned());
         let drawing: Drawing = drawing
             .try_into()
@@ -312,15 +255,15 @@ impl Space {
                 let mut description = table_of(base);
                 if slot(&mut description, &axis.key).is_none() {
                     let there = neighbours(description, &axis.key);
-                    return Err(SpaceError::Unknown {
-                        key,
-                        instead: format!("hardware `{}` has {there}", base.name),
-                    });
+                    let instead = format!("hardware `{}` has {there}", base.name);
+                    return Err(unknown(&key, instead));
                 }
             }
         }
         if self.len() > MAX_POINTS {
-            return Err(SpaceError::TooLarge);
+            return Err(SpaceError(format!(
+                "it has more than {MAX_POINTS} points; take values out of its ranges"
+            )));
         }
         (0..self.len()).try_for_each(|number| self.point(number).map(|_| ()))
     }
@@ -338,14 +281,6 @@ fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
     hardware
 }
 
-fn wrong(key: &str, why: &str) -> SpaceError {
-    SpaceError::Range {
-        key: key.to_owned(),
-        why: why.to_owned(),
-    }
-}
-
-/// Checks one value of a setting of [`Drawing`].
 fn check_drawing(key: &str, setting: &str, value: &Value) -> Result<(), SpaceError> {
     let one = Table::from_iter([(setting.to_owned(), value.clone())]);
     let drawing: Drawing = one
@@ -354,10 +289,10 @@ fn check_drawing(key: &str, setting: &str, value: &Value) -> Result<(), SpaceErr
     let bits = drawing.bits.unwrap_or(MIN_BITS);
     if !(MIN_BITS..=MAX_BITS).contains(&bits) {
         let why = format!("{value}: a word has {MIN_BITS} to {MAX_BITS} bits");
-        return Err(wrong(key, &why));
+        return Err(wrong(key, why));
     }
     if drawing.size == Some(0) || drawing.tolerance.is_some_and(|px| px.is_nan() || px < 0.0) {
-        return Err(wrong(key, &format!("{value} is too small")));
+        return Err(wrong(key, format!("{value} is too small")));
     }
     Ok(())
 }
@@ -369,7 +304,6 @@ fn table_of(hardware: &Hardware) -> Table {
     }
 }
 
-/// The place of a dotted key in a description.
 fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     match key.split_once('.') {
         None => description.get_mut(key),
@@ -377,7 +311,6 @@ fn slot<'a>(description: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     }
 }
 
-/// The keys beside the unknown key `key`.
 fn neighbours(description: Table, key: &str) -> String {
     let mut here = description;
     for part in key.split('.') {
@@ -390,7 +323,6 @@ fn neighbours(description: Table, key: &str) -> String {
     keys.join(", ")
 }
 
-/// Names and settings of the variants.
 fn variants_of(list: Option<Value>) -> Result<(Vec<Value>, Vec<Vec<Axis>>), SpaceError> {
     let must = "it must be a list: [[variants]], each with a `name` and the keys that it sets";
     let list = match list {
@@ -459,36 +391,28 @@ fn values_of(key: &str, range: &Value) -> Result<Vec<Value>, SpaceError> {
             return Err(wrong(key, "its values must be numbers, words or booleans"));
         }
         if values[..at].contains(value) {
-            return Err(wrong(key, &format!("it has {value} twice")));
+            return Err(wrong(key, format!("it has {value} twice")));
         }
     }
     Ok(values)
 }
 
+/// A range of whole numbers, by steps or factors.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Steps {
+    from: u32,
+    to: u32,
+    step: Option<u32>,
+    times: Option<u32>,
+}
+
 fn stepped(key: &str, range: &Table) -> Result<Vec<Value>, SpaceError> {
-    const KEYS: [&str; 4] = ["from", "to", "step", "times"];
-    if let Some(stranger) = range.keys().find(|name| !KEYS.contains(&name.as_str())) {
-        return Err(SpaceError::Unknown {
-            key: format!("{key}.{stranger}"),
-            instead: "a range has `from`, `to` and one of `step` and `times`".to_owned(),
-        });
-    }
-    let number = |name: &str| match range.get(name).map(Value::as_integer) {
-        None => Ok(None),
-        Some(value) => match value.map(u32::try_from) {
-            Some(Ok(number)) => Ok(Some(number)),
-            _ => {
-                let why = format!("`{name}` must be a whole number, 0 or more");
-                Err(wrong(key, &why))
-            }
-        },
-    };
-    let (Some(from), Some(to)) = (number("from")?, number("to")?) else {
-        return Err(wrong(key, "`from` and `to` are missing, or one of them"));
-    };
-    let next: Box<dyn Fn(u32) -> Option<u32>> = match (number("step")?, number("times")?) {
+    let steps = Value::Table(range.clone()).try_into();
+    let of: Steps = steps.map_err(|error: toml::de::Error| wrong(key, error.message()))?;
+    let next: Box<dyn Fn(u32) -> Option<u32>> = match (of.step, of.times) {
         (Some(step), None) if step > 0 => Box::new(move |value| value.checked_add(step)),
-        (None, Some(times)) if times > 1 && from > 0 => {
+        (None, Some(times)) if times > 1 && of.from > 0 => {
             Box::new(move |value| value.checked_mul(times))
         }
         _ => {
@@ -496,10 +420,12 @@ fn stepped(key: &str, range: &Table) -> Result<Vec<Value>, SpaceError> {
             return Err(wrong(key, why));
         }
     };
-    if from > to {
-        return Err(wrong(key, &format!("it is empty, from {from} to {to}")));
+    if of.from > of.to {
+        let why = format!("it is empty, from {} to {}", of.from, of.to);
+        return Err(wrong(key, why));
     }
-    let values = std::iter::successors(Some(from), |&value| next(value).filter(|&next| next <= to));
+    let is_within = |next: &u32| *next <= of.to;
+    let values = std::iter::successors(Some(of.from), |&value| next(value).filter(is_within));
     // One more than allowed, so that the excess is noticed.
     let values = values.take(MAX_POINTS + 1).map(i64::from);
     Ok(values.map(Value::Integer).collect())

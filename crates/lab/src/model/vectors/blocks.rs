@@ -9,32 +9,25 @@ use serde::Deserialize;
 use shiftvox::machine::Block;
 use shiftvox::project::FrameSetup;
 
-/// The contents of `blocks.toml`.
 #[derive(Debug, Deserialize)]
 pub(super) struct Descriptions {
-    /// The ports of a record.
     pub(super) record: String,
     meanings: BTreeMap<String, String>,
     block: Vec<Description>,
 }
 
-/// A block as the manifest describes it.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-pub struct Description {
+pub(super) struct Description {
     /// Its name, and that of its file.
-    pub name: String,
-    /// The stages that contain it.
-    pub stages: Vec<Stage>,
-    /// Its section of `SPEC.md`.
-    pub section: String,
-    /// Its function.
-    pub function: String,
-    /// Its inputs: see [`Ports::new`](super::Ports::new).
+    pub(super) name: String,
+    pub(super) stages: Vec<Stage>,
+    pub(super) section: String,
+    pub(super) function: String,
+    /// Its inputs: see [`super::ports::Ports::new`].
     #[serde(rename = "in")]
-    pub inputs: String,
-    /// Its outputs.
+    pub(super) inputs: String,
     #[serde(rename = "out")]
-    pub outputs: String,
+    pub(super) outputs: String,
 }
 
 impl Descriptions {
@@ -46,7 +39,6 @@ impl Descriptions {
         })
     }
 
-    /// The meaning of a port.
     pub(super) fn meaning(&self, block: &str, port: &str) -> &str {
         let own = self.meanings.get(&format!("{block}.{port}"));
         own.or_else(|| self.meanings.get(port))
@@ -54,9 +46,8 @@ impl Descriptions {
     }
 }
 
-/// Describes a block.
 #[must_use]
-pub fn describe(block: Block) -> &'static Description {
+pub(super) fn describe(block: Block) -> &'static Description {
     &Descriptions::shipped().block[block as usize]
 }
 
@@ -107,7 +98,7 @@ pub(super) fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::Ports;
+    use super::super::ports::Ports;
     use super::*;
     use shiftvox::project::CageKind;
 

@@ -7,27 +7,19 @@ use std::path::Path;
 use super::VectorsError;
 use shiftvox::whole::{self, WholeError};
 
-/// The file that identifies a folder of vectors.
 pub(super) const MANIFEST: &str = "manifest.json";
 
-fn failed(path: &Path, source: io::Error) -> VectorsError {
+pub(super) fn failed(path: &Path, source: io::Error) -> VectorsError {
     VectorsError::Store(WholeError::Io {
         path: path.to_owned(),
         source,
     })
 }
 
-/// The state of a path at which a folder is to be written.
-enum Target {
-    Nothing,
-    EmptyFolder,
-    Vectors,
-}
-
-/// Without `overwrite`, only nothing and empty folders are acceptable; with it, folders of vectors are, too.
-fn find_target(path: &Path, overwrite: bool) -> Result<Target, VectorsError> {
+/// Whether there is a folder that may be replaced: an empty one or, with `overwrite`, one of vectors.
+fn is_replaceable(path: &Path, overwrite: bool) -> Result<bool, VectorsError> {
     let kind = match fs::symlink_metadata(path) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Target::Nothing),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(false),
         Err(e) => return Err(failed(path, e)),
         Ok(metadata) => metadata.file_type(),
     };
@@ -53,12 +45,12 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, VectorsError> {
         names.push(name);
     }
     match others.first() {
-        _ if names.is_empty() => Ok(Target::EmptyFolder),
+        _ if names.is_empty() => Ok(true),
         Some(other) => refused(other),
         None if !overwrite || !names.iter().any(|name| name == MANIFEST) => {
             refused("there is no manifest")
         }
-        None => Ok(Target::Vectors),
+        None => Ok(true),
     }
 }
 
@@ -68,7 +60,7 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, VectorsError> {
 /// [`WholeError::Exists`] if the folder may not be overwritten; [`VectorsError::Foreign`] if it may, but holds other
 /// things.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), VectorsError> {
-    find_target(path, overwrite)?;
+    is_replaceable(path, overwrite)?;
     Ok(whole::check_folder(whole::folder_of(path))?)
 }
 
@@ -78,7 +70,7 @@ pub(super) fn write<T>(
     overwrite: bool,
     fill: impl FnOnce(&Path) -> Result<T, VectorsError>,
 ) -> Result<T, VectorsError> {
-    find_target(path, overwrite)?;
+    is_replaceable(path, overwrite)?;
     let parent = whole::folder_of(path);
     whole::make_folder(parent)?;
     // Removed with everything left in it, whatever happens.
@@ -86,21 +78,15 @@ pub(super) fn write<T>(
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
-    let rename = || fs::rename(&made, path);
+    let before = shelter.path().join("before");
     // The path may have changed meanwhile.
-    let renamed = match find_target(path, overwrite)? {
-        Target::Nothing => rename(),
-        Target::EmptyFolder => fs::remove_dir(path).and_then(|()| rename()),
-        Target::Vectors => {
-            let before = shelter.path().join("before");
-            fs::rename(path, &before).and_then(|()| {
-                rename().inspect_err(|_| {
-                    // Restores the old folder; the first error is the one to report.
-                    let _ = fs::rename(&before, path);
-                })
-            })
-        }
-    };
+    if is_replaceable(path, overwrite)? {
+        fs::rename(path, &before).map_err(|e| failed(path, e))?;
+    }
+    let renamed = fs::rename(&made, path).inspect_err(|_| {
+        // Restores the old folder, if there was one; the first error is the one to report.
+        let _ = fs::rename(&before, path);
+    });
     renamed.map_err(|e| failed(path, e))?;
     Ok(result)
 }

@@ -16,9 +16,7 @@ use std::path::{Path, PathBuf};
 use hwmodel::Overflow;
 use hwmodel::cycles::Organisation;
 
-pub use blocks::{Description, describe};
 pub use folder::check_free;
-pub use ports::{Port, Ports};
 
 use recorder::Recorder;
 use shiftvox::frame::Frame;
@@ -33,61 +31,39 @@ pub const SCHEMA: u32 = 6;
 /// Rounds of inputs that are made for the blocks.
 const DIRECTED_ROUNDS: u32 = 200;
 
-/// The frame's records that are recorded, and the folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
-    /// The scene's name, for the manifest.
     pub scene: &'a str,
     /// Number of records, from the first. The object's first push is recorded, too.
     pub records: u64,
-    /// The overflow policy.
     pub overflow: Overflow,
-    /// The organisation of the machine whose turns are recorded.
     pub organisation: Organisation,
-    /// The folder. Missing parents are made.
     pub folder: &'a Path,
-    /// Whether older vectors there are replaced.
     pub overwrite: bool,
 }
 
-/// Size of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Recorded {
-    /// Blocks with rows.
     pub blocks: usize,
-    /// Rows of all blocks.
     pub rows: u64,
 }
 
 /// Why there are no vectors. An older folder in their place is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum VectorsError {
-    /// The machine could not finish the frame.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// A file or the folder exists, or cannot be written.
     #[error(transparent)]
     Store(#[from] WholeError),
     /// The folder holds other files. It is not replaced even on demand.
     #[error("{path} holds more than vectors ({other}), so it is not replaced")]
-    Foreign {
-        /// The folder.
-        path: PathBuf,
-        /// One of the other files.
-        other: String,
-    },
-    /// A constant of the frame does not fit its word.
+    Foreign { path: PathBuf, other: String },
     #[error("a value at block {0} does not fit its wires: use wider words")]
     Misfit(&'static str),
-    /// The manifest cannot be written as text.
     #[error("{0}")]
     Manifest(#[from] serde_json::Error),
 }
 
-/// Draws a frame and records the machine's blocks.
-///
-/// # Errors
-/// See [`VectorsError`].
 pub fn write(
     graph: &GraphView<'_>,
     setup: &FrameSetup,

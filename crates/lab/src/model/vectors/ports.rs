@@ -6,20 +6,16 @@ use serde_json::{Value, json};
 use shiftvox::machine::{NumberSpan, ProvenWidths, RecordNumber};
 use shiftvox::project::CageKind;
 
-/// A port: one or several numbers of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Port {
-    /// Its name in Verilog.
-    pub name: String,
-    /// Width and sign of each number.
-    pub kind: SignalKind,
-    /// Count of its numbers.
-    pub count: usize,
+pub(super) struct Port {
+    pub(super) name: String,
+    pub(super) kind: SignalKind,
+    pub(super) count: usize,
 }
 
 /// Ports side by side, the most significant first.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ports(pub Vec<Port>);
+pub(super) struct Ports(pub(super) Vec<Port>);
 
 /// Inputs that are constants of a frame: registers that set-up writes, not wires from another block. In rows made for a
 /// block they change nevertheless.
@@ -42,8 +38,7 @@ impl Ports {
     ///
     /// # Panics
     /// When the text is not like that.
-    #[must_use]
-    pub fn new(text: &str, cage: CageKind) -> Self {
+    pub(super) fn new(text: &str, cage: CageKind) -> Self {
         let port = |text: &str| {
             let (name, kind) = text.split_once(':')?;
             let letter = kind.find(|c: char| c.is_ascii_alphabetic())?;
@@ -73,9 +68,7 @@ impl Ports {
         Self(ports.collect())
     }
 
-    /// Bits of a row.
-    #[must_use]
-    pub fn bits(&self, format: Format) -> u32 {
+    pub(super) fn bits(&self, format: Format) -> u32 {
         self.numbers().map(|(port, _)| port.kind.bits(format)).sum()
     }
 
@@ -86,8 +79,7 @@ impl Ports {
     }
 
     /// Values as hexadecimal digits, the first the most significant; `None` if they do not fit the ports.
-    #[must_use]
-    pub fn packed(&self, signals: &[Signal], format: Format) -> Option<String> {
+    pub(super) fn packed(&self, signals: &[Signal], format: Format) -> Option<String> {
         let digits = self.bits(format).div_ceil(4);
         let mut text = String::with_capacity(digits as usize);
         // Fewer than four bits wait for more; with a word of 64 they fit 128.

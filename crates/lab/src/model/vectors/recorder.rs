@@ -1,7 +1,7 @@
 //! A probe that writes the inputs and outputs of blocks, and the events of the ports to memories, as lines of JSON.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use hwmodel::cycles::StackHolds;
@@ -9,20 +9,17 @@ use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
 use super::blocks::{Description, Descriptions, absence, describe};
+use super::folder::failed;
 use super::ports::Ports;
 use shiftvox::machine::{Block, NumberSpan, Port};
 use shiftvox::project::FrameSetup;
-use shiftvox::whole::WholeError;
 
-/// The file of turns.
 pub(super) const TURNS: &str = "turns.jsonl";
 
-/// The file of a block.
 pub(super) fn file_name(block: &str) -> String {
     format!("{block}.jsonl")
 }
 
-/// The name of a memory's port in events.
 fn name_of(port: Port) -> &'static str {
     match port {
         Port::Pop => "pop",
@@ -36,7 +33,6 @@ fn name_of(port: Port) -> &'static str {
     }
 }
 
-/// A file of lines.
 #[derive(Debug)]
 struct Lines {
     path: PathBuf,
@@ -45,37 +41,24 @@ struct Lines {
 
 impl Lines {
     fn create(path: PathBuf) -> Result<Self, VectorsError> {
-        match File::create(&path) {
-            Ok(file) => Ok(Self {
-                path,
-                file: BufWriter::new(file),
-            }),
-            Err(source) => Err(WholeError::Io { path, source }.into()),
-        }
-    }
-
-    fn checked(&self, result: io::Result<()>) -> Result<(), VectorsError> {
-        let path = self.path.clone();
-        result.map_err(|source| WholeError::Io { path, source }.into())
+        let file = File::create(&path).map_err(|e| failed(&path, e))?;
+        let file = BufWriter::new(file);
+        Ok(Self { path, file })
     }
 
     fn write(&mut self, line: &str) -> Result<(), VectorsError> {
-        let written = writeln!(self.file, "{line}");
-        self.checked(written)
+        writeln!(self.file, "{line}").map_err(|e| failed(&self.path, e))
     }
 
     fn finish(&mut self) -> Result<(), VectorsError> {
-        let flushed = self.file.flush();
-        self.checked(flushed)
+        self.file.flush().map_err(|e| failed(&self.path, e))
     }
 }
 
-/// The rows of a block.
 #[derive(Debug)]
 pub(super) struct Recording {
     pub(super) block: Block,
     pub(super) description: &'static Description,
-    /// Inputs and outputs.
     pub(super) ports: [Ports; 2],
     pub(super) rows: u64,
     /// Rows from the frame's records. They come first.
@@ -85,7 +68,6 @@ pub(super) struct Recording {
     file: Option<Lines>,
 }
 
-/// The turns of a frame.
 #[derive(Debug)]
 pub(super) struct Turns {
     pub(super) record: Ports,
@@ -101,7 +83,6 @@ pub(super) struct Turns {
 pub(super) struct Recorder {
     folder: PathBuf,
     setup: FrameSetup,
-    /// By the block's number.
     blocks: Vec<Recording>,
     turns: Option<Turns>,
     records: u64,
@@ -214,7 +195,6 @@ impl Recorder {
 }
 
 impl Turns {
-    /// Writes an event of a port.
     fn record(
         &mut self,
         port: Port,
@@ -232,11 +212,8 @@ impl Turns {
                 row.ok_or(VectorsError::Misfit(TURNS))?
             }
             false => {
-                let bits = |signal: &Signal| signal.kind.bits(format);
-                let all = data
-                    .iter()
-                    .fold(0, |all, of| all << bits(of) | of.value as u64);
-                format!("{all:x}")
+                let join = |all: u64, of: &Signal| all << of.kind.bits(format) | of.value as u64;
+                format!("{:x}", data.iter().fold(0, join))
             }
         };
         self.turns += u64::from(port == Port::Made || port == Port::Pop && self.stacks_records);

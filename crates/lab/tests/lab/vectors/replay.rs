@@ -6,7 +6,11 @@ fn bits(flags: &[bool]) -> Vec<i128> {
     flags.iter().map(|&f| i128::from(f)).collect()
 }
 
-/// The outputs of a block.
+/// A quotient to the nearest, halves up.
+pub(super) fn nearest(a: i128, b: i128) -> i128 {
+    (2 * a + b).div_euclid(2 * b)
+}
+
 pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128> {
     let get = |name: &str| row.get(name);
     match block {
@@ -40,9 +44,11 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             let (centre, eye) = (row.three("centre"), row.three("eye_floor"));
             let octant = (0..3).map(|k| i128::from(centre[k] > eye[k]) << (2 - k));
             let octant: i128 = octant.sum();
-            let mut out = vec![octant];
-            out.extend([7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest));
-            out
+            [
+                vec![octant],
+                [7, 6, 5, 3, 4, 2, 1, 0].map(|at| octant ^ at).into(),
+            ]
+            .concat()
         }
         "vertex_pool" => {
             let children = row.cage("parent").children();
@@ -101,9 +107,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             if row.flag("sample") {
                 (low, high) = (low && high, low && high);
             }
-            let mut out = relative.0;
-            out.extend(bits(&[low, high]));
-            out
+            [relative.0, bits(&[low, high])].concat()
         }
         "near_node" => {
             let (x, w) = (row.cage("x"), row.cage("w"));
@@ -194,17 +198,14 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
         "blend_shares" => {
             let way = row.three("way");
             let all = way.iter().sum::<i128>().max(1);
-            // To the nearest, halves up.
-            let nearest = |k: usize| (32 * way[k] + all).div_euclid(2 * all);
-            let x = nearest(0);
-            let y = nearest(1).min(16 - x);
+            let x = nearest(16 * way[0], all);
+            let y = nearest(16 * way[1], all).min(16 - x);
             vec![x, y, 16 - x - y]
         }
         "blend_counts" => {
             let squares = row.three("share").map(|share| share * share);
             let length = (squares.iter().sum::<i128>() as f64).sqrt().round() as i128;
-            let nearest = |square: i128| (2 * square + length).div_euclid(2 * length);
-            squares.map(nearest).to_vec()
+            squares.map(|square| nearest(square, length)).to_vec()
         }
         "blend_weight" => {
             let (high, count) = (row.three("high"), row.three("count"));
@@ -218,8 +219,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
         }
         "blend_sample" => {
             let (left, weight) = (get("left"), get("weight"));
-            // To the nearest, halves up.
-            let share = (2 * left * weight + 256).div_euclid(512);
+            let share = nearest(left * weight, 256);
             let full = left - share <= 64;
             let taken = if full { left } else { share };
             let mut out = vec![left - taken];

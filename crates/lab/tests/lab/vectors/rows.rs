@@ -44,6 +44,15 @@ impl Row {
     pub(super) fn cage(&self, name: &str) -> Cage {
         Cage(self.of(name).to_vec())
     }
+
+    pub(super) fn map(&self, name: &str, mut change: impl FnMut(i128) -> i128) -> Self {
+        let (first, count) = self.names[name];
+        let mut changed = self.clone();
+        for value in &mut changed.values[first..first + count] {
+            *value = change(*value);
+        }
+        changed
+    }
 }
 
 /// One coordinate of eight vertices: themselves, or a corner and three edges.
@@ -119,7 +128,6 @@ pub(super) fn scaled(a: i128, places: i128) -> i128 {
     }
 }
 
-/// Constants of the manifest.
 pub(super) struct Constants {
     pub(super) fraction: i128,
     shifts: Vec<i128>,
@@ -148,27 +156,14 @@ impl Ports {
         let mut end = side["bits"].as_u64().unwrap();
         for port in side["ports"].as_array().unwrap() {
             let number = |key: &str| port[key].as_u64().unwrap();
-            let (name, count, bits) = (
-                port["name"].as_str().unwrap(),
-                number("count"),
-                number("bits"),
-            );
-            assert_eq!(
-                number("lowest_bit") + count * bits,
-                end,
-                "{name}: ports without gaps"
-            );
+            let name = port["name"].as_str().unwrap().to_owned();
+            let (count, bits) = (number("count"), number("bits"));
+            // Ports lie side by side.
+            assert_eq!(number("lowest_bit") + count * bits, end, "{name}");
             end = number("lowest_bit");
+            let one = (name.clone(), bits as u32, port["signed"] == true);
             let place = (numbers.len(), count as usize);
-            assert!(
-                names.insert(name.to_owned(), place).is_none(),
-                "{name} twice"
-            );
-            let one = (
-                name.to_owned(),
-                bits as u32,
-                port["signed"].as_bool().unwrap(),
-            );
+            assert_eq!(names.insert(name, place), None);
             numbers.extend(vec![one; count as usize]);
         }
         assert_eq!(end, 0);
@@ -178,20 +173,17 @@ impl Ports {
 
     /// A row from its hexadecimal digits.
     pub(super) fn row(&self, text: &str) -> Row {
-        let digits = text
-            .chars()
-            .map(|digit| digit.to_digit(16).expect("hexadecimal"));
-        let all: Vec<bool> = digits
-            .flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1 == 1))
-            .collect();
+        let digits = text.chars().map(|digit| digit.to_digit(16).unwrap());
+        let bits = digits.flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1));
+        let bits: Vec<i128> = bits.map(i128::from).collect();
         let width: u32 = self.numbers.iter().map(|(_, bits, _)| bits).sum();
-        let (padding, mut all) = all.split_at(all.len() - width as usize);
-        assert!(padding.len() < 4 && !padding.contains(&true), "{text}");
+        let (padding, mut rest) = bits.split_at(bits.len() - width as usize);
+        assert!(padding.len() < 4 && !padding.contains(&1), "{text}");
         let number = |(_, bits, signed): &Number| {
-            let (part, rest) = all.split_at(*bits as usize);
-            all = rest;
-            let value = part.iter().fold(0i128, |v, &bit| v << 1 | i128::from(bit));
-            value - (i128::from(*signed && part[0]) << bits)
+            let (part, after) = rest.split_at(*bits as usize);
+            rest = after;
+            let value = part.iter().fold(0, |v, bit| v << 1 | bit);
+            value - (i128::from(*signed) * part[0] << bits)
         };
         Row {
             names: self.names.clone(),
@@ -200,10 +192,8 @@ impl Ports {
     }
 }
 
-/// The rows of a block.
 pub(super) struct BlockRows {
     pub(super) name: String,
-    /// Inputs and outputs.
     pub(super) ports: [Ports; 2],
     pub(super) rows: Vec<[Row; 2]>,
 }
@@ -221,17 +211,15 @@ pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
 }
 
 pub(super) fn constants_of(manifest: &Value) -> Constants {
-    let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
+    let constants = &manifest["constants"];
+    let number = |value: &Value| i128::from(value.as_i64().unwrap());
+    let shifts = constants["size_shifts"].as_array().unwrap();
     Constants {
-        fraction: manifest["constants"]["screen_fraction_bits"]
-            .as_i64()
-            .unwrap()
-            .into(),
-        shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
+        fraction: number(&constants["screen_fraction_bits"]),
+        shifts: shifts.iter().map(number).collect(),
     }
 }
 
-/// A block's rows.
 pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
     let ports = ["in", "out"].map(|side| Ports::new(&block[side]));
     let row = |line: Value| {

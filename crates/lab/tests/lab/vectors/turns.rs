@@ -13,10 +13,8 @@ use super::rows::{Ports, lines, manifest_of};
 use super::{options, scenes, written};
 use crate::common::{setup, times};
 
-/// The memories, as the ports show them.
 #[derive(Default)]
 struct Memories {
-    /// Rows of records.
     stack: Vec<String>,
     turns: u64,
     fill: BTreeMap<i128, i128>,
