@@ -104,7 +104,6 @@ fn read(path: &Path) -> Result<Content, CliError> {
     let content = || -> Result<Content, CliError> {
         let bytes = bounded::read_whole(path).map_err(CliError::of_reading)?;
         if npy::is_npy(&bytes) {
-            // Its numbers beside its bytes.
             budget::check("a buffer that is compared", bytes.len() as u64)?;
             return npy::decode(&bytes)
                 .map(Content::Buffer)

@@ -19,7 +19,6 @@ pub(super) struct Console {
     progress: Box<dyn Progress>,
     /// The document that is printed at the end of the run, with the error if the run fails.
     held: Mutex<Option<Value>>,
-    /// Whether each document is one line.
     in_lines: AtomicBool,
     /// The output, if it is not for stdout.
     kept: Option<Mutex<String>>,
@@ -55,7 +54,6 @@ impl Console {
         }
     }
 
-    /// The output of a console that keeps it.
     pub(super) fn kept(self) -> String {
         let kept = self.kept.unwrap_or_default();
         kept.into_inner().unwrap_or_else(PoisonError::into_inner)
@@ -140,7 +138,6 @@ pub(super) fn report_error(error: &CliError) {
     say(&format!("shiftvox: {error}"));
 }
 
-/// A closed stderr does not stop the work.
 fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
 }

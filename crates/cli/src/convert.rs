@@ -39,15 +39,14 @@ pub(super) struct ConvertArgs {
     /// triangle of a .far [default: OUT's folder]
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
-    /// Rays of all nodes of a .far together [default: up to 24 per voxel, and 24 more per visible
-    /// voxel]
+    /// Rays of a .far [default: up to 24 per voxel, and 24 more per visible voxel]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_RAYS))]
     rays: Option<u64>,
     /// Triangles below which a node of a .far is a leaf [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     leaf_triangles: Option<u32>,
-    /// Voxels along the longest side of a .far's node [default: 64], or cells along each axis of a
-    /// .tvx, with a grid per number of a list such as 4,8,16 [default: 16]
+    /// Voxels along the longest side of a .far's node [default: 64], or cells along each axis of the
+    /// grids of a .tvx, such as 4,8,16 [default: 16]
     #[arg(long, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(2..=255))]
     grid: Vec<u32>,

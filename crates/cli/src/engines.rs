@@ -85,7 +85,6 @@ fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     Box::new(Fast::new(options, Box::new(Machine::default())))
 }
 
-/// The exact engine, with which others are compared.
 pub(super) const REFERENCE: Candidate = Candidate {
     name: "rays",
     about: "the exact reference, in wide integers",
@@ -111,7 +110,6 @@ pub(super) fn names() -> PossibleValuesParser {
     CANDIDATES.iter().map(name).collect::<Vec<_>>().into()
 }
 
-/// A variant's name as a value of a flag.
 fn slug(variant: &Variant) -> String {
     variant.name.replace(' ', "-")
 }

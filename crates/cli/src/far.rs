@@ -73,7 +73,6 @@ pub(super) fn convert(
         match resources.memory.zip(short) {
             Some((memory, short)) => {
                 let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
-                // The resident size differs from run to run.
                 let enough = enough.div_ceil(1 << 20) + 1;
                 error.advise(format!("give it --memory {enough}M or more"))
             }
@@ -84,7 +83,6 @@ pub(super) fn convert(
     let build_ms = milliseconds_since(started);
     whole::write_with(of.output, of.force, |file| built.write_to(file))?;
     if let Some(part) = &part {
-        // Left behind, it would do no harm.
         let _ = fs::remove_file(part);
     }
     let file = FarFile::open(of.output)?;

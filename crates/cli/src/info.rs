@@ -28,7 +28,6 @@ pub(super) struct InfoArgs {
     scene: SceneArgs,
 }
 
-/// Describes all scenes. A scene that fails is reported and does not stop the others.
 pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<(), CliError> {
     let mut results = Vec::new();
     let mut first_failure = None;

@@ -84,8 +84,8 @@ struct CommonArgs {
     /// Results as JSON on stdout
     #[arg(long, global = true)]
     json: bool,
-    /// Threads; the output is the same with any number. 0 means all, and `bench time` takes a list
-    /// such as 1,2 [default: 0, of measurements 1]
+    /// Threads, 0 for all, which never change the output [default: 0, of measurements 1]. `bench time`
+    /// takes a list such as 1,2
     #[arg(long, global = true, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: Vec<u16>,
@@ -97,11 +97,10 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Draw many frames around a scene
     Turntable(Box<turntable::TurntableArgs>),
-    /// Look at scenes in a browser: a page on this computer
+    /// Show scenes in a browser on this computer
     ///
-    /// Prints an address to open. The page moves the camera, changes the settings of `render`, shows
-    /// the cost of a frame, and prints the `render` command of each picture. docs/view.md explains
-    /// how to use it from another computer.
+    /// Prints an address to open. The page moves the camera, changes settings, and shows the cost and
+    /// the `render` command of each picture. For other computers see docs/view.md.
     #[cfg(feature = "view")]
     View(Box<view::ViewArgs>),
     /// Draw a mesh as triangles: the reference picture of a mesh
@@ -177,7 +176,6 @@ fn run(line: Vec<OsString>) -> Result<(), CliError> {
     let (cli, matches) = match parse(&line) {
         Ok(parsed) => parsed,
         Err(error) if error.exit_code() == 0 => {
-            // Help and version.
             error.print()?;
             return Ok(io::stdout().flush()?);
         }

@@ -29,12 +29,10 @@ pub(super) struct DrawArgs<'a> {
     pub(super) is_hashed: bool,
 }
 
-/// The method that draws a kind of file.
 struct FileMethod {
     engine: EngineName,
     name: &'static str,
     file: FileKind,
-    /// Its buffers, two or more.
     buffers: &'static [Buffer],
     /// The flags that it follows, of those that not every engine does.
     flags: &'static [&'static str],
@@ -160,7 +158,6 @@ impl FileMethod {
 }
 
 impl Opened {
-    /// The voxels, where it is a scene of voxels.
     #[cfg(feature = "view")]
     pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
         match &self.content {
@@ -191,7 +188,6 @@ impl Opened {
         }
     }
 
-    /// The scene, to be drawn with these flags.
     pub(super) fn drawable(&self, args: &DrawArgs<'_>) -> Result<Box<dyn Drawable + '_>, CliError> {
         let picture = args.picture;
         let (shading, background) = (picture.shade, picture.background.unwrap_or_default());

@@ -43,7 +43,6 @@ pub(super) fn check_room(
     Ok(budget::check_disk(whole::folder_of(picture), needed)?)
 }
 
-/// Rejects names of pictures without the ending `.png`.
 pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     if ending.eq_ignore_ascii_case("png") {

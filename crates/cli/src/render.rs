@@ -124,7 +124,6 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The picture of a scene.
 fn output_path(output: &Path, scene: &str) -> PathBuf {
     match output.to_str() {
         Some(text) => text.replace("{stem}", &scenes::stem(scene)).into(),
@@ -132,7 +131,6 @@ fn output_path(output: &Path, scene: &str) -> PathBuf {
     }
 }
 
-/// Draws a scene, writes its picture and prints the requested results.
 fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value, CliError> {
     let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
     let draw_args = DrawArgs {
@@ -183,7 +181,6 @@ fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value,
     Ok(result)
 }
 
-/// Prints the times, and with `--verbose` the counters.
 fn print_times(
     name: &str,
     shown: &Shown<'_>,

@@ -70,7 +70,6 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
     let export = args.exports();
     export::check(&export, [])?;
     let list = args.list()?;
-    // Wrong names are rejected before any scene is made.
     let generated = |name: &&str| Source::is_generated(name);
     for name in list.scenes().into_iter().filter(generated) {
         Spec::parse(name).map_err(OpenError::from)?;

@@ -30,7 +30,6 @@ pub(super) struct Conversion<'a> {
 }
 
 impl Conversion<'_> {
-    /// Reports a built file with `--json`, given its description.
     pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
         described["input"] = json!(self.input);
         described["output"] = json!(self.output.display().to_string());
@@ -46,7 +45,6 @@ pub(super) struct Written {
     pub(super) warnings: Vec<String>,
 }
 
-/// Rejects a name without the ending of a format that is written.
 pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
     match output.extension().and_then(|e| e.to_str()) {
         Some("vxg" | "vox" | "ply") => Ok(()),
@@ -58,7 +56,6 @@ pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
     }
 }
 
-/// Writes a scene in the format of the output's ending.
 pub(super) fn write(
     scene: &Scene,
     output: &Path,

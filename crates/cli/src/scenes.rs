@@ -24,7 +24,6 @@ pub(super) struct Scene {
     pub(super) mesh: Option<MeshSummary>,
     pub(super) palette: Option<usize>,
     pub(super) warnings: Vec<String>,
-    /// Whether all of the file was checked.
     pub(super) is_verified: bool,
     pub(super) load_ms: f64,
 }
@@ -118,7 +117,6 @@ pub(super) fn read_mesh(
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
-/// [`read_mesh`], and prints the mesh's warnings.
 pub(super) fn open_mesh(
     source: &str,
     args: &SceneArgs,

@@ -5,10 +5,8 @@
 
 use std::sync::Mutex;
 
-/// Scenes that are read, for the report.
 static SCENES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Names a scene in the report.
 pub(super) fn reads(scene: &str) {
     if let Ok(mut scenes) = SCENES.lock()
         && !scenes.iter().any(|known| known == scene)

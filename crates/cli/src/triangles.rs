@@ -29,7 +29,6 @@ pub(super) enum PatternName {
     Stratified,
 }
 
-/// Buffers that are written beside the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum BufferName {
     /// View-axis depth, world units; inf where nothing is seen.
@@ -135,7 +134,6 @@ impl TrianglesArgs {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
-        // One of the flag's values.
         let samples = self.samples.parse().unwrap_or(16);
         Ok(TrianglesStyle {
             samples: Samples::new(samples, pattern).map_err(CliError::usage)?,

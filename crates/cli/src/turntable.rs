@@ -45,7 +45,6 @@ pub(super) struct TurntableArgs {
     scene: SceneArgs,
 }
 
-/// Draws all frames. The first failure stops.
 pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
     if args.camera.eye.is_some() {

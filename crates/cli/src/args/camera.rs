@@ -6,7 +6,6 @@ use glam::DVec3;
 use super::values::{point, point_text};
 use shiftvox::project::{Bounds, Camera, DEFAULT_FOV, Direction, Up, fit_camera};
 
-/// Where the camera stands around the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ViewName {
     /// From a corner, above: azimuth 45, elevation 35.264 degrees.
@@ -102,7 +101,6 @@ impl CameraArgs {
         fit_camera(bounds, up, direction, fov_degrees, zoom, (width, height))
     }
 
-    /// Checks the numbers.
     pub(crate) fn check(&self) -> Result<(), String> {
         if self.fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
             return Err("--fov must lie between 0 and 180 degrees".to_owned());

@@ -24,7 +24,6 @@ pub(crate) enum EngineName {
     Textured,
 }
 
-/// Number of erosions of textured voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Erosion {
     /// The level with the fewest faces whose texels are at most a pixel.
@@ -51,7 +50,7 @@ pub(crate) struct RuleArgs {
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub(crate) cage: Option<CageKind>,
     /// Largest deviation in pixels at which a record of --coverage any or center changes from clip
-    /// to screen space [default: 0.125]. 0 means never, inf at once; exact and alpha allow only 0
+    /// to screen space, 0 for never and inf for at once [default: 0.125]
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper",
           value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
@@ -84,7 +83,7 @@ pub(crate) struct EngineArgs {
     pub(crate) engine: Option<EngineName>,
     #[command(flatten)]
     pub(crate) rules: RuleArgs,
-    /// Instructions of the fast engine; never changes a bit of output
+    /// Instructions of the fast engine, which never change the output
     #[arg(long, value_enum, default_value_t)]
     pub(crate) isa: Instructions,
     /// Opacities of --engine far [default: six]
@@ -139,7 +138,6 @@ impl RuleArgs {
         }
     }
 
-    /// The datapath's reaction to an overflow.
     pub(crate) fn overflow(&self) -> Overflow {
         self.overflow.unwrap_or_default()
     }

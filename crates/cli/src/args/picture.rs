@@ -32,7 +32,6 @@ impl PictureArgs {
         self.size.unwrap_or(Size::square(512)).pair()
     }
 
-    /// Samples per pixel and axis, as a power of two.
     pub(crate) fn aa_log2(&self) -> u32 {
         match self.aa.as_str() {
             "4" => 2,

@@ -33,14 +33,11 @@ pub(super) fn point_text(point: DVec3) -> String {
 /// Size of a picture in pixels: `512`, or `640x360`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {
-    /// Pixels across.
     pub(crate) width: u32,
-    /// Pixels down.
     pub(crate) height: u32,
 }
 
 impl Size {
-    /// So many pixels a side.
     pub(crate) fn square(side: u32) -> Self {
         Self {
             width: side,
@@ -48,7 +45,6 @@ impl Size {
         }
     }
 
-    /// Width and height.
     pub(crate) fn pair(self) -> (u32, u32) {
         (self.width, self.height)
     }
@@ -111,7 +107,6 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
 mod tests {
     use super::*;
 
-    /// Wrong values, with bars between them.
     fn rejects<T>(read: impl Fn(&str) -> Result<T, String>, wrong: &str) {
         for wrong in wrong.split('|') {
             assert!(read(wrong).is_err(), "{wrong}");

@@ -98,7 +98,6 @@ fn word<T: ValueEnum>(text: &str) -> Option<T> {
     T::from_str(text, false).ok()
 }
 
-/// Samples along an axis, as their logarithm.
 fn aa_log2(text: &str) -> Option<u32> {
     let of = ["1", "2", "4"].iter().position(|known| *known == text)?;
     Some(of as u32)

@@ -48,7 +48,6 @@ pub(super) fn run(args: &BenchArgs, threads: &[u16], console: &Console) -> Resul
     }
 }
 
-/// Numbers of threads in order, 0 resolved.
 fn thread_counts(given: &[u16]) -> Vec<usize> {
     let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let count = |&count: &u16| if count == 0 { all() } else { count.into() };

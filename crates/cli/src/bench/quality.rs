@@ -50,12 +50,11 @@ pub(super) struct QualityArgs {
     scenes: Vec<String>,
     /// Methods to measure [default: some thirty of each kind]
     ///
-    /// NAME[=VALUE][:KEY=VALUE]... with `+` between alternatives, all combinations of which are
-    /// measured, such as exact:bits=64+24:lod=0+1,far=six:aa=1+2. Coverage rules are exact, alpha,
-    /// any, center and paper, with the keys cage, tolerance, bits, lod, aa (samples per pixel and
-    /// axis) and engine (fast, machine). Methods of meshes are triangles, decimated=N (one of N
-    /// triangles), far=none|scalar|six, hybrid and textured=auto|EROSIONS, with the key aa, and lod
-    /// of far and hybrid.
+    /// NAME[=VALUE][:KEY=VALUE]..., such as exact:bits=64+24:lod=0+1,far=six:aa=1+2. All combinations
+    /// of alternatives (+) are measured. exact, alpha, any, center and paper have the keys cage,
+    /// tolerance, bits, lod, aa and engine (fast, machine). Meshes also have triangles, decimated=N
+    /// (one of N triangles), far=none|scalar|six, hybrid and textured=auto|EROSIONS, with the key
+    /// aa, and lod of far and hybrid.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     methods: Vec<Choices>,
     /// Pixels, such as 512 (square) or 640x360 [default: 256]

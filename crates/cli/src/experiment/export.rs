@@ -99,7 +99,6 @@ pub(crate) fn check_plots(args: &ExportArgs, scenes: &[String]) -> Result<(), Cl
     Ok(())
 }
 
-/// The file of a scene's plots, if each scene has its own.
 fn plot_path(args: &ExportArgs, scene: &str) -> Option<PathBuf> {
     let text = args.export_svg.as_ref()?.to_str()?;
     let has_field = text.contains(SCENE_FIELD);

@@ -54,7 +54,6 @@ struct Found {
     report: Report,
 }
 
-/// Draws, counts and prices a frame. Writes vectors and the trace.
 fn find(
     args: &ModelArgs,
     name: &str,
@@ -108,7 +107,6 @@ fn find(
     })
 }
 
-/// Draws the frame on the hardware, and writes the trace if it is requested.
 fn simulate(
     args: &ModelArgs,
     subject: &Subject,

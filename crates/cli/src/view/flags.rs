@@ -22,7 +22,6 @@ pub(super) struct Settings {
     pub(super) engine: EngineArgs,
 }
 
-/// Parses a request as flags of `render`.
 pub(super) fn settings(request: &Request) -> Result<Settings, CliError> {
     let [width, height] = request.size;
     let mut words: Vec<String> = request.words(FLAGS).collect();

@@ -14,7 +14,6 @@ const NOTHING: [u8; 4] = [24, 26, 30, 255];
 /// Colours, row by row, and the range of the values behind them.
 pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
 
-/// A buffer as colours, and the numbers of its ends if it has any.
 pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, CliError> {
     let rows = 0..buffers.size().1;
     let values = buffers.rows(buffer, rows)?;
@@ -33,7 +32,6 @@ pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, C
     })
 }
 
-/// Near is bright.
 fn depth(depths: &[f32]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
     let seen = || depths.iter().copied().filter(|depth| depth.is_finite());
     let (near, far) = (

@@ -143,7 +143,6 @@ fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     }
 }
 
-/// Prints a point's hardware, as `--hw` takes it.
 fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Result<(), CliError> {
     if picked.len() != 1 {
         let message = "--print-hw prints one hardware: select it with --points";

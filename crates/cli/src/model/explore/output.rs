@@ -107,7 +107,6 @@ fn points_json(of: &Explorations) -> Vec<Value> {
     of.points.iter().map(point).collect()
 }
 
-/// The values in which a point differs from others.
 fn values(line: &PointLine, points: &[PointLine]) -> String {
     let varies = |key: &str, value: &Value| {
         let mut others = points.iter().map(|other| other.values.get(key));
