@@ -67,6 +67,7 @@ const METHODS: [FileMethod; 2] = [
 ];
 
 pub(super) struct Opened {
+    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "shown by the page"))]
     pub(super) engine: EngineName,
     pub(super) load_ms: f64,
     content: Content,

@@ -145,7 +145,7 @@ fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
 
 fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Result<(), CliError> {
     if picked.len() != 1 {
-        let message = "--print-hw prints one hardware: select it with --points";
+        let message = "--print-hw prints one hardware: say which with --points";
         return Err(CliError::usage(message));
     }
     let point = space.point(picked.start).map_err(CliError::input)?;
