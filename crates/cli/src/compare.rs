@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::{names, report};
+use super::report;
 use shiftvox::bounded;
 use shiftvox::budget;
 use shiftvox::picture::npy::{self, Array, Values};
@@ -16,28 +16,31 @@ use shiftvox::picture::png::{self, Image};
 use shiftvox::whole;
 use shiftvox_lab::measure::{ColorError, CoverageError, count_differing, difference};
 
-/// Arguments of `compare`.
 #[derive(Debug, Args)]
-pub struct CompareArgs {
-    /// File under test: .png or .npy
+pub(super) struct CompareArgs {
+    /// File under test, .png or .npy
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// Reference: of the same kind and size
+    /// Reference of the same kind and size
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Allowed difference, beyond which the exit code is 3 [default: 0]: the number of differing pixels, or NAME=VALUE
-    /// with a name of the report. Values of psnr_* and ssim are lower bounds, all others upper bounds; repeatable
-    #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
+    /// Bounds, beyond which the exit code is 3. VALUE bounds the number of differing pixels, NAME=VALUE a number of the
+    /// report, from below for psnr_* and ssim, else from above
+    #[arg(
+        long,
+        value_name = "[NAME=]VALUE",
+        value_delimiter = ',',
+        default_value = "0"
+    )]
     threshold: Vec<Threshold>,
     /// Picture of the differences, four times as bright
     #[arg(long, value_name = "FILE")]
     diff: Option<PathBuf>,
-    /// Replace files that exist
+    /// Replace existing files
     #[arg(long)]
     force: bool,
 }
 
-/// A bound on one number of the report.
 #[derive(Debug, Clone, PartialEq)]
 struct Threshold {
     name: String,
@@ -60,13 +63,11 @@ impl FromStr for Threshold {
     }
 }
 
-/// A file that can be compared.
 enum Content {
     Picture(Image),
     Buffer(Array),
 }
 
-/// Names and values of a comparison, and the picture of differences.
 struct Comparison {
     kind: &'static str,
     numbers: Vec<(&'static str, f64)>,
@@ -92,42 +93,34 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
         whole::write(path, &bytes, args.force)?;
     }
     print(args, &comparison, console)?;
-    if args.threshold.is_empty() {
-        return judge(
-            &["0".parse().map_err(CliError::usage)?],
-            &comparison.numbers,
-        );
-    }
     judge(&args.threshold, &comparison.numbers)
 }
 
-/// Memory that comparing two pictures takes for each pixel, and more than reading one takes besides.
+/// Memory of a comparison of two pictures, per pixel, and of reading one.
 const PICTURE_BYTES: u64 = 80;
 const READING_BYTES: u64 = 64 << 20;
 
 fn read(path: &Path) -> Result<Content, CliError> {
-    let place = path.display();
-    let bytes = bounded::read(path, u64::MAX).map_err(|e| CliError::of_reading(e).at(place))?;
-    if npy::is_npy(&bytes) {
-        // Its numbers beside its bytes.
-        budget::check("a buffer that is compared", bytes.len() as u64)
-            .map_err(|short| CliError::from(short).at(path.display()))?;
-        let array = npy::decode(&bytes).map_err(|e| CliError::input(e).at(path.display()))?;
-        return Ok(Content::Buffer(array));
-    }
-    if let Some((width, height)) = png::size(&bytes) {
-        let pixels = u64::from(width) * u64::from(height);
-        budget::check(
-            "pictures that are compared",
-            pixels * PICTURE_BYTES + READING_BYTES,
-        )
-        .map_err(|short| CliError::from(short).at(path.display()))?;
-    }
-    png::decode(&bytes).map(Content::Picture).map_err(|e| {
-        CliError::input(e)
-            .at(path.display())
-            .advise("compare takes .png pictures and .npy buffers, recognised by their content")
-    })
+    let content = || -> Result<Content, CliError> {
+        let bytes = bounded::read(path, u64::MAX).map_err(CliError::of_reading)?;
+        if npy::is_npy(&bytes) {
+            budget::check("a buffer that is compared", bytes.len() as u64)?;
+            return npy::decode(&bytes)
+                .map(Content::Buffer)
+                .map_err(CliError::input);
+        }
+        if let Some((width, height)) = png::size(&bytes) {
+            let pixels = u64::from(width) * u64::from(height);
+            let needed = pixels * PICTURE_BYTES + READING_BYTES;
+            budget::check("pictures that are compared", needed)?;
+        }
+        png::decode(&bytes).map(Content::Picture).map_err(|e| {
+            let advice =
+                "compare takes .png pictures and .npy buffers, recognised by their content";
+            CliError::input(e).advise(advice)
+        })
+    };
+    content().map_err(|error| error.at(path.display()))
 }
 
 fn pictures(a: &Image, b: &Image) -> Result<Comparison, CliError> {
@@ -158,21 +151,14 @@ fn pictures(a: &Image, b: &Image) -> Result<Comparison, CliError> {
 
 fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     if a.shape != b.shape {
-        return Err(CliError::new(
-            Kind::Failed,
-            format!(
-                "the buffers differ in shape: {:?} and {:?}",
-                a.shape, b.shape
-            ),
-        ));
+        let message = format!(
+            "the buffers differ in shape: {:?} and {:?}",
+            a.shape, b.shape
+        );
+        return Err(CliError::new(Kind::Failed, message));
     }
-    let entries = a
-        .shape
-        .get(2..)
-        .unwrap_or(&[])
-        .iter()
-        .product::<usize>()
-        .max(1);
+    let entries: usize = a.shape.iter().skip(2).product();
+    let entries = entries.max(1);
     let (differing, max_abs, pixels) = match (&a.values, &b.values) {
         (Values::U8(a), Values::U8(b)) => spread(a, b, entries, |v| f64::from(*v)),
         (Values::I32(a), Values::I32(b)) => spread(a, b, entries, |v| f64::from(*v)),
@@ -205,23 +191,17 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     })
 }
 
-/// Pixels that differ, the largest difference (infinite where only one of two
-/// values is), and for each pixel whether it differs.
+/// The number of differing pixels, the largest difference, and whether each pixel differs.
 fn spread<T: PartialEq>(
     a: &[T],
     b: &[T],
     entries: usize,
     number: impl Fn(&T) -> f64,
 ) -> (u64, f64, Vec<bool>) {
-    let apart: Vec<bool> = a
-        .chunks(entries)
-        .zip(b.chunks(entries))
-        .map(|(p, q)| count_differing(p, q) > 0)
-        .collect();
-    let max_abs = a
-        .iter()
-        .zip(b)
-        .filter(|(x, y)| x != y)
+    let pixels = a.chunks(entries).zip(b.chunks(entries));
+    let apart: Vec<bool> = pixels.map(|(p, q)| count_differing(p, q) > 0).collect();
+    let differing = a.iter().zip(b).filter(|(x, y)| x != y);
+    let max_abs = differing
         .map(|(x, y)| (number(x) - number(y)).abs())
         .fold(0.0, f64::max);
     let differing = apart.iter().filter(|&&differs| differs).count();
@@ -229,57 +209,41 @@ fn spread<T: PartialEq>(
 }
 
 fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {
+    let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
+    let mut fields = json!({ "a": a, "b": b, "kind": comparison.kind });
+    let mut rows = Vec::new();
+    for (name, value) in &comparison.numbers {
+        // A whole number as such. JSON has no infinity.
+        fields[*name] = match value {
+            value if !value.is_finite() => json!("inf"),
+            value if value.fract() == 0.0 && value.abs() < 9e15 => json!(*value as i64),
+            value => json!(value),
+        };
+        rows.push(vec![(*name).to_owned(), value.to_string()]);
+    }
     if console.json {
-        let mut fields = json!({ "a": names::of_path(&args.a), "b": names::of_path(&args.b), "kind": comparison.kind });
-        for (name, value) in &comparison.numbers {
-            // JSON has no infinity.
-            fields[*name] = if value.is_finite() {
-                number(*value)
-            } else {
-                json!("inf")
-            };
-        }
-        return console.document(&report::document("compare", fields));
+        console.report("compare", fields);
+        return Ok(());
     }
-    let rows = comparison
-        .numbers
-        .iter()
-        .map(|(name, value)| vec![(*name).to_owned(), value.to_string()])
-        .collect();
-    let head = vec![comparison.kind.to_owned(), "value".to_owned()];
-    console.data(report::table(head, rows))
-}
-
-/// A whole number as such.
-fn number(value: f64) -> Value {
-    if value.fract() == 0.0 && value.abs() < 9e15 {
-        json!(value as i64)
-    } else {
-        json!(value)
-    }
+    console.data(report::table(&[comparison.kind, "value"], rows))
 }
 
 fn judge(thresholds: &[Threshold], numbers: &[(&str, f64)]) -> Result<(), CliError> {
     for Threshold { name, bound } in thresholds {
         let Some((_, value)) = numbers.iter().find(|(found, _)| found == name) else {
             let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
-            return Err(
-                CliError::usage(format!("--threshold: there is no `{name}` here"))
-                    .advise(format!("there are: {}", names.join(", "))),
-            );
+            let message = format!("--threshold: there is no `{name}` here");
+            let advice = format!("there are: {}", names.join(", "));
+            return Err(CliError::usage(message).advise(advice));
         };
         let at_least = name == "ssim" || name.starts_with("psnr");
-        let good = if at_least {
-            value >= bound
-        } else {
-            value <= bound
+        let (good, side) = match at_least {
+            true => (value >= bound, "at least"),
+            false => (value <= bound, "at most"),
         };
         if !good {
-            let side = if at_least { "at least" } else { "at most" };
-            return Err(CliError::new(
-                Kind::Failed,
-                format!("{name} is {value}, expected {side} {bound}"),
-            ));
+            let message = format!("{name} is {value}, expected {side} {bound}");
+            return Err(CliError::new(Kind::Failed, message));
         }
     }
     Ok(())

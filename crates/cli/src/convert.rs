@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::args::{Memory, SceneArgs};
+use super::args::{SceneArgs, bytes};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::scene_files::Conversion;
-use super::{far, names, report, scene_files, scenes, textured};
+use super::{far, report, scene_files, scenes, textured};
 use shiftvox::graph::{BuildOptions, ExternalOptions};
 use shiftvox::scene::Source;
 use shiftvox::whole;
@@ -19,60 +19,66 @@ use shiftvox_mesh::textured::Element;
 /// Most rays of a `.far` build: days of work.
 const MOST_RAYS: u64 = 1 << 36;
 
-/// Arguments of `convert`.
 #[derive(Debug, Args)]
-pub struct ConvertArgs {
+pub(super) struct ConvertArgs {
     /// Scene to read, recognised by its content
-    #[arg(value_name = "IN", value_parser = super::names::parser())]
+    #[arg(value_name = "IN")]
     input: String,
-    /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
-    /// .far (far voxels) or .tvx (textured voxels)
+    /// File to write, with the ending .vxg, .vox or .ply, or for a mesh .far (far voxels) or .tvx
+    /// (textured voxels)
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Replace a file that exists
+    /// Replace an existing file
     #[arg(long)]
     force: bool,
-    /// Build a .vxg or .far out of core, taking at most this much memory: 512M, 2G; 64M at the
-    /// least. The mesh of a .far, which is in memory, is part of it
-    #[arg(long, value_name = "SIZE")]
-    memory: Option<Memory>,
-    /// Folder of the temporary files of --memory, about 22 bytes a voxel of a .vxg, 80 a triangle
-    /// of a .far; else beside OUT
+    /// Build a .vxg or .far out of core with at most this much memory, such as 64M or 2G. The mesh
+    /// of a .far is part of it
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    memory: Option<u64>,
+    /// Folder of the temporary files of --memory, about 22 bytes per voxel of a .vxg and 80 per
+    /// triangle of a .far [default: OUT's folder]
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
-    /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each
-    /// that is seen]
+    /// Rays of a .far [default: up to 24 per voxel, and 24 more per visible voxel]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_RAYS))]
     rays: Option<u64>,
-    /// Of .far: nodes with fewer triangles are leaves [default: 1000]
+    /// Triangles below which a node of a .far is a leaf [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     leaf_triangles: Option<u32>,
-    /// Of .far: voxels along a node's longest side [default: 64]. Of .tvx: cells along each axis,
-    /// an even number, or several such as 4,8,16,32: a file with a grid of each [default: 16]
+    /// Voxels along the longest side of a .far's node [default: 64], or cells along each axis of the
+    /// grids of a .tvx, such as 4,8,16 [default: 16]
     #[arg(long, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(2..=255))]
     grid: Vec<u32>,
-    /// Of .tvx: texels along the side of a voxel's face [default: 16]
+    /// Texels along the side of a voxel's face of a .tvx [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     texels: Option<u32>,
-    /// Of .tvx: structuring element of the erosion [default: sides]
+    /// Structuring element of the erosion of a .tvx [default: sides]
     #[arg(long, value_enum, value_name = "ELEMENT")]
     element: Option<Element>,
-    /// Of .far: so many copies of the mesh, in rows on the ground
+    /// Build a .far of so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     instances: Option<u32>,
-    /// Of .far: keep parts wider than a voxel as a decimated surface, and thinner parts as voxels
+    /// Keep parts of a .far wider than a voxel as a decimated surface, and thinner parts as voxels
     #[arg(long)]
     hybrid: bool,
-    /// Of .far: stored opacities [default: six]
+    /// Stored opacities of a .far [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
     #[command(flatten)]
     scene: SceneArgs,
 }
 
+const LEAST_MEMORY: u64 = 64 << 20;
+
+fn memory(text: &str) -> Result<u64, String> {
+    match bytes(text)? {
+        bytes if bytes < LEAST_MEMORY => Err("building takes 64M at the least".to_owned()),
+        bytes => Ok(bytes),
+    }
+}
+
 impl ConvertArgs {
-    /// Whether there is a setting of `.far` files alone.
     fn has_far_settings(&self) -> bool {
         self.rays.is_some()
             || self.leaf_triangles.is_some()
@@ -105,10 +111,9 @@ impl ConvertArgs {
     fn textured_options(&self) -> shiftvox_mesh::textured::BuildOptions {
         let defaults = shiftvox_mesh::textured::BuildOptions::default();
         shiftvox_mesh::textured::BuildOptions {
-            grids: if self.grid.is_empty() {
-                defaults.grids
-            } else {
-                self.grid.clone()
+            grids: match self.grid.is_empty() {
+                true => defaults.grids,
+                false => self.grid.clone(),
             },
             texels: self.texels.unwrap_or(defaults.texels),
             element: self.element.unwrap_or(defaults.element),
@@ -138,7 +143,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         check_temporary(args)?;
         let resources = far::Resources {
-            memory: args.memory.map(|memory| memory.bytes),
+            memory: args.memory,
             temporary: args.temp.as_deref(),
         };
         return far::convert(
@@ -166,18 +171,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return build_outside_memory(args, memory, console);
     }
-    let source = Source::find(names::path(&args.input))?;
+    let source = Source::find(&args.input)?;
     let started = Instant::now();
-    let scene = scenes::open_source(
-        source,
-        &args.input,
-        &args.scene,
-        scenes::Verify::All,
-        started,
-        console,
-    )?;
+    let verify = scenes::Verify::All;
+    let scene = scenes::open_source(source, &args.input, &args.scene, verify, started, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written("convert", &args.input, &args.output, &written, console)
+    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    Ok(())
 }
 
 fn check_temporary(args: &ConvertArgs) -> Result<(), CliError> {
@@ -193,7 +193,7 @@ fn check_temporary(args: &ConvertArgs) -> Result<(), CliError> {
 
 fn build_outside_memory(
     args: &ConvertArgs,
-    memory: Memory,
+    memory: u64,
     console: &Console,
 ) -> Result<(), CliError> {
     if args.output.extension().is_none_or(|ending| ending != "vxg") {
@@ -207,7 +207,7 @@ fn build_outside_memory(
     whole::make_folder(beside)?;
     let external = ExternalOptions {
         build: BuildOptions::default(),
-        memory: memory.bytes,
+        memory,
         temporary: args.temp.as_deref().unwrap_or(beside).to_owned(),
     };
     let (written, report) = scene_files::build_file(
@@ -227,7 +227,8 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    scene_files::report_written("convert", &args.input, &args.output, &written, console)
+    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    Ok(())
 }
 
 #[cfg(test)]

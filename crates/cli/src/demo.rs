@@ -1,4 +1,4 @@
-//! The demo: the bundled scene, its picture, and what drawing it took.
+//! The demo: the bundled scene, its picture, and the cost of drawing it.
 
 use std::path::Path;
 
@@ -6,35 +6,31 @@ use serde_json::json;
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
-use super::error::{CliError, Kind};
+use super::error::CliError;
 use super::methods::{self, DrawArgs};
-use super::{outputs, report, scenes};
+use super::report::{self, grouped};
+use super::{outputs, scenes};
 use shiftvox::drawing::Drawable;
 use shiftvox::picture;
 use shiftvox_lab::model::frame;
 
-/// The demo's own picture: the only file that it replaces without --force.
+/// The only file that is replaced without --force.
 const PICTURE: &str = "out/demo.png";
-/// Pixels a side.
 const SIDE: u32 = 1024;
 
 pub(super) fn run(console: &Console) -> Result<(), CliError> {
     let scene = scenes::demo(console.progress())?;
-    let picture_args = PictureArgs {
-        size: Some(Size {
-            width: SIDE,
-            height: SIDE,
-        }),
-        ..PictureArgs::default()
-    };
-    let engine_args = EngineArgs::default();
     let view = CameraArgs {
         azimuth: Some(30.0),
         elevation: Some(14.0),
         ..CameraArgs::default()
     };
+    let picture_args = PictureArgs {
+        size: Some(Size::square(SIDE)),
+        ..PictureArgs::default()
+    };
     let draw_args = DrawArgs {
-        engine: &engine_args,
+        engine: &EngineArgs::default(),
         picture: &picture_args,
         scene: &SceneArgs::default(),
         memory: None,
@@ -42,31 +38,29 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
     };
     let mut drawing = methods::of_graph(&scene, &draw_args)?;
     let camera = view.camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
-    drawing.draw(&camera, 1)?;
-    let setup = drawing.setup(&camera)?;
-    let shown = drawing.shown()?;
-    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
-    let counter =
-        frame::count_operations(&scene.graph.view(), &setup, engine_args.rules.overflow())?.1;
+    let (graph, setup) = (&scene.graph, drawing.setup(&camera)?);
+    let overflow = draw_args.engine.rules.overflow();
+    let counter = frame::count_operations(&graph.view(), &setup, overflow)?.1;
+    let shown = methods::frame(&mut drawing, &camera, 1)?;
     outputs::write(&shown, Path::new(PICTURE), &[], true)?;
     let hash = picture::hash_rows(&shown.buffers)?;
+    let mut result = report::drawn(&scene.source, scene.load_ms, &camera, &shown, Some(&hash));
+    result["output"] = json!(PICTURE);
+    result["operations"] = json!(counter.ops());
+    console.report("demo", result);
     if console.json {
-        let mut result = report::drawn(&scene.source, scene.load_ms, &camera, &shown, Some(&hash));
-        result["output"] = json!(PICTURE);
-        result["operations"] = json!(counter.ops());
-        return console.document(&report::document("demo", result));
+        return Ok(());
     }
-    let time = shown.times_ms.first().copied().unwrap_or(0.0);
     console.data(format!(
-        "{} voxels in {} nodes, {SIDE} x {SIDE} pixels, drawn in {time:.1} ms\n\n{}\n\n\
+        "{} voxels in {} nodes, {SIDE} x {SIDE} pixels, drawn in {:.1} ms\n\
          {} operations, none of them a multiplication or a division; widest word {} bits\n\
          camera   {}\n\
          hash     {hash}\n\
          picture  {PICTURE}",
-        report::grouped(scene.graph.voxels),
-        report::grouped(scene.graph.len() as u64),
-        report::counts(&counter),
-        report::grouped(counter.ops()),
+        grouped(graph.voxels),
+        grouped(graph.len() as u64),
+        shown.times_ms[0],
+        grouped(counter.ops()),
         counter.widest(),
         camera_line(&camera),
     ))

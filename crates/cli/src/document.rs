@@ -1,13 +1,13 @@
-//! JSON documents: what they are, and what went wrong.
+//! JSON documents.
 
 use serde_json::{Value, json};
 
 use super::error::CliError;
 
 /// Version of every JSON document: raised when a field changes its meaning or goes.
-pub(super) const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 1;
 
-/// A JSON document of a command: its schema's name and version first, then its fields.
+/// A command's document: its schema's name and version first, then its fields.
 pub(super) fn document(command: &str, fields: Value) -> Value {
     let mut document = json!({
         "schema": format!("shiftvox.{command}"),
@@ -20,7 +20,7 @@ pub(super) fn document(command: &str, fields: Value) -> Value {
     document
 }
 
-/// A command's document with what went wrong, or a document of that alone.
+/// A command's document with an error, or a document of the error alone.
 pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
     let mut document = document.unwrap_or_else(|| self::document("error", json!({})));
     document["error"] = json!(error.message);

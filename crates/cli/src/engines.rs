@@ -1,4 +1,4 @@
-//! The only place of the command line that makes engines.
+//! Engines, and the variants that `bench time` measures.
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
@@ -11,25 +11,20 @@ use shiftvox::rays::Rays;
 use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
 use shiftvox_lab::float_rays::FloatRays;
 
-/// Makes engines as the flags name them.
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
-/// Makers of the engines of voxels.
-///
-/// # Errors
-/// When this processor or this build does not have it, or it does not draw voxels.
 pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
     let instructions = args.isa;
+    let machine = MachineOptions {
+        overflow: args.rules.overflow(),
+        ..MachineOptions::default()
+    };
+    let refused = |message: &str, advice: &str| Err(CliError::usage(message).advise(advice));
     if !instructions.are_available() {
-        return Err(CliError::new(
-            Kind::Run,
-            format!(
-                "this processor does not have the instructions of --isa {:?}",
-                args.isa
-            )
-            .to_lowercase(),
-        )
-        .advise("leave --isa out, or take --isa scalar: the picture is the same"));
+        let message =
+            format!("this processor does not have the instructions of --isa {instructions:?}");
+        return Err(CliError::new(Kind::Run, message.to_lowercase())
+            .advise("leave --isa out, or take --isa scalar: the picture is the same"));
     }
     match args.engine.unwrap_or_default() {
         EngineName::Fast => {
@@ -37,39 +32,28 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
                 instructions,
                 ..FastOptions::default()
             };
-            let of_machine = machine_options(args);
             Ok(Box::new(move || {
-                Box::new(Fast::new(options, Box::new(Machine::new(of_machine))))
+                Box::new(Fast::new(options, Box::new(Machine::new(machine))))
             }))
         }
-        EngineName::Machine => {
-            let options = machine_options(args);
-            Ok(Box::new(move || Box::new(Machine::new(options))))
-        }
-        EngineName::Rays if args.rules.options(0).coverage.blends() => Err(CliError::usage(
-            "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
-        )
-        .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
-        EngineName::Rays if args.rules.are_of_machine() => Err(CliError::usage(
+        EngineName::Machine => Ok(Box::new(move || Box::new(Machine::new(machine)))),
+        EngineName::Rays if args.rules.options(0).coverage.blends() => refused(
+            "--engine rays casts one ray per sample and blends nothing: it has no --coverage alpha",
+            "take --engine machine, which defines the picture, or fast, which has its bits",
+        ),
+        EngineName::Rays if args.rules.are_of_machine() => refused(
             "--engine rays draws exact coverage only, and has no --paper, --cage, --tolerance and --overflow",
-        )
-        .advise("take --engine machine for these rules")),
+            "take --engine machine for these rules",
+        ),
         EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
-        EngineName::Far => Err(CliError::usage(
+        EngineName::Far => refused(
             "--engine far draws a .far file, and only render, turntable and view do",
-        )
-        .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far")),
-        EngineName::Textured => Err(CliError::usage(
+            "make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far",
+        ),
+        EngineName::Textured => refused(
             "--engine textured draws a .tvx file, and only render, turntable and view do",
-        )
-        .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx")),
-    }
-}
-
-fn machine_options(args: &EngineArgs) -> MachineOptions {
-    MachineOptions {
-        overflow: args.rules.overflow(),
-        ..MachineOptions::default()
+            "make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx",
+        ),
     }
 }
 
@@ -81,7 +65,6 @@ pub(super) const MACHINE: Candidate = Candidate {
     make: |_| Box::new(Machine::default()),
 };
 
-/// The default engine.
 pub(super) const FAST: Candidate = Candidate {
     name: "fast",
     about: "the machine's bits, sample by sample",
@@ -102,7 +85,6 @@ fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     Box::new(Fast::new(options, Box::new(Machine::default())))
 }
 
-/// The exact engine, with which others are compared.
 pub(super) const REFERENCE: Candidate = Candidate {
     name: "rays",
     about: "the exact reference, in wide integers",
@@ -111,7 +93,6 @@ pub(super) const REFERENCE: Candidate = Candidate {
     make: |_| Box::new(Rays),
 };
 
-/// A renderer that is not ours, for comparison.
 const FLOAT_RAYS: Candidate = Candidate {
     name: "float-rays",
     about: "an ordinary ray caster in f32",
@@ -120,9 +101,7 @@ const FLOAT_RAYS: Candidate = Candidate {
     make: |_| Box::new(FloatRays),
 };
 
-/// All engines that `bench time` can measure.
 const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
-/// Their names.
 pub(super) const MEASURED: [&str; 4] = ["fast", "machine", "rays", "float-rays"];
 
 /// The engines that `bench time` can measure, for `--engines`.
@@ -131,27 +110,17 @@ pub(super) fn names() -> PossibleValuesParser {
     CANDIDATES.iter().map(name).collect::<Vec<_>>().into()
 }
 
-/// The variants of an engine.
-fn variants_of(engine: &str) -> &'static [Variant] {
-    match engine {
-        "fast" => FAST_VARIANTS,
-        "machine" => MACHINE_VARIANTS,
-        _ => &[],
-    }
-}
-
-/// A variant's name as a value of a flag.
-fn slug(name: &str) -> String {
-    name.replace(' ', "-")
+fn slug(variant: &Variant) -> String {
+    variant.name.replace(' ', "-")
 }
 
 /// Reads a value of `--variants`: `all`, or a variant's name with hyphens.
 pub(super) fn variant_name(text: &str) -> Result<String, String> {
     let variants = || FAST_VARIANTS.iter().chain(MACHINE_VARIANTS);
-    if text == "all" || variants().any(|variant| slug(variant.name) == text) {
+    if text == "all" || variants().any(|variant| slug(variant) == text) {
         return Ok(text.to_owned());
     }
-    let lines = variants().map(|variant| format!("\n  {}: {}", slug(variant.name), variant.about));
+    let lines = variants().map(|variant| format!("\n  {}: {}", slug(variant), variant.about));
     Err(format!(
         "expected all, or one of{}",
         lines.collect::<String>()
@@ -161,31 +130,32 @@ pub(super) fn variant_name(text: &str) -> Result<String, String> {
 /// Engines by name with those of some variants that they have, by name or as values of flags.
 pub(super) fn families(engines: &[String], variants: &[String]) -> Result<Vec<Family>, CliError> {
     let is_asked = |variant: &&Variant| {
-        let asked =
-            |name: &String| name == "all" || *name == slug(variant.name) || name == variant.name;
-        variants.iter().any(asked)
+        let mut asked = variants.iter();
+        asked.any(|name| name == "all" || *name == slug(variant) || name == variant.name)
     };
     let family = |engine: &String| {
         let whole = CANDIDATES.iter().find(|candidate| candidate.name == engine);
-        let whole =
-            *whole.ok_or_else(|| CliError::usage(format!("there is no engine `{engine}`")))?;
-        let of = variants_of(whole.name).iter().filter(is_asked);
+        let whole = whole.ok_or_else(|| CliError::usage(format!("there is no engine `{engine}`")));
+        let of: &[Variant] = match engine.as_str() {
+            "fast" => FAST_VARIANTS,
+            "machine" => MACHINE_VARIANTS,
+            _ => &[],
+        };
         Ok(Family {
-            whole,
-            variants: of.copied().collect(),
+            whole: *whole?,
+            variants: of.iter().filter(is_asked).copied().collect(),
         })
     };
-    let families: Vec<Family> = engines
+    let families = engines
         .iter()
         .map(family)
-        .collect::<Result<_, CliError>>()?;
+        .collect::<Result<Vec<Family>, CliError>>()?;
     if !variants.is_empty() && families.iter().all(|family| family.variants.is_empty()) {
         return Err(CliError::usage("none of these engines has such a variant"));
     }
     Ok(families)
 }
 
-/// The fast engine with everything on.
 const WHOLE_FAST: Variant = Variant {
     name: "",
     about: "",
@@ -193,7 +163,6 @@ const WHOLE_FAST: Variant = Variant {
     make: FAST.make,
     frames: Frames::Drawn,
 };
-/// The machine with everything on.
 const WHOLE_MACHINE: Variant = Variant {
     make: MACHINE.make,
     ..WHOLE_FAST
@@ -202,14 +171,13 @@ const WHOLE_MACHINE: Variant = Variant {
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",
-        about: "nodes behind what is drawn go on down; the picture must be the same",
+        about: "occluded nodes are descended; the picture must be the same",
         make: |threads| fast(threads, |on| on.hidden = false),
         ..WHOLE_FAST
     },
     Variant {
         name: "off-screen nodes looked into",
-        about: "nodes beside the picture, or that hold no sample, go on down; the picture must be \
-         the same",
+        about: "nodes without samples are descended; the picture must be the same",
         make: |threads| fast(threads, |on| on.off_screen = false),
         ..WHOLE_FAST
     },
@@ -227,36 +195,31 @@ const FAST_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "whole blocks off",
-        about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles \
-         first; the picture must be the same",
+        about: "solids drawn sample by sample, not by blocks; the picture must be the same",
         make: |threads| fast(threads, |on| on.whole_blocks = false),
         ..WHOLE_FAST
     },
     Variant {
         name: "absent children looked at",
-        about: "above bricks all eight children have their windows looked at, whether they exist \
-         or not; the picture must be the same",
+        about: "absent children are tested, too; the picture must be the same",
         make: |threads| fast(threads, |on| on.absent_children = false),
         ..WHOLE_FAST
     },
     Variant {
         name: "level of detail off",
-        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
-         exact one",
+        about: "--lod 0: down to the leaves; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
         ..WHOLE_FAST
     },
     Variant {
         name: "unchanged frame kept",
-        about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are \
-         written. All other rows draw every frame",
+        about: "NOT off but on: a viewer draws the frame that it shows, so only colours are written",
         frames: Frames::Kept,
         ..WHOLE_FAST
     },
     Variant {
         name: "attributes of all read",
-        about: "colour and normal also of each node that the paper's walk fetches, in its order, \
-         not of those seen alone; the picture must be the same",
+        about: "attributes of all nodes that the paper's walk fetches; the picture must be the same",
         frames: Frames::WithAttributesOf(fetched_nodes),
         ..WHOLE_FAST
     },
@@ -265,8 +228,7 @@ const FAST_VARIANTS: &[Variant] = &[
 const MACHINE_VARIANTS: &[Variant] = &[
     Variant {
         name: "occlusion order off",
-        about: "children in the order 0 to 7 for every eye: the picture is WRONG, far voxels hide \
-         near ones",
+        about: "children in the order 0 to 7 for every eye: the picture is WRONG",
         make: |_| {
             Box::new(Machine::new(MachineOptions {
                 order: [0, 1, 2, 3, 4, 5, 6, 7],
@@ -277,7 +239,7 @@ const MACHINE_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "fill-vector rejection off",
-        about: "hidden records go on down to their samples; the picture must be the same",
+        about: "occluded records are descended; the picture must be the same",
         make: |_| {
             Box::new(Machine::new(MachineOptions {
                 reject_filled: false,
@@ -288,8 +250,7 @@ const MACHINE_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "level of detail off",
-        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
-         exact one",
+        about: "--lod 0: down to the leaves; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
         ..WHOLE_MACHINE
     },

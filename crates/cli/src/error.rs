@@ -2,50 +2,46 @@
 
 use std::fmt;
 use std::io;
-use std::process::ExitCode;
 
 use shiftvox::budget::{DiskShortage, Shortage};
 use shiftvox::drawing::DrawError;
 use shiftvox::graph::ExternalError;
 use shiftvox::graph::file::FileError;
 use shiftvox::graph::vxg::VxgError;
+use shiftvox::machine::SimulateError;
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{EngineError, SetupError};
 use shiftvox::scene::{OpenError, SceneError};
 use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
+use shiftvox_lab::model::ModelError;
+use shiftvox_lab::model::vectors::VectorsError;
+use shiftvox_lab::reproduce::ReproduceError;
 use shiftvox_mesh::drawing::MethodError;
 use shiftvox_mesh::{far, textured};
 
 /// Kinds of failure, by exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Something failed while the program ran: exit code 1.
-    Run,
-    /// The command line makes no sense: exit code 2.
-    Usage,
-    /// A comparison or an expectation failed: exit code 3.
-    Failed,
-    /// An input cannot be used: exit code 4.
-    Input,
-    /// A limit of the program or of the word format is exceeded: exit code 5.
-    Limit,
     /// The reader of stdout closed it early: not a failure.
-    Pipe,
+    Pipe = 0,
+    /// Something failed while the program ran.
+    Run = 1,
+    /// A wrong command line.
+    Usage = 2,
+    /// A comparison or an expectation failed.
+    Failed = 3,
+    /// An input cannot be used.
+    Input = 4,
+    /// A limit of the program or of the word format is exceeded.
+    Limit = 5,
 }
 
 impl Kind {
     /// The process's exit code.
     #[must_use]
     pub fn code(self) -> u8 {
-        match self {
-            Self::Pipe => 0,
-            Self::Run => 1,
-            Self::Usage => 2,
-            Self::Failed => 3,
-            Self::Input => 4,
-            Self::Limit => 5,
-        }
+        self as u8
     }
 }
 
@@ -80,7 +76,7 @@ impl CliError {
         Self::new(Kind::Input, message)
     }
 
-    /// An input that cannot be read: for lack of memory, or because of its contents.
+    /// An input that cannot be read, because of its contents or for lack of memory.
     pub fn of_reading(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::OutOfMemory => Self::new(Kind::Limit, error)
@@ -89,7 +85,6 @@ impl CliError {
         }
     }
 
-    /// Flags that a program composed wrongly.
     #[cfg(feature = "view")]
     pub(super) fn of_words(error: clap::Error) -> Self {
         let message = error.render().to_string();
@@ -104,8 +99,7 @@ impl CliError {
         self
     }
 
-    /// The same failure with its place, a file or a scene, in front. A place that is there already is
-    /// not repeated.
+    /// The same failure with its file or scene in front, unless it is there already.
     #[must_use]
     pub fn at(mut self, place: impl fmt::Display) -> Self {
         let place = format!("{place}: ");
@@ -113,12 +107,6 @@ impl CliError {
             self.message.insert_str(0, &place);
         }
         self
-    }
-
-    /// The process's exit code.
-    #[must_use]
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.kind.code())
     }
 }
 
@@ -134,72 +122,117 @@ impl fmt::Display for CliError {
 
 impl std::error::Error for CliError {}
 
-impl From<WholeError> for CliError {
-    fn from(error: WholeError) -> Self {
-        let failure = Self::new(Kind::Run, &error);
-        match error {
-            WholeError::Exists(_) => failure.advise("give another name, or --force to replace it"),
-            WholeError::NoFolder(_) => failure.advise("make it first, or give another name"),
-            WholeError::Io { .. } => failure,
-        }
-    }
-}
-
 /// `From` of errors whose variant decides on the exit code.
 macro_rules! exit_codes {
-    ($($error:ty { $($variants:pat => $kind:ident),+ $(,)? })+) => {$(
+    ($message:ident: $($error:ty { $($variants:pat => $kind:expr),+ $(,)? })+) => {$(
         impl From<$error> for CliError {
             fn from(error: $error) -> Self {
-                let kind = match &error {
-                    $($variants => Kind::$kind),+
+                let $message = error.to_string();
+                let kind = match error {
+                    $($variants => $kind),+
                 };
-                Self::new(kind, error)
+                Self::new(kind, $message)
             }
         }
     )+};
 }
 
 exit_codes! {
+    message:
     SetupError {
-        SetupError::Camera(_) | SetupError::Format(_) | SetupError::Tolerance(_) => Usage,
-        SetupError::Setting { .. } => Usage,
-        SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => Limit,
+        SetupError::Camera(_) | SetupError::Format(_) | SetupError::Tolerance(_) => Kind::Usage,
+        SetupError::Setting { .. } => Kind::Usage,
+        SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => Kind::Limit,
+    }
+    EngineError {
+        EngineError::Trap(_) => Kind::Limit,
+        EngineError::Memory(short) => return short.into(),
+    }
+    ResolveError {
+        ResolveError::Size(..) | ResolveError::Voxel => Kind::Run,
+        ResolveError::Index => Kind::Limit,
+        ResolveError::Memory(short) => return short.into(),
     }
     far::BuildError {
-        far::BuildError::Empty | far::BuildError::Range | far::BuildError::FarAway { .. } => Input,
-        far::BuildError::TooMany(_) | far::BuildError::Surface(_) => Limit,
-        far::BuildError::Memory { .. } => Limit,
-        far::BuildError::Option(_) => Usage,
-        far::BuildError::File { .. } => Run,
+        far::BuildError::Empty | far::BuildError::Range => Kind::Input,
+        far::BuildError::FarAway { .. } => Kind::Input,
+        far::BuildError::TooMany(_) | far::BuildError::Surface(_) => Kind::Limit,
+        far::BuildError::Memory { .. } => Kind::Limit,
+        far::BuildError::Option(_) => Kind::Usage,
+        far::BuildError::File { .. } => Kind::Run,
     }
     textured::BuildError {
-        textured::BuildError::Empty | textured::BuildError::Range => Input,
-        textured::BuildError::TooMany(_) => Limit,
-        textured::BuildError::Grid { .. } | textured::BuildError::Grids => Usage,
+        textured::BuildError::Empty | textured::BuildError::Range => Kind::Input,
+        textured::BuildError::TooMany(_) => Kind::Limit,
+        textured::BuildError::Grid { .. } | textured::BuildError::Grids => Kind::Usage,
+    }
+    far::view::ViewError {
+        far::view::ViewError::File(error) => return error.into(),
+        far::view::ViewError::Raster(_) | far::view::ViewError::Samples(_) => Kind::Usage,
+        far::view::ViewError::VoxelSize(_) => Kind::Usage,
+    }
+    textured::view::ViewError {
+        textured::view::ViewError::File(error) => return error.into(),
+        textured::view::ViewError::Raster(_) | textured::view::ViewError::Grid(..) => Kind::Usage,
+        textured::view::ViewError::TexelSize(_) => Kind::Usage,
+    }
+    ModelError {
+        ModelError::Setup(error) => return error.into(),
+        ModelError::Engine(error) => return error.into(),
+        ModelError::Simulate(SimulateError::Workload(error)) => return error.into(),
+        ModelError::Simulate(_) => Kind::Limit,
+        ModelError::Hardware(_) | ModelError::Cost(_) => Kind::Input,
+    }
+    BenchError {
+        BenchError::Engine { who, source } => return Self::from(source).at(who),
+        BenchError::Setup(error) => return error.into(),
+        BenchError::Picture(_) | BenchError::Threads { .. } => Kind::Run,
+    }
+    MethodError {
+        MethodError::Far(error) => return error.into(),
+        MethodError::Textured(error) => return error.into(),
+        MethodError::NoGrid { has, .. } => {
+            let has: Vec<String> = has.iter().map(u32::to_string).collect();
+            return Self::usage(message).advise(format!("it has grids of {}", has.join(", ")));
+        },
+        MethodError::Samples(_) => Kind::Usage,
+        _ => Kind::Run,
+    }
+    VectorsError {
+        VectorsError::Engine(error) => return error.into(),
+        VectorsError::Store(error) => return error.into(),
+        VectorsError::Misfit(_) => Kind::Limit,
+        VectorsError::Foreign { .. } => {
+            return Self::new(Kind::Run, message).advise("give another name, or empty the folder");
+        },
+        VectorsError::Manifest(_) => Kind::Run,
+    }
+    WholeError {
+        WholeError::Exists(_) => {
+            return Self::new(Kind::Run, message).advise("give another name, or --force to replace it");
+        },
+        WholeError::NoFolder(_) => {
+            return Self::new(Kind::Run, message).advise("make it first, or give another name");
+        },
+        WholeError::Io { .. } => Kind::Run,
+    }
+    DrawError {
+        DrawError::TooLarge(_) => {
+            return Self::new(Kind::Limit, message)
+                .advise("ask for a smaller --size, or fewer samples with --aa");
+        },
+        DrawError::Memory(short) => return short.into(),
+        DrawError::Setup(error) => return error.into(),
+        DrawError::Engine(error) => return error.into(),
+        DrawError::Resolve(error) => return error.into(),
+        DrawError::Camera(_) => Kind::Usage,
+        DrawError::Method(error) => match error.downcast::<MethodError>() {
+            Ok(error) => return (*error).into(),
+            Err(_) => Kind::Run,
+        },
     }
 }
 
-impl From<EngineError> for CliError {
-    fn from(error: EngineError) -> Self {
-        match error {
-            EngineError::Trap(_) => Self::new(Kind::Limit, error),
-            EngineError::Memory(short) => short.into(),
-        }
-    }
-}
-
-impl From<ResolveError> for CliError {
-    fn from(error: ResolveError) -> Self {
-        let kind = match error {
-            ResolveError::Size(..) | ResolveError::Voxel => Kind::Run,
-            ResolveError::Index => Kind::Limit,
-            ResolveError::Memory(short) => return short.into(),
-        };
-        Self::new(kind, error)
-    }
-}
-
-/// For writing to stdout.
 impl From<io::Error> for CliError {
     fn from(error: io::Error) -> Self {
         let kind = match error.kind() {
@@ -212,43 +245,49 @@ impl From<io::Error> for CliError {
 
 impl From<OpenError> for CliError {
     fn from(error: OpenError) -> Self {
-        let kind = match &error {
-            error if error.is_limit() => Kind::Limit,
-            OpenError::External {
-                error: ExternalError::Temporary { .. } | ExternalError::Write(_),
-                ..
-            } => Kind::Run,
-            _ => Kind::Input,
-        };
-        let failure = Self::new(kind, &error);
-        let advice = match error {
-            OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => {
-                let message = format!(
-                    "{file}: this is a {kind} file: render and turntable draw it, info describes it"
-                );
-                return Self::input(message)
-                    .advise("for anything else take the mesh that it was made of");
-            }
+        let is_limit = error.is_limit();
+        let failure = Self::new(if is_limit { Kind::Limit } else { Kind::Input }, &error);
+        match error {
+            OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => Self::input(format!(
+                "{file}: this is a {kind} file: render and turntable draw it, info describes it"
+            ))
+            .advise("for anything else take the mesh that it was made of"),
             OpenError::Scene(SceneError::Io { .. }) => {
-                "scenes are files or generators such as gen:terrain,depth=10,seed=1"
+                failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
             OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {
-                "ask for fewer levels: a graph has less than 2^32 nodes"
+                failure.advise("ask for fewer levels: a graph has less than 2^32 nodes")
             }
-            OpenError::TooMany { .. } => {
-                "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg"
+            OpenError::TooMany { .. } => failure.advise(
+                "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
+            ),
+            OpenError::External { error, .. } => {
+                let kind = match error {
+                    ExternalError::Temporary { .. } | ExternalError::Write(_) if !is_limit => Kind::Run,
+                    _ => failure.kind,
+                };
+                let failure = Self { kind, ..failure };
+                match error {
+                    ExternalError::Temporary { .. } | ExternalError::Disk(_) => {
+                        failure.advise("choose a folder with more room with --temp")
+                    }
+                    ExternalError::Write(VxgError::Exists(_)) => {
+                        failure.advise("give another name, or --force to replace it")
+                    }
+                    _ => failure,
+                }
             }
-            OpenError::External {
-                error: ExternalError::Temporary { .. } | ExternalError::Disk(_),
-                ..
-            } => "choose a folder with more room with --temp",
-            OpenError::External {
-                error: ExternalError::Write(VxgError::Exists(_)),
-                ..
-            } => "give another name, or --force to replace it",
-            _ => return failure,
-        };
-        failure.advise(advice)
+            _ => failure,
+        }
+    }
+}
+
+impl From<ReproduceError> for CliError {
+    fn from(error: ReproduceError) -> Self {
+        match error {
+            ReproduceError::Bench(error) => error.into(),
+            ReproduceError::Resolve(error) => error.into(),
+        }
     }
 }
 
@@ -268,63 +307,6 @@ impl From<FileError> for CliError {
     }
 }
 
-impl From<far::view::ViewError> for CliError {
-    fn from(error: far::view::ViewError) -> Self {
-        match error {
-            far::view::ViewError::File(error) => error.into(),
-            far::view::ViewError::Raster(_)
-            | far::view::ViewError::VoxelSize(_)
-            | far::view::ViewError::Samples(_) => Self::usage(error),
-        }
-    }
-}
-
-impl From<textured::view::ViewError> for CliError {
-    fn from(error: textured::view::ViewError) -> Self {
-        match error {
-            textured::view::ViewError::File(error) => error.into(),
-            textured::view::ViewError::Raster(_)
-            | textured::view::ViewError::Grid(..)
-            | textured::view::ViewError::TexelSize(_) => Self::usage(error),
-        }
-    }
-}
-
-impl From<DrawError> for CliError {
-    fn from(error: DrawError) -> Self {
-        let message = error.to_string();
-        match error {
-            DrawError::TooLarge(_) => Self::new(Kind::Limit, message)
-                .advise("ask for a smaller --size, or fewer samples with --aa"),
-            DrawError::Memory(short) => short.into(),
-            DrawError::Setup(error) => error.into(),
-            DrawError::Engine(error) => error.into(),
-            DrawError::Resolve(error) => error.into(),
-            DrawError::Camera(_) => Self::usage(message),
-            DrawError::Method(error) => match error.downcast::<MethodError>() {
-                Ok(error) => (*error).into(),
-                Err(_) => Self::new(Kind::Run, message),
-            },
-        }
-    }
-}
-
-impl From<MethodError> for CliError {
-    fn from(error: MethodError) -> Self {
-        let message = error.to_string();
-        match error {
-            MethodError::Far(error) => error.into(),
-            MethodError::Textured(error) => error.into(),
-            MethodError::NoGrid { has, .. } => {
-                let has: Vec<String> = has.iter().map(u32::to_string).collect();
-                Self::usage(message).advise(format!("it has grids of {}", has.join(", ")))
-            }
-            MethodError::Samples(_) => Self::usage(message),
-            _ => Self::new(Kind::Run, message),
-        }
-    }
-}
-
 impl From<Shortage> for CliError {
     fn from(short: Shortage) -> Self {
         Self::new(Kind::Limit, short)
@@ -335,15 +317,5 @@ impl From<Shortage> for CliError {
 impl From<DiskShortage> for CliError {
     fn from(short: DiskShortage) -> Self {
         Self::new(Kind::Limit, short).advise("make room, or write to another disk")
-    }
-}
-
-impl From<BenchError> for CliError {
-    fn from(error: BenchError) -> Self {
-        match error {
-            BenchError::Engine { who, source } => Self::from(source).at(who),
-            BenchError::Setup(error) => error.into(),
-            BenchError::Picture(_) | BenchError::Threads { .. } => Self::new(Kind::Run, error),
-        }
     }
 }

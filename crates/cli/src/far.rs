@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::names;
 use super::report::{self, grouped};
 use super::scene_files::Conversion;
 use super::scenes;
@@ -21,7 +20,6 @@ use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
 
-/// Limits of a build, and the places of its temporary files.
 pub(super) struct Resources<'r> {
     /// Bytes of memory, of which the mesh is a part.
     pub(super) memory: Option<u64>,
@@ -29,7 +27,6 @@ pub(super) struct Resources<'r> {
     pub(super) temporary: Option<&'r Path>,
 }
 
-/// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(
     of: &Conversion<'_>,
     options: &BuildOptions,
@@ -71,7 +68,6 @@ pub(super) fn convert(
         match resources.memory.zip(short) {
             Some((memory, short)) => {
                 let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
-                // The resident size differs from run to run.
                 let enough = enough.div_ceil(1 << 20) + 1;
                 error.advise(format!("give it --memory {enough}M or more"))
             }
@@ -104,21 +100,20 @@ pub(super) fn convert(
             n("voxels_untested")
         ));
     }
-    of.report(described, build_ms, console)
+    of.report(described, build_ms, console);
+    Ok(())
 }
 
-/// This share of a budget is left to the allocator's overhead and to fragmentation.
+/// One of so many parts of a budget is left to the allocator.
 const ALLOCATORS_SHARE: u64 = 8;
 
 /// Fewer rays through a voxel are warned of.
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 
-/// Bytes a triangle that a build takes in memory without a budget, or more
-/// (`docs/far-voxels.md`).
+/// Least bytes of memory per triangle of a build without a budget.
 const LEAST_BYTES: u64 = 64;
 
-/// Refuses what cannot be numbered or does not fit the memory that is free, before copies are
-/// placed. A budget is checked when its mesh is loaded.
+/// Refuses too many triangles for their numbers or for the free memory. A budget is checked when its mesh is loaded.
 fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     if u32::try_from(triangles).is_err() {
         return Err(BuildError::TooMany(format!("{triangles} triangles")).into());
@@ -126,7 +121,6 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     if budget.is_some() {
         return Ok(());
     }
-    // No overflow: 32 bits by 8.
     let needed = triangles * LEAST_BYTES;
     match budget::available() {
         Some(free) if needed > free => Err(CliError::new(
@@ -141,13 +135,10 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     }
 }
 
-/// Places of copies of what fills a box: in rows on the ground, a tenth of its
-/// longest side apart, each a quarter turn on from the one before.
+/// Places of copies of an object in a box: in rows on the ground, a tenth of the longest side apart, each a quarter turn
+/// further than the one before.
 fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
-    let axis = match up {
-        Up::Y => DVec3::Y,
-        Up::Z => DVec3::Z,
-    };
+    let axis = up.axis();
     // The next axes; turned about `axis`, the first becomes the second.
     let (right, ahead) = (
         DVec3::new(axis.y, axis.z, axis.x),
@@ -171,13 +162,10 @@ fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
         .collect()
 }
 
-/// Checks all of a file and describes it, as JSON and as text.
-pub(super) fn info(name: &str) -> Result<(Value, String), CliError> {
-    let file = FarFile::open(&names::path(name))?;
+pub(super) fn info(name: &str) -> Result<Value, CliError> {
+    let file = FarFile::open(Path::new(name))?;
     file.verify()?;
-    let described = describe(&file, name);
-    let text = text(&described, &file);
-    Ok((described, text))
+    Ok(describe(&file, name))
 }
 
 fn describe(file: &FarFile, name: &str) -> Value {
@@ -187,15 +175,13 @@ fn describe(file: &FarFile, name: &str) -> Value {
     let untested = sum(&|n| n.untested.into());
     let per_voxel = |count: u64| count as f64 / kept.max(1) as f64;
     let list = |number: usize| sum(&|n| n.counts[number].into());
-    // Share of voxels whose list has a property.
     let share = |has: &dyn Fn(ShaderKind, OpacityKind) -> bool| {
         let having = (0..LISTS.len()).filter(|&number| has(LISTS[number].0, LISTS[number].1));
         per_voxel(having.map(list).sum())
     };
     let opacity = |kind| share(&|_, opacity| opacity == kind);
     let surface = |n: &Node| if n.is_leaf() { 0 } else { u64::from(n.surface) };
-    // Rays were aimed at the occluded voxels, and all ended before. They are dropped. A file is opened only if it keeps
-    // no more voxels than triangles touch.
+    // Not negative: the file was checked for it.
     let occluded = touched - kept;
     let last = nodes.iter().map(|n| n.level).max().unwrap_or(0);
     let levels = (0..=last).map(|level| {
@@ -244,79 +230,4 @@ fn describe(file: &FarFile, name: &str) -> Value {
         "surface_triangles": sum(&surface),
         "surface_bytes": sum(&Node::surface_bytes),
     })
-}
-
-fn text(described: &Value, file: &FarFile) -> String {
-    let n = |key: &str| report::figure(&described[key]);
-    let real = |key: &str| described[key].as_f64().unwrap_or_default();
-    let percent = |key: &str| format!("{:.1} %", real(key) * 100.0);
-    let (low, high) = file.bounds();
-    let lines = [
-        (
-            "scene",
-            described["scene"].as_str().unwrap_or_default().to_owned(),
-        ),
-        ("format", "far voxels (.far)".to_owned()),
-        ("box", format!("{low} to {high}")),
-        ("triangles", n("triangles")),
-        (
-            "voxels",
-            format!(
-                "{} that triangles touch: {} seen, {} not tested and kept, {} occluded and dropped ({})",
-                n("voxels_touched"),
-                n("voxels_seen"),
-                n("voxels_untested"),
-                n("voxels_occluded"),
-                percent("voxels_dropped_share")
-            ),
-        ),
-        (
-            "surface",
-            format!(
-                "{} decimated triangles of inner nodes",
-                n("surface_triangles")
-            ),
-        ),
-        (
-            "rays",
-            format!(
-                "{}, {} of them hits; {:.1} through a kept voxel",
-                n("rays"),
-                n("rays_hit"),
-                real("rays_per_voxel")
-            ),
-        ),
-        (
-            "opacity",
-            format!(
-                "{} opaque, {} one number, {} six",
-                percent("opaque_share"),
-                percent("scalar_share"),
-                percent("six_share")
-            ),
-        ),
-        ("shaders", format!("{} complex", percent("complex_share"))),
-        (
-            "bytes",
-            format!(
-                "{}, {:.1} a triangle; unpacked voxels {}, of which opacities {}, and triangles {}",
-                n("bytes"),
-                real("bytes") / real("triangles"),
-                n("voxel_bytes"),
-                n("opacity_bytes"),
-                n("surface_bytes")
-            ),
-        ),
-    ];
-    let columns = [
-        ("level", "level"),
-        ("nodes", "nodes"),
-        ("leaves", "leaves"),
-        ("voxels", "voxels"),
-        ("triangles", "surface_triangles"),
-        ("voxel size", "greatest_voxel_world"),
-        ("fit error", "fit_error"),
-    ];
-    let table = report::table_of(&described["levels"], &columns);
-    format!("{}\n\n{table}", report::lines(&lines))
 }

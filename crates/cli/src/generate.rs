@@ -1,30 +1,28 @@
-//! `generate`: a scene from integers alone, or a mesh from a seed, written to a file.
+//! `generate`: a generated scene or mesh, written to a file.
 
 use std::path::PathBuf;
 
 use clap::Args;
-
 use serde_json::json;
 
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::{names, report, scene_files, scenes};
+use super::{report, scene_files, scenes};
 use shiftvox::scene::Source;
 use shiftvox::whole;
 use shiftvox_mesh::generate;
 
-/// Arguments of `generate`.
 #[derive(Debug, Args)]
-pub struct GenerateArgs {
-    /// Generator and its settings: gen:terrain,depth=10,seed=1 (gen: may be left out); or a mesh,
-    /// mesh:tree,seed=2
+pub(super) struct GenerateArgs {
+    /// Generator and its settings, such as gen:terrain,depth=10,seed=1 or mesh:tree,seed=2. The
+    /// prefix gen: may be left out
     #[arg(value_name = "SPEC")]
     spec: String,
-    /// File to write; its ending names the format: .vxg, .vox or .ply; a mesh: .ply
+    /// File to write, with the ending .vxg, .vox or .ply, for a mesh .ply
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Replace a file that exists
+    /// Replace an existing file
     #[arg(long)]
     force: bool,
 }
@@ -35,17 +33,16 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
     }
     scene_files::check_ending(&args.output)?;
     whole::check_free(&args.output, args.force)?;
-    let spec = if Source::is_generated(&args.spec) {
-        args.spec.clone()
-    } else {
-        format!("gen:{}", args.spec)
+    let spec = match Source::is_generated(&args.spec) {
+        true => args.spec.clone(),
+        false => format!("gen:{}", args.spec),
     };
     let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written("generate", &spec, &args.output, &written, console)
+    scene_files::report_written("generate", &spec, &args.output, &written, console);
+    Ok(())
 }
 
-/// Writes a mesh.
 fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
     let (kind, seed) = generate::parse(&args.spec).map_err(CliError::input)?;
     let output = &args.output;
@@ -64,14 +61,12 @@ fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
         report::grouped(triangles),
         report::grouped(bytes.len() as u64)
     ));
-    if console.json {
-        let fields = json!({
-            "input": args.spec,
-            "output": names::of_path(output),
-            "triangles": triangles,
-            "bytes": bytes.len(),
-        });
-        console.document(&report::document("generate", fields))?;
-    }
+    let fields = json!({
+        "input": args.spec,
+        "output": output.display().to_string(),
+        "triangles": triangles,
+        "bytes": bytes.len(),
+    });
+    console.report("generate", fields);
     Ok(())
 }

@@ -1,58 +1,54 @@
-//! `info`: what is in a scene.
+//! `info`: the contents of a scene.
 
+use std::collections::HashMap;
 use std::time::Instant;
 
 use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{CameraArgs, SceneArgs, camera_line};
-use super::console::Console;
-use super::error::{CliError, Kind};
-use super::report::{self, grouped};
+use super::console::{self, Console};
+use super::error::CliError;
 use super::scenes::{self, Scene};
-use super::{far, names, textured};
+use super::{far, report, textured};
 use shiftvox::budget;
 use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
 use shiftvox::project::Bounds;
 use shiftvox::scene::{FileKind, Source};
 
-/// Arguments of `info`.
 #[derive(Debug, Args)]
-pub struct InfoArgs {
+pub(super) struct InfoArgs {
     /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<String>,
-    /// Of .tvx: the table of faces, voxels and surfels of each level of detail
+    /// Print the faces, voxels and surfels of each level of detail of .tvx files
     #[arg(long)]
     levels: bool,
     #[command(flatten)]
     scene: SceneArgs,
 }
 
-/// Describes all scenes; a scene that fails is reported and does not stop the others.
-pub(super) fn run(
-    args: &InfoArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let names = scenes::choose(&args.scenes, from_config)?;
+pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<(), CliError> {
     let mut results = Vec::new();
     let mut first_failure = None;
-    for name in &names {
-        match of_one(name, args, names.len() > 1, console) {
-            Ok(Some(described)) => results.push(described),
-            Ok(None) => {}
-            Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+    for name in &args.scenes {
+        match of_one(name, args, console) {
+            Ok(described) => {
+                if !console.json {
+                    let gap = if args.scenes.len() > 1 { "\n" } else { "" };
+                    console.data(text(described.clone(), args.levels) + gap)?;
+                }
+                results.push(described);
+            }
+            Err(error) if args.scenes.len() == 1 => return Err(error),
             Err(error) => {
-                console.error(&error);
+                console::report_error(&error);
                 results.push(json!({ "scene": name, "error": error.message }));
                 first_failure.get_or_insert(error.kind);
             }
         }
     }
-    if console.json {
-        console.document(&report::document("info", json!({ "scenes": results })))?;
-    }
+    console.report("info", json!({ "scenes": results }));
     match first_failure {
         None => Ok(()),
         Some(kind) => Err(CliError::new(
@@ -62,32 +58,28 @@ pub(super) fn run(
     }
 }
 
-/// Describes a scene: prints it, or with `--json` returns it, to be printed with the others.
-fn of_one(
-    name: &str,
-    args: &InfoArgs,
-    several: bool,
-    console: &Console,
-) -> Result<Option<Value>, CliError> {
+fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliError> {
     let started = Instant::now();
-    let source = Source::find(names::path(name))?;
-    let (described, text) = match source.kind() {
-        Some(FileKind::Far) => far::info(name)?,
-        Some(FileKind::Tvx) => textured::info(name, args.levels)?,
+    let source = Source::find(name)?;
+    match source.kind() {
+        Some(FileKind::Far) => far::info(name),
+        Some(FileKind::Tvx) => textured::info(name),
         _ => {
             let verify = scenes::Verify::All;
             let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
-            let described = describe(&scene);
-            let gap = if several { "\n" } else { "" };
-            let text = text(&described, &scene) + gap;
-            (described, text)
+            Ok(describe(&scene))
         }
-    };
-    if console.json {
-        return Ok(Some(described));
     }
-    console.data(text)?;
-    Ok(None)
+}
+
+fn text(mut described: Value, with_levels: bool) -> String {
+    let grids = described.get_mut("grids").and_then(Value::as_array_mut);
+    for grid in grids.into_iter().flatten().filter_map(Value::as_object_mut) {
+        if !with_levels {
+            grid.remove("levels");
+        }
+    }
+    report::description(&described)
 }
 
 fn describe(scene: &Scene) -> Value {
@@ -140,80 +132,7 @@ fn describe(scene: &Scene) -> Value {
     })
 }
 
-fn text(described: &Value, scene: &Scene) -> String {
-    let n = |key: &str| report::figure(&described[key]);
-    let real = |key: &str| described[key].as_f64();
-    let text = |key: &str| described[key].as_str().unwrap_or_default().to_owned();
-    let size = [0, 1, 2].map(|k| described["size"][k].to_string());
-    let index = |key: &str| described[key].to_string().replace(',', ", ");
-    let gain = match (real("dag_gain"), real("dag_gain_by_shape")) {
-        (Some(all), Some(shape)) => {
-            format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
-        }
-        _ => "not found out: merging takes more memory than is free".to_owned(),
-    };
-    let palette = scene
-        .palette
-        .map_or_else(|| "none".to_owned(), |n| format!("{n} entries"));
-    let mut lines = vec![
-        ("scene", text("scene")),
-        ("format", text("format")),
-        ("size", format!("{} voxels", size.join(" x "))),
-        (
-            "indices",
-            format!(
-                "{} up to, not including, {}",
-                index("index_low"),
-                index("index_high")
-            ),
-        ),
-        (
-            "depth",
-            format!("{} levels below the root", described["depth"]),
-        ),
-        ("voxels", n("voxels")),
-        ("nodes", n("nodes")),
-        (
-            "memory",
-            format!(
-                "{} bytes, {:.2} a voxel",
-                n("bytes"),
-                real("bytes_per_voxel").unwrap_or_default()
-            ),
-        ),
-        ("DAG gain", gain),
-        ("palette", palette),
-        ("opacities", text("opacities")),
-        ("colours", format!("{} different", n("colors"))),
-        ("camera", text("camera")),
-    ];
-    if let Some(mesh) = &scene.mesh {
-        let (low, high) = mesh.bounds;
-        lines.push((
-            "mesh",
-            format!(
-                "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
-                 voxelised in {:.1} ms",
-                grouped(mesh.triangles),
-                grouped(mesh.positions),
-                grouped(mesh.materials),
-                "",
-                mesh.load_ms,
-                mesh.voxelize_ms
-            ),
-        ));
-    }
-    let columns = [
-        ("level", "level"),
-        ("nodes", "nodes"),
-        ("in a tree", "nodes_in_tree"),
-    ];
-    let levels = report::table_of(&described["levels"], &columns);
-    format!("{}\n\n{levels}", report::lines(&lines))
-}
-
-/// How many of the nodes without children let light through, and how much
-/// they cover of their faces on the average.
+/// The share of leaves that let light through, and the mean opacity of their faces.
 fn opacities(graph: &Graph) -> String {
     if graph.opacity.is_empty() {
         return "none: all voxels are opaque".to_owned();
@@ -229,7 +148,7 @@ fn opacities(graph: &Graph) -> String {
         }
     }
     format!(
-        "six a voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
+        "six per voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
         100.0 * airy as f64 / all.max(1) as f64,
         100.0 * covered as f64 / (96 * all.max(1)) as f64
     )
@@ -248,9 +167,8 @@ fn distinct_leaf_colors(graph: &Graph) -> usize {
     seen.iter().map(|word| word.count_ones() as usize).sum()
 }
 
-/// Nodes of each level: stored ones, and how many a plain tree would have.
+/// Nodes of each level, as stored and as in a tree without shared nodes.
 fn levels(graph: &Graph) -> Vec<(u64, u128)> {
-    use std::collections::HashMap;
     let view = graph.view();
     if graph.is_level_ordered() && graph.links.is_empty() {
         let nodes = graph.nodes_per_level();
@@ -262,9 +180,8 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
         if graph.is_empty() || current.is_empty() {
             break;
         }
-        let times = current
-            .values()
-            .fold(0u128, |sum, &n| sum.saturating_add(n));
+        let times = current.values();
+        let times = times.fold(0u128, |sum, &n| sum.saturating_add(n));
         levels.push((current.len() as u64, times));
         let mut below: HashMap<u32, u128> = HashMap::new();
         for (&node, &times) in &current {
@@ -278,11 +195,10 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
     levels
 }
 
-/// Bytes a node that merging takes at the least.
+/// Least bytes per node of merging.
 const MERGE_BYTES: u64 = 16;
 
-/// How much smaller the graph gets when equal subtrees are merged: all nodes
-/// over those left, with attributes and by shape alone.
+/// Nodes over those left when equal subtrees are merged, with attributes and by shape alone. None if memory is short.
 fn merge_gains(graph: &Graph) -> Option<[f64; 2]> {
     budget::check("merging", graph.len() as u64 * MERGE_BYTES).ok()?;
     Some([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))

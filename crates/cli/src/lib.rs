@@ -1,29 +1,23 @@
-//! The command line: one file per command, and what commands share.
-//!
-//! stdout is data, stderr everything else. Nothing here computes. Imports go one way; the order is
-//! in `ARCHITECTURE.md`.
+//! The command line: one file per command. stdout is data, stderr everything else.
 
-pub mod args;
+mod args;
 mod bench;
-pub mod compare;
-mod config;
+mod compare;
 mod console;
-pub mod convert;
+mod convert;
 mod demo;
 mod document;
 mod engines;
 pub mod error;
 mod experiment;
 mod far;
-mod fatal_signals;
-pub mod generate;
-pub mod info;
+mod generate;
+mod info;
 mod manual;
 mod methods;
 mod model;
-mod names;
 mod outputs;
-pub mod render;
+mod render;
 mod report;
 mod reproduce;
 mod scene_files;
@@ -31,8 +25,8 @@ mod scenes;
 mod signals;
 mod stress;
 mod textured;
-pub mod triangles;
-pub mod turntable;
+mod triangles;
+mod turntable;
 #[cfg(feature = "view")]
 mod view;
 
@@ -40,13 +34,12 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::{ArgAction, CommandFactory, Parser, Subcommand};
+use clap::{ArgAction, ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use console::Console;
 use error::{CliError, Kind};
 use shiftvox::scene::FORMATS;
 
-/// The second part of the help text.
 fn long_about() -> String {
     let formats: String = FORMATS
         .iter()
@@ -72,14 +65,13 @@ unfinished files and ends by that signal, which shells show as 130."
 /// Draws voxel files and meshes, the same to the bit on every computer.
 #[derive(Debug, Parser)]
 #[command(name = "shiftvox", version, max_term_width = 100, long_about = long_about())]
-pub struct Cli {
+struct Cli {
     #[command(flatten)]
     common: CommonArgs,
     #[command(subcommand)]
     command: Option<Command>,
 }
 
-/// Flags of every command.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Common")]
 struct CommonArgs {
@@ -92,13 +84,11 @@ struct CommonArgs {
     /// Results as JSON on stdout
     #[arg(long, global = true)]
     json: bool,
-    /// Threads, 0 for all; never changes a bit of output [default: 0; of measurements: 1].
-    /// `bench time` takes a list, such as 1,2
-    #[arg(long, global = true, value_name = "N")]
-    threads: Option<args::ThreadCounts>,
-    /// TOML file with flags by their long names; flags on the command line come first
-    #[arg(long, global = true, value_name = "FILE")]
-    config: Option<std::path::PathBuf>,
+    /// Threads, 0 for all, which never change the output [default: 0, of measurements 1]. `bench time`
+    /// takes a list such as 1,2
+    #[arg(long, global = true, value_name = "N", value_delimiter = ',',
+          value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: Vec<u16>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -107,16 +97,15 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Draw many frames around a scene
     Turntable(Box<turntable::TurntableArgs>),
-    /// Look at scenes in a browser: a page on this computer
+    /// Show scenes in a browser on this computer
     ///
-    /// Prints an address to open. The page turns, moves and zooms the camera, changes the settings
-    /// of `render`, shows what a frame costs, and gives the `render` command of each picture.
-    /// It is for this computer alone, and through an SSH tunnel for another (docs/view.md).
+    /// Prints an address to open. The page moves the camera, changes settings, and shows the cost and
+    /// the `render` command of each picture. For other computers see docs/view.md.
     #[cfg(feature = "view")]
     View(Box<view::ViewArgs>),
     /// Draw a mesh as triangles: the reference picture of a mesh
     Triangles(Box<triangles::TrianglesArgs>),
-    /// Say what is in a scene
+    /// Describe a scene
     Info(info::InfoArgs),
     /// Convert a scene to another format
     Convert(convert::ConvertArgs),
@@ -126,20 +115,17 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Model the light hardware: operations, cycles, memory, area, energy
     ///
-    /// Draws one frame on the machine, counts what it executes, runs it cycle by cycle on a
-    /// hardware described in TOML, and prices it by tables whose every figure names its source.
+    /// Draws one frame on the machine, counts its operations, simulates its cycles on hardware
+    /// described in TOML, and prices both by tables with sources.
     Model(Box<model::ModelArgs>),
     /// Run an experiment
     Bench(bench::BenchArgs),
-    /// Sweep word formats, cameras, scenes and rules for what must never happen
+    /// Search word formats, cameras, scenes and rules for violated invariants
     ///
-    /// Every frame is held against the exact ray caster, the specification and bounds on its
-    /// vertices' error. What fails is shrunk to one command line; exit code 3.
+    /// Every frame is compared with the exact ray caster, the specification and bounds on its
+    /// vertices' error. A failing case is reduced to one command line, and the exit code is 3.
     Stress(Box<stress::StressArgs>),
     /// Reproduce the image-order paper's Table I, claims and figures, beside its numbers
-    ///
-    /// Runs a list of measurements (TOML). Hashes of pictures, records and operations are the same
-    /// on every computer.
     Reproduce(reproduce::ReproduceArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
@@ -148,10 +134,8 @@ enum Command {
 }
 
 impl Cli {
-    /// Threads of the pool that all work shares, 0 for all.
     fn threads(&self) -> Result<usize, CliError> {
-        let given = self.common.threads.as_ref().map_or(&[][..], |t| &t.0);
-        match (given, &self.command) {
+        match (&self.common.threads[..], &self.command) {
             ([], _) => Ok(0),
             (&[one], _) => Ok(usize::from(one)),
             // Experiments make a pool for each number and use this one to prepare.
@@ -166,47 +150,39 @@ impl Cli {
 /// Runs the program on the process's arguments.
 #[must_use]
 pub fn main() -> ExitCode {
-    signals::tidy_up_when_stopped();
-    let result = run(std::env::args_os().collect());
-    match result {
+    match run(std::env::args_os().collect()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if error.kind != Kind::Pipe {
                 console::report_error(&error);
             }
-            error.exit_code()
+            ExitCode::from(error.kind.code())
         }
     }
 }
 
-/// Whether a command line asks for JSON, also where the rest of it is wrong.
-fn wants_json(command_line: &[OsString]) -> bool {
-    let mut flags = command_line.iter().take_while(|word| *word != "--");
-    flags.any(|word| word == "--json")
+fn parse(line: &[OsString]) -> Result<(Cli, ArgMatches), clap::Error> {
+    let matches = Cli::command().try_get_matches_from(line)?;
+    Ok((Cli::from_arg_matches(&matches)?, matches))
 }
 
-fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
-    let early = Console::new(true, 0, wants_json(&command_line));
-    fatal_signals::install(early.json);
-    let expanded = match config::expand(command_line) {
-        Ok(expanded) => expanded,
-        Err(error) => return early.end(Err(error)),
-    };
-    let cli = match Cli::try_parse_from(&expanded.line) {
-        Ok(cli) => cli,
+fn run(line: Vec<OsString>) -> Result<(), CliError> {
+    // Also where the rest of the command line is wrong.
+    let json = line
+        .iter()
+        .take_while(|word| *word != "--")
+        .any(|word| word == "--json");
+    signals::install(json);
+    let (cli, matches) = match parse(&line) {
+        Ok(parsed) => parsed,
         Err(error) if error.exit_code() == 0 => {
-            // Help and version.
             error.print()?;
             return Ok(io::stdout().flush()?);
         }
         Err(error) => {
-            if let Some(blamed) = expanded.blame(&error) {
-                return early.end(Err(blamed));
-            }
-            // To stderr, and with `--json` to stdout too; a closed pipe is nobody's fault.
             let _ = error.print();
             let message = error.render().to_string();
-            let _ = early.end(Err(CliError::usage(message.trim_end())));
+            let _ = Console::new(true, 0, json).end(Err(CliError::usage(message.trim_end())));
             std::process::exit(error.exit_code());
         }
     };
@@ -214,25 +190,27 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
     let result = cli
         .threads()
         .and_then(|threads| pool(threads).build_global().map_err(no_threads))
-        .and_then(|()| run_command(cli, expanded.scenes, &console));
+        .and_then(|()| run_command(cli, &matches, &console));
     console.end(result)
 }
 
-/// Runs a command in this process, for bindings to other languages: returns what it prints with
-/// `--json`, one document or a line for each. Nothing is printed but errors after which the work
-/// goes on.
+/// Runs a command in this process, for bindings to other languages. Returns its `--json` output: one
+/// document, or one per line. Only errors that do not stop the work are printed.
 ///
 /// # Errors
 /// As the program fails.
 pub fn documents(words: impl IntoIterator<Item = OsString>) -> Result<String, CliError> {
-    let line = [OsString::from("shiftvox")].into_iter().chain(words);
-    let cli = Cli::try_parse_from(line).map_err(|error| {
+    let line: Vec<OsString> = [OsString::from("shiftvox")]
+        .into_iter()
+        .chain(words)
+        .collect();
+    let (cli, matches) = parse(&line).map_err(|error| {
         let message = error.render().to_string();
         CliError::usage(message.trim_end().trim_start_matches("error: "))
     })?;
     let threads = cli.threads()?;
     let console = Console::keeping();
-    let run = || run_command(cli, Vec::new(), &console);
+    let run = || run_command(cli, &matches, &console);
     match threads {
         0 => run(),
         threads => pool(threads).build().map_err(no_threads)?.install(run),
@@ -249,23 +227,23 @@ fn no_threads(error: rayon::ThreadPoolBuildError) -> CliError {
     CliError::new(Kind::Limit, format!("cannot start the threads: {error}"))
 }
 
-fn run_command(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), CliError> {
+fn run_command(cli: Cli, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
+    // Only the page shows flags as the user wrote them.
+    let _ = matches;
     match cli.command {
         None => demo::run(console),
-        Some(Command::Render(args)) => render::run(&args, scenes, console),
-        Some(Command::Turntable(args)) => turntable::run(&args, scenes, console),
+        Some(Command::Render(args)) => render::run(&args, console),
+        Some(Command::Turntable(args)) => turntable::run(&args, console),
         #[cfg(feature = "view")]
-        Some(Command::View(args)) => view::run(*args, scenes, console),
+        Some(Command::View(args)) => view::run(*args, matches, console),
         Some(Command::Triangles(args)) => triangles::run(&args, console),
-        Some(Command::Info(args)) => info::run(&args, scenes, console),
+        Some(Command::Info(args)) => info::run(&args, console),
         Some(Command::Convert(args)) => convert::run(&args, console),
         Some(Command::Generate(args)) => generate::run(&args, console),
         Some(Command::Compare(args)) => compare::run(&args, console),
-        Some(Command::Model(args)) => model::run(&args, scenes, console),
-        Some(Command::Bench(args)) => {
-            bench::run(&args, scenes, cli.common.threads.as_ref(), console)
-        }
-        Some(Command::Stress(args)) => stress::run(&args, scenes, console),
+        Some(Command::Model(args)) => model::run(&args, console),
+        Some(Command::Bench(args)) => bench::run(&args, &cli.common.threads, console),
+        Some(Command::Stress(args)) => stress::run(&args, console),
         Some(Command::Reproduce(args)) => reproduce::run(&args, console),
         Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
         Some(Command::Man(args)) => manual::man(&args, Cli::command()),

@@ -7,7 +7,6 @@ use clap_complete::Shell;
 
 use super::error::CliError;
 
-/// The shell to complete in.
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArgs {
     /// Shell
@@ -15,10 +14,9 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
-/// Which page.
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// Command whose page is wanted, or a command and an experiment; none: the program's own
+    /// Command, or a command and an experiment [default: the program]
     #[arg(value_name = "COMMAND")]
     names: Vec<String>,
 }

@@ -1,17 +1,15 @@
-//! The registry of drawing methods, the only one of the command line.
-//!
-//! It opens a scene once, finds the method that draws it, refuses flags that this method does not
-//! follow, and hands the scene on as one [`Drawable`].
+//! The registry of drawing methods. It finds the method that draws a scene, rejects flags that this method does not
+//! follow, and returns the scene as a [`Drawable`].
 
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::{DataBudget, EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
+use super::args::{EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
 use super::console::Console;
+use super::engines;
 use super::error::{CliError, Kind};
-use super::fatal_signals;
 use super::scenes::{self, Scene};
-use super::{engines, names};
+use super::signals;
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
 use shiftvox::picture::Buffer;
 use shiftvox::project::Camera;
@@ -26,21 +24,17 @@ pub(super) struct DrawArgs<'a> {
     pub(super) engine: &'a EngineArgs,
     pub(super) picture: &'a PictureArgs,
     pub(super) scene: &'a SceneArgs,
-    /// Of far voxels: how much of the nodes' data may be in memory.
-    pub(super) memory: Option<DataBudget>,
-    /// Whether pictures' hashes are wanted.
+    /// Bytes of a .far file's data that may be in memory.
+    pub(super) memory: Option<u64>,
     pub(super) is_hashed: bool,
 }
 
-/// A method that draws one kind of file, which nothing else draws.
 struct FileMethod {
     engine: EngineName,
-    /// As flags name it.
     name: &'static str,
     file: FileKind,
-    /// Buffers that it has beside the picture, two or more.
     buffers: &'static [Buffer],
-    /// Flags that it follows, of those that not every engine does.
+    /// The flags that it follows, of those that not every engine does.
     flags: &'static [&'static str],
     open: fn(&Path, &DrawArgs<'_>) -> Result<Content, CliError>,
 }
@@ -54,7 +48,7 @@ const METHODS: [FileMethod; 2] = [
         flags: &["far-opacity"],
         open: |path, args| {
             Ok(Content::Far(match args.memory {
-                Some(memory) => FarFile::open_within(path, memory.bytes)?,
+                Some(memory) => FarFile::open_within(path, memory)?,
                 None => FarFile::open(path)?,
             }))
         },
@@ -72,10 +66,9 @@ const METHODS: [FileMethod; 2] = [
     },
 ];
 
-/// An open scene, and the engine that draws it.
 pub(super) struct Opened {
+    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "shown by the page"))]
     pub(super) engine: EngineName,
-    /// Time to open, milliseconds.
     pub(super) load_ms: f64,
     content: Content,
 }
@@ -86,16 +79,12 @@ enum Content {
     Textured(TexturedFile),
 }
 
-/// Opens a scene for the engine that the flags name, or else for the one that draws its kind of
-/// file.
-///
-/// # Errors
-/// A bad scene, or flags that do not go with it.
+/// Opens a scene for the engine of the flags, or else for the one that draws its kind of file.
 pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result<Opened, CliError> {
     let started = Instant::now();
-    fatal_signals::reads(name);
+    signals::reads(name);
     let asked = args.engine.engine;
-    let source = Source::find(names::path(name));
+    let source = Source::find(name);
     let kind = source.as_ref().ok().and_then(Source::kind);
     let named = METHODS.iter().find(|method| Some(method.engine) == asked);
     let its = || METHODS.iter().find(|method| Some(method.file) == kind);
@@ -103,14 +92,8 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         check_memory(args)?;
         args.engine.check_of_voxels().map_err(CliError::usage)?;
         let scene_args = args.engine.rules.scene_args(args.scene);
-        let scene = scenes::open_source(
-            source?,
-            name,
-            &scene_args,
-            scenes::Verify::IfSmall,
-            started,
-            console,
-        )?;
+        let verify = scenes::Verify::IfSmall;
+        let scene = scenes::open_source(source?, name, &scene_args, verify, started, console)?;
         return Ok(Opened {
             engine: asked.unwrap_or_default(),
             load_ms: scene.load_ms,
@@ -118,7 +101,7 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         });
     };
     method.check(name, kind, args)?;
-    let content = (method.open)(&names::path(name), args)?;
+    let content = (method.open)(Path::new(name), args)?;
     Ok(Opened {
         engine: method.engine,
         load_ms: milliseconds_since(started),
@@ -134,7 +117,7 @@ fn check_memory(args: &DrawArgs<'_>) -> Result<(), CliError> {
 }
 
 impl FileMethod {
-    /// Refuses what this method does not draw, and flags that it does not follow.
+    /// Rejects files that this method does not draw, and flags that it does not follow.
     fn check(
         &self,
         scene: &str,
@@ -148,8 +131,8 @@ impl FileMethod {
             return Err(CliError::usage(message).advise(advice));
         }
         if kind != Some(self.file) {
-            // The method's reader says that the file is not there, or what else it is.
-            let refused = (self.open)(&names::path(scene), args).map(|_| ());
+            // The method's reader names the fault.
+            let refused = (self.open)(Path::new(scene), args).map(|_| ());
             return refused.map_err(|error| {
                 error.advise(format!(
                     "--engine {name} draws {file} files: shiftvox convert MESH OUT{file}"
@@ -176,7 +159,6 @@ impl FileMethod {
 }
 
 impl Opened {
-    /// The voxels, where it is a scene of voxels.
     #[cfg(feature = "view")]
     pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
         match &self.content {
@@ -185,11 +167,7 @@ impl Opened {
         }
     }
 
-    /// Refuses flags that the scene's method does not follow, as [`open`] does, for flags that
-    /// change while it is open.
-    ///
-    /// # Errors
-    /// The first such flag.
+    /// Rejects flags that the scene's method does not follow, as [`open`] does.
     #[cfg(feature = "view")]
     pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
         let of_file = match &self.content {
@@ -203,8 +181,7 @@ impl Opened {
         }
     }
 
-    /// Whether all of the file was checked; methods of meshes check what they read when they read
-    /// it.
+    /// Whether all of the file was checked. Methods of meshes check their data as they read it.
     pub(super) fn is_verified(&self) -> bool {
         match &self.content {
             Content::Graph(scene) => scene.is_verified,
@@ -212,10 +189,6 @@ impl Opened {
         }
     }
 
-    /// The scene as something that can be drawn, with light, samples and rules as the flags say.
-    ///
-    /// # Errors
-    /// When there is no such engine, or its flags contradict each other.
     pub(super) fn drawable(&self, args: &DrawArgs<'_>) -> Result<Box<dyn Drawable + '_>, CliError> {
         let picture = args.picture;
         let (shading, background) = (picture.shade, picture.background.unwrap_or_default());
@@ -245,7 +218,6 @@ impl Opened {
     }
 }
 
-/// Draws a frame, `repeat` times.
 pub(super) fn frame<'d>(
     drawable: &'d mut dyn Drawable,
     camera: &Camera,
@@ -256,10 +228,6 @@ pub(super) fn frame<'d>(
     shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
 }
 
-/// A voxel scene as something that can be drawn.
-///
-/// # Errors
-/// When there is no such engine.
 pub(super) fn of_graph<'s>(
     scene: &'s Scene,
     args: &DrawArgs<'_>,

@@ -3,7 +3,6 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::args::Setting;
 use super::error::CliError;
 use shiftvox::budget;
 use shiftvox::drawing::{Buffers, Shown};
@@ -16,13 +15,11 @@ pub(super) fn buffer_path(picture: &Path, buffer: Buffer) -> PathBuf {
     picture.with_extension(format!("{}.npy", buffer.name()))
 }
 
-/// All files that a picture and its buffers become.
 pub(super) fn paths(picture: &Path, buffers: &[Buffer]) -> Vec<PathBuf> {
     let beside = buffers.iter().map(|&buffer| buffer_path(picture, buffer));
     std::iter::once(picture.to_owned()).chain(beside).collect()
 }
 
-/// Fails before the work if a file would have to be replaced without `--force`.
 pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError> {
     for path in paths {
         whole::check_free(path, force)?;
@@ -30,7 +27,7 @@ pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError>
     Ok(())
 }
 
-/// Fails before the work if the buffers of so many pictures take more disk than is free.
+/// Fails if the buffers of so many pictures take more disk than is free.
 pub(super) fn check_room(
     picture: &Path,
     buffers: &[Buffer],
@@ -46,7 +43,6 @@ pub(super) fn check_room(
     Ok(budget::check_disk(whole::folder_of(picture), needed)?)
 }
 
-/// Whether the name is one of a picture that we write.
 pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     if ending.eq_ignore_ascii_case("png") {
@@ -88,7 +84,6 @@ pub(super) fn prepare(
     Ok(files)
 }
 
-/// Writes a buffer as it is made.
 fn prepare_buffer(
     picture: &Buffers<'_>,
     buffer: Buffer,
@@ -118,28 +113,6 @@ fn prepare_buffer(
         return Err(error.into());
     }
     Ok(written?)
-}
-
-/// The two files that `--outdir` leaves.
-pub(super) fn record_paths(outdir: &Path) -> [PathBuf; 2] {
-    [outdir.join("config.toml"), outdir.join("stats.json")]
-}
-
-/// Writes the resolved configuration and the report of a run.
-pub(super) fn write_record(
-    outdir: &Path,
-    settings: Vec<Setting>,
-    report: &serde_json::Value,
-    force: bool,
-) -> Result<(), CliError> {
-    let table: toml::Table = settings
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect();
-    let [config, stats] = record_paths(outdir);
-    whole::write(&config, table.to_string().as_bytes(), force)?;
-    whole::write(&stats, format!("{report:#}\n").as_bytes(), force)?;
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,123 +1,91 @@
 //! `render`: a picture of each scene.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{
-    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
-    camera_line, camera_settings,
-};
-use super::console::Console;
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes, camera_line};
+use super::console::{self, Console};
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
-use super::{names, outputs, report, scenes};
+use super::{outputs, report, scenes};
 use shiftvox::drawing::{DrawError, Shown};
 use shiftvox::frame::count_samples;
 use shiftvox::picture;
-use shiftvox::project::Camera;
 use shiftvox_lab::bench::Summary;
 
-/// Arguments of `render`.
 #[derive(Debug, Args)]
-pub struct RenderArgs {
+pub(super) struct RenderArgs {
     /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
-    pub scenes: Vec<String>,
-    /// Picture to write; {stem} stands for the scene's name
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<String>,
+    /// Picture to write, with {stem} in place of the scene's name
     #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    output: Option<PathBuf>,
     /// Draw the same frame N times and report the least, middle and greatest time
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..))]
-    pub repeat: u32,
-    /// Of .far files: keep at most this much of the nodes' data in memory: 512M, 2G [default: as
-    /// the system decides]
-    #[arg(long, value_name = "SIZE")]
-    pub memory: Option<DataBudget>,
+    repeat: u32,
+    /// Keep at most this much of a .far file's data in memory, such as 512M [default: as the system
+    /// decides]
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    memory: Option<u64>,
     /// Print the picture's hash
     #[arg(long)]
-    pub hash: bool,
-    /// Fail with exit code 3 if the picture's hash is another
+    hash: bool,
+    /// Fail with exit code 3 if the picture has another hash
     #[arg(long, value_name = "HASH")]
-    pub expect_hash: Option<String>,
+    expect_hash: Option<String>,
     /// Print the camera as a line of flags to paste
     #[arg(long)]
-    pub print_camera: bool,
-    /// Camera.
+    print_camera: bool,
+    /// Replace existing files
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
-    pub camera: CameraArgs,
-    /// Picture.
+    camera: CameraArgs,
     #[command(flatten)]
-    pub picture: PictureArgs,
-    /// Engine.
+    picture: PictureArgs,
     #[command(flatten)]
-    pub engine: EngineArgs,
-    /// Scene.
+    engine: EngineArgs,
     #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Output.
-    #[command(flatten)]
-    pub out: OutputArgs,
+    scene: SceneArgs,
 }
 
-/// Draws all scenes; a scene that fails is reported and does not stop the others.
-///
-/// # Errors
-/// The first scene's failure, or a wrong command line.
-pub(super) fn run(
-    args: &RenderArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let names = scenes::choose(&args.scenes, from_config)?;
-    check(args, names.len())?;
-    check_distinct(args, &names)?;
+/// Draws all scenes. A scene that fails is reported and does not stop the others.
+pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> {
+    let names = &args.scenes;
+    check(args)?;
     let mut results = Vec::new();
-    let (mut resolved, mut engines) = (None, Vec::new());
-    let mut first_failure: Option<CliError> = None;
-    let mut failed = 0;
-    for name in &names {
-        match render_one(args, name, names.len(), console) {
-            Ok((camera, engine, result)) => {
-                resolved = Some(camera);
-                engines.push(engine);
-                results.push(result);
-            }
+    let mut failures: Vec<Kind> = Vec::new();
+    for name in names {
+        match render_one(args, name, console) {
+            Ok(result) => results.push(result),
             Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
             Err(error) => {
-                console.error(&error);
-                failed += 1;
-                engines.push(args.engine.engine.unwrap_or_default());
+                console::report_error(&error);
+                failures.push(error.kind);
                 results.push(json!({ "scene": name, "error": error.message }));
-                first_failure.get_or_insert(error);
             }
         }
     }
-    let document = report::document("render", json!({ "scenes": results }));
-    if console.json {
-        console.document(&document)?;
-    }
-    if let Some(outdir) = &args.out.outdir {
-        // Scenes have one camera only where the user gave it or there is one scene.
-        let one = resolved.filter(|_| names.len() == 1);
-        let settings = settings(args, names.clone(), &engines, one.as_ref());
-        outputs::write_record(outdir, settings, &document, args.out.force)?;
-    }
-    match first_failure {
+    console.report("render", json!({ "scenes": results }));
+    match failures.first() {
         None => Ok(()),
-        Some(first) => Err(CliError::new(
-            first.kind,
-            format!("{failed} of {} scenes failed; see above", names.len()),
-        )),
+        Some(&first) => {
+            let (failed, all) = (failures.len(), names.len());
+            let message = format!("{failed} of {all} scenes failed; see above");
+            Err(CliError::new(first, message))
+        }
     }
 }
 
-fn check(args: &RenderArgs, scenes: usize) -> Result<(), CliError> {
+fn check(args: &RenderArgs) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
     let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
-    if args.output.is_none() && args.out.outdir.is_none() && !answers {
+    if args.output.is_none() && !answers {
         return Err(CliError::usage("no output was given").advise(
             "name the picture with -o FILE.png, or ask for --hash, --print-camera or --repeat N",
         ));
@@ -127,65 +95,44 @@ fn check(args: &RenderArgs, scenes: usize) -> Result<(), CliError> {
     {
         return Err(CliError::usage("--expect-hash takes 32 hexadecimal digits"));
     }
-    if args.output.is_none() && args.out.outdir.is_none() && !args.picture.aov.is_empty() {
-        return Err(CliError::usage(
-            "--aov writes beside the picture: name it with -o FILE.png",
-        ));
-    }
-    if let Some(output) = &args.output {
-        outputs::check_picture_name(output)?;
-        if scenes > 1 && !output.to_string_lossy().contains("{stem}") {
-            return Err(CliError::usage(format!(
-                "{}: {scenes} scenes would be written to one file",
-                output.display()
-            ))
-            .advise("put {stem} into the name, for example -o out/{stem}.png"));
-        }
-    }
     let (width, height) = args.picture.size();
     count_samples(width, height, args.picture.aa_log2()).map_err(DrawError::from)?;
-    if let Some(outdir) = &args.out.outdir {
-        outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
-    }
-    Ok(())
-}
-
-/// Refuses two scenes whose pictures would have one name.
-fn check_distinct(args: &RenderArgs, names: &[String]) -> Result<(), CliError> {
-    let mut taken = std::collections::HashMap::new();
-    for name in names {
-        let Some(path) = output_path(args, &scenes::stem(name)) else {
-            continue;
+    let Some(output) = &args.output else {
+        return match args.picture.aov.is_empty() {
+            true => Ok(()),
+            false => Err(CliError::usage(
+                "--aov writes beside the picture: name it with -o FILE.png",
+            )),
         };
-        if let Some(other) = taken.insert(path.clone(), name) {
-            return Err(CliError::usage(format!(
-                "{other} and {name} would both be drawn to {}",
-                path.display()
-            ))
-            .advise("draw them into different folders, one after the other"));
+    };
+    outputs::check_picture_name(output)?;
+    if args.scenes.len() > 1 && !output.to_string_lossy().contains("{stem}") {
+        let (all, output) = (args.scenes.len(), output.display());
+        let message = format!("{output}: {all} scenes would be written to one file");
+        let advice = "put {stem} into the name, for example -o out/{stem}.png";
+        return Err(CliError::usage(message).advise(advice));
+    }
+    let mut taken = HashSet::new();
+    for name in &args.scenes {
+        let path = output_path(output, name);
+        if !taken.insert(path.clone()) {
+            let message = format!("two scenes would both be drawn to {}", path.display());
+            let advice = "draw them into different folders, one after the other";
+            return Err(CliError::usage(message).advise(advice));
         }
     }
     Ok(())
 }
 
-fn output_path(args: &RenderArgs, stem: &str) -> Option<PathBuf> {
-    match (&args.output, &args.out.outdir) {
-        (Some(output), _) => Some(names::replace(output, "{stem}", stem)),
-        (None, Some(outdir)) => Some(outdir.join(names::path(&format!("{stem}.png")))),
-        (None, None) => None,
+fn output_path(output: &Path, scene: &str) -> PathBuf {
+    match output.to_str() {
+        Some(text) => text.replace("{stem}", &scenes::stem(scene)).into(),
+        None => output.to_owned(),
     }
 }
 
-/// Draws a scene, writes its picture and prints what the flags ask for. `of`: number of scenes.
-fn render_one(
-    args: &RenderArgs,
-    name: &str,
-    of: usize,
-    console: &Console,
-) -> Result<(Camera, EngineName, Value), CliError> {
-    // Records include the hash.
-    let expects = args.expect_hash.is_some() || args.out.outdir.is_some();
-    let is_hashed = args.hash || expects || console.json;
+fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value, CliError> {
+    let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
     let draw_args = DrawArgs {
         engine: &args.engine,
         picture: &args.picture,
@@ -193,50 +140,47 @@ fn render_one(
         memory: args.memory,
         is_hashed,
     };
-    let output = output_path(args, &scenes::stem(name));
+    let size = args.picture.size();
+    let output = args
+        .output
+        .as_deref()
+        .map(|output| output_path(output, name));
     if let Some(path) = &output {
-        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
-        outputs::check_room(path, &args.picture.aov, args.picture.size(), 1)?;
+        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.force)?;
+        outputs::check_room(path, &args.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
     let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
     let up = args.scene.up_or(drawable.up());
-    let size = args.picture.size();
     let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
         console.data(camera_line(&camera))?;
     }
     let shown = methods::frame(&mut *drawable, &camera, args.repeat).map_err(|e| e.at(name))?;
-    let hash = match is_hashed {
-        true => Some(picture::hash_rows(&shown.buffers).map_err(|e| CliError::from(e).at(name))?),
-        false => None,
-    };
+    let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));
+    let hash = hash.transpose().map_err(|e| CliError::from(e).at(name))?;
     if let Some(hash) = hash.as_deref().filter(|_| args.hash && !console.json) {
-        console.data(if of > 1 {
-            format!("{hash}  {name}")
-        } else {
-            hash.to_owned()
+        console.data(match args.scenes.len() {
+            1 => hash.to_owned(),
+            _ => format!("{hash}  {name}"),
         })?;
     }
     if let Some(path) = &output {
-        outputs::write(&shown, path, &args.picture.aov, args.out.force)?;
+        outputs::write(&shown, path, &args.picture.aov, args.force)?;
     }
     print_times(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
         && !expected.eq_ignore_ascii_case(found)
     {
-        return Err(CliError::new(
-            Kind::Failed,
-            format!("{name}: the picture's hash is {found}, expected {expected}"),
-        ));
+        let message = format!("{name}: the picture's hash is {found}, expected {expected}");
+        return Err(CliError::new(Kind::Failed, message));
     }
     let mut result = report::drawn(name, opened.load_ms, &camera, &shown, hash.as_deref());
-    result["output"] = json!(output.as_deref().map(names::of_path));
+    result["output"] = json!(output.map(|path| path.display().to_string()));
     result["is_verified"] = json!(opened.is_verified());
-    Ok((camera, opened.engine, result))
+    Ok(result)
 }
 
-/// Prints how long drawing took, and with `--verbose` what was counted.
 fn print_times(
     name: &str,
     shown: &Shown<'_>,
@@ -246,52 +190,24 @@ fn print_times(
 ) -> Result<(), CliError> {
     let times = Summary::of(shown.times_ms);
     let counters = shown.counters.iter();
-    let counters = counters.map(|(name, count)| [(*name).to_owned(), report::figure(count)]);
+    let counters = counters.map(|(name, count)| vec![(*name).to_owned(), report::figure(count)]);
     if repeat > 1 && !console.json {
-        let ms = |name: &str, ms: f64| [name.to_owned(), format!("{ms:.3}")];
-        let times = [
-            ["runs".to_owned(), repeat.to_string()],
+        let ms = |name: &str, ms: f64| vec![name.to_owned(), format!("{ms:.3}")];
+        let mut rows = vec![
+            vec!["runs".to_owned(), repeat.to_string()],
             ms("min ms", times.min_ms),
             ms("median ms", times.median_ms),
             ms("max ms", times.max_ms),
         ];
-        let rows = times.into_iter().chain(counters.clone()).map(Vec::from);
-        let head = vec![name.to_owned(), "one frame".to_owned()];
-        console.data(report::table(head, rows.collect()))?;
+        rows.extend(counters.clone());
+        console.data(report::table(&[name, "one frame"], rows))?;
     }
     if let Some(path) = output {
-        console.note(format!(
-            "{}: drawn in {:.1} ms",
-            path.display(),
-            times.median_ms
-        ));
+        let (path, ms) = (path.display(), times.median_ms);
+        console.note(format!("{path}: drawn in {ms:.1} ms"));
     }
-    for [name, count] in counters {
-        console.detail(format!("  {name}: {count}"));
+    for counter in counters {
+        console.detail(format!("  {}", counter.join(": ")));
     }
     Ok(())
-}
-
-/// The resolved settings of a run.
-fn settings(
-    args: &RenderArgs,
-    names: Vec<String>,
-    engines: &[EngineName],
-    camera: Option<&Camera>,
-) -> Vec<Setting> {
-    // One for all scenes, or none.
-    let engine = engines.first().copied();
-    let engine = engine.filter(|first| engines.iter().all(|engine| engine == first));
-    let mut settings = vec![("scene", names.into())];
-    if let Some(output) = &args.output {
-        settings.push(("output", names::of_path(output).into()));
-    }
-    settings.extend(camera.map_or_else(|| args.camera.settings(), camera_settings));
-    settings.extend(args.picture.settings());
-    settings.extend(args.engine.settings(engine));
-    settings.extend(args.scene.settings());
-    if args.repeat > 1 {
-        settings.push(("repeat", i64::from(args.repeat).into()));
-    }
-    settings
 }

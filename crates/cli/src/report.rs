@@ -1,17 +1,13 @@
-//! Results as JSON and as tables.
+//! Results as JSON and as text.
 
-use hwmodel::count::Counter;
-use hwmodel::{Memory, OpClass, Stage};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::args::camera_line;
-pub(super) use super::document::document;
 use shiftvox::drawing::{Figures, Shown};
 use shiftvox::project::Camera;
 use shiftvox_lab::bench::Summary;
 pub(super) use shiftvox_lab::report::grouped;
 
-/// A camera in JSON.
 pub(super) fn camera(camera: &Camera) -> Value {
     json!({
         "eye": camera.eye.to_array(),
@@ -22,7 +18,6 @@ pub(super) fn camera(camera: &Camera) -> Value {
     })
 }
 
-/// The cost of drawing one scene.
 pub(super) fn drawn(
     name: &str,
     load_ms: f64,
@@ -32,7 +27,7 @@ pub(super) fn drawn(
 ) -> Value {
     let times = Summary::of(shown.times_ms);
     let (width, height) = shown.pixels.size();
-    let map = |figures: &Figures| -> serde_json::Map<String, Value> {
+    let map = |figures: &Figures| -> Map<String, Value> {
         let named = figures.iter().cloned();
         named
             .map(|(name, value)| (name.to_owned(), value))
@@ -55,15 +50,28 @@ pub(super) fn drawn(
     result
 }
 
-/// A figure for people.
 pub(super) fn figure(value: &Value) -> String {
-    value.as_u64().map_or_else(|| value.to_string(), grouped)
+    match value {
+        Value::Null => "-".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Array(values) => values.iter().map(figure).collect::<Vec<_>>().join(", "),
+        value => match (value.as_u64(), value.as_f64()) {
+            (Some(whole), _) => grouped(whole),
+            (_, Some(real)) if value.is_f64() => {
+                // Six digits or more.
+                let magnitude = real.abs().max(1e-9).log10().floor() as i32;
+                format!("{real:.*}", (5 - magnitude).max(0) as usize)
+            }
+            _ => value.to_string(),
+        },
+    }
 }
 
 /// A table in plain text, first column left, the others right.
-pub(super) fn table(head: Vec<String>, rows: Vec<Vec<String>>) -> String {
+pub(super) fn table(head: &[&str], mut rows: Vec<Vec<String>>) -> String {
+    rows.insert(0, head.iter().map(|&cell| cell.to_owned()).collect());
     let width = |column: usize| {
-        let cells = rows.iter().chain([&head]).filter_map(|row| row.get(column));
+        let cells = rows.iter().filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let line = |row: &Vec<String>| {
@@ -74,101 +82,92 @@ pub(super) fn table(head: Vec<String>, rows: Vec<Vec<String>>) -> String {
         let line: String = row.iter().enumerate().map(cell).collect();
         line.trim_end().to_owned()
     };
-    let lines: Vec<String> = [&head].into_iter().chain(&rows).map(line).collect();
-    lines.join("\n")
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// A table of JSON objects, by the heads and keys of its columns.
-pub(super) fn table_of(rows: &Value, columns: &[(&str, &str)]) -> String {
-    let cell = |value: &Value| match value {
-        Value::String(text) => text.clone(),
-        value if value.is_f64() => format!("{:.4}", value.as_f64().unwrap_or_default()),
-        value => figure(value),
-    };
-    let row = |row: &Value| columns.iter().map(|(_, key)| cell(&row[*key])).collect();
-    let rows = rows.as_array().into_iter().flatten().map(row).collect();
-    table(
-        columns.iter().map(|(head, _)| (*head).to_owned()).collect(),
-        rows,
-    )
-}
-
-/// Lines of names and values.
-pub(super) fn lines(lines: &[(&str, String)]) -> String {
+/// The fields of a JSON object as lines, then its arrays of objects as tables.
+pub(super) fn description(object: &Value) -> String {
+    let (mut lines, mut tables) = (Vec::new(), Vec::new());
+    for (key, value) in ordered(object) {
+        let name = key.replace('_', " ");
+        match value {
+            Value::Null => {}
+            Value::Object(fields) => {
+                let fields = fields
+                    .iter()
+                    .map(|(key, value)| (key.replace('_', " "), value));
+                lines.extend(fields.map(|(key, value)| (format!("{name}: {key}"), figure(value))));
+            }
+            Value::Array(rows) if rows.iter().all(Value::is_object) => {
+                tables.extend(tables_of(&name, rows));
+            }
+            value => lines.push((name, figure(value))),
+        }
+    }
+    let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let lines = lines
         .iter()
-        .map(|(name, value)| format!("{name:<9} {value}"));
-    lines.collect::<Vec<String>>().join("\n")
+        .map(|(name, value)| format!("{name:<width$}  {value}\n"));
+    let lines: String = lines.collect();
+    tables.insert(0, lines.trim_end().to_owned());
+    tables.join("\n\n")
 }
 
-/// Operations by stage and class, then accesses by memory.
-pub(super) fn counts(counter: &Counter) -> String {
-    let classes: Vec<OpClass> = OpClass::ALL
-        .into_iter()
-        .filter(|&class| counter.ops_of(class) > 0)
-        .collect();
-    let mut head = vec!["stage".to_owned()];
-    head.extend(classes.iter().map(|class| class.name().to_owned()));
-    head.push("all".to_owned());
-    let row = |name: &str, at: &dyn Fn(OpClass) -> u64| {
-        let counts: Vec<u64> = classes.iter().map(|&class| at(class)).collect();
-        let all: u64 = counts.iter().sum();
-        let mut row = vec![name.to_owned()];
-        row.extend(counts.iter().map(|&count| grouped(count)));
-        row.push(grouped(all));
-        (all > 0).then_some(row)
+/// Fields by name, these first.
+fn ordered(object: &Value) -> Vec<(&String, &Value)> {
+    let mut fields: Vec<_> = object.as_object().into_iter().flatten().collect();
+    fields.sort_by_key(|(key, _)| !matches!(key.as_str(), "scene" | "format" | "level"));
+    fields
+}
+
+/// A table of objects, and a table for each array of objects in them.
+fn tables_of(name: &str, rows: &[Value]) -> Vec<String> {
+    let Some(first) = rows.first() else {
+        return Vec::new();
     };
-    let mut rows: Vec<_> = Stage::ALL
+    let inner = |value: &Value| {
+        value
+            .as_array()
+            .filter(|of| of.iter().any(Value::is_object))
+            .cloned()
+    };
+    let keys = ordered(first)
         .into_iter()
-        .filter_map(|stage| row(stage.name(), &|class| counter.ops_at(stage, class)))
-        .collect();
-    rows.extend(row("all", &|class| counter.ops_of(class)));
-    let operations = table(head, rows);
-    let accesses = Memory::ALL
-        .into_iter()
-        .filter(|&memory| counter.reads(memory) + counter.writes(memory) > 0)
-        .map(|memory| {
-            let name = memory.name().to_owned();
-            vec![
-                name,
-                grouped(counter.reads(memory)),
-                grouped(counter.writes(memory)),
-            ]
-        })
-        .collect();
-    let accesses = table(
-        ["memory", "reads", "writes"].map(String::from).into(),
-        accesses,
-    );
-    format!("{operations}\n\n{accesses}")
+        .filter(|(_, value)| inner(value).is_none());
+    let keys: Vec<&str> = keys.map(|(key, _)| key.as_str()).collect();
+    let heads: Vec<String> = keys.iter().map(|key| key.replace('_', " ")).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let cells = |row: &Value| keys.iter().map(|key| figure(&row[*key])).collect();
+    let mut tables = vec![table(&heads, rows.iter().map(cells).collect())];
+    for (number, row) in rows.iter().enumerate() {
+        for (key, rows) in ordered(row)
+            .into_iter()
+            .filter_map(|(key, value)| Some((key, inner(value)?)))
+        {
+            let title = format!("{name} {number}, {key}");
+            let inner = tables_of(&title, &rows).into_iter();
+            tables.extend(inner.map(|table| format!("{title}:\n{table}")));
+        }
+    }
+    tables
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwmodel::{Probe, StageLevel};
 
     #[test]
-    fn the_count_table_adds_up() {
-        let mut counter = Counter::new();
-        let place = |stage| StageLevel { stage, level: 0 };
-        counter.op(OpClass::Add, 64, place(Stage::Centre), 1200);
-        counter.op(OpClass::Add, 64, place(Stage::Draw), 34);
-        counter.op(OpClass::Shift, 64, place(Stage::Draw), 5);
-        counter.read(Memory::Node, 0, place(Stage::Pop));
-        let squeezed: Vec<String> = counts(&counter)
-            .lines()
-            .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
-            .collect();
-        let expected = [
-            "stage add shift all",
-            "centre 1,200 0 1,200",
-            "draw 34 5 39",
-            "all 1,234 5 1,239",
-            "",
-            "memory reads writes",
-            "node 1 0",
-        ];
-        assert_eq!(squeezed, expected);
+    fn descriptions_have_lines_and_tables() {
+        let levels = json!([{ "faces": 2, "level": 0, "voxels": 12345 }]);
+        let object = json!({
+            "scene": "a.vox",
+            "size": [4, 5],
+            "mesh": { "load_ms": 0.25 },
+            "palette": null,
+            "grids": [{ "cells": 8, "levels": levels }, { "cells": 16 }],
+        });
+        let expected = "scene          a.vox\nmesh: load ms  0.250000\nsize           4, 5\n\n\
+                        cells\n8\n16\n\ngrids 0, levels:\nlevel  faces  voxels\n0          2  12,345";
+        assert_eq!(description(&object), expected);
     }
 }

@@ -19,7 +19,6 @@ use shiftvox_lab::bench::{Harness, Schedule, Subject};
 use shiftvox_lab::report::Row;
 use shiftvox_lab::reproduce::{self, List};
 
-/// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
     /// Measurements as a TOML list [default: the paper's, crates/lab/src/reproduce.toml]
@@ -29,7 +28,7 @@ pub(super) struct ReproduceArgs {
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: u32,
-    /// Folder for all of it: results.json, results.csv, report.md and figures.svg
+    /// Folder of results.json, results.csv, report.md and figures.svg
     #[arg(long, value_name = "DIR")]
     outdir: Option<PathBuf>,
     #[command(flatten)]
@@ -52,7 +51,6 @@ impl ReproduceArgs {
         toml::from_str(&text).map_err(|e| CliError::input(e).at(place))
     }
 
-    /// The files of `--outdir`, unless a flag names another.
     fn exports(&self) -> ExportArgs {
         let mut export = self.export.clone();
         if let Some(folder) = &self.outdir {
@@ -70,14 +68,10 @@ impl ReproduceArgs {
 
 pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
     let export = args.exports();
-    export::check(&export)?;
+    export::check(&export, [])?;
     let list = args.list()?;
-    // Wrong names are rejected before any scene is made.
-    for name in list
-        .scenes()
-        .into_iter()
-        .filter(|name| Source::is_generated(name))
-    {
+    let generated = |name: &&str| Source::is_generated(name);
+    for name in list.scenes().into_iter().filter(generated) {
         Spec::parse(name).map_err(OpenError::from)?;
     }
     for run in &list.run {
@@ -97,23 +91,17 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         let subjects: Vec<Subject> = run.scenes.iter().map(open).collect::<Result<_, _>>()?;
         let families = engines::families(&run.engines, &run.variants)?;
         let reference = &engines::REFERENCE;
-        rows.extend(reproduce::rows(
-            run,
-            &subjects,
-            &families,
-            reference,
-            &mut harness,
-        )?);
+        let measured = reproduce::rows(run, &subjects, &families, reference, &mut harness);
+        rows.extend(measured?);
     }
-    let tables: Vec<&[Row]> = rows
-        .chunk_by(|a, b| a.get("table") == b.get("table"))
-        .collect();
+    let tables = rows.chunk_by(|a, b| a.get("table") == b.get("table"));
+    let tables: Vec<&[Row]> = tables.collect();
     let title = |rows: &[Row]| rows[0].text("table");
     let fields = context.json(schedule, &SetupOptions::default());
     let printed = tables
         .iter()
-        .map(|rows| reproduce::table(&title(rows), rows))
-        .collect();
+        .map(|rows| reproduce::table(&title(rows), rows));
+    let printed = printed.collect();
     let preface = context.markdown(schedule);
     let panels = tables
         .iter()

@@ -7,14 +7,13 @@ use serde_json::{Value, json};
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::{CliError, Kind};
+use super::report;
 use super::scenes::{self, Scene};
-use super::{names, report};
 use shiftvox::budget;
 use shiftvox::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
 use shiftvox::scene::{self, Source};
 use shiftvox::whole;
 
-/// Most voxels that are written to a voxel file.
 const MAX_WRITTEN: u64 = 1 << 28;
 
 /// Least bytes of a node in a `.vxg`, of a voxel in a `.ply` and in a `.vox`.
@@ -22,49 +21,30 @@ const NODE_BYTES: u64 = 5;
 const PLY_BYTES: u64 = 27;
 const VOX_BYTES: u64 = 4;
 
-/// Where a conversion reads and writes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Conversion<'a> {
-    /// The scene, as the user named it.
     pub(super) input: &'a str,
-    /// The file.
     pub(super) output: &'a Path,
-    /// Whether a file that exists is replaced.
     pub(super) force: bool,
-    /// How the scene is read.
     pub(super) scene: &'a SceneArgs,
 }
 
 impl Conversion<'_> {
-    /// Reports a built file with `--json`, given its description.
-    pub(super) fn report(
-        &self,
-        mut described: Value,
-        build_ms: f64,
-        console: &Console,
-    ) -> Result<(), CliError> {
-        if console.json {
-            described["input"] = json!(self.input);
-            described["output"] = json!(names::of_path(self.output));
-            described["build_ms"] = json!(build_ms);
-            console.document(&report::document("convert", described))?;
-        }
-        Ok(())
+    pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
+        described["input"] = json!(self.input);
+        described["output"] = json!(self.output.display().to_string());
+        described["build_ms"] = json!(build_ms);
+        console.report("convert", described);
     }
 }
 
-/// The result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Written {
-    /// Voxels in the scene.
     pub(super) voxels: u64,
-    /// Bytes written.
     pub(super) bytes: u64,
-    /// Warnings.
     pub(super) warnings: Vec<String>,
 }
 
-/// Refuses, before any work, a name whose ending is that of no format that scenes are written in.
 pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
     match output.extension().and_then(|e| e.to_str()) {
         Some("vxg" | "vox" | "ply") => Ok(()),
@@ -76,10 +56,6 @@ pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
     }
 }
 
-/// Writes a scene in the format that the output's ending names.
-///
-/// # Errors
-/// An unknown format (usage), a file that exists, or a failed write.
 pub(super) fn write(
     scene: &Scene,
     output: &Path,
@@ -134,9 +110,6 @@ pub(super) fn write(
 }
 
 /// Builds a `.vxg` file of a scene within a limit of memory.
-///
-/// # Errors
-/// A bad input, a file that exists, or a failed write.
 pub(super) fn build_file(
     source: &str,
     args: &SceneArgs,
@@ -145,7 +118,7 @@ pub(super) fn build_file(
     force: bool,
     progress: &dyn Progress,
 ) -> Result<(Written, Option<ExternalReport>), CliError> {
-    let found = Source::find(names::path(source))?;
+    let found = Source::find(source)?;
     let mut options = scenes::options(args);
     options.voxels.verify_up_to = u64::MAX;
     let built = scene::build_file(
@@ -191,14 +164,13 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
     }))
 }
 
-/// Reports what was written.
 pub(super) fn report_written(
     command: &str,
     input: &str,
     output: &Path,
     written: &Written,
     console: &Console,
-) -> Result<(), CliError> {
+) {
     for warning in &written.warnings {
         console.note(format!("{}: {warning}", output.display()));
     }
@@ -208,15 +180,12 @@ pub(super) fn report_written(
         report::grouped(written.voxels),
         report::grouped(written.bytes)
     ));
-    if console.json {
-        let fields = json!({
-            "input": input,
-            "output": names::of_path(output),
-            "voxels": written.voxels,
-            "bytes": written.bytes,
-            "warnings": written.warnings,
-        });
-        console.document(&report::document(command, fields))?;
-    }
-    Ok(())
+    let fields = json!({
+        "input": input,
+        "output": output.display().to_string(),
+        "voxels": written.voxels,
+        "bytes": written.bytes,
+        "warnings": written.warnings,
+    });
+    console.report(command, fields);
 }

@@ -1,4 +1,4 @@
-//! The only place of the command line that opens and makes scenes.
+//! Opening of scenes, for every command.
 
 use std::path::Path;
 use std::time::Instant;
@@ -6,8 +6,7 @@ use std::time::Instant;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::fatal_signals;
-use super::names;
+use super::signals;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::project::Up;
@@ -16,54 +15,24 @@ use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
 use shiftvox_mesh::{LoadOptions, Mesh};
 
-/// The scene that the demo draws: a tree, see `assets/ATTRIBUTION.md`.
-const DEMO: &[u8] = scene::BUNDLED_TREE;
-
-/// A scene that is ready to be drawn.
 #[derive(Debug)]
 pub(super) struct Scene {
-    /// The voxels.
     pub(super) graph: Graph,
-    /// The name that the user gave.
     pub(super) source: String,
-    /// The format, in words.
     pub(super) format: String,
-    /// The axis that points up.
     pub(super) up: Up,
-    /// A summary of the mesh, if it was one.
     pub(super) mesh: Option<MeshSummary>,
-    /// Entries of the file's palette, if it has one.
     pub(super) palette: Option<usize>,
-    /// Warnings of the reader.
     pub(super) warnings: Vec<String>,
-    /// Whether all of the file was checked.
     pub(super) is_verified: bool,
-    /// Time to read and build, milliseconds.
     pub(super) load_ms: f64,
 }
 
-/// Scenes of the command line, or else of the configuration file.
-pub(super) fn choose(given: &[String], from_config: Vec<String>) -> Result<Vec<String>, CliError> {
-    let names = if given.is_empty() {
-        from_config
-    } else {
-        given.to_vec()
-    };
-    if names.is_empty() {
-        return Err(CliError::usage("no scene was given")
-            .advise("name a file or a generator such as gen:terrain,depth=10,seed=1"));
-    }
-    Ok(names)
-}
-
 /// Opens a file or makes a `gen:` scene, and prints its warnings.
-///
-/// # Errors
-/// A bad input with file, offset, what was expected and what to do.
 pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
     let started = Instant::now();
     open_source(
-        Source::find(names::path(name))?,
+        Source::find(name)?,
         name,
         args,
         Verify::IfSmall,
@@ -72,19 +41,15 @@ pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Sc
     )
 }
 
-/// How much of a graph file is verified before it is used.
+/// The part of a graph file that is verified before use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verify {
     /// All of a small one, the header of a large one.
     IfSmall,
-    /// All.
     All,
 }
 
 /// As [`open`], for a source that was found at `started`. Commands that read all of a scene verify all of it.
-///
-/// # Errors
-/// As [`open`].
 pub(super) fn open_source(
     source: Source,
     name: &str,
@@ -93,7 +58,7 @@ pub(super) fn open_source(
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
-    fatal_signals::reads(name);
+    signals::reads(name);
     let mut options = options(args);
     if verify == Verify::All {
         options.voxels.verify_up_to = u64::MAX;
@@ -110,10 +75,9 @@ pub(super) fn open_source(
         console.note(format!("{name}: {warning}"));
     }
     if let Some(mesh) = &scene.mesh {
-        let said = if args.depth.is_some() {
-            ""
-        } else {
-            ", the default; --depth says another"
+        let said = match args.depth {
+            Some(_) => "",
+            None => ", the default; --depth sets another",
         };
         console.note(format!(
             "{name}: {} triangles voxelised with {} levels{said}: {} voxels in {:.1} ms",
@@ -133,20 +97,10 @@ pub(super) fn open_source(
     Ok(scene)
 }
 
-/// Whether a scene is a file of triangles.
-///
-/// # Errors
-/// Where it is a file that cannot be read.
 pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
-    Ok(Source::find(names::path(name))?
-        .kind()
-        .is_some_and(FileKind::is_mesh))
+    Ok(Source::find(name)?.kind().is_some_and(FileKind::is_mesh))
 }
 
-/// Reads a mesh for its triangles, and says which axis is up.
-///
-/// # Errors
-/// A bad input with file, place, what was expected and what to do.
 pub(super) fn read_mesh(
     source: &str,
     args: &SceneArgs,
@@ -157,16 +111,12 @@ pub(super) fn read_mesh(
             "{source}: a generator makes voxels, and a mesh is needed here"
         )));
     }
-    fatal_signals::reads(source);
+    signals::reads(source);
     let (mesh, y_up) =
-        shiftvox_mesh::open::read_mesh(&names::path(source), &load_options(args), progress)?;
+        shiftvox_mesh::open::read_mesh(Path::new(source), &load_options(args), progress)?;
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
-/// [`read_mesh`], and prints the mesh's warnings.
-///
-/// # Errors
-/// As [`read_mesh`].
 pub(super) fn open_mesh(
     source: &str,
     args: &SceneArgs,
@@ -179,19 +129,15 @@ pub(super) fn open_mesh(
     Ok((mesh, up))
 }
 
-/// The bundled scene of the demo.
-///
-/// # Errors
-/// None: the tests open it.
+/// The bundled scene: a tree, see `assets/ATTRIBUTION.md`.
 pub(super) fn demo(progress: &dyn Progress) -> Result<Scene, CliError> {
     let started = Instant::now();
     let name = "the bundled scene";
     let options = scene::OpenOptions::default();
-    let opened = scene::open_bytes(DEMO, name, &options, &NoMeshes, progress)?;
+    let opened = scene::open_bytes(scene::BUNDLED_TREE, name, &options, &NoMeshes, progress)?;
     Ok(ready(opened, name, None, started))
 }
 
-/// How scenes are read.
 pub(super) fn options(args: &SceneArgs) -> OpenOptions {
     OpenOptions {
         voxels: scene::OpenOptions {
@@ -235,7 +181,6 @@ fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant
 }
 
 /// A scene's name without folder and ending, for `{stem}`.
-#[must_use]
 pub(super) fn stem(source: &str) -> String {
     if Source::is_generated(source) {
         let name = source.trim_start_matches(scene::generate::PREFIX);

@@ -9,15 +9,14 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::experiment::context::Context;
 use super::experiment::export;
-use super::report;
+use super::{document, report};
 use shiftvox::whole;
 use shiftvox_lab::report::Table;
 use shiftvox_lab::stress::{self, Case, End, Hold, Outcome, SweepPlan};
 
-/// Arguments of `stress`.
 #[derive(Debug, Args)]
 pub(super) struct StressArgs {
-    /// Scenes: generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
+    /// Scenes, as generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
     /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
     #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
@@ -35,8 +34,7 @@ pub(super) struct StressArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(1..=2048))]
     size: Vec<u32>,
-    /// Random rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of
-    /// 56
+    /// Random rules (coverage, tolerance, cage, level of detail) per scene, viewpoint and format
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     rules: Option<u32>,
     /// Random viewpoints beside the thirteen standard ones
@@ -48,39 +46,33 @@ pub(super) struct StressArgs {
     /// All results, as --json prints them
     #[arg(long, value_name = "FILE")]
     export_json: Option<PathBuf>,
-    /// Replace files that exist
+    /// Replace existing files
     #[arg(long)]
     force: bool,
 }
 
-/// Failing cases that are printed.
 const PRINTED: usize = 10;
 
-pub(super) fn run(
-    args: &StressArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
+pub(super) fn run(args: &StressArgs, console: &Console) -> Result<(), CliError> {
     if let Some(case) = &args.case {
         return run_case(case, console);
     }
     if let Some(path) = &args.export_json {
         whole::check_free(path, args.force)?;
     }
-    let plan = plan(args, &from_config)?;
-    let context = Context::now();
+    let plan = plan(args)?;
     let started = std::time::Instant::now();
     let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
     let seconds = started.elapsed().as_secs_f64();
     let mut fields = findings.document(&plan);
-    fields["command"] = json!(context.command_line());
-    let document = report::document("stress", fields);
+    fields["command"] = json!(Context::now().command);
+    let document = document::document("stress", fields);
     if let Some(path) = &args.export_json {
         whole::write(path, format!("{document:#}\n").as_bytes(), args.force)?;
-        console.note(format!("{}: written", path.display()));
+        console.written(path);
     }
     match console.json {
-        true => console.document(&document)?,
+        true => console.hold(document),
         false => {
             let tables: Vec<Table> = stress::TABLES.iter().map(|of| of.of(&document)).collect();
             export::print(&tables, console)?;
@@ -94,12 +86,8 @@ pub(super) fn run(
     if total.failed == 0 {
         return Ok(());
     }
-    for failed in findings
-        .failed
-        .iter()
-        .filter(|f| f.minimal.is_some())
-        .take(PRINTED)
-    {
+    let failed = findings.failed.iter().filter(|f| f.minimal.is_some());
+    for failed in failed.take(PRINTED) {
         let minimal = failed.minimal.as_deref().unwrap_or(&failed.case);
         let detail = failed.minimal_detail.as_deref().unwrap_or(&failed.detail);
         console.note(format!(
@@ -107,24 +95,15 @@ pub(super) fn run(
             failed.check.name()
         ));
     }
-    Err(CliError::new(
-        Kind::Failed,
-        format!(
-            "{} of {} frames violate a check",
-            report::grouped(total.failed),
-            report::grouped(total.cases)
-        ),
-    ))
+    let (failed, all) = (report::grouped(total.failed), report::grouped(total.cases));
+    let message = format!("{failed} of {all} frames violate a check");
+    Err(CliError::new(Kind::Failed, message))
 }
 
-fn plan(args: &StressArgs, from_config: &[String]) -> Result<SweepPlan, CliError> {
+fn plan(args: &StressArgs) -> Result<SweepPlan, CliError> {
     let mut plan = SweepPlan::new(args.seed, args.thorough);
-    let named = match args.scenes.is_empty() {
-        true => from_config,
-        false => &args.scenes,
-    };
-    if !named.is_empty() {
-        let scenes = named.iter().map(|text| text.parse());
+    if !args.scenes.is_empty() {
+        let scenes = args.scenes.iter().map(|text| text.parse());
         plan.scenes = scenes
             .collect::<Result<_, String>>()
             .map_err(CliError::input)?;
@@ -146,21 +125,20 @@ fn plan(args: &StressArgs, from_config: &[String]) -> Result<SweepPlan, CliError
     Ok(plan)
 }
 
-/// Draws one case and prints its outcome.
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
     if console.json {
         let fields = json!({ "case": case.to_string(), "outcome": outcome });
-        console.document(&report::document("stress case", fields))?;
+        console.report("stress case", fields);
     } else {
         console.data(description(case, &outcome))?;
     }
     match outcome.failures.first() {
         None => Ok(()),
-        Some(first) => Err(CliError::new(
-            Kind::Failed,
-            format!("{}: {}", first.check.name(), first.detail),
-        )),
+        Some(first) => {
+            let message = format!("{}: {}", first.check.name(), first.detail);
+            Err(CliError::new(Kind::Failed, message))
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use serde_json::json;
 use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
 use super::error::CliError;
-use super::{methods, names, outputs, report, scenes};
+use super::{methods, outputs, report, scenes};
 use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::{Background, Buffer, Shading};
@@ -20,9 +20,8 @@ use shiftvox::whole;
 use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
 use shiftvox_mesh::raster::{Pattern, Samples};
 
-/// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum PatternName {
+pub(super) enum PatternName {
     /// In the middles of equal squares.
     #[default]
     Regular,
@@ -30,47 +29,45 @@ pub enum PatternName {
     Stratified,
 }
 
-/// Buffers that are written beside the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BufferName {
+pub(super) enum BufferName {
     /// View-axis depth, world units; inf where nothing is seen.
     Depth,
     /// Share of the pixel's samples that see a triangle.
     Coverage,
 }
 
-/// Arguments of `triangles`.
 #[derive(Debug, Args)]
-pub struct TrianglesArgs {
+pub(super) struct TrianglesArgs {
     /// Mesh, whose format is recognised by its content (`shiftvox --help` lists the formats)
-    #[arg(value_name = "MESH", value_parser = crate::names::parser())]
+    #[arg(value_name = "MESH")]
     mesh: String,
     /// Picture to write, .png
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Samples of a pixel: 1, 4, 16 or 256
+    /// Samples per pixel
     #[arg(long, value_name = "N", default_value = "16",
           value_parser = PossibleValuesParser::new(["1", "4", "16", "256"]))]
     samples: String,
-    /// Where in a pixel they lie
+    /// Places of the samples in a pixel
     #[arg(long, value_enum, default_value_t)]
     pattern: PatternName,
     /// Seed of --pattern stratified
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Pixels: 512 for a square, or 640x360 [default: 512]
+    /// Pixels, such as 512 (square) or 640x360 [default: 512]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
     /// Colours as the file has them, without light
     #[arg(long)]
     flat: bool,
-    /// What is behind: sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
+    /// Background in sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
     #[arg(long, value_name = "R,G,B|none")]
     background: Option<Background>,
     /// Buffers to write beside the picture, as {out stem}.{aov}.npy
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     aov: Vec<BufferName>,
-    /// Replace files that exist
+    /// Replace existing files
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -82,80 +79,67 @@ pub struct TrianglesArgs {
 pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliError> {
     outputs::check_picture_name(&args.output)?;
     args.camera.check().map_err(CliError::usage)?;
-    for path in args.paths() {
-        whole::check_free(&path, args.force)?;
+    let coverage = args.output.with_extension("coverage.npy");
+    let of_picture: &[Buffer] = match args.aov.contains(&BufferName::Depth) {
+        true => &[Buffer::Depth],
+        false => &[],
+    };
+    outputs::check_free(&outputs::paths(&args.output, of_picture), args.force)?;
+    if args.aov.contains(&BufferName::Coverage) {
+        whole::check_free(&coverage, args.force)?;
     }
     let started = Instant::now();
     let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
     let load_ms = milliseconds_since(started);
-    let size = args.size.map_or((512, 512), |s| (s.width, s.height));
+    let size = args.size.unwrap_or(Size::square(512)).pair();
     let style = args.style()?;
     let mut drawing = TrianglesDrawing::new(&mesh, up, style, console.progress());
     let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
     let shown = methods::frame(&mut drawing, &camera, 1);
     let shown = shown.map_err(|error| error.at(args.output.display()))?;
     let draw_ms = shown.times_ms[0];
-    let of_picture: &[Buffer] = match args.aov.contains(&BufferName::Depth) {
-        true => &[Buffer::Depth],
-        false => &[],
-    };
     let mut files = outputs::prepare(&shown, &args.output, of_picture, args.force)?;
     if args.aov.contains(&BufferName::Coverage) {
         let array = Array {
             shape: vec![size.1 as usize, size.0 as usize],
             values: Values::F32(shown.coverage.to_vec()),
         };
-        let path = args.output.with_extension("coverage.npy");
         let write = |file: &mut File| file.write_all(&npy::encode(&array));
-        files.push(whole::prepare(&path, args.force, write)?);
+        files.push(whole::prepare(&coverage, args.force, write)?);
     }
     whole::keep(files)?;
     console.note(format!(
-        "{}: {} triangles, {} samples a pixel, read in {load_ms:.1} ms, drawn in {draw_ms:.1} ms",
+        "{}: {} triangles, {} samples per pixel, read in {load_ms:.1} ms, drawn in {draw_ms:.1} ms",
         args.output.display(),
         report::grouped(mesh.triangles().len() as u64),
         args.samples
     ));
-    if console.json {
-        let fields = json!({
-            "mesh": args.mesh,
-            "output": names::of_path(&args.output),
-            "triangles": mesh.triangles().len(),
-            "samples": style.samples.per_pixel(),
-            "camera": camera_line(&camera),
-            "load_ms": load_ms,
-            "draw_ms": draw_ms,
-            "warnings": mesh.warnings(),
-        });
-        console.document(&report::document("triangles", fields))?;
-    }
+    let fields = json!({
+        "mesh": args.mesh,
+        "output": args.output.display().to_string(),
+        "triangles": mesh.triangles().len(),
+        "samples": style.samples.per_pixel(),
+        "camera": camera_line(&camera),
+        "load_ms": load_ms,
+        "draw_ms": draw_ms,
+        "warnings": mesh.warnings(),
+    });
+    console.report("triangles", fields);
     Ok(())
 }
 
 impl TrianglesArgs {
-    /// The picture, then the buffers in the order in which they were asked for.
-    fn paths(&self) -> Vec<PathBuf> {
-        let name = |buffer: &BufferName| match buffer {
-            BufferName::Depth => "depth.npy",
-            BufferName::Coverage => "coverage.npy",
-        };
-        let beside = self.aov.iter().map(|b| self.output.with_extension(name(b)));
-        std::iter::once(self.output.clone()).chain(beside).collect()
-    }
-
     fn style(&self) -> Result<TrianglesStyle, CliError> {
         let pattern = match self.pattern {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
-        // The flag takes numbers of samples only that there are.
         let samples = self.samples.parse().unwrap_or(16);
         Ok(TrianglesStyle {
             samples: Samples::new(samples, pattern).map_err(CliError::usage)?,
-            shading: if self.flat {
-                Shading::Flat
-            } else {
-                Shading::Lambert
+            shading: match self.flat {
+                true => Shading::Flat,
+                false => Shading::Lambert,
             },
             background: self.background.unwrap_or_default(),
         })

@@ -5,132 +5,59 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{
-    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
-};
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes};
 use super::console::Console;
 use super::error::CliError;
 use super::methods::{self, DrawArgs};
-use super::{names, outputs, report, scenes};
-use shiftvox::drawing::Shown;
+use super::{outputs, report};
 use shiftvox::picture;
+use shiftvox::project::Camera;
 use shiftvox_lab::bench::Summary;
 
-/// Arguments of `turntable`.
 #[derive(Debug, Args)]
-pub struct TurntableArgs {
+pub(super) struct TurntableArgs {
     /// Scene: a file (also .far and .tvx), or a generator such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
-    pub scene_name: Option<String>,
-    /// Pictures to write; #### stands for the frame's number, from 0
+    #[arg(value_name = "SCENE")]
+    scene_name: String,
+    /// Pictures to write, with #### in place of the frame's number from 0
     #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    output: PathBuf,
     /// Frames of a full turn
     #[arg(long, value_name = "N", default_value_t = 36,
           value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub frames: u32,
+    frames: u32,
     /// Print each picture's hash
     #[arg(long)]
-    pub hash: bool,
-    /// Keep at most this much of the data of a .far file in memory: 512M, 2G
-    #[arg(long, value_name = "SIZE")]
-    pub memory: Option<DataBudget>,
-    /// Camera.
+    hash: bool,
+    /// Keep at most this much of the data of a .far file in memory, such as 512M
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    memory: Option<u64>,
+    /// Replace existing files
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
-    pub camera: CameraArgs,
-    /// Picture.
+    camera: CameraArgs,
     #[command(flatten)]
-    pub picture: PictureArgs,
-    /// Engine.
+    picture: PictureArgs,
     #[command(flatten)]
-    pub engine: EngineArgs,
-    /// Scene.
+    engine: EngineArgs,
     #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Output.
-    #[command(flatten)]
-    pub out: OutputArgs,
+    scene: SceneArgs,
 }
 
-/// Draws all frames; the first failure stops.
-///
-/// # Errors
-/// A wrong command line, a bad scene, or a frame that fails.
-pub(super) fn run(
-    args: &TurntableArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let given: Vec<String> = args.scene_name.iter().cloned().collect();
-    let names = scenes::choose(&given, from_config)?;
-    let [name] = names.as_slice() else {
-        return Err(CliError::usage("a turntable shows one scene"));
-    };
+pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
     if args.camera.eye.is_some() {
-        return Err(
-            CliError::usage("a turntable places its own cameras").advise(
-                "use --view, --azimuth, --elevation and --zoom instead of --eye and --target",
-            ),
-        );
+        let advice = "use --view, --azimuth, --elevation and --zoom instead of --eye and --target";
+        return Err(CliError::usage("a turntable places its own cameras").advise(advice));
     }
     outputs::check_picture_name(&args.output)?;
     let paths = frame_paths(&args.output, args.frames)?;
-    for path in &paths {
-        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
-    }
     let (buffers, size) = (&args.picture.aov, args.picture.size());
+    for path in &paths {
+        outputs::check_free(&outputs::paths(path, buffers), args.force)?;
+    }
     outputs::check_room(&args.output, buffers, size, paths.len())?;
-    if let Some(outdir) = &args.out.outdir {
-        outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
-    }
-    let Turn {
-        engine,
-        times_ms,
-        results,
-    } = draw(args, name, &paths, console)?;
-    let Summary {
-        min_ms: min,
-        median_ms: median,
-        max_ms: max,
-        ..
-    } = Summary::of(&times_ms);
-    let document = report::document(
-        "turntable",
-        json!({ "frames": results, "render_ms": { "min": min, "median": median, "max": max } }),
-    );
-    if console.json {
-        console.document(&document)?;
-    }
-    console.note(format!(
-        "{} frames drawn, {median:.1} ms each ({min:.1} to {max:.1})",
-        args.frames
-    ));
-    if let Some(outdir) = &args.out.outdir {
-        outputs::write_record(
-            outdir,
-            settings(args, names, engine),
-            &document,
-            args.out.force,
-        )?;
-    }
-    Ok(())
-}
-
-/// The frames of a turn, drawn.
-struct Turn {
-    engine: EngineName,
-    times_ms: Vec<f64>,
-    results: Vec<Value>,
-}
-
-/// Draws all frames and writes them.
-fn draw(
-    args: &TurntableArgs,
-    name: &str,
-    paths: &[PathBuf],
-    console: &Console,
-) -> Result<Turn, CliError> {
     let draw_args = DrawArgs {
         engine: &args.engine,
         picture: &args.picture,
@@ -138,78 +65,54 @@ fn draw(
         memory: args.memory,
         is_hashed: args.hash || console.json,
     };
+    let name = &args.scene_name;
     let opened = methods::open(name, &draw_args, console)?;
     let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
     let up = args.scene.up_or(drawable.up());
-    // One distance for all frames, so that the object does not breathe.
+    // One distance for all frames, so that the object keeps its size.
     let bounds = drawable.bounds().revolved(up);
-    let mut turn = Turn {
-        engine: opened.engine,
-        times_ms: Vec::new(),
-        results: Vec::new(),
+    let mut times_ms = Vec::new();
+    let mut draw = |camera: &Camera, path: &Path| -> Result<Value, CliError> {
+        let shown = methods::frame(&mut *drawable, camera, 1)?;
+        outputs::write(&shown, path, buffers, args.force)?;
+        let hash = draw_args
+            .is_hashed
+            .then(|| picture::hash_rows(&shown.buffers));
+        let hash = hash.transpose()?;
+        if let Some(hash) = hash.as_deref().filter(|_| !console.json) {
+            console.data(format!("{hash}  {}", path.display()))?;
+        }
+        times_ms.extend(shown.times_ms);
+        let mut result = report::drawn(name, opened.load_ms, camera, &shown, hash.as_deref());
+        result["output"] = json!(path.display().to_string());
+        Ok(result)
     };
+    let mut results = Vec::new();
     console.progress().begin("drawing", u64::from(args.frames));
     for (frame, path) in paths.iter().enumerate() {
         let degrees = 360.0 * frame as f64 / f64::from(args.frames);
-        let size = args.picture.size();
-        let camera = args.camera.camera(&bounds, up, size, degrees);
-        let result = (|| {
-            let shown = methods::frame(&mut *drawable, &camera, 1)?;
-            let hash = keep(args, &shown, path, console)?;
-            turn.times_ms.extend(shown.times_ms);
-            let load_ms = opened.load_ms;
-            Ok::<_, CliError>(report::drawn(
-                name,
-                load_ms,
-                &camera,
-                &shown,
-                hash.as_deref(),
-            ))
-        })();
-        let mut result = result.map_err(|e| e.at(format!("{name}, frame {frame}")))?;
-        result["output"] = json!(names::of_path(path));
-        turn.results.push(result);
+        let result = draw(&args.camera.camera(&bounds, up, size, degrees), path);
+        results.push(result.map_err(|e| e.at(format!("{name}, frame {frame}")))?);
         console.progress().advance(1);
     }
     console.progress().end();
-    Ok(turn)
-}
-
-/// Writes a frame's picture; gives its hash where that is wanted.
-fn keep(
-    args: &TurntableArgs,
-    shown: &Shown<'_>,
-    path: &Path,
-    console: &Console,
-) -> Result<Option<String>, CliError> {
-    outputs::write(shown, path, &args.picture.aov, args.out.force)?;
-    if !args.hash && !console.json {
-        return Ok(None);
-    }
-    let hash = picture::hash_rows(&shown.buffers)?;
-    if args.hash && !console.json {
-        console.data(format!("{hash}  {}", path.display()))?;
-    }
-    Ok(Some(hash))
-}
-
-fn settings(args: &TurntableArgs, scenes: Vec<String>, engine: EngineName) -> Vec<Setting> {
-    let output = names::of_path(&args.output);
-    let mut settings: Vec<Setting> = vec![
-        ("scene", scenes.into()),
-        ("output", output.into()),
-        ("frames", i64::from(args.frames).into()),
-    ];
-    settings.extend(args.camera.settings());
-    settings.extend(args.picture.settings());
-    settings.extend(args.engine.settings(Some(engine)));
-    settings.extend(args.scene.settings());
-    settings
+    let times = Summary::of(&times_ms);
+    let (min, median, max) = (times.min_ms, times.median_ms, times.max_ms);
+    let times = json!({ "min": min, "median": median, "max": max });
+    console.report(
+        "turntable",
+        json!({ "frames": results, "render_ms": times }),
+    );
+    let frames = args.frames;
+    console.note(format!(
+        "{frames} frames drawn, {median:.1} ms each ({min:.1} to {max:.1})"
+    ));
+    Ok(())
 }
 
 /// The pattern with its run of `#` replaced by each frame's number.
 fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
-    let text = names::of_path(pattern);
+    let text = pattern.to_string_lossy();
     let wrong = || {
         CliError::usage(format!("{text}: the frames need different names"))
             .advise("put one run of # into the name, for example -o out/####.png")
@@ -220,9 +123,8 @@ fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
     if after.contains('#') {
         return Err(wrong());
     }
-    Ok((0..frames)
-        .map(|frame| names::path(&format!("{before}{frame:0width$}{after}")))
-        .collect())
+    let path = |frame| format!("{before}{frame:0width$}{after}").into();
+    Ok((0..frames).map(path).collect())
 }
 
 #[cfg(test)]

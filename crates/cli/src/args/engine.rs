@@ -1,21 +1,16 @@
 //! The engine, its rules and its words.
 
-use std::fmt;
-use std::str::FromStr;
-
 use clap::{Args, ValueEnum};
 use hwmodel::Overflow;
 
 use super::scene::SceneArgs;
-use super::setting::{Setting, word};
-use super::values::Tolerance;
+use super::values::tolerance;
 use shiftvox::fast::Instructions;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_mesh::far::view::Opacity;
 
-/// An engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum EngineName {
+pub(crate) enum EngineName {
     /// The same bits as the machine, as fast as the processor goes.
     #[default]
     Fast,
@@ -29,107 +24,90 @@ pub enum EngineName {
     Textured,
 }
 
-/// How often textured voxels are eroded: a number, or `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Erosion {
-    /// The level of fewest faces whose texels are at most a pixel.
+pub(crate) enum Erosion {
+    /// The level with the fewest faces whose texels are at most a pixel.
     #[default]
     Auto,
-    /// So often; beyond the last level primitives alone are left.
+    /// This many. Beyond the last level only primitives are left.
     Level(u32),
 }
 
-impl FromStr for Erosion {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "auto" {
-            return Ok(Self::Auto);
-        }
-        let level = text.parse().map(Self::Level);
-        level.map_err(|_| "expected a number of erosions, 0 or more, or auto".to_owned())
+fn erosion(text: &str) -> Result<Erosion, String> {
+    match text {
+        "auto" => Ok(Erosion::Auto),
+        text => text
+            .parse()
+            .map(Erosion::Level)
+            .map_err(|_| "expected a number of erosions, 0 or more, or auto".to_owned()),
     }
 }
 
-impl fmt::Display for Erosion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Auto => f.write_str("auto"),
-            Self::Level(level) => level.fmt(f),
-        }
-    }
-}
-
-/// By which rules a frame is drawn, in which words.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
-pub struct RuleArgs {
+pub(crate) struct RuleArgs {
     /// How a record holds its projected vertices [default: frame]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    pub cage: Option<CageKind>,
-    /// Of --coverage any and center: largest deviation in pixels at which a record may change from
-    /// clip to screen space, 0 never, inf at once [default: 0.125]. With exact and alpha, whose
-    /// picture is defined without approximation, it is 0 and nothing else
-    #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
-    pub tolerance: Option<Tolerance>,
-    /// Coverage rule: the pixels that a voxel covers [default: exact]
+    pub(crate) cage: Option<CageKind>,
+    /// Largest deviation in pixels at which a record of --coverage any or center changes from clip
+    /// to screen space, 0 for never and inf for at once [default: 0.125]
+    #[arg(long, value_name = "PX|inf", conflicts_with = "paper",
+          value_parser = tolerance)]
+    pub(crate) tolerance: Option<f64>,
+    /// Coverage rule [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    pub coverage: Option<Coverage>,
-    /// As the image-order paper has it: --cage corners --tolerance inf --coverage any
+    pub(crate) coverage: Option<Coverage>,
+    /// Rules of the image-order paper: --cage corners --tolerance inf --coverage any
     #[arg(long)]
-    pub paper: bool,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with
-    /// exact, else 1]. Of --engine far and --erosion auto: the largest voxel or texel, above 0
-    /// [default: 1]
+    pub(crate) paper: bool,
+    /// Draw nodes of at most this many pixels as one voxel, with 0 only leaves [default: 0.5 with
+    /// exact, else 1]. For --engine far and --erosion auto, the largest voxel or texel [default: 1]
     #[arg(long, value_name = "PX")]
-    pub lod: Option<f64>,
-    /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
+    pub(crate) lod: Option<f64>,
+    /// Width of a machine word in bits, 16 to 64 [default: 64, of `model` 32]
     #[arg(long, value_name = "BITS")]
-    pub bits: Option<u32>,
+    pub(crate) bits: Option<u32>,
     /// Fraction bits of a word [default: as many as the frame leaves room for]
     #[arg(long, value_name = "BITS")]
-    pub frac: Option<u32>,
+    pub(crate) frac: Option<u32>,
     /// Result of an operation that overflows a word [default: trap]
     #[arg(long, value_enum)]
-    pub overflow: Option<Overflow>,
+    pub(crate) overflow: Option<Overflow>,
 }
 
-/// The engine, its rules and its words.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
-pub struct EngineArgs {
-    /// Engine that draws [default: fast; a .far file's is far, a .tvx file's textured]
+pub(crate) struct EngineArgs {
+    /// Engine that draws [default: fast, for .far files far, for .tvx files textured]
     #[arg(long, value_enum)]
-    pub engine: Option<EngineName>,
-    /// By which rules, in which words.
+    pub(crate) engine: Option<EngineName>,
     #[command(flatten)]
-    pub rules: RuleArgs,
-    /// Instructions of the fast engine; never changes a bit of output
+    pub(crate) rules: RuleArgs,
+    /// Instructions of the fast engine, which never change the output
     #[arg(long, value_enum, default_value_t)]
-    pub isa: Instructions,
+    pub(crate) isa: Instructions,
     /// Opacities of --engine far [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
-    pub far_opacity: Option<Opacity>,
-    /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all
-    /// grids, whose texels are no larger than a pixel [default: auto]
-    #[arg(long, value_name = "K|auto")]
-    pub erosion: Option<Erosion>,
-    /// The grid of --erosion K, by its number of cells [default: the coarsest whose texels are no
-    /// larger than a pixel, or else the finest]
+    pub(crate) far_opacity: Option<Opacity>,
+    /// Erosions of --engine textured [default: auto, the level with the fewest faces whose texels
+    /// are at most a pixel]
+    #[arg(long, value_name = "K|auto", value_parser = erosion)]
+    pub(crate) erosion: Option<Erosion>,
+    /// Cells of the grid of --erosion K [default: the coarsest grid whose texels are at most a
+    /// pixel, or else the finest]
     #[arg(long, value_name = "CELLS")]
-    pub erosion_grid: Option<u32>,
+    pub(crate) erosion_grid: Option<u32>,
 }
 
 impl RuleArgs {
-    /// Whether a rule or setting was given that only the machine's steps have.
-    pub fn are_of_machine(&self) -> bool {
+    /// Whether a rule of the machine alone was given.
+    pub(crate) fn are_of_machine(&self) -> bool {
         let of_machine = self.cage.is_some() || self.tolerance.is_some() || self.overflow.is_some();
         of_machine || self.options(0).coverage != Coverage::Exact
     }
 
-    /// The set-up's options, at so many samples per pixel and axis (as a power of two).
-    #[must_use]
-    pub fn options(&self, aa_log2: u32) -> SetupOptions {
+    /// The set-up's options with 2^`aa_log2` samples per pixel and axis.
+    pub(crate) fn options(&self, aa_log2: u32) -> SetupOptions {
         let base = if self.paper {
             SetupOptions::paper()
         } else {
@@ -139,22 +117,20 @@ impl RuleArgs {
             bits: self.bits.unwrap_or(base.bits),
             frac: self.frac,
             cage: self.cage.unwrap_or(base.cage),
-            tolerance_px: self.tolerance.map_or(base.tolerance_px, |t| t.0),
+            tolerance_px: self.tolerance.unwrap_or(base.tolerance_px),
             coverage: base.coverage,
             lod_px: self.lod.unwrap_or(base.lod_px),
             aa_log2,
         }
     }
 
-    /// Pixels of the largest voxel of a .far file, or texel of a .tvx file.
-    #[must_use]
-    pub fn mesh_lod(&self) -> f64 {
+    /// Pixels of the largest voxel of a .far file, or of the largest texel of a .tvx file.
+    pub(crate) fn mesh_lod(&self) -> f64 {
         self.lod.unwrap_or(1.0)
     }
 
-    /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
-    #[must_use]
-    pub fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
+    /// The scene's flags, with opacities of meshes for the rule that blends.
+    pub(crate) fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
         let blends = self.coverage.is_some_and(Coverage::blends);
         SceneArgs {
             opacities: scene.opacities || blends,
@@ -162,32 +138,14 @@ impl RuleArgs {
         }
     }
 
-    /// The datapath's reaction to an overflow.
-    #[must_use]
-    pub fn overflow(&self) -> Overflow {
+    pub(crate) fn overflow(&self) -> Overflow {
         self.overflow.unwrap_or_default()
-    }
-
-    /// Settings that the engines of voxels have alone.
-    fn settings(&self) -> Vec<Setting> {
-        let options = self.options(0);
-        let tolerance = Tolerance(options.tolerance_px);
-        let mut settings = vec![
-            ("cage", word(&options.cage)),
-            ("tolerance", tolerance.to_string().into()),
-            ("coverage", word(&options.coverage)),
-            ("bits", i64::from(options.bits).into()),
-            ("overflow", word(&self.overflow())),
-        ];
-        settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
-        settings
     }
 }
 
 impl EngineArgs {
-    /// Flags of the command line that not every engine follows, by their long names.
-    #[must_use]
-    pub fn given(&self) -> Vec<&'static str> {
+    /// Given flags that not every engine follows, by their long names.
+    pub(crate) fn given(&self) -> Vec<&'static str> {
         let flags = [
             ("cage", self.rules.cage.is_some()),
             ("tolerance", self.rules.tolerance.is_some()),
@@ -206,10 +164,7 @@ impl EngineArgs {
     }
 
     /// Refuses flags that the engine of voxels does not follow.
-    ///
-    /// # Errors
-    /// The purpose of the first such flag.
-    pub fn check_of_voxels(&self) -> Result<(), String> {
+    pub(crate) fn check_of_voxels(&self) -> Result<(), String> {
         if self.far_opacity.is_some() {
             return Err("--far-opacity is for .far files".to_owned());
         }
@@ -222,38 +177,5 @@ impl EngineArgs {
             return Err("--isa is for --engine fast".to_owned());
         }
         Ok(())
-    }
-
-    /// Every setting of an engine, for a configuration file. `None` means engines of different kinds,
-    /// and the settings that all of them have.
-    #[must_use]
-    pub fn settings(&self, engine: Option<EngineName>) -> Vec<Setting> {
-        let mut settings = vec![("isa", word(&self.isa))];
-        settings.extend(engine.map(|engine| ("engine", word(&engine))));
-        let erosion = self.erosion.unwrap_or_default();
-        let lod = || ("lod", self.rules.options(0).lod_px.into());
-        let mesh_lod = || ("lod", self.rules.mesh_lod().into());
-        match engine {
-            // The default is not the same for all.
-            None => settings.extend(self.rules.lod.map(|lod| ("lod", lod.into()))),
-            Some(EngineName::Far) => {
-                settings.push(mesh_lod());
-                settings.push(("far-opacity", word(&self.far_opacity.unwrap_or_default())));
-            }
-            Some(EngineName::Textured) => {
-                // The level of a texel's size is what auto finds.
-                settings.extend((erosion == Erosion::Auto).then(mesh_lod));
-                settings.push(("erosion", erosion.to_string().into()));
-                settings.extend(
-                    self.erosion_grid
-                        .map(|g| ("erosion-grid", i64::from(g).into())),
-                );
-            }
-            Some(EngineName::Fast | EngineName::Machine | EngineName::Rays) => {
-                settings.push(lod());
-                settings.extend(self.rules.settings());
-            }
-        }
-        settings
     }
 }

@@ -19,37 +19,32 @@ use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::{self, FarFile};
 use shiftvox_mesh::textured::{self, TexturedFile};
 
-/// Grids of the textured voxels whose level is chosen by distance, and texels along a face. A face
-/// with few texels shows them off by about a cell, which should not be many pixels.
+/// Grids and texels along a face of automatic erosion. Faces with few texels are off by about a cell.
 const GRIDS: [u32; 6] = [4, 8, 16, 32, 64, 128];
 const TEXELS: u32 = 4;
 
-/// A value, and how many milliseconds it took to make.
 type Timed<T> = (T, f64);
 
-/// Things that methods draw.
 pub(super) struct Made {
     pub(super) mesh: Option<Mesh>,
     /// Bytes of the mesh in compact form.
     mesh_bytes: u64,
     /// Voxels without opacities, and with.
     pub(super) graphs: [Option<Timed<Graph>>; 2],
-    /// Meshes of which one triangle of so many is left, and their bytes.
+    /// One of so many triangles, the mesh and its bytes.
     decimated: Vec<Timed<(u32, Mesh, u64)>>,
     /// Far voxels, and the hybrid.
     far: [Option<Timed<FarFile>>; 2],
-    /// Textured voxels of the paper's grid, and those whose level is chosen by distance.
+    /// Textured voxels of the paper's grid, and of automatic erosion.
     textured: [Option<Timed<TexturedFile>>; 2],
 }
 
-/// Far or textured voxels as a file in memory.
 fn timed<T, E>(make: impl FnOnce() -> Result<T, E>) -> Result<Timed<T>, E> {
     let started = Instant::now();
     make().map(|made| (made, milliseconds_since(started)))
 }
 
 impl Made {
-    /// Makes what some methods need of a mesh.
     pub(super) fn of_mesh(
         name: &str,
         mesh: Mesh,
@@ -126,7 +121,6 @@ impl Made {
         Ok(made)
     }
 
-    /// A scene of voxels alone.
     pub(super) fn of_graph(graph: Option<Graph>) -> Self {
         let graph = graph.map(|graph| (graph, 0.0));
         Self {
@@ -139,7 +133,7 @@ impl Made {
         }
     }
 
-    /// The methods, without those of meshes of which decimation leaves nothing.
+    /// The methods, except those of empty decimated meshes.
     pub(super) fn methods<'m>(
         &'m self,
         choices: &[Choice],

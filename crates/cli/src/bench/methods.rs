@@ -1,50 +1,49 @@
 //! `--methods`: which methods are measured, in one line.
 //!
-//! A method is `NAME[=VALUE][:KEY=VALUE]...`, such as `exact:bits=24` or `far=six:aa=2`. Values with
-//! `+` between them are alternatives, of which all combinations are measured.
+//! A method is `NAME[=VALUE][:KEY=VALUE]...`, such as `exact:bits=24` or `far=six:aa=2`. All combinations of values with
+//! `+` between them are measured.
 
 use clap::ValueEnum;
 
-use crate::args::{RuleArgs, Tolerance};
+use crate::args::{self, RuleArgs};
 use crate::engines;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_mesh::far::view::Opacity;
 
-/// Methods of a scene of voxels by default: each coverage rule with the tolerances that it has, cages,
-/// samples, levels of detail and word lengths.
 pub(super) const OF_VOXELS: &str = "\
     exact:cage=frame+corners,any:tolerance=0.125+0+0.015625+inf:cage=frame+corners,\
     center:tolerance=0.125+0+0.015625+inf:cage=frame+corners,exact:aa=2+4,any:aa=2,center:aa=2,\
     exact:lod=0+1+2,any:lod=0+0.5+2,center:lod=0+0.5+2,exact:bits=48+32+24+20+16,\
     any:bits=48+32+24+20+16,center:bits=48+32+24+20+16";
-/// Methods of a mesh by default.
 pub(super) const OF_MESHES: &str = "\
     triangles,decimated,hybrid,hybrid:aa=2:lod=2,center,exact,exact:aa=4,alpha,alpha:lod=2,alpha:aa=2,\
     far=none,far=scalar+six:aa=1+2,far=six:aa=4,textured=0+1,textured=auto:aa=1+2";
 
-/// A method before it has a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Choice {
-    /// An engine of voxels by name.
     Voxels(SetupOptions, &'static str),
-    /// Triangles, of which one of so many is left.
-    Triangles { one_of: u32, aa_log2: u32 },
-    /// Far voxels, or a hybrid.
+    /// One of so many triangles.
+    Triangles {
+        one_of: u32,
+        aa_log2: u32,
+    },
     Far {
         is_hybrid: bool,
         opacity: Opacity,
         voxel_px: f64,
         aa_log2: u32,
     },
-    /// Textured voxels with so many erosions, or the erosion that the distance requires.
-    Textured { level: Option<u32>, aa_log2: u32 },
+    /// Textured voxels with a number of erosions, or with automatic erosion.
+    Textured {
+        level: Option<u32>,
+        aa_log2: u32,
+    },
 }
 
-/// The alternatives of one method of the list.
 #[derive(Debug, Clone)]
 pub(super) struct Choices(Vec<Choice>);
 
-/// The methods of a list, each once.
+/// The methods of a list without repetitions.
 pub(super) fn of_list(list: &[Choices]) -> Vec<Choice> {
     let mut all: Vec<Choice> = Vec::new();
     for choice in list.iter().flat_map(|choices| &choices.0) {
@@ -55,18 +54,15 @@ pub(super) fn of_list(list: &[Choices]) -> Vec<Choice> {
     all
 }
 
-/// The default methods.
 pub(super) fn default(is_mesh: bool) -> Vec<Choice> {
     let text = if is_mesh { OF_MESHES } else { OF_VOXELS };
     let list: Result<Vec<Choices>, _> = text.split(',').map(str::parse).collect();
-    // A test parses them.
     of_list(&list.unwrap_or_default())
 }
 
-/// Settings of one alternative by their names; the method's own value has its name.
+/// Settings of an alternative by name. The method's own value has the method's name.
 type Settings<'t> = Vec<(&'t str, &'t str)>;
 
-/// All combinations of alternatives.
 fn combinations<'t>(alternatives: &[(&'t str, Vec<&'t str>)]) -> Vec<Settings<'t>> {
     let mut all: Vec<Settings<'t>> = vec![Vec::new()];
     for (key, values) in alternatives {
@@ -79,7 +75,6 @@ fn combinations<'t>(alternatives: &[(&'t str, Vec<&'t str>)]) -> Vec<Settings<'t
     all
 }
 
-/// Removes a setting and reads its value.
 fn take<T>(
     settings: &mut Settings<'_>,
     key: &str,
@@ -103,7 +98,6 @@ fn word<T: ValueEnum>(text: &str) -> Option<T> {
     T::from_str(text, false).ok()
 }
 
-/// Samples along an axis, as their logarithm.
 fn aa_log2(text: &str) -> Option<u32> {
     let of = ["1", "2", "4"].iter().position(|known| *known == text)?;
     Some(of as u32)
@@ -151,8 +145,8 @@ fn choice(name: &str, settings: &mut Settings<'_>) -> Result<Choice, String> {
             };
             let pixels = |text: &str| parsed(text).filter(|px: &f64| *px >= 0.0);
             let width = |text: &str| parsed(text).filter(|bits| (16..=64).contains(bits));
-            let tolerance: Option<Tolerance> = take(settings, "tolerance", parsed)?;
-            if rule.draws_outlines() && tolerance.is_some_and(|tolerance| tolerance.0 != 0.0) {
+            let tolerance = take(settings, "tolerance", |text| args::tolerance(text).ok())?;
+            if rule.draws_outlines() && tolerance.is_some_and(|tolerance| tolerance != 0.0) {
                 return Err(format!("{} has no tolerance: it is exact", rule.name()));
             }
             let rules = RuleArgs {
@@ -192,7 +186,6 @@ impl std::str::FromStr for Choices {
             }
             name => name,
         };
-        // Default alternatives of the families of mesh methods.
         let defaults: &[(&str, &str)] = match name {
             "triangles" | "hybrid" => &[("aa", "1+2+4")],
             "decimated" => &[("decimated", "4+16+64+256"), ("aa", "1+2+4")],

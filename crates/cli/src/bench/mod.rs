@@ -7,62 +7,56 @@ mod time;
 
 use clap::{Args, Subcommand};
 
-use super::args::{Size, ThreadCounts};
+use super::args::Size;
 use super::console::Console;
 use super::error::{CliError, Kind};
 use shiftvox::budget;
 use shiftvox::project::camera::MAX_SIDE;
 
-/// Arguments of `bench`.
 #[derive(Debug, Args)]
 pub(super) struct BenchArgs {
     #[command(subcommand)]
     experiment: Experiment,
 }
 
-/// The experiments.
 #[derive(Debug, Subcommand)]
 enum Experiment {
     /// Measure how long engines take per frame, and how their pictures differ from the exact one
     ///
-    /// A frame is: clear, traverse, write the colour of each sample. Runs are interleaved. With
-    /// --variants techniques are switched off one at a time. With --scan the picture or the scene
-    /// grows, and exponents of power laws are fitted. With --threads 1,2 engines that use threads
-    /// are measured with each number.
+    /// Runs are interleaved. --variants switches techniques off one at a time. --scan varies the size
+    /// of the picture or scene and fits exponents of power laws. With --threads 1,2 engines that use
+    /// threads are measured with each number.
     Time(Box<time::TimeArgs>),
     /// Measure error and cost of pictures: methods x cameras x samples
     ///
-    /// The truth is exact rays, of a mesh its triangles with 256 samples per pixel. A second
-    /// reference gives the noise floor. Methods draw in turn, on one thread. Beside each time are
-    /// the operations of the machine, which are the same in every run. With --motions films of a
-    /// moving camera give flicker, and pop: the part of it that changes of level of detail cause.
+    /// The truth is exact rays, or a mesh's triangles with 256 samples per pixel. A second reference
+    /// gives the noise floor. Methods draw in turn, on one thread. --motions films a moving camera
+    /// and measures flicker, and its part from changes of level of detail (pop).
     Quality(Box<quality::QualityArgs>),
 }
 
 impl BenchArgs {
-    /// Whether `--threads` may list several numbers.
     pub(super) fn takes_thread_list(&self) -> bool {
         matches!(self.experiment, Experiment::Time(_))
     }
 }
 
-/// Runs an experiment; `threads` is the value of `--threads`.
-pub(super) fn run(
-    args: &BenchArgs,
-    scenes: Vec<String>,
-    threads: Option<&ThreadCounts>,
-    console: &Console,
-) -> Result<(), CliError> {
+pub(super) fn run(args: &BenchArgs, threads: &[u16], console: &Console) -> Result<(), CliError> {
     match &args.experiment {
-        Experiment::Time(args) => {
-            let counts = threads.map_or_else(|| vec![1], ThreadCounts::resolved);
-            time::run(args, scenes, &counts, console)
-        }
-        Experiment::Quality(args) => quality::run(args, scenes, console),
+        Experiment::Time(args) => time::run(args, &thread_counts(threads), console),
+        Experiment::Quality(args) => quality::run(args, console),
     }
 }
 
-/// How often contenders draw.
+fn thread_counts(given: &[u16]) -> Vec<usize> {
+    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let count = |&count: &u16| if count == 0 { all() } else { count.into() };
+    let mut counts: Vec<usize> = given.iter().map(count).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    if counts.is_empty() { vec![1] } else { counts }
+}
+
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Measurement")]
 struct ScheduleArgs {
@@ -85,13 +79,11 @@ impl ScheduleArgs {
     }
 }
 
-/// Most pixels of a measured picture: two gigabytes of samples.
 const MAX_PIXELS: u64 = 1 << 26;
 /// Least bytes per pixel of a measured picture and its reference.
 const PIXEL_BYTES: u64 = 40;
 
-/// Rejects pictures that are too large before any work: with a side above `most_side`, or too many
-/// pixels.
+/// Rejects pictures with a side above `most_side` or too many pixels.
 fn check_sizes(sizes: &[Size], most_side: u32) -> Result<(), CliError> {
     let most_side = most_side.min(MAX_SIDE);
     for size in sizes {

@@ -27,7 +27,6 @@ const SCENES: [&str; 5] = [
     "gen:wires,depth=8",
     "gen:truss,depth=8",
 ];
-/// Pixels a side by default.
 const DEFAULT_SIDE: u32 = 256;
 /// Most pixels a side: references take 512 times the work of a picture.
 const MOST_SIDE: u32 = 4096;
@@ -43,27 +42,25 @@ enum MotionName {
     Pan,
 }
 
-/// Arguments of `bench quality`.
 #[derive(Debug, Args)]
 pub(super) struct QualityArgs {
-    /// Scenes: files, generators, or `bundled` [default: bundled gen:terrain,depth=9
+    /// Scenes, as files, generators or `bundled` [default: bundled gen:terrain,depth=9
     /// gen:menger,depth=5 gen:wires,depth=8 gen:truss,depth=8]
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
     /// Methods to measure [default: some thirty of each kind]
     ///
-    /// NAME[=VALUE][:KEY=VALUE]... with `+` between alternatives, all of whose combinations are
-    /// measured. Coverage rules of the image-order engine: exact, alpha, any, center, and paper,
-    /// with the keys cage, tolerance, bits, lod, aa (samples per pixel and axis: 1, 2, 4) and engine
-    /// (fast, machine). Methods of meshes: triangles, decimated=N (one triangle of N is left),
-    /// far=none|scalar|six, hybrid, textured=auto|EROSIONS, with the key aa, and lod of far and
-    /// hybrid. Example: exact:bits=64+24:lod=0+1,far=six:aa=1+2
+    /// NAME[=VALUE][:KEY=VALUE]..., such as exact:bits=64+24:lod=0+1,far=six:aa=1+2. All combinations
+    /// of alternatives (+) are measured. exact, alpha, any, center and paper have the keys cage,
+    /// tolerance, bits, lod, aa and engine (fast, machine). Meshes also have triangles, decimated=N
+    /// (one of N triangles), far=none|scalar|six, hybrid and textured=auto|EROSIONS, with the key
+    /// aa, and lod of far and hybrid.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     methods: Vec<Choices>,
-    /// Pixels: 512 for a square, or 640x360 [default: 256]
+    /// Pixels, such as 512 (square) or 640x360 [default: 256]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
-    /// Cameras farther and farther off, by the pixels down their pictures: 190,58,22
+    /// Cameras at growing distances, by the heights of their pictures in pixels, such as 190,58,22
     #[arg(long, value_name = "PX,...", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(4..=i64::from(MOST_SIDE)))]
     heights: Vec<u32>,
@@ -76,11 +73,11 @@ pub(super) struct QualityArgs {
     frames: u32,
     #[command(flatten)]
     schedule: ScheduleArgs,
-    /// Exact rays of the reference along each axis of a pixel
+    /// Exact rays of the reference per pixel and axis
     #[arg(long, value_name = "N", default_value = "16",
           value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
     reference_samples: String,
-    /// Rays that far voxels are built with [default: as of convert]
+    /// Rays of the build of far voxels [default: as of convert]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     far_rays: Option<u64>,
     #[command(flatten)]
@@ -97,7 +94,6 @@ impl QualityArgs {
         self.motions.iter().map(motion).collect()
     }
 
-    /// The data of a scene's methods, the methods, and the scene's camera.
     fn open(
         &self,
         name: &str,
@@ -116,10 +112,8 @@ impl QualityArgs {
             let made = Made::of_mesh(name, mesh, &choices, &self.scene, self.far_rays, console)?;
             return Ok((made, choices, camera));
         }
-        if !choices
-            .iter()
-            .all(|choice| matches!(choice, Choice::Voxels(..)))
-        {
+        let is_of_voxels = |choice: &Choice| matches!(choice, Choice::Voxels(..));
+        if !choices.iter().all(is_of_voxels) {
             let message = format!("{name}: only meshes have methods other than coverage rules");
             return Err(CliError::usage(message));
         }
@@ -133,19 +127,12 @@ impl QualityArgs {
     }
 }
 
-pub(super) fn run(
-    args: &QualityArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let names = subjects::names_or(&args.scenes, from_config, &SCENES);
+pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError> {
+    let names = subjects::names_or(&args.scenes, &SCENES);
     export::check_plots(&args.export, &names)?;
     args.camera.check().map_err(CliError::usage)?;
     let side = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
-    let size = args.size.unwrap_or(Size {
-        width: side,
-        height: side,
-    });
+    let size = args.size.unwrap_or(Size::square(side));
     check_sizes(&[size], MOST_SIDE)?;
     let context = Context::now();
     context.warn(console);
@@ -159,13 +146,12 @@ pub(super) fn run(
     };
     let mut rows: Vec<Row> = Vec::new();
     for name in &names {
-        let (made, choices, camera) = args.open(name, (size.width, size.height), console)?;
+        let (made, choices, camera) = args.open(name, size.pair(), console)?;
         let methods = made.methods(&choices, plan.style)?;
         let mut cameras = vec![camera];
         if !args.heights.is_empty() {
-            cameras = args
-                .heights
-                .iter()
+            let heights = args.heights.iter();
+            cameras = heights
                 .map(|&height| at_distance(&camera, height))
                 .collect();
         }
@@ -194,17 +180,14 @@ pub(super) fn run(
         .map(|rows| table(&title(rows), rows));
     let preface = context.markdown(plan.schedule);
     let results = Results::of_rows("bench quality", fields, preface, &rows, tables.collect());
-    let plots_of = |name: &String| {
-        let of_scene: Vec<Row> = rows
-            .iter()
-            .filter(|row| row.text("scene") == *name)
-            .cloned()
-            .collect();
+    let plots_of = |name: String| {
+        let of_scene = rows.iter().filter(|row| row.text("scene") == name);
+        let of_scene: Vec<Row> = of_scene.cloned().collect();
         (
-            name.clone(),
+            name,
             of_scene.chunk_by(by_picture).flat_map(panels).collect(),
         )
     };
-    let plots: Vec<_> = names.iter().map(plots_of).collect();
-    export::write_with_plots(&results, &plots, &args.export, console)
+    let plots = names.into_iter().map(plots_of).collect();
+    export::write_with_plots(results, plots, &args.export, console)
 }

@@ -13,28 +13,26 @@ use crate::{engines, scenes};
 use shiftvox_lab::bench::{Harness, Scan, TimePlan, measure, panels, table};
 use shiftvox_lab::report::Row;
 
-/// Pixels a side by default.
 const DEFAULT_SIDE: u32 = 512;
 
-/// Arguments of `bench time`.
 #[derive(Debug, Args)]
 pub(super) struct TimeArgs {
-    /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
+    /// Scenes, as files, generators or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
     /// bundled]
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
     /// Engines to measure
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = engines::names(),
           default_values = engines::MEASURED)]
     engines: Vec<String>,
-    /// Techniques to switch off, one at a time: `all`, or names as in the table, with hyphens
+    /// Techniques to switch off, one at a time. Values are `all` and names of the table with hyphens
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = engines::variant_name)]
     variants: Vec<String>,
-    /// Pixels: 512 for a square, or 640x360 [default: 512]
+    /// Pixels, such as 512 (square) or 640x360 [default: 512]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
-    /// Values that grow: size=64..4096*2 or size=100..500+100 of square pictures; depth=5..10+1 of
-    /// generators and meshes
+    /// Growing values, such as size=64..4096*2 or size=100..500+100 (square pictures) and
+    /// depth=5..10+1 (generators and meshes)
     #[arg(long, value_name = "NAME=A..B*F", value_parser = size_or_depth)]
     scan: Option<Scan>,
     #[command(flatten)]
@@ -58,13 +56,8 @@ fn size_or_depth(text: &str) -> Result<Scan, String> {
 }
 
 impl TimeArgs {
-    /// Sizes of the pictures, and depths of the scenes, if they are scanned.
     fn sizes_and_depths(&self) -> Result<(Vec<Size>, Vec<u32>), CliError> {
-        let square = |side| Size {
-            width: side,
-            height: side,
-        };
-        let one = self.size.unwrap_or(square(DEFAULT_SIDE));
+        let one = self.size.unwrap_or(Size::square(DEFAULT_SIDE));
         let (sizes, depths) = match &self.scan {
             Some(scan) if scan.name() == "depth" => (vec![one], scan.values()),
             Some(_) if self.size.is_some() => {
@@ -72,7 +65,10 @@ impl TimeArgs {
                     "--size and a --scan of it exclude each other",
                 ));
             }
-            Some(scan) => (scan.values().into_iter().map(square).collect(), Vec::new()),
+            Some(scan) => (
+                scan.values().into_iter().map(Size::square).collect(),
+                Vec::new(),
+            ),
             None => (vec![one], Vec::new()),
         };
         check_sizes(&sizes, u32::MAX)?;
@@ -98,18 +94,13 @@ impl TimeArgs {
     }
 }
 
-pub(super) fn run(
-    args: &TimeArgs,
-    from_config: Vec<String>,
-    threads: &[usize],
-    console: &Console,
-) -> Result<(), CliError> {
-    export::check(&args.export)?;
+pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Result<(), CliError> {
+    export::check(&args.export, [])?;
     if args.rules.overflow.is_some() {
         return Err(CliError::usage("times are measured with --overflow trap"));
     }
     let (sizes, depths) = args.sizes_and_depths()?;
-    let sizes: Vec<(u32, u32)> = sizes.iter().map(|s| (s.width, s.height)).collect();
+    let sizes: Vec<(u32, u32)> = sizes.into_iter().map(Size::pair).collect();
     let families = engines::families(&args.engines, &args.variants)?;
     let (schedule, options) = (args.schedule.schedule(), args.rules.options(0));
     let context = Context::now();
@@ -123,7 +114,7 @@ pub(super) fn run(
     };
     let mut harness = Harness::new(schedule, console.progress());
     let mut groups: Vec<(String, Vec<Row>)> = Vec::new();
-    for name in subjects::names(&args.scenes, from_config) {
+    for name in subjects::names_or(&args.scenes, &subjects::DEFAULT) {
         let mut named = vec![(name.clone(), args.scene.clone())];
         if !depths.is_empty() {
             let at = depths.iter().map(|&depth| args.at_depth(&name, depth));
@@ -142,9 +133,6 @@ pub(super) fn run(
         .collect();
     let (fields, preface) = (context.json(schedule, &options), context.markdown(schedule));
     let results = Results::of_rows("bench time", fields, preface, &all, tables);
-    let plots: Vec<_> = groups
-        .iter()
-        .map(|(name, rows)| (name.clone(), panels(rows)))
-        .collect();
-    export::write_with_plots(&results, &plots, &args.export, console)
+    let plots = groups.into_iter().map(|(name, rows)| (name, panels(&rows)));
+    export::write_with_plots(results, plots.collect(), &args.export, console)
 }

@@ -9,40 +9,30 @@ use shiftvox_lab::bench::Schedule;
 /// Load above which times are likely to be disturbed.
 const BUSY: f64 = 0.5;
 
-/// Machine and command, found before the first measurement.
 pub(crate) struct Context {
     processor: Option<String>,
     threads: usize,
     /// Processes that ran or waited, averaged over the last minute.
     load: Option<f64>,
-    command: String,
+    pub(crate) command: String,
 }
 
 impl Context {
-    /// Properties that the system reports.
     pub(crate) fn now() -> Self {
         let command: Vec<String> = std::env::args_os()
             .skip(1)
             .map(|word| word.to_string_lossy().into_owned())
             .collect();
         let load = std::fs::read_to_string("/proc/loadavg").ok();
+        let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         Self {
-            processor: std::fs::read_to_string("/proc/cpuinfo")
-                .ok()
-                .as_deref()
-                .and_then(processor_name),
+            processor: processor_name(&cpuinfo),
             threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             load: load.and_then(|text| text.split_whitespace().next()?.parse().ok()),
             command: format!("shiftvox {}", command.join(" ")),
         }
     }
 
-    /// The command line.
-    pub(crate) fn command_line(&self) -> String {
-        self.command.clone()
-    }
-
-    /// Warns if other work is likely to disturb the times.
     pub(crate) fn warn(&self, console: &Console) {
         if let Some(load) = self.load.filter(|&load| load > BUSY) {
             console.note(format!(
@@ -51,8 +41,12 @@ impl Context {
         }
     }
 
-    /// As JSON fields, with how the frames were drawn.
     pub(crate) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
+        let mut options = json!(options);
+        if options["tolerance_px"].is_null() {
+            // JSON has no infinity.
+            options["tolerance_px"] = json!("inf");
+        }
         json!({
             "command": self.command,
             "machine": {
@@ -63,19 +57,15 @@ impl Context {
                 "architecture": std::env::consts::ARCH,
             },
             "schedule": { "warmup": schedule.warmup, "runs": schedule.runs },
-            "options": options_json(options),
+            "options": options,
         })
     }
 
-    /// As lines of Markdown.
     pub(crate) fn markdown(&self, schedule: Schedule) -> String {
-        let processor = self
-            .processor
-            .as_deref()
-            .unwrap_or("a processor without a name");
-        let load = self
-            .load
-            .map_or_else(String::new, |load| format!(", load {load} before"));
+        let processor = self.processor.as_deref();
+        let processor = processor.unwrap_or("a processor without a name");
+        let load = self.load.map(|load| format!(", load {load} before"));
+        let load = load.unwrap_or_default();
         format!(
             "`{}`\n\nshiftvox {}, {processor}, {} hardware threads, {} {}{load}. Warm-up {}, runs \
              {}, interleaved; times in ms: median, least, median absolute deviation; processor \
@@ -91,19 +81,9 @@ impl Context {
     }
 }
 
-fn options_json(options: &SetupOptions) -> Value {
-    let mut value = json!(options);
-    if options.tolerance_px.is_infinite() {
-        // JSON has no infinity.
-        value["tolerance_px"] = json!("inf");
-    }
-    value
-}
-
 fn processor_name(cpuinfo: &str) -> Option<String> {
-    let line = cpuinfo
-        .lines()
-        .find(|line| line.starts_with("model name"))?;
+    let mut lines = cpuinfo.lines();
+    let line = lines.find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
 }
 

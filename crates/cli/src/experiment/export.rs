@@ -9,15 +9,12 @@ use super::subjects::file_stem;
 use crate::console::Console;
 use crate::document::document;
 use crate::error::CliError;
-use crate::names;
 use shiftvox::whole;
 use shiftvox_lab::report::plot::{self, Panel};
 use shiftvox_lab::report::{Row, Table};
 
-/// The placeholder for a scene in the name of a plot's file.
 const SCENE_FIELD: &str = "{scene}";
 
-/// Files of results.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct ExportArgs {
@@ -38,24 +35,18 @@ pub(crate) struct ExportArgs {
     pub(crate) force: bool,
 }
 
-/// The results of an experiment.
 pub(crate) struct Results {
-    /// The JSON document.
     pub(crate) document: Value,
-    /// One row per measurement: CSV.
+    /// One row per measurement, for CSV.
     pub(crate) rows: Table,
-    /// Tables for stdout and Markdown.
     pub(crate) tables: Vec<Table>,
-    /// More tables for Markdown.
     pub(crate) more_tables: Vec<Table>,
-    /// Text above the tables in Markdown.
     pub(crate) preface: String,
-    /// The plots.
     pub(crate) panels: Vec<Panel>,
 }
 
 impl Results {
-    /// The results of an experiment whose measurements are rows. `fields`: the others of the document.
+    /// Results with a row per measurement. `fields`: the document's other fields.
     pub(crate) fn of_rows(
         command: &str,
         mut fields: Value,
@@ -75,26 +66,22 @@ impl Results {
     }
 }
 
-/// Fails before the work if a file would be replaced without `--force`, or two outputs have one
-/// name.
-pub(crate) fn check(args: &ExportArgs) -> Result<(), CliError> {
-    check_with(args, [])
-}
-
-/// [`check`], with files that are written beside these.
-pub(crate) fn check_with<'p>(
+/// Fails if a file exists and may not be replaced, or if two outputs, of these and others, have one name.
+pub(crate) fn check<'p>(
     args: &'p ExportArgs,
     others: impl IntoIterator<Item = &'p PathBuf>,
 ) -> Result<(), CliError> {
-    let own = [
-        &args.export_json,
-        &args.export_csv,
-        &args.export_markdown,
-        &args.export_svg,
-    ];
+    let ExportArgs {
+        export_json,
+        export_csv,
+        export_markdown,
+        export_svg,
+        force,
+    } = args;
+    let own = [export_json, export_csv, export_markdown, export_svg];
     let paths: Vec<&PathBuf> = own.into_iter().flatten().chain(others).collect();
     for (place, path) in paths.iter().enumerate() {
-        whole::check_free(path, args.force)?;
+        whole::check_free(path, *force)?;
         if paths[..place].contains(path) {
             let message = format!("{}: two outputs to one file", path.display());
             return Err(CliError::usage(message));
@@ -105,58 +92,45 @@ pub(crate) fn check_with<'p>(
 
 /// [`check`], where scenes have plots of their own.
 pub(crate) fn check_plots(args: &ExportArgs, scenes: &[String]) -> Result<(), CliError> {
-    check(args)?;
-    scenes
-        .iter()
-        .try_for_each(|scene| match plot_path(args, scene) {
-            Some(path) => Ok(whole::check_free(&path, args.force)?),
-            None => Ok(()),
-        })
+    check(args, [])?;
+    for path in scenes.iter().filter_map(|scene| plot_path(args, scene)) {
+        whole::check_free(&path, args.force)?;
+    }
+    Ok(())
 }
 
-/// The file of a scene's plots, if each scene has its own.
 fn plot_path(args: &ExportArgs, scene: &str) -> Option<PathBuf> {
-    let text = names::of_path(args.export_svg.as_ref()?);
+    let text = args.export_svg.as_ref()?.to_str()?;
     let has_field = text.contains(SCENE_FIELD);
-    has_field.then(|| names::path(&text.replace(SCENE_FIELD, &file_stem(scene))))
+    has_field.then(|| text.replace(SCENE_FIELD, &file_stem(scene)).into())
 }
 
-/// [`write`], with plots by scene: in a file each, if the name asks for it, or in one file.
+/// [`write`], with plots by scene: in one file, or in a file each if the name has [`SCENE_FIELD`].
 pub(crate) fn write_with_plots(
-    results: &Results,
-    scenes: &[(String, Vec<Panel>)],
+    mut results: Results,
+    scenes: Vec<(String, Vec<Panel>)>,
     args: &ExportArgs,
     console: &Console,
 ) -> Result<(), CliError> {
+    let mut args = args.clone();
     for (scene, panels) in scenes {
-        if let Some(path) = plot_path(args, scene) {
-            file(&path, &plot::svg(panels), args, console)?;
+        match plot_path(&args, &scene) {
+            Some(path) => file(&path, &plot::svg(&panels), &args, console)?,
+            None => results.panels.extend(panels),
         }
     }
-    let has_plots = scenes
-        .iter()
-        .any(|(scene, _)| plot_path(args, scene).is_some());
-    if let Some(path) = args.export_svg.as_ref().filter(|_| !has_plots) {
-        let all: Vec<Panel> = scenes
-            .iter()
-            .flat_map(|(_, panels)| panels.clone())
-            .collect();
-        file(path, &plot::svg(&all), args, console)?;
-    }
-    let args = ExportArgs {
-        export_svg: None,
-        ..args.clone()
-    };
-    write(results, &args, console)
+    args.export_svg = args
+        .export_svg
+        .filter(|path| !path.to_string_lossy().contains(SCENE_FIELD));
+    write(&results, &args, console)
 }
 
 fn file(path: &Path, text: &str, args: &ExportArgs, console: &Console) -> Result<(), CliError> {
     whole::write(path, text.as_bytes(), args.force)?;
-    console.note(format!("{}: written", path.display()));
+    console.written(path);
     Ok(())
 }
 
-/// Writes the files, then prints.
 pub(crate) fn write(
     results: &Results,
     args: &ExportArgs,
@@ -164,12 +138,12 @@ pub(crate) fn write(
 ) -> Result<(), CliError> {
     write_files(results, args, console)?;
     if console.json {
-        return console.document(&results.document);
+        console.hold(results.document.clone());
+        return Ok(());
     }
     print(&results.tables, console)
 }
 
-/// Writes the files.
 pub(crate) fn write_files(
     results: &Results,
     args: &ExportArgs,
@@ -189,7 +163,6 @@ pub(crate) fn write_files(
     write(&args.export_svg, &|| plot::svg(&results.panels))
 }
 
-/// Prints tables one below the other.
 pub(crate) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
     let tables: Vec<String> = tables.iter().map(Table::text).collect();
     console.data(tables.join("\n\n"))

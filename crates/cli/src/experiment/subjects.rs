@@ -1,47 +1,28 @@
-//! Scenes of the experiments, and from where they are seen.
+//! Scenes of the experiments, and their cameras.
 
 use glam::DVec3;
 
 use crate::args::{CameraArgs, SceneArgs};
 use crate::console::Console;
 use crate::error::CliError;
-use crate::scenes;
-use crate::scenes::Scene;
+use crate::scenes::{self, Scene};
 use shiftvox::project::{Bounds, Camera};
 use shiftvox_lab::bench::Subject;
 
-/// The name of the bundled scene.
 pub(crate) const BUNDLED: &str = "bundled";
-/// Scenes where none is named.
-const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
+pub(crate) const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
 
 /// A camera in sides of a cube, from the cube's lowest corner: eye and target. 60 degrees, z up.
 type Standpoint = [[f64; 3]; 2];
 
-/// The benchmark's view of the terrain from outside.
 const OUTSIDE: Standpoint = [[1.6, -0.7, 1.25], [0.5, 0.5, 0.3]];
-/// The benchmark's view of the sponge from the front.
 const FRONT: Standpoint = [[0.47, -0.95, 0.53], [0.475, 0.5, 0.475]];
-/// The bundled tree, as in `benches/`.
 const TREE: Standpoint = [[1.1, -0.5, 0.8], [0.5, 0.5, 0.4]];
 
-/// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(crate) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
-    names_or(given, from_config, &DEFAULT)
-}
-
-/// The same with other scenes where none is named.
-pub(crate) fn names_or(
-    given: &[String],
-    from_config: Vec<String>,
-    default: &[&str],
-) -> Vec<String> {
-    if !given.is_empty() {
-        given.to_vec()
-    } else if !from_config.is_empty() {
-        from_config
-    } else {
-        default.iter().map(|&name| name.to_owned()).collect()
+pub(crate) fn names_or(given: &[String], default: &[&str]) -> Vec<String> {
+    match given {
+        [] => default.iter().map(|&name| name.to_owned()).collect(),
+        given => given.to_vec(),
     }
 }
 
@@ -53,8 +34,8 @@ pub(crate) fn file_stem(name: &str) -> String {
     words.join("-")
 }
 
-/// Opens a scene. Terrain, sponge and the bundled tree have their standard
-/// cameras unless the flags say another; all others are fitted into `size`.
+/// Opens a scene. Without camera flags, terrain, sponge and the bundled tree have their standard cameras. All others are
+/// fitted into `size`.
 pub(crate) fn open(
     name: &str,
     camera: &CameraArgs,
@@ -63,12 +44,11 @@ pub(crate) fn open(
     console: &Console,
 ) -> Result<Subject, CliError> {
     camera.check().map_err(CliError::usage)?;
-    let scene = if name == BUNDLED {
-        scenes::demo(console.progress())?
-    } else {
-        scenes::open(name, scene_args, console)?
+    let scene = match name {
+        BUNDLED => scenes::demo(console.progress())?,
+        name => scenes::open(name, scene_args, console)?,
     };
-    let standard = standard_camera(name, &scene).filter(|_| camera.settings().is_empty());
+    let standard = standard_camera(name, &scene).filter(|_| *camera == CameraArgs::default());
     let camera = standard.unwrap_or_else(|| {
         let bounds = Bounds::of(&scene.graph);
         camera.camera(&bounds, scene.up, size, 0.0)
@@ -123,8 +103,7 @@ mod tests {
             let (camera, scene) = (CameraArgs::default(), SceneArgs::default());
             open(name, &camera, &scene, (64, 64), &console).unwrap()
         };
-        // The benchmark's are given for depth 10, a side of 1024 voxels, and
-        // for five steps of the sponge, 243 voxels in a cube of 256.
+        // The benchmarks have depth 10, 1024 voxels per side, and five steps of the sponge, 243 voxels in a cube of 256.
         let close = |found: DVec3, expected: [f64; 3], scale: f64| {
             let expected = DVec3::from_array(expected);
             assert!((found * scale - expected).length() < 1e-9, "{found}");

@@ -21,9 +21,6 @@ struct Line {
 }
 
 /// Records, operations, cycles and energy of a frame, as `model` finds them with these flags.
-///
-/// # Errors
-/// Wrong flags, or a frame that the machine cannot draw.
 pub(crate) fn brief(
     flags: impl Iterator<Item = OsString>,
     graph: &Graph,

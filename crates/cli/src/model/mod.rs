@@ -1,10 +1,9 @@
-//! `model`: what a frame costs on the light hardware.
+//! `model`: the cost of a frame on the light hardware.
 
 mod args;
 #[cfg(feature = "view")]
 mod brief;
 mod explore;
-mod find;
 mod output;
 mod vectors;
 
@@ -12,17 +11,26 @@ pub(super) use args::ModelArgs;
 #[cfg(feature = "view")]
 pub(super) use brief::brief;
 
+use std::path::Path;
+
+use hwmodel::cycles::{Hardware, Progress as Ticks, Recorder};
+
 use super::console::Console;
 use super::error::CliError;
 use super::experiment::subjects;
+use shiftvox::frame::Frame;
+use shiftvox::machine::Simulated;
+use shiftvox::project::{Camera, FrameSetup};
+use shiftvox::whole;
+use shiftvox_lab::bench::Subject;
+use shiftvox_lab::model::cost::Prices;
+use shiftvox_lab::model::frame::{self, Counted};
+use shiftvox_lab::model::ray_caster;
+use shiftvox_lab::model::report::{Drawn, Report};
 
-pub(super) fn run(
-    args: &ModelArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
+pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     if let Some(space) = &args.explore.explore {
-        return explore::run(space, args, from_config, console);
+        return explore::run(space, args, console);
     }
     if args.hardware.print_hw {
         return console.data(args.hardware_text()?.trim_end());
@@ -31,16 +39,98 @@ pub(super) fn run(
     vectors::check(args)?;
     let hardware = args.hardware()?;
     let prices = args.hardware.prices()?;
-    let mut names = args.scenes.clone();
-    if names.is_empty() {
-        names = from_config;
-    }
-    if names.is_empty() {
-        names = vec![subjects::BUNDLED.to_owned()];
-    }
+    let names = subjects::names_or(&args.scenes, &[subjects::BUNDLED]);
     let [name] = names.as_slice() else {
         return Err(CliError::usage("model looks at one scene at a time"));
     };
-    let found = find::find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
+    let found = find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
     output::write(&found, args, console)
+}
+
+struct Found {
+    subject: Subject,
+    setup: FrameSetup,
+    counted: Counted,
+    report: Report,
+}
+
+fn find(
+    args: &ModelArgs,
+    name: &str,
+    hardware: Hardware,
+    prices: &Prices,
+    console: &Console,
+) -> Result<Found, CliError> {
+    let size = args.size.pair();
+    let scene = args.rules.scene_args(&args.scene);
+    let mut subject = subjects::open(name, &args.camera, &scene, size, console)?;
+    if args.files.vectors.is_some() {
+        vectors::lay_out(&mut subject.graph, console);
+    }
+    let options = args.setup_options();
+    let setup = subject.setup(size, &options)?;
+    let graph = &subject.graph;
+    let progress = console.progress();
+
+    progress.begin("counting", 0);
+    let counted = frame::count(graph, &setup, &hardware, args.rules.overflow())?;
+    progress.end();
+    vectors::write(args, name, graph, &setup, &hardware, console)?;
+    progress.begin("cycles", counted.counter.records());
+    let (picture, simulated) = simulate(args, &subject, &setup, &hardware, console)?;
+    progress.begin("the exact picture and the ray caster", 0);
+    let camera = Camera {
+        width: size.0,
+        height: size.1,
+        ..subject.camera
+    };
+    let true_setup = frame::true_setup(graph, &camera, &options)?;
+    let exact = frame::reference(&graph.view(), &true_setup)?;
+    let order = args.hardware.ray_order;
+    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, order, &exact)?;
+    progress.end();
+    let drawn = Drawn {
+        graph,
+        setup: &setup,
+        counted: &counted,
+        simulated,
+        picture: &picture,
+        exact: &exact,
+        ray_caster,
+    };
+    let report = Report::new(drawn, hardware, prices)?;
+    Ok(Found {
+        subject,
+        setup,
+        counted,
+        report,
+    })
+}
+
+fn simulate(
+    args: &ModelArgs,
+    subject: &Subject,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    console: &Console,
+) -> Result<(Frame, Simulated), CliError> {
+    let (view, overflow) = (subject.graph.view(), args.rules.overflow());
+    let mut reported = 0;
+    let mut ticks = Ticks(|_, records: u64| {
+        console.progress().advance(records.saturating_sub(reported));
+        reported = records;
+    });
+    let Some(path) = &args.files.trace else {
+        return Ok(frame::simulate(
+            &view, setup, hardware, overflow, &mut ticks,
+        )?);
+    };
+    let mut recorder = Recorder::new(args.files.trace_records);
+    let mut both = (&mut recorder, ticks);
+    let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
+    let mut text = Vec::new();
+    recorder.write_chrome(hardware, &mut text)?;
+    whole::write(path, &text, args.export.force)?;
+    console.written(path);
+    Ok(drawn)
 }

@@ -5,42 +5,39 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::args::ModelArgs;
-use super::find::Found;
+use super::Found;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
-use crate::report;
+use crate::{document, report};
 use shiftvox::picture::{Background, Shading, png, resolve};
 use shiftvox::whole;
-use shiftvox_lab::model::range::Winner;
 use shiftvox_lab::model::{heat, plots, tables};
 use shiftvox_lab::report::html::Page;
 use shiftvox_lab::report::{Cell, Table, grouped, plot};
 
-/// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
     let others = [&files.html, &files.heat, &files.trace];
-    export::check_with(&args.export, others.into_iter().flatten())
+    export::check(&args.export, others.into_iter().flatten())
 }
 
 fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(), CliError> {
     whole::write(path, bytes, force)?;
-    console.note(format!("{}: written", path.display()));
+    console.written(path);
     Ok(())
 }
 
-/// Writes all files, then prints.
 pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
-    let document = document(found);
+    let document = describe(found);
     let long = tables::LONG.iter().map(|spec| spec.of(&document));
     let short = tables::SHORT.iter().map(|spec| spec.of(&document));
     let results = Results {
         rows: tables::figures(&document),
         tables: std::iter::once(summary(found)).chain(short).collect(),
         more_tables: long.collect(),
-        preface: Context::now().command_line() + "\n",
+        preface: Context::now().command + "\n",
         panels: plots::panels(&found.report),
         document,
     };
@@ -66,7 +63,6 @@ pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Resul
     export::write(&results, &args.export, console)
 }
 
-/// Writes the page of `--html`: pictures, tables and plots.
 pub(super) fn write_page(
     title: &str,
     results: &Results,
@@ -88,10 +84,9 @@ pub(super) fn write_page(
     file(path, page.finish().as_bytes(), args.export.force, console)
 }
 
-/// The most important figures in words.
 fn summary(found: &Found) -> Table {
     let of = &found.report;
-    let cycles = &of.simulated.cycles;
+    let (cycles, counter) = (&of.simulated.cycles, &found.counted.counter);
     let title = format!(
         "{}, {} x {}, on hardware `{}`: {}",
         found.subject.name,
@@ -100,127 +95,81 @@ fn summary(found: &Found) -> Table {
         of.hardware.name,
         cycles.bottleneck.sentence
     );
-    let mut table = Table::new(title, &["what", "figure"]);
-    let mut row = |what: &str, figure: String| {
-        table.rows.push(vec![what.into(), Cell::Text(figure)]);
-    };
-    let counter = &found.counted.counter;
     let kilobits = |bits: u64| format!("{} kbit", grouped(bits / 1024));
-    row("records", grouped(counter.records()));
-    row(
-        "operations",
-        format!(
-            "{}, {:.0} per record; none is a multiplication or a division; widest {} bits",
-            grouped(counter.ops()),
-            found.counted.operations_per_record(),
-            counter.widest()
-        ),
-    );
-    row(
-        "cycles",
-        format!(
-            "{}: {:.1} per record, {:.1} per pixel; {:.1} frames per second at {} MHz",
-            grouped(cycles.cycles),
-            cycles.cycles_per_record,
-            cycles.cycles_per_pixel,
-            cycles.frames_per_second,
-            cycles.clock_mhz
-        ),
-    );
-    row(
-        "parallelism",
-        format!(
-            "work over span {:.1}; there are {} contexts on {} lanes",
-            cycles.parallelism, cycles.contexts, cycles.lanes
-        ),
-    );
-    row(
-        "picture",
-        match of.differing_samples {
-            0 => "the same as the serial machine's".to_owned(),
-            some => format!(
-                "{} samples differ from the serial machine's: under this rule, children of one class may claim the same \
-                 sample",
-                grouped(some)
+    let rows = [
+        ("records", grouped(counter.records())),
+        (
+            "operations",
+            format!(
+                "{}, {:.0} per record; none is a multiplication or a division; widest {} bits",
+                grouped(counter.ops()),
+                found.counted.operations_per_record(),
+                counter.widest()
             ),
-        },
-    );
-    row(
-        "stack",
-        format!(
-            "{} bits per record, at most {} records deep; all entries take {}",
-            of.record_bits,
-            cycles.stack.deepest,
-            kilobits(of.stack_bits)
         ),
-    );
-    row("fill vectors", kilobits(of.fill_vector_bits));
-    if of.accumulator_bits > 0 {
-        row("accumulators", kilobits(of.accumulator_bits));
-    }
-    if cycles.stack.spilled > 0 {
-        let bits = kilobits(cycles.stack.spilled_bits);
-        let spilled = grouped(cycles.stack.spilled);
-        row(
-            "spilled records",
-            format!("{spilled}: {bits} written to outer memory and read back"),
-        );
-    }
-    row(
-        "node cache",
-        format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
-    );
-    row(
-        "clock",
-        format!(
-            "{} MHz: {}. The units allow {:.0} MHz at most",
-            cycles.clock_mhz, of.clock_says, of.clock.fastest_mhz
+        (
+            "cycles",
+            format!(
+                "{}: {:.1} per record, {:.1} per pixel; {:.1} frames per second at {} MHz",
+                grouped(cycles.cycles),
+                cycles.cycles_per_record,
+                cycles.cycles_per_pixel,
+                cycles.frames_per_second,
+                cycles.clock_mhz
+            ),
         ),
-    );
-    let rays = &of.ray_caster;
-    row(
-        "area",
-        format!(
-            "{:.0} NAND2 equivalents ({:.0} to {:.0}) without wires; the ray caster {:.0} ({:.0} to {:.0})",
-            of.area.total,
-            of.area.low,
-            of.area.high,
-            rays.area.total,
-            rays.area.low,
-            rays.area.high
+        (
+            "parallelism",
+            format!(
+                "work over span {:.1}; there are {} contexts on {} lanes",
+                cycles.parallelism, cycles.contexts, cycles.lanes
+            ),
         ),
-    );
-    let (light, rival) = (of.cost.total(), rays.cost.total());
-    let (light, rival) = (light.times(1e-6), rival.times(1e-6));
-    row(
-        "energy",
-        format!(
-            "{:.1} uJ ({:.1} to {:.1}); the ray caster {:.1} uJ ({:.1} to {:.1}): {}",
-            light.value,
-            light.low,
-            light.high,
-            rival.value,
-            rival.low,
-            rival.high,
-            match Winner::by_ranges(light, rival) {
-                Winner::Neither => "the ranges overlap, so neither wins".to_owned(),
-                winner => format!("the {} needs less", winner.name()),
-            }
+        // Under some rules, children of one class may claim the same sample.
+        (
+            "samples unlike the serial machine's",
+            grouped(of.differing_samples),
         ),
-    );
-    row(
-        "wrong pixels (coverage)",
-        format!(
-            "{} of {}; the ray caster {}",
-            of.coverage_error.extra + of.coverage_error.missing,
-            grouped(of.coverage_error.covered),
-            rays.error.extra + rays.error.missing
+        (
+            "stack",
+            format!(
+                "{} bits per record, at most {} records deep; all entries take {}; {} records spilled",
+                of.record_bits,
+                cycles.stack.deepest,
+                kilobits(of.stack_bits),
+                grouped(cycles.stack.spilled)
+            ),
         ),
-    );
+        ("fill vectors", kilobits(of.fill_vector_bits)),
+        ("accumulators", kilobits(of.accumulator_bits)),
+        (
+            "node cache",
+            format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
+        ),
+        (
+            "clock",
+            format!(
+                "{}. The units allow {:.0} MHz at most",
+                of.clock_says, of.clock.fastest_mhz
+            ),
+        ),
+        (
+            "wrong pixels (coverage)",
+            format!(
+                "{} of {}; the ray caster {}",
+                of.coverage_error.extra + of.coverage_error.missing,
+                grouped(of.coverage_error.covered),
+                of.ray_caster.error.extra + of.ray_caster.error.missing
+            ),
+        ),
+    ];
+    let mut table = Table::new(title, &["what", "figure"]);
+    let rows = rows.map(|(what, figure)| vec![what.into(), Cell::Text(figure)]);
+    table.rows.extend(rows);
     table
 }
 
-fn document(found: &Found) -> Value {
+fn describe(found: &Found) -> Value {
     let mut fields = json!(found.report);
     let graph = &found.subject.graph;
     for (key, value) in [
@@ -233,5 +182,5 @@ fn document(found: &Found) -> Value {
     ] {
         fields[key] = value;
     }
-    report::document("model", fields)
+    document::document("model", fields)
 }

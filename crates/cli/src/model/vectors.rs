@@ -1,17 +1,15 @@
 //! `--vectors`: test vectors for hardware designers.
 
-use hwmodel::Overflow;
 use hwmodel::cycles::{Hardware, Organisation};
 
 use super::args::ModelArgs;
 use crate::console::Console;
-use crate::error::{CliError, Kind};
+use crate::error::CliError;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::FrameSetup;
-use shiftvox_lab::model::vectors::{self, Request, VectorsError};
+use shiftvox_lab::model::vectors::{self, Request};
 
-/// Fails before the work if the folder would be replaced.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     match &args.files.vectors {
         Some(folder) => Ok(vectors::check_free(folder, args.export.force)?),
@@ -30,13 +28,11 @@ pub(super) fn lay_out(graph: &mut Graph, console: &Console) {
     }
 }
 
-/// Writes the requested vectors.
 pub(super) fn write(
     args: &ModelArgs,
     scene: &str,
     graph: &Graph,
     setup: &FrameSetup,
-    overflow: Overflow,
     hardware: &Hardware,
     console: &Console,
 ) -> Result<(), CliError> {
@@ -46,8 +42,8 @@ pub(super) fn write(
     let request = Request {
         scene,
         records: args.files.vector_records,
-        overflow,
-        // Only sequential hardware has turns of its own; others have the paper's.
+        overflow: args.rules.overflow(),
+        // Hardware that is not sequential has the paper's turns.
         organisation: match hardware.sequential {
             true => hardware.organisation,
             false => Organisation::default(),
@@ -62,25 +58,10 @@ pub(super) fn write(
         ..graph.view()
     };
     let recorded = vectors::write(&lit, setup, &request)?;
+    let (rows, blocks) = (recorded.rows, recorded.blocks);
     console.note(format!(
-        "{}: {} rows of {} blocks written",
-        folder.display(),
-        recorded.rows,
-        recorded.blocks
+        "{}: {rows} rows of {blocks} blocks written",
+        folder.display()
     ));
     Ok(())
-}
-
-impl From<VectorsError> for CliError {
-    fn from(error: VectorsError) -> Self {
-        match error {
-            VectorsError::Engine(error) => error.into(),
-            VectorsError::Store(error) => error.into(),
-            VectorsError::Misfit(_) => Self::new(Kind::Limit, error),
-            VectorsError::Foreign { .. } => {
-                Self::new(Kind::Run, error).advise("give another name, or empty the folder")
-            }
-            VectorsError::Manifest(_) => Self::new(Kind::Run, error),
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use clap::ValueEnum;
 use serde_json::{Value, json};
 use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::{self, Buffer, Pixels};
@@ -10,9 +11,9 @@ use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request};
 
 use super::flags::{self, MODEL_FLAGS};
 use super::{Shared, overlay};
-use crate::args::{Setting, camera_line};
+use crate::args::camera_line;
 use crate::error::{CliError, Kind};
-use crate::methods::DrawArgs;
+use crate::methods::{self, DrawArgs};
 use crate::{model, report};
 
 /// Drawings that are kept: one of the moving picture, and one of the picture that stands still.
@@ -30,7 +31,6 @@ struct Key {
     hash: bool,
 }
 
-/// Drawings of one socket, the latest first.
 type Kept<'s> = Vec<(Key, Box<dyn Drawable + 's>)>;
 
 impl Program for Shared {
@@ -39,7 +39,7 @@ impl Program for Shared {
         let picture = &self.args.picture;
         json!({
             "scenes": names,
-            "flags": flags::first(&self.args),
+            "flags": self.first,
             "size": picture.size.map(|size| [size.width, size.height]),
             "aa": 1 << picture.aa_log2(),
         })
@@ -91,17 +91,11 @@ impl Shared {
             let args = &self.args.camera;
             args.camera(&drawable.bounds(), up, (width, height), 0.0)
         });
-        drawable.draw(&camera, 1)?;
-        let shown = drawable.shown()?;
-        let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
-        let hash = match request.hash {
-            true => Some(picture::hash_rows(&shown.buffers)?),
-            false => None,
-        };
-        let overlay = match show {
-            Some(buffer) => Some(overlay::colors(&shown.buffers, buffer)?),
-            None => None,
-        };
+        let shown = methods::frame(&mut **drawable, &camera, 1)?;
+        let hash = request.hash.then(|| picture::hash_rows(&shown.buffers));
+        let hash = hash.transpose()?;
+        let overlay = show.map(|buffer| overlay::colors(&shown.buffers, buffer));
+        let overlay = overlay.transpose()?;
         let ends = overlay.as_ref().and_then(|(_, ends)| ends.clone());
         let made = overlay.map(|(colors, _)| Pixels::new(width, height, colors));
         let pixels = made.as_ref().unwrap_or(&*shown.pixels);
@@ -115,14 +109,14 @@ impl Shared {
         }
         let aa = (request.aa != 1).then(|| format!("--aa={}", request.aa));
         let words = request.words(FLAGS).chain(aa);
-        let engine: Setting = ("engine", crate::args::word(&opened.engine));
+        let engine = opened.engine.to_possible_value();
         let head = json!({
             "width": width,
             "height": height,
             "png": request.png,
             "camera": report::camera(&camera),
             "axis": up.axis().to_array(),
-            "engine": engine.1.as_str(),
+            "engine": engine.as_ref().map(clap::builder::PossibleValue::get_name),
             "command": self.command("render", &listed.name, words, &camera) + " -o picture.png",
             "hash": hash,
             "counters": shown.counters,
@@ -134,7 +128,6 @@ impl Shared {
         Ok((head, picture))
     }
 
-    /// Figures of the hardware model, for a picture of at most [`MODEL_SIDE`].
     fn figures(&self, request: &Request) -> Result<Answer, CliError> {
         let settings = flags::settings(request)?;
         let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
@@ -155,7 +148,6 @@ impl Shared {
         Ok((head, Vec::new()))
     }
 
-    /// The command that draws a scene with these flags.
     fn command(
         &self,
         verb: &str,
@@ -164,7 +156,7 @@ impl Shared {
         camera: &Camera,
     ) -> String {
         let mut all = vec![format!("shiftvox {verb}"), flags::quoted(scene)];
-        all.extend(flags::scene_words(&self.args.scene).chain(words));
+        all.extend(self.scene_words.iter().cloned().chain(words));
         all.push(format!("--size={}x{}", camera.width, camera.height));
         all.push(camera_line(camera));
         all.join(" ")
@@ -180,7 +172,6 @@ fn of_model_size(camera: Camera) -> Camera {
     let longer = camera.width.max(camera.height).max(MODEL_SIDE);
     let side = |side: u32| (u64::from(side) * u64::from(MODEL_SIDE) / u64::from(longer)).max(1);
     Camera {
-        // At most 256.
         width: side(camera.width) as u32,
         height: side(camera.height) as u32,
         ..camera

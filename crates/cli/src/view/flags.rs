@@ -1,21 +1,18 @@
-//! Flags of the commands `render` and `model` behind a page's request.
-//!
-//! Flags are parsed as on the command line, so that the printed command draws the page's picture.
+//! Flags of the commands `render` and `model` behind a page's request. They are parsed as on the command line, so that
+//! the printed command draws the page's picture.
 
-use clap::Parser;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Parser};
 use glam::DVec3;
 use shiftvox::project::Camera;
 use shiftvox_view::{FLAGS, Flags, Request};
 
-use super::ViewArgs;
-use crate::args::{EngineArgs, EngineName, PictureArgs, SceneArgs, Setting};
+use crate::args::{EngineArgs, PictureArgs};
 use crate::error::CliError;
-use crate::names;
 
-/// The flags of a page that `model` has, too.
+/// The flags of a page that `model` also has.
 pub(super) const MODEL_FLAGS: &str = "bits cage coverage frac lod overflow tolerance";
 
-/// The settings of a picture.
 #[derive(Debug, Parser)]
 #[command(no_binary_name = true)]
 pub(super) struct Settings {
@@ -25,10 +22,6 @@ pub(super) struct Settings {
     pub(super) engine: EngineArgs,
 }
 
-/// Parses a request as flags of `render`.
-///
-/// # Errors
-/// Values that a flag does not have.
 pub(super) fn settings(request: &Request) -> Result<Settings, CliError> {
     let [width, height] = request.size;
     let mut words: Vec<String> = request.words(FLAGS).collect();
@@ -54,74 +47,64 @@ pub(super) fn camera(request: &Request) -> Option<Camera> {
     })
 }
 
+const SCENE_FLAGS: &str = "depth mesh-colors mesh-up oob opacities";
+
+/// Flags of a list that the command line of `view` has, with their values.
+fn given<'m>(
+    matches: &'m ArgMatches,
+    flags: &'static str,
+) -> impl Iterator<Item = (&'m str, String)> {
+    flags.split(' ').filter_map(|name| {
+        let id = name.replace('-', "_");
+        let is_given = matches.value_source(&id) == Some(ValueSource::CommandLine);
+        let value = matches.get_raw(&id).filter(|_| is_given)?.next()?;
+        Some((name, value.to_string_lossy().into_owned()))
+    })
+}
+
 /// The flags of `shiftvox view` with which pages begin.
-pub(super) fn first(args: &ViewArgs) -> Flags {
-    let EngineArgs { engine, rules, .. } = &args.engine;
-    let mut given = args.engine.given();
-    if rules.paper {
-        given.extend(["cage", "tolerance", "coverage"]);
-    }
-    given.extend(rules.lod.map(|_| "lod"));
-    given.extend(engine.map(|_| "engine"));
-    let first = PictureArgs::default();
-    given.extend((args.picture.shade != first.shade).then_some("shade"));
-    given.extend(args.picture.background.map(|_| "background"));
-    let engines = [EngineName::Far, EngineName::Textured, EngineName::Fast];
-    let engines = engines.into_iter().chain(*engine);
-    let settings = engines.flat_map(|engine| args.engine.settings(Some(engine)));
-    settings
-        .chain(args.picture.settings())
-        .filter(|(name, _)| given.contains(name) && FLAGS.split(' ').any(|flag| flag == *name))
-        .map(|(name, value)| (name.to_owned(), text(&value)))
+pub(super) fn first(matches: &ArgMatches) -> Flags {
+    let paper = [
+        ("cage", "corners"),
+        ("tolerance", "inf"),
+        ("coverage", "any"),
+    ];
+    let paper = paper.into_iter().filter(|_| matches.get_flag("paper"));
+    let paper = paper.map(|(name, value)| (name, value.to_owned()));
+    let first = given(matches, FLAGS).chain(paper);
+    first
+        .map(|(name, value)| (name.to_owned(), value))
         .collect()
 }
 
-/// A setting's value as a flag has it.
-fn text(value: &toml::Value) -> String {
-    match value {
-        toml::Value::String(text) => text.clone(),
-        // The shortest: 2, and not 2.0.
-        toml::Value::Float(number) => number.to_string(),
-        other => other.to_string(),
-    }
+pub(super) fn scene_words(matches: &ArgMatches) -> Vec<String> {
+    let word = |(name, value): (&str, String)| match name {
+        "opacities" => format!("--{name}"),
+        name => format!("--{name}={value}"),
+    };
+    given(matches, SCENE_FLAGS).map(word).collect()
 }
 
-/// The flags with which scenes were read.
-pub(super) fn scene_words(args: &SceneArgs) -> impl Iterator<Item = String> {
-    let mut given: Vec<&str> = args.given().collect();
-    given.extend(args.mesh_up.map(|_| "mesh-up"));
-    let settings = args.settings().into_iter();
-    settings
-        .filter(move |(name, _)| given.contains(name))
-        .map(|(name, value): Setting| match value {
-            toml::Value::Boolean(_) => format!("--{name}"),
-            value => format!("--{name}={}", text(&value)),
-        })
-}
-
-/// A scene's name, quoted for a shell.
+/// A scene's name, quoted for bash and zsh.
 pub(super) fn quoted(name: &str) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:,=".contains(letter);
     if !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain) {
         return name.to_owned();
     }
-    let is_text = |letter: char| names::byte_of(letter).is_none() && !letter.is_control();
-    if name.chars().all(is_text) {
-        let begin = if name.starts_with('-') { "./" } else { "" };
+    let begin = if name.starts_with('-') { "./" } else { "" };
+    if !name.contains(char::is_control) {
         return format!("'{begin}{}'", name.replace('\'', r"'\''"));
     }
-    // Bytes that are not text, as bash and zsh read them.
-    let mut words = String::from("$'");
-    for letter in name.chars() {
-        match names::byte_of(letter) {
-            Some(byte) => words.push_str(&format!("\\x{byte:02x}")),
-            None if letter.is_control() || letter == '\'' || letter == '\\' => {
-                words.push_str(&format!("\\x{:02x}", u32::from(letter)));
-            }
-            None => words.push(letter),
+    let escaped = |letter: char| match letter {
+        letter if letter.is_ascii_control() || letter == '\'' || letter == '\\' => {
+            format!("\\x{:02x}", u32::from(letter))
         }
-    }
-    words + "'"
+        letter => letter.to_string(),
+    };
+    format!(
+        "$'{begin}{}'",
+        name.chars().map(escaped).collect::<String>()
+    )
 }
 
 #[cfg(test)]
@@ -153,6 +136,6 @@ mod tests {
         assert_eq!(quoted("gen:menger,depth=3"), "gen:menger,depth=3");
         assert_eq!(quoted("it's $HOME.vox"), r"'it'\''s $HOME.vox'");
         assert_eq!(quoted("-o.vox"), "'./-o.vox'");
-        assert_eq!(quoted("\u{10ffff}'\n.vox"), r"$'\xff\x27\x0a.vox'");
+        assert_eq!(quoted("'\n.vox"), r"$'\x27\x0a.vox'");
     }
 }

@@ -10,28 +10,27 @@ mod overlay;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::OnceLock;
 
-use clap::Args;
+use clap::{ArgMatches, Args};
 use serde_json::json;
 use shiftvox::project::Coverage;
-use shiftvox_view::Server;
+use shiftvox_view::{Flags, Server};
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs, Opened};
-use super::{report, scenes};
+use super::{document, scenes};
 
-/// Arguments of `view`.
 #[derive(Debug, Args)]
 pub(super) struct ViewArgs {
     /// Scenes: files (also .far and .tvx), or generators such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<String>,
-    /// Port to listen on; 0: one that is free
+    /// Port to listen on, 0 for any free one
     #[arg(long, value_name = "N", default_value_t = 0)]
     port: u16,
-    /// Address to listen on. With any other than this computer's own, everybody who knows the
-    /// printed address can look, and nothing is encrypted: an SSH tunnel is better
+    /// Address to listen on. From other computers an SSH tunnel is better: nothing is encrypted, and
+    /// everybody who knows the printed address can look
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     bind: IpAddr,
     #[command(flatten)]
@@ -47,10 +46,13 @@ pub(super) struct ViewArgs {
 /// The scenes and the settings of all pages.
 struct Shared {
     args: ViewArgs,
+    /// The flags with which pages begin.
+    first: Flags,
+    /// The flags with which scenes were read.
+    scene_words: Vec<String>,
     scenes: Vec<Listed>,
 }
 
-/// A scene of the list.
 struct Listed {
     name: String,
     opened: Opened,
@@ -72,7 +74,6 @@ impl Listed {
         })
     }
 
-    /// The scene that is drawn with these flags.
     fn for_flags(&self, args: &DrawArgs<'_>) -> Result<&Opened, CliError> {
         match &self.blended {
             Some(blended) if args.engine.rules.coverage.is_some_and(Coverage::blends) => blended
@@ -96,16 +97,7 @@ impl ViewArgs {
     }
 }
 
-/// Serves pages until the program is stopped.
-///
-/// # Errors
-/// A wrong command line, a bad scene, or an address that cannot be used.
-pub(super) fn run(
-    args: ViewArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let names = scenes::choose(&args.scenes, from_config)?;
+pub(super) fn run(args: ViewArgs, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
     if !args.picture.aov.is_empty() {
         return Err(CliError::usage(
@@ -118,11 +110,14 @@ pub(super) fn run(
             .map_err(|reason| CliError::new(Kind::Limit, reason))?;
     }
     let server = listen(SocketAddr::new(args.bind, args.port))?;
-    let opened = names.iter().map(|name| Listed::open(name, &args, console));
+    let opened = args.scenes.iter();
+    let opened = opened.map(|name| Listed::open(name, &args, console));
     let scenes = opened.collect::<Result<Vec<_>, _>>()?;
     let address = server.page_address();
     match console.json {
-        true => console.line(&report::document("view", json!({ "address": address })).to_string()),
+        true => {
+            console.line(&document::document("view", json!({ "address": address })).to_string())
+        }
         false => console.data(&address),
     }?;
     console.note("open this address in a browser; Ctrl-C ends the program");
@@ -135,7 +130,13 @@ pub(super) fn run(
             "who knows the token can look from other computers{under} and nothing is encrypted"
         ));
     }
-    server.serve(&Shared { args, scenes })
+    let matches = matches.subcommand().map_or(matches, |(_, of_view)| of_view);
+    server.serve(&Shared {
+        first: flags::first(matches),
+        scene_words: flags::scene_words(matches),
+        args,
+        scenes,
+    })
 }
 
 fn listen(at: SocketAddr) -> Result<Server, CliError> {

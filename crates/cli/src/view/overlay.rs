@@ -9,16 +9,11 @@ use shiftvox_lab::model::heat;
 
 use crate::error::CliError;
 
-/// Colour of pixels in which nothing is visible.
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
 
 /// Colours, row by row, and the range of the values behind them.
 pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
 
-/// A buffer as colours, and the numbers of its ends if it has any.
-///
-/// # Errors
-/// When the buffer cannot be made, or has no colours.
 pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, CliError> {
     let rows = 0..buffers.size().1;
     let values = buffers.rows(buffer, rows)?;
@@ -37,7 +32,6 @@ pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, C
     })
 }
 
-/// Near is bright.
 fn depth(depths: &[f32]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
     let seen = || depths.iter().copied().filter(|depth| depth.is_finite());
     let (near, far) = (
@@ -77,7 +71,6 @@ const LEVELS: [[u8; 4]; 8] = [
     [69, 117, 180, 255],
 ];
 
-/// A colour for each level of the octree.
 fn level(voxels: &[[i32; 4]]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
     let color = |voxel: &[i32; 4]| match usize::try_from(voxel[3]) {
         Ok(level) => LEVELS[level % LEVELS.len()],

@@ -22,7 +22,7 @@ use shiftvox_mesh::textured::TexturedFile;
 const LINES: [&str; 30] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
-    "render ../in/knot.obj --depth 6 --size 200 -o k.png --outdir run --force",
+    "render ../in/knot.obj --depth 6 --size 200 -o k.png --force",
     "render ../in/knot.far --size 200 -o f.png --memory 1M --force",
     "render ../in/knot.tvx --size 200 --hash --json",
     "convert ../in/ball.vox t.vxg --force",

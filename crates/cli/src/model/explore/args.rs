@@ -6,19 +6,18 @@ use std::str::FromStr;
 
 use clap::Args;
 
-/// The space, and the part of it that is measured.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Explore")]
 pub(in crate::model) struct ExploreArgs {
-    /// Measure many designs and find the Pareto-optimal ones in time, area, energy and wrong samples. SPACE: bundled,
-    /// caches, lanes, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes; --json
+    /// Measure many designs and find the Pareto-optimal ones in time, area, energy and wrong samples. SPACE is bundled,
+    /// caches, lanes, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes. --json
     /// prints one line per point
     #[arg(long, value_name = "SPACE", conflicts_with_all = ["heat", "trace", "vectors"])]
     pub(in crate::model) explore: Option<String>,
     /// Print the space and exit
     #[arg(long, requires = "explore")]
     pub(super) print_space: bool,
-    /// Points by number: 7, or 7..12 with both ends. With --print-hw: the hardware of one point
+    /// Points by number, such as 7, or 7..12 with both ends
     #[arg(long, value_name = "FROM..TO", requires = "explore")]
     pub(super) points: Option<Points>,
     /// File to which results are appended, one line per point. Points in the file are not measured again; several
@@ -27,7 +26,6 @@ pub(in crate::model) struct ExploreArgs {
     pub(super) results: Option<PathBuf>,
 }
 
-/// Numbers of points, both ends included.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Points(pub(super) RangeInclusive<usize>);
 

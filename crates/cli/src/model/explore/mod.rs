@@ -1,4 +1,4 @@
-//! `model --explore`: which of many designs are worth building.
+//! `model --explore`: the best of many designs.
 
 pub(super) mod args;
 mod output;
@@ -29,21 +29,14 @@ use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
 use shiftvox_lab::model::explore::{self, Explored};
 
-/// The points of a scene.
 struct Explorations {
     scene: String,
-    /// Points of the space.
     all: usize,
     points: Vec<PointLine>,
     front: Vec<FrontPoint>,
 }
 
-pub(super) fn run(
-    space: &str,
-    args: &ModelArgs,
-    from_config: Vec<String>,
-    console: &Console,
-) -> Result<(), CliError> {
+pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     let text = text_of(space)?;
     if args.explore.print_space {
         return console.data(text.trim_end());
@@ -61,8 +54,8 @@ pub(super) fn run(
     }
     super::output::check(args)?;
     let prices = args.hardware.prices()?;
-    let names = subjects::names_or(&args.scenes, from_config, &[subjects::BUNDLED]);
-    let size = (args.size.width, args.size.height);
+    let names = subjects::names_or(&args.scenes, &[subjects::BUNDLED]);
+    let size = args.size.pair();
     let scene_args = args.rules.scene_args(&args.scene);
     let mut scenes: Vec<(Subject, Value)> = Vec::new();
     for name in &names {
@@ -122,7 +115,6 @@ pub(super) fn run(
     output::write(&found, args, console)
 }
 
-/// The text of a space: one that ships, or a file.
 fn text_of(name: &str) -> Result<String, CliError> {
     if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());
@@ -140,7 +132,6 @@ fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, C
     Space::from_toml(text, hardware, open).map_err(|error| CliError::input(error).at(name))
 }
 
-/// The requested points, of so many.
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     match &args.points {
         Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
@@ -152,12 +143,10 @@ fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     }
 }
 
-/// Prints a point's hardware, as `--hw` takes it.
 fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Result<(), CliError> {
     if picked.len() != 1 {
-        return Err(CliError::usage(
-            "--print-hw prints one hardware: say which with --points",
-        ));
+        let message = "--print-hw prints one hardware: say which with --points";
+        return Err(CliError::usage(message));
     }
     let point = space.point(picked.start).map_err(CliError::input)?;
     let text = toml::to_string(&point.hardware).map_err(|e| CliError::new(Kind::Run, e))?;
@@ -174,7 +163,6 @@ fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Res
 /// The header of results, which must be equal for results to be reused.
 fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -> Value {
     let graph = &subject.graph;
-    // Everything that figures depend on and that has no name of its own.
     let digest = |of: &[u8]| format!("{:016x}", xxh3_64(of));
     document::document(
         "explore",
@@ -198,7 +186,6 @@ fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -
     )
 }
 
-/// The measurements of every scene.
 struct Asked<'a> {
     args: &'a ModelArgs,
     space: &'a Space,
@@ -207,7 +194,7 @@ struct Asked<'a> {
     console: &'a Console,
 }
 
-/// Measures the points of a scene that are picked and not known. Returns all that are known then.
+/// Measures the picked points of a scene that are not known, and returns all known points.
 fn measure(
     asked: &Asked<'_>,
     subject: &Subject,
@@ -247,7 +234,7 @@ fn measure(
         order: args.hardware.ray_order,
         prices,
     };
-    // Lines are printed in the points' order, also those that were there.
+    // Old and new lines are printed in the points' order.
     let mut next = picked.start;
     let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {
         for line in known.range(next..end).map(|(_, line)| line) {

@@ -16,7 +16,7 @@ use shiftvox_lab::model::tables::TableSpec;
 use shiftvox_lab::report::Table;
 use shiftvox_lab::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
-/// All points are printed if there are no more than these; otherwise, only the front.
+/// With more points, only the front is printed.
 const MOST_PRINTED: usize = 64;
 
 const POINTS: TableSpec = TableSpec {
@@ -43,7 +43,6 @@ const FRONT: TableSpec = TableSpec {
               wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1",
 };
 
-/// Writes all files, then prints.
 pub(super) fn write(
     found: &[Explorations],
     args: &ModelArgs,
@@ -68,7 +67,7 @@ pub(super) fn write(
         rows: ROWS.of(&json!({ "points": rows })),
         tables,
         more_tables: Vec::new(),
-        preface: format!("`{}`\n", Context::now().command_line()),
+        preface: format!("`{}`\n", Context::now().command),
         panels: found.iter().map(panel).collect(),
     };
     write_page("Hardware designs", &results, &[], args, console)?;
@@ -96,7 +95,6 @@ fn front_json(of: &Explorations) -> Value {
     })
 }
 
-/// All points, each with its description and whether it is on the front.
 fn points_json(of: &Explorations) -> Vec<Value> {
     let point = |line: &PointLine| {
         let mut fields = json!(line);
@@ -107,7 +105,6 @@ fn points_json(of: &Explorations) -> Vec<Value> {
     of.points.iter().map(point).collect()
 }
 
-/// The values in which a point differs from others.
 fn values(line: &PointLine, points: &[PointLine]) -> String {
     let varies = |key: &str, value: &Value| {
         let mut others = points.iter().map(|other| other.values.get(key));
@@ -117,11 +114,7 @@ fn values(line: &PointLine, points: &[PointLine]) -> String {
     let mut words = vec![hardware.unwrap_or_default().to_owned()];
     for (key, value) in &line.values {
         if key != "hardware" && varies(key, value) {
-            let text = value.as_str().map(str::to_owned);
-            words.push(format!(
-                "{key} {}",
-                text.unwrap_or_else(|| value.to_string())
-            ));
+            words.push(format!("{key} {}", value.to_string().trim_matches('"')));
         }
     }
     words.join(", ")
@@ -137,14 +130,9 @@ fn too_slow(of: &Explorations) -> usize {
     figures.filter(|figures| !figures.meets_clock).count()
 }
 
-/// The points of the front that stand out, under a title with the numbers of all others.
 fn front_table(of: &Explorations, front: &Value, args: &ModelArgs) -> Table {
-    let standing_out: Vec<&Value> = front["front"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter(|point| point["stands_out"] == true)
-        .collect();
+    let points = front["front"].as_array().into_iter().flatten();
+    let standing_out: Vec<&Value> = points.filter(|of| of["stands_out"] == true).collect();
     let mut title = format!(
         "{}, {} x {}: of {} hardware designs, {} are Pareto-optimal in time, area, energy and wrong samples. Listed are \
          {}: no other is a tenth better in one measure and less than a tenth worse in all others",
@@ -170,8 +158,7 @@ fn front_table(of: &Explorations, front: &Value, args: &ModelArgs) -> Table {
     }
 }
 
-/// Energy over time: a series per hardware description, with the numbers of points that stand out, and the ray caster
-/// beside each point.
+/// Energy over time: a series per hardware description, and the ray caster beside each point.
 fn panel(of: &Explorations) -> Panel {
     let axis = |label: &str| Axis {
         label: label.to_owned(),

@@ -11,7 +11,6 @@ use shiftvox::bounded;
 use shiftvox::whole;
 use shiftvox_lab::model::explore::lines::{self, Recorded};
 
-/// A locked file of results.
 pub(super) struct ResultsFile {
     file: File,
     path: PathBuf,
@@ -50,7 +49,6 @@ impl ResultsFile {
         Ok((Self { file, path }, recorded))
     }
 
-    /// Appends a line.
     pub(super) fn append(&mut self, line: &str) -> Result<(), CliError> {
         let written = self.file.write_all(format!("{line}\n").as_bytes());
         written.map_err(|error| CliError::new(Kind::Run, error).at(self.path.display()))
