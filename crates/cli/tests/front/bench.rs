@@ -1,11 +1,11 @@
-//! The experiments as a script meets them: rows, exports, exit codes.
+//! The rows of experiments.
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{bench, folder, json_of, stderr_of, stdout_of, words};
+use crate::program::{bench, folder, json_of, run, stdout_of, words};
 
 const SCENE: &str = "gen:menger,depth=2";
 
@@ -28,22 +28,19 @@ fn row<'r>(rows: &'r [Value], with: &[(&str, &str)]) -> &'r Value {
 }
 
 fn number(row: &Value, name: &str) -> f64 {
-    row[name]
-        .as_f64()
-        .unwrap_or_else(|| panic!("{name}: {row}"))
+    let found = row[name].as_f64();
+    found.unwrap_or_else(|| panic!("{name}: {row}"))
 }
 
 fn count(row: &Value, name: &str) -> u64 {
-    row[name]
-        .as_u64()
-        .unwrap_or_else(|| panic!("{name}: {row}"))
+    let found = row[name].as_u64();
+    found.unwrap_or_else(|| panic!("{name}: {row}"))
 }
 
 #[test]
 fn engines_agree_in_every_form() {
     let folder = folder();
-    let line = "time gen:menger,depth=2 --size 48x32 --lod 0 --warmup 0 --runs 3 --threads 1,2 \
-        --export-json a/r.json --export-svg a/r.svg --export-csv a/r.csv --export-markdown a/r.md";
+    let line = "time gen:menger,depth=2 --size 48x32 --lod 0 --warmup 0 --runs 3 --threads 1,2";
     let rows = rows(folder.path(), line);
     // The oracle and the fast engine use threads, the others are measured on one.
     let threads = |engine: &str| {
@@ -70,22 +67,6 @@ fn engines_agree_in_every_form() {
         let has_cpu = count(row, "threads") == 1 && cfg!(unix);
         assert_eq!(row["cpu_ms"].is_number(), has_cpu, "{row}");
     }
-    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    let written: Value = serde_json::from_str(&file("a/r.json")).unwrap();
-    assert_eq!(
-        (written["rows"].as_array(), &written["schema"]),
-        (Some(&rows), &"shiftvox.bench time".into())
-    );
-    let svg = file("a/r.svg");
-    assert!(svg.starts_with("<svg") && svg.contains("float-rays"));
-    assert!(
-        file("a/r.csv").starts_with("scene,") && file("a/r.csv").lines().count() == 1 + rows.len()
-    );
-    assert!(file("a/r.md").contains("|---"));
-
-    // Existing files are kept, which is reported before any work.
-    let line = ["time", SCENE, "--export-json", "a/r.json"];
-    assert!(stderr_of(&bench(folder.path(), &line).code(1)).contains("--force"));
 }
 
 #[test]
@@ -166,7 +147,7 @@ fn quality_in_every_form() {
     let folder = folder();
     let line = format!(
         "quality {SCENE} {SMALL} --methods exact:lod=0:aa=1+2:cage=frame+corners,\
-         any:lod=0:tolerance=0+inf:cage=frame+corners --export-json r.json --export-svg r-{{scene}}.svg"
+         any:lod=0:tolerance=0+inf:cage=frame+corners --export-svg r-{{scene}}.svg"
     );
     let all = rows(folder.path(), &line);
     // Two cages with two numbers of samples or two tolerances, and the noise floor.
@@ -174,9 +155,10 @@ fn quality_in_every_form() {
     let of = |method: &str| row(&all, &[("method", method)]);
     // In clip space, down to the leaves, the exact rule is the oracle.
     let exact = of("exact frame lod 0");
-    for name in ["extra", "missing", "coarser", "elsewhere"] {
+    for name in ["extra", "missing", "coarser", "elsewhere", "depth_worst"] {
         assert_eq!(number(exact, name), 0.0, "{name}");
     }
+    assert!(number(exact, "vertex_worst") < 0.01);
     let any = of("any 0 frame lod 0");
     assert!(number(any, "extra") > 0.0 && number(any, "bias_percent") > 0.0);
     assert!(number(any, "flip") > number(exact, "flip"));
@@ -189,39 +171,18 @@ fn quality_in_every_form() {
     assert_eq!(paper["remark"], "the paper's; drawn by the machine");
     assert!(paper["beaten_by"].is_string() && exact["beaten_by"].is_null());
 
-    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    let written: Value = serde_json::from_str(&file("r.json")).unwrap();
-    assert_eq!(written["rows"].as_array(), Some(&all));
-    let svg = file("r-menger-depth-2.svg");
+    let svg = fs::read_to_string(folder.path().join("r-menger-depth-2.svg")).unwrap();
     assert!(svg.contains("dominated") && svg.contains("operations of the machine"));
-    for export in ["--export-json=r.json", "--export-svg=r-{scene}.svg"] {
-        bench(folder.path(), &["quality", SCENE, export]).code(1);
-    }
-}
-
-#[test]
-fn a_format_too_narrow_is_a_row_and_not_the_end() {
-    let folder = folder();
-    let line = format!("quality gen:sphere,depth=6 {SMALL} --methods exact:bits=64+16");
-    let rows = rows(folder.path(), &line);
-    assert_eq!(rows[0]["wrong_share"], 0.0);
-    // Sixteen bits are rejected, or far off.
-    let wrong = rows[1]["wrong_share"].as_f64();
-    assert!(
-        rows[1]["refused"].is_string() || wrong.unwrap() > 0.01,
-        "{}",
-        rows[1]
-    );
 }
 
 #[test]
 fn films_flicker_and_more_samples_calm_them() {
     let folder = folder();
     let line = "quality gen:sphere,depth=5 --size 20 --frames 3 --motions turntable,dolly --runs 1 \
-        --reference-samples 4 --methods exact:aa=1+4 --export-svg f.svg";
+        --reference-samples 4 --methods exact:aa=1+4,exact:lod=0 --export-svg f.svg";
     let rows = rows(folder.path(), line);
-    let [one, four] =
-        ["exact frame", "exact frame aa 4"].map(|method| row(&rows, &[("method", method)]));
+    let [one, four, leaves] = ["exact frame", "exact frame aa 4", "exact frame lod 0"]
+        .map(|method| row(&rows, &[("method", method)]));
     for motion in ["turntable", "dolly"] {
         let flicker = format!("flicker_{motion}");
         assert!(
@@ -231,6 +192,9 @@ fn films_flicker_and_more_samples_calm_them() {
         let worst = number(one, &format!("{flicker}_worst"));
         assert!(worst >= number(one, &flicker));
         assert!(number(row(&rows, &[("method", "noise floor")]), &flicker) > 0.0);
+        // Without level of detail there is no cut.
+        assert!(leaves[format!("pop_{motion}")].is_null());
+        assert!(number(one, &format!("pop_{motion}")) >= 0.0);
     }
     let svg = fs::read_to_string(folder.path().join("f.svg")).unwrap();
     assert!(svg.contains("flicker of a dolly") && !svg.contains("flicker of a pan"));
@@ -258,39 +222,46 @@ fn everything_but_times_is_the_same_in_every_run() {
 }
 
 #[test]
-fn wrong_experiments_exit_with_2_or_5() {
+fn reproduced_results_are_the_same_in_every_run() {
     let folder = folder();
-    for (line, code) in [
-        ("", 2),
-        ("speed", 2),
-        ("time S --scan size=64", 2),
-        ("time S --scan lod=1..2+1", 2),
-        ("time assets.vox --scan depth=1..2+1", 4),
-        ("time bundled --scan depth=1..2+1", 2),
-        ("time S --scan size=64..128*2 --size 64", 2),
-        ("time S --runs 0", 2),
-        ("time S --engines slow", 2),
-        ("time S --variants slow", 2),
-        ("time S --engines rays --variants all", 2),
-        ("time S --overflow wrap", 2),
-        ("time S --threads 1,two", 2),
-        ("time S --export-svg a --export-json a", 2),
-        ("time S --export-csv a --export-json a", 2),
-        ("time S --size 32768", 5),
-        ("time missing.vox", 4),
-        ("quality S --methods exact:aa=3", 2),
-        ("quality S --methods far", 2),
-        ("quality S --reference-samples 5", 2),
-        ("quality S --export-svg a --export-json a", 2),
-        ("quality S --motions dolly --frames 1", 2),
-        ("quality S --motions fly", 2),
-        ("quality S --threads 1,2", 2),
-        ("quality S --size 8192", 5),
+    // The paper's list with smaller pictures and scenes.
+    let mut list = include_str!("../../../lab/src/reproduce.toml").to_owned();
+    for (from, to) in [
+        ("512", "32"),
+        ("[64, 128, 256, 32, 1024]", "[16, 64]"),
+        ("menger,depth=5", "menger,depth=2"),
+        ("truss,depth=8", "truss,depth=4"),
     ] {
-        let line = line.replace('S', SCENE);
-        let assert = bench(folder.path(), &words(&line)).code(code);
-        assert!(!stderr_of(&assert).is_empty(), "{line:?}");
-        assert_eq!(stdout_of(&assert), "", "{line:?}");
+        list = list.replace(from, to);
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    for depth in 6..=10 {
+        list = list.replace(&format!("terrain,depth={depth}"), "terrain,depth=5");
+    }
+    fs::write(folder.path().join("list.toml"), list).unwrap();
+    let reproduced = |outdir: &str| {
+        let line = format!("reproduce list.toml --runs 1 --outdir {outdir}");
+        let told = stdout_of(&run(folder.path(), &words(&line)).success());
+        assert!(told.contains("Table I") && told.contains("<1"), "{told}");
+        let text = fs::read(folder.path().join(outdir).join("results.json")).unwrap();
+        let document: Value = serde_json::from_slice(&text).unwrap();
+        let lasting = "table scene size settings hash work operations changed";
+        let rows = document["rows"].as_array().unwrap().iter();
+        let rows = rows.map(|row| words(lasting).into_iter().map(|of| row[of].clone()));
+        rows.map(Iterator::collect).collect::<Vec<Vec<Value>>>()
+    };
+    let one = reproduced("one");
+    assert_eq!(one, reproduced("two"));
+    // Of the machine with everything on: two sizes, five scenes, five terrains, four scenes; twice.
+    let hashes = one.iter().filter(|row| row[4].is_string());
+    assert_eq!(hashes.count(), 2 * (2 + 5 + 5 + 4));
+    assert!(folder.path().join("two/figures.svg").exists());
+    let page = fs::read_to_string(folder.path().join("one/report.md")).unwrap();
+    for part in [
+        "Table I",
+        "occlusion order",
+        "Objects of all kinds",
+        "exponent",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
 }

@@ -30,6 +30,19 @@ fn stdout_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }
 
+/// The text with `N(part)` after a `%` written out N times.
+fn repeated(text: &str) -> String {
+    let mut parts = text.split('%');
+    let mut all = parts.next().unwrap_or("").to_owned();
+    for part in parts {
+        let (times, rest) = part.split_once('(').unwrap();
+        let (unit, rest) = rest.split_once(')').unwrap();
+        all += &unit.repeat(times.parse().unwrap());
+        all += rest;
+    }
+    all
+}
+
 fn holds(is_so: bool, why: impl FnOnce() -> String) -> Result<(), String> {
     if is_so { Ok(()) } else { Err(why()) }
 }
@@ -177,7 +190,9 @@ impl Case {
             // Before commands.
             "put" => {
                 let (name, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                fs::write(self.at(name), text.replace("\\n", "\n")).unwrap();
+                let path = self.at(name);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, repeated(&text.replace("\\n", "\n"))).unwrap();
             }
             "copy" => {
                 let name = Path::new(rest).file_name().unwrap();
@@ -217,11 +232,18 @@ impl Case {
                 let expected: Vec<&str> = rest.split_whitespace().collect();
                 holds(self.files() == expected, || format!("{:?}", self.files()))?;
             }
-            "begins" => {
+            "has" | "lacks" => {
                 let (name, text) = rest.split_once(' ').unwrap();
                 let bytes = self.read(name)?;
-                let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(8)]).into_owned();
-                holds(begin.contains(text), || begin.clone())?;
+                let has = String::from_utf8_lossy(&bytes).contains(text);
+                holds(has == (word == "has"), || rest.to_owned())?;
+            }
+            "read" => {
+                let stdout = self.read(rest)?;
+                self.last = Some(Output {
+                    stdout,
+                    ..self.last.take().ok_or("no command")?
+                });
             }
             "same" => holds(self.read(next())? == self.read(next())?, || rest.to_owned())?,
             "unlike" => holds(self.read(next())? != self.read(next())?, || rest.to_owned())?,
@@ -266,7 +288,13 @@ fn check(files: &[&str]) {
 
 #[test]
 fn lines_exit_with_their_codes() {
-    check(&["refused.txt", "pictures.txt", "meshes.txt"]);
+    check(&[
+        "refused.txt",
+        "pictures.txt",
+        "meshes.txt",
+        "models.txt",
+        "experiments.txt",
+    ]);
 }
 
 #[test]

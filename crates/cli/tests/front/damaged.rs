@@ -2,7 +2,6 @@
 //! with it.
 
 use std::fs;
-use std::path::Path;
 
 use shiftvox::graph::{Silent, vxg};
 use shiftvox::scene::{NoMeshes, OpenOptions, Source, open_source};
@@ -91,43 +90,4 @@ fn who_reads_all_of_a_graph_checks_all_of_it_at_any_size() {
         }
     }
     assert!(!folder.path().join("b.ply").exists());
-}
-
-/// Far voxels are checked by node, textured voxels by grid. Parts that are not drawn are not read.
-#[test]
-fn what_is_read_in_parts_is_checked_where_it_is_read() {
-    let folder = tempfile::tempdir().unwrap();
-    let assets = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("assets");
-    fs::copy(assets.join("knot.obj"), folder.path().join("knot.obj")).unwrap();
-    let draw = |name: &str, flags: &[&str]| {
-        let line = [&["render", name, "--size", "32", "--hash"], flags].concat();
-        run(folder.path(), &line)
-    };
-    let (near, away) = (&["--zoom", "8"][..], &["--zoom", "0.01"][..]);
-    let (first, second) = (
-        &["--erosion", "0", "--erosion-grid", "4"][..],
-        &["--erosion", "0", "--erosion-grid", "8"][..],
-    );
-    // The end of the file: a leaf's triangles, seen from near, or texels of the second grid.
-    for (made, end, is_read, is_not) in [
-        (
-            &["a.far", "--leaf-triangles", "100", "--rays", "20000"][..],
-            "data",
-            near,
-            away,
-        ),
-        (&["a.tvx", "--grid", "4,8"], "textures", second, first),
-    ] {
-        let name = made[0];
-        run(folder.path(), &[&["convert", "knot.obj"], made].concat()).success();
-        let path = folder.path().join(name);
-        let mut bytes = fs::read(&path).unwrap();
-        *bytes.last_mut().unwrap() ^= 1;
-        fs::write(&path, bytes).unwrap();
-        let assert = draw(name, is_read).code(4);
-        let told = stderr_of(&assert);
-        assert!(told.contains(&format!("{name}: {end}, byte")), "{told}");
-        draw(name, is_not).success();
-        run(folder.path(), &["info", name]).code(4);
-    }
 }

@@ -341,31 +341,3 @@ fn whatever_happens_it_ends_in_order() {
     let [stopped, refused, limits] = [0, 1, 2].map(|end| both[0][end] + both[1][end]);
     assert!(stopped > 0 && refused > 10 && limits > 0, "{both:?}");
 }
-
-#[test]
-fn every_command_is_run() {
-    let commands = |line: &[&str]| -> Vec<String> {
-        let mut command = Command::new(crate::common::program());
-        let output = command.args(line).arg("--help").output().unwrap();
-        let help = String::from_utf8(output.stdout).unwrap();
-        let list = help.split("Commands:\n").nth(1).unwrap();
-        let list = list.split("\n\n").next().unwrap().lines();
-        // Other lines continue the description of a command.
-        let lines = list.filter_map(|line| line.strip_prefix("  "));
-        let names = lines.filter(|line| !line.starts_with(' '));
-        names
-            .map(|line| line.split(' ').next().unwrap().to_owned())
-            .collect()
-    };
-    let known = [("", commands(&[]), 12), ("bench ", commands(&["bench"]), 2)];
-    for (before, known, least) in known {
-        assert!(known.len() >= least, "{known:?}");
-        // A page is served until it is stopped (`crates/cli/tests/view`).
-        let others = ["help", "view"];
-        for name in { known.iter() }.filter(|name| !others.contains(&name.as_str())) {
-            let begins = format!("{before}{name}");
-            let is_run = LINES.iter().any(|line| line.starts_with(&begins));
-            assert!(is_run, "shiftvox {begins}");
-        }
-    }
-}

@@ -1,18 +1,12 @@
-//! `bench quality` of meshes: all methods side by side.
+//! Meshes: all formats, and all methods side by side.
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use std::process::Command;
 
-use crate::common::Run;
-
-fn shiftvox(folder: &Path) -> Command {
-    let mut command = crate::common::command();
-    command.current_dir(folder);
-    command
-}
+use crate::common::{Run, sheet};
+use crate::shapes::squares;
 
 /// A fan of thin blades, as a Wavefront file.
 fn blades() -> String {
@@ -36,11 +30,9 @@ fn blades() -> String {
 }
 
 fn document(at: &Path, line: &str) -> Value {
-    let output = shiftvox(at)
-        .args(line.split(' '))
-        .arg("--json")
-        .assert()
-        .success();
+    let mut command = crate::common::command();
+    command.current_dir(at).args(line.split_whitespace());
+    let output = command.arg("--json").assert().success();
     serde_json::from_slice(&output.get_output().stdout).unwrap()
 }
 
@@ -118,17 +110,47 @@ fn bytes_and_rivals_of_a_generated_mesh() {
         assert_eq!(ahead.is_some(), height == 40);
         assert!(ahead.is_none_or(|ahead| ahead > -0.5), "{ahead:?}");
     }
-    for (spec, output, code) in [
-        ("mesh:bush", "b.ply", 4),
-        ("mesh:tree,seed=x", "b.ply", 4),
-        ("mesh:tree", "b.obj", 2),
-        ("mesh:tree", "wheel.ply", 1),
-    ] {
-        let refused = shiftvox(at).args(["generate", spec, "-o", output]).assert();
-        refused.code(code);
+}
+
+#[test]
+fn a_dolly_shows_where_levels_change() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sheet.obj"), sheet(48)).unwrap();
+    // From one percent nearer to the next, to half the distance.
+    let line = "bench quality sheet.obj --methods far --motions dolly --depth 3 --frames 40 --size 128 \
+        --zoom 0.3 --far-rays 30000 --runs 1 --warmup 0";
+    let document = document(folder.path(), line);
+    let rows = document["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 3 + 1);
+    for row in &rows[..3] {
+        // Nodes change one after the other; between, the other cut is the same.
+        let popped = row["popped_dolly"].as_u64().unwrap();
+        assert!((1..20).contains(&popped), "{row}");
+        // In thousandths of white.
+        assert!(row["pop_dolly"].as_f64().unwrap() > 0.1, "{row}");
+        assert_eq!(row["reference_samples"], 256);
     }
-    shiftvox(at)
-        .args(["bench", "quality", "none.obj"])
-        .assert()
-        .code(4);
+}
+
+#[test]
+fn every_format_is_told_by_content_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    for (i, (name, _, bytes)) in squares().into_iter().enumerate() {
+        let file = format!("scene{i}.dat");
+        fs::write(folder.path().join(&file), bytes).unwrap();
+        let document = document(folder.path(), &format!("info {file} --depth 4"));
+        let scene = &document["scenes"][0];
+        assert_eq!(scene["mesh"]["triangles"], 2, "{name}");
+        assert_eq!(scene["voxels"], 256, "{name}");
+        // STL is customarily Z-up, all others Y-up.
+        let camera = scene["camera"].as_str().unwrap();
+        let mut words = camera.split([' ', ',']).skip_while(|word| *word != "--up");
+        let up: Vec<f64> = words
+            .by_ref()
+            .skip(1)
+            .take(3)
+            .map(|n| n.parse().unwrap())
+            .collect();
+        assert_eq!(up[2] > up[1], name.starts_with("stl"), "{name}: {camera}");
+    }
 }

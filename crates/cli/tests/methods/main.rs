@@ -4,12 +4,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod compared;
-mod far;
 mod far_stopped;
 #[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/gltf_bytes.rs"]
 mod gltf_bytes;
-mod mesh;
 #[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/shapes.rs"]
 mod shapes;

@@ -51,70 +51,44 @@ fn quoted(line: &str) -> Vec<f64> {
     numbers.map(Result::unwrap).collect()
 }
 
-/// Reads the library of cells, line by line: it has one value a line, and tables a row a line.
+/// Reads the library of cells: it has one value a line, and tables a row a line.
 fn energies_of_pins(liberty: &str) -> PinEnergies {
+    let lines: Vec<&str> = liberty.lines().map(str::trim).collect();
+    let liberty = lines.join("\n");
     let mut cells = PinEnergies::new();
-    let (mut cell, mut pin) = (String::new(), String::new());
-    let (mut capacitance, mut is_input) = (0.0, false);
-    // Of the pin: sum and number of internal energies.
-    let mut internal = (0.0, 0u32);
-    // In a table of energies of outputs: which row is that of the load, and the next one to come.
-    let mut table: Option<(usize, Option<usize>)> = None;
-    let name_of = |line: &str| {
-        let inside = line.split(['(', ')']).nth(1).unwrap_or_default();
-        inside.trim().to_owned()
-    };
-    let mut take =
-        |cell: &str, pin: &str, is_input: bool, capacitance: f64, internal: (f64, u32)| {
-            if pin.is_empty() {
-                return;
-            }
-            let energy = match is_input {
-                true => capacitance * VOLTS * VOLTS / 2.0,
-                false => internal.0 / f64::from(internal.1.max(1)),
-            };
-            cells
-                .entry(cell.to_owned())
-                .or_default()
-                .push((pin.to_owned(), energy));
-        };
-    for line in liberty.lines().map(str::trim) {
-        if line.starts_with("cell ") || line.starts_with("pin(") {
-            take(&cell, &pin, is_input, capacitance, internal);
-            (pin, internal) = (String::new(), (0.0, 0));
-            match line.starts_with("pin(") {
-                true => pin = name_of(line),
-                false => cell = name_of(line),
-            }
-        } else if line.starts_with("direction") {
-            is_input = line.contains("input");
-        } else if let Some(value) = line.strip_prefix("capacitance :") {
-            capacitance = value.trim().trim_end_matches(';').parse().unwrap();
-        } else if line.starts_with("rise_power(energy") || line.starts_with("fall_power(energy") {
-            table = Some((0, None));
-        } else if let Some((row, next)) = &mut table {
-            if line.starts_with("index_1") {
-                let far = |load: &f64| (load - LOAD).abs();
-                let loads = quoted(line);
-                let nearest = loads.iter().enumerate();
-                let nearest = nearest.min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
-                *row = nearest.unwrap().0;
-            } else if line.starts_with("values") {
-                *next = Some(0);
-            } else if let Some(at) = next {
-                if at == row {
-                    internal.0 += quoted(line)[0];
-                    internal.1 += 1;
-                }
-                *at += 1;
-                if line.ends_with(';') {
-                    table = None;
-                }
-            }
-        }
+    for cell in liberty.split("\ncell ").skip(1) {
+        let pins = cell.split("pin(").skip(1);
+        let energies = pins.map(|pin| {
+            let name = pin.split(')').next().unwrap_or_default().trim();
+            (name.to_owned(), energy_of_pin(pin))
+        });
+        let name = cell.split(['(', ')']).nth(1).unwrap_or_default().trim();
+        cells.insert(name.to_owned(), energies.collect());
     }
-    take(&cell, &pin, is_input, capacitance, internal);
     cells
+}
+
+/// What a change of a pin takes: of an output, the mean of its tables at the load that is nearest.
+fn energy_of_pin(pin: &str) -> f64 {
+    let value = |key: &str| {
+        let line = pin.lines().find_map(|line| line.trim().strip_prefix(key));
+        line.unwrap_or_default().trim().trim_end_matches(';').trim()
+    };
+    if value("direction :") == "input" {
+        let capacitance: f64 = value("capacitance :").parse().unwrap();
+        return capacitance * VOLTS * VOLTS / 2.0;
+    }
+    let tables = pin.split("_power(energy").skip(1);
+    let energies = tables.map(|table| {
+        let line_with = |word: &str| table.lines().position(|line| line.trim().starts_with(word));
+        let line = |at: usize| quoted(table.lines().nth(at).unwrap());
+        let loads = line(line_with("index_1").unwrap());
+        let far = |at: &usize| (loads[*at] - LOAD).abs();
+        let nearest = (0..loads.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+        line(line_with("values").unwrap() + 1 + nearest.unwrap())[0]
+    });
+    let energies: Vec<f64> = energies.collect();
+    energies.iter().sum::<f64>() / energies.len().max(1) as f64
 }
 
 /// The cells' Verilog with a sum of energies and changes in each cell that is no register.
@@ -307,7 +281,7 @@ fn energy_by_toggles_beside_the_table() {
 /// The parts of the sum, of a cell by hand.
 #[test]
 fn energies_of_a_cell_by_hand() {
-    let liberty = "cell (INV) {\n pin(A) {\n direction : input;\n capacitance : 0.01;\n }\n pin(Y) {\n \
+    let liberty = "\ncell (INV) {\n pin(A) {\n direction : input;\n capacitance : 0.01;\n }\n pin(Y) {\n \
                    direction : output;\n capacitance : 0;\n internal_power() {\n \
                    rise_power(energy_template_5x5) {\n index_1 (\"0.005, 0.02, 0.15\");\n \
                    index_2 (\"0.06, 0.18\");\n values ( \\\n \"1, 2\", \\\n \"3, 4\", \\\n \"5, 6\");\n }\n \

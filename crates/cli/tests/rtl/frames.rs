@@ -1,16 +1,15 @@
 //! Whole frames in Verilog against the machine: every event with all its bits in order, the picture, and the cycles.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::fs;
 
 use shiftvox::graph::{Graph, LinkedGraph, NodeLayout, vxg};
 
 use super::machines::{LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree};
-use super::tools::{rtl, run, text};
+use super::tools::{modules, rtl, run, text};
 use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within, with_tiles};
 
 #[test]
-fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
+fn views_from_outside_and_inside_have_the_machines_events_picture_and_cycles() {
     for (machine, events) in [
         (&STAGE_A, 1_000_000),
         (&STAGE_B, 250_000),
@@ -18,12 +17,6 @@ fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
     ] {
         let agreement = agree(machine, TREE, None);
         assert!(agreement.events > events && agreement.samples > 1000);
-    }
-}
-
-#[test]
-fn an_eye_inside_too() {
-    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         agree(machine, INSIDE, None);
     }
 }
@@ -41,12 +34,9 @@ fn yosys_takes_the_machines() {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();
         for folder in machine.folders() {
-            for path in fs::read_dir(rtl().join(folder)).unwrap() {
-                let name = path.unwrap().file_name().into_string().unwrap();
-                if name.ends_with(".v") {
-                    let path = format!("{folder}/{name}");
-                    files.entry(name).or_insert(path);
-                }
+            for name in modules(folder) {
+                let path = format!("{folder}/{name}.v");
+                files.entry(name).or_insert(path);
             }
         }
         let files: Vec<String> = files.into_values().collect();
@@ -64,52 +54,48 @@ fn yosys_takes_the_machines() {
     }
 }
 
+/// Chosen views, then random ones, from all sides and from between the voxels: planes are degenerate there, and cubes reach
+/// behind the eye.
 #[test]
 #[ignore = "takes minutes"]
-fn many_scenes() {
+fn many_views() {
     for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         for view in SCENES {
             agree(machine, view, None);
         }
+        random_views(machine, 200, &any_view);
     }
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn lanes_draw_many_scenes() {
+    for machine in [&STAGE_B, &STAGE_C] {
+        random_views(machine, 200, &view_from_within);
+    }
+    random_views(&STAGE_C_BRICKS, 100, &any_view);
+    random_views(&STAGE_C_BRICKS, 100, &view_from_within);
     for machine in &LANES {
         for view in SCENES.into_iter().chain([TREE, INSIDE]) {
             agree(machine, view, None);
         }
+        random_views(machine, 25, &|dice| with_tiles(any_view, dice));
+        random_views(machine, 25, &|dice| with_tiles(view_from_within, dice));
     }
 }
 
-/// Graphs with shared nodes and with cycles: name, depth, children by octant.
-fn linked_graphs() -> Vec<(&'static str, Graph)> {
-    // Digits are nodes, a dot is no child.
-    let graphs = [
-        ("one node, four times below itself", 6, "0..0.00."),
-        (
-            "two nodes in turns, and a solid",
-            7,
-            "1..0.21. .01....0 ........",
-        ),
-        (
-            "one solid, shared by three, one of them shared by the root",
-            3,
-            "12.11.21 3.3..3.3 .31.3... ........",
-        ),
-    ];
-    let graph = |(name, depth, nodes): (&'static str, u32, &str)| {
-        let mut graph = LinkedGraph::new(depth);
-        for (at, children) in nodes.split(' ').enumerate() {
-            let mut children = children.chars().map(|digit| digit.to_digit(10));
-            let children = std::array::from_fn(|_| children.next().flatten());
-            graph.add_node([40 * at as u8 + 30, 90, 160], children);
-        }
-        (name, graph.build().unwrap())
-    };
-    graphs.map(graph).into()
+/// Draws views by seed.
+fn random_views(machine: &Machine, number: u32, make: &dyn Fn(&mut Dice) -> String) {
+    let mut dice = Dice(1);
+    for _ in 0..number {
+        agree(machine, &make(&mut dice), None);
+    }
+}
+
+/// A linked graph: its depth, and the children of its nodes by octant. Digits are nodes, a dot is no child.
+fn linked_graph(depth: u32, nodes: &str) -> Graph {
+    let mut graph = LinkedGraph::new(depth);
+    for (at, children) in nodes.split(' ').enumerate() {
+        let mut children = children.chars().map(|digit| digit.to_digit(10));
+        let children = std::array::from_fn(|_| children.next().flatten());
+        graph.add_node([40 * at as u8 + 30, 90, 160], children);
+    }
+    graph.build().unwrap()
 }
 
 /// The hardware draws linked graphs from a memory in which lists of children lie side by side, shared ones once. They have
@@ -119,7 +105,12 @@ fn linked_graphs() -> Vec<(&'static str, Graph)> {
 fn linked_and_cyclic_graphs() {
     let shelter = tempfile::tempdir().unwrap();
     let file = shelter.path().join("linked.vxg");
-    for (name, graph) in linked_graphs() {
+    for (depth, nodes) in [
+        (6, "0..0.00."),
+        (7, "1..0.21. .01....0 ........"),
+        (3, "12.11.21 3.3..3.3 .31.3... ........"),
+    ] {
+        let (name, graph) = (nodes, linked_graph(depth, nodes));
         assert!(bricks_of(&graph).is_empty(), "{name}");
         vxg::write(&graph, &file, true).unwrap();
         for view in [
@@ -189,41 +180,5 @@ fn bricks_in_many_scenes() {
         assert_eq!(with.samples, without.samples);
         let is_fewer = with.cycles[0] < without.cycles[0];
         assert!(is_fewer || without_bricks.contains(&view), "{view}");
-    }
-}
-
-/// Draws views by seed.
-fn random_views(machine: &Machine, number: u32, make: &dyn Fn(&mut Dice) -> String) {
-    let mut dice = Dice(1);
-    for _ in 0..number {
-        agree(machine, &make(&mut dice), None);
-    }
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn random_views_from_all_sides() {
-    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
-        random_views(machine, 200, &any_view);
-    }
-    random_views(&STAGE_C_BRICKS, 100, &any_view);
-}
-
-/// Planes are degenerate there, and cubes reach behind the eye.
-#[test]
-#[ignore = "takes minutes"]
-fn wide_random_views_from_between_the_voxels() {
-    for machine in [&STAGE_B, &STAGE_C] {
-        random_views(machine, 200, &view_from_within);
-    }
-    random_views(&STAGE_C_BRICKS, 100, &view_from_within);
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn lanes_draw_many_random_views() {
-    for machine in &LANES {
-        random_views(machine, 25, &|dice| with_tiles(any_view, dice));
-        random_views(machine, 25, &|dice| with_tiles(view_from_within, dice));
     }
 }

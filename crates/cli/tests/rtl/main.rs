@@ -13,7 +13,6 @@ mod blocks;
 mod energy;
 mod faults;
 mod frames;
-mod hidden;
 mod machines;
 mod mutants;
 mod tools;

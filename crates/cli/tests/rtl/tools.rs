@@ -66,3 +66,11 @@ pub(crate) fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
+
+/// The names of the modules in a folder of `rtl`.
+pub(crate) fn modules(folder: &str) -> Vec<String> {
+    let files = std::fs::read_dir(rtl().join(folder)).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    let names = names.filter_map(|name| name.strip_suffix(".v").map(str::to_owned));
+    names.collect()
+}
