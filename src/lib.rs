@@ -51,20 +51,87 @@ mod api;
 pub use api::{Camera, EngineKind, Error, FittedCamera, Picture, Renderer, Scene};
 pub use hwmodel;
 
-#[doc(inline)]
-pub use api::{Up, View};
-#[doc(inline)]
-pub use budget::Shortage;
-#[doc(inline)]
-pub use graph::{PackedNormal, Voxel};
-#[doc(inline)]
-pub use hwmodel::Overflow;
-#[doc(inline)]
-pub use machine::Simulated;
-#[doc(inline)]
-pub use picture::{Background, Buffer, Shading};
-#[doc(inline)]
-pub use project::{CageKind, CameraError, Coverage, EngineError, OCCLUSION_ORDER, SetupError};
+/// Exports items with an example each, in which there are a scene and a camera.
+macro_rules! with_examples {
+    ($($module:ident::$item:ident $code:literal)+) => {
+        $(
+            #[doc = concat!(
+                "```\n# use shiftvox::*;\n",
+                "# let scene = Scene::generate(\"menger,depth=2\")?;\n",
+                "# let camera = Camera::fit(&scene);\n",
+                $code,
+                "\n# Ok::<(), shiftvox::Error>(())\n```"
+            )]
+            #[doc(inline)]
+            pub use $module::$item;
+        )+
+    };
+}
+
+with_examples! {
+    api::Up "assert_eq!(scene.up(), Up::Z); // voxel files; meshes have mostly `Up::Y`
+let lying = scene.with_up(Up::Y);
+let camera = Camera::fit(&lying);"
+    api::View "fn side_by_side(scene: &Scene, views: [&impl View; 2]) -> Result<[Picture; 2], Error> {
+    let [left, right] = views.map(|view| Renderer::new().render(scene, view, 32, 32));
+    Ok([left?, right?])
+}
+let inside = Camera::look_at([4.5, 0.5, 4.5], [4.5, 9.0, 4.5]);
+side_by_side(&scene, [&inside, &inside.clone().field_of_view(100.0)])?;
+side_by_side(&scene, [&camera, &camera.clone().azimuth(90.0)])?;"
+    budget::Shortage r#"match Renderer::new().render(&scene, &camera, 64, 64) {
+    Err(Error::Memory(short)) => println!("{} bytes are needed, {:?} are free", short.needed, short.free),
+    other => drop(other?),
+}"#
+    graph::PackedNormal "let voxel = Voxel {
+    index: [0, 0, 0],
+    color: [200, 180, 160],
+    normal: Some(PackedNormal::encode([0.0, 0.6, 0.8].into())),
+};
+Scene::from_voxels([voxel])?;"
+    graph::Voxel "let row = (0..10).map(|x| Voxel { index: [x, 0, 0], color: [25 * x as u8, 80, 80], normal: None });
+assert_eq!(Scene::from_voxels(row)?.voxels(), 10);"
+    machine::Simulated r#"use shiftvox::hwmodel::cycles::Hardware;
+let hardware = Hardware::preset("light").expect("it ships");
+let simulated: Simulated = Renderer::new().word(32, None).simulate(&scene, &camera, 32, 32, &hardware)?;
+assert!(simulated.cycles.cycles > 0);"#
+    picture::Background "let clear = Renderer::new().background(Background::None);
+let corner = clear.render(&scene, &camera, 32, 32)?.pixel(0, 0);
+assert_eq!(corner.map(|[.., alpha]| alpha), Some(0));"
+    picture::Buffer "let renderer = Renderer::new().buffers([Buffer::Depth, Buffer::Normal]);
+let picture = renderer.render(&scene, &camera, 32, 32)?;
+assert_eq!(picture.depth()?.len(), picture.normals()?.len());"
+    picture::Shading "// Colours as the file has them: any pixel that is not background has the colour of a voxel.
+Renderer::new().shading(Shading::Flat).render(&scene, &camera, 32, 32)?;"
+    project::CageKind "// The two ways to store a voxel's projected vertices show the same picture, for other operations.
+let machine = Renderer::new().count_operations();
+let frame = machine.render(&scene, &camera, 16, 16)?;
+let corners = machine.cage(CageKind::Corners).render(&scene, &camera, 16, 16)?;
+assert_eq!(frame.rgba(), corners.rgba());
+assert_ne!(frame.operations(), corners.operations());"
+    project::CameraError "let nowhere = Camera::look_at([1.0; 3], [1.0; 3]);
+let drawn = Renderer::new().render(&scene, &nowhere, 32, 32);
+assert!(matches!(drawn, Err(Error::Setup(SetupError::Camera(CameraError::NoDirection)))));"
+    project::Coverage r#"let exact = Renderer::new().render(&scene, &camera, 32, 32)?;
+let any = Renderer::new().coverage(Coverage::Any).render(&scene, &camera, 32, 32)?;
+assert!(any.counter("samples_drawn") > exact.counter("samples_drawn"));"#
+    project::EngineError r#"// Words that are too short for a frame: an error, unless another `Overflow` is chosen.
+let short = Renderer::new().engine(EngineKind::Machine).word(16, Some(12));
+match short.render(&scene, &camera, 32, 32) {
+    Err(Error::Engine(EngineError::Trap(trap))) => println!("{trap}"),
+    other => drop(other),
+}"#
+    project::OCCLUSION_ORDER "// From any octant the nearest child comes first, and the farthest last.
+for eye in 0..8 {
+    let order = OCCLUSION_ORDER.map(|child| child ^ 7 ^ eye);
+    assert_eq!((order[0], order[7]), (eye, eye ^ 7));
+}"
+    project::SetupError "let drawn = Renderer::new().tolerance(1.0).render(&scene, &camera, 32, 32);
+assert!(matches!(drawn, Err(Error::Setup(SetupError::Tolerance(_))))); // `Coverage::Exact` approximates nothing"
+    hwmodel::Overflow "// Saturating words draw on where exact ones would be too short.
+let machine = Renderer::new().engine(EngineKind::Machine).overflow(Overflow::Saturate);
+machine.word(24, None).render(&scene, &camera, 32, 32)?;"
+}
 
 // Modules for the other crates of this workspace; not part of the API.
 #[doc(hidden)]

@@ -16,6 +16,7 @@ macro_rules! setters {
 
 mod camera;
 mod error;
+mod kept;
 mod picture;
 mod renderer;
 mod scene;

@@ -10,21 +10,41 @@ use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: colours and the requested [buffers](crate::Renderer::buffers), of `width() * height()` entries, row
-/// by row from the top left. Colours average all samples of a pixel. Depth, normal, voxel and node are those of the sample
-/// right of and below its middle.
+/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine. All
+/// have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
+/// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
-    pub(super) width: u32,
-    pub(super) height: u32,
+    width: u32,
+    height: u32,
+    buffers: Buffers,
+    counters: Stats,
+    operations: Option<Counter>,
+}
+
+#[derive(Debug)]
+pub(super) struct Buffers {
     pub(super) rgba: Vec<[u8; 4]>,
     pub(super) others: Vec<(Buffer, Values)>,
     pub(super) hash: Option<String>,
-    pub(super) counters: Stats,
-    pub(super) operations: Option<Counter>,
 }
 
 impl Picture {
+    pub(super) fn new(
+        (width, height): (u32, u32),
+        buffers: Buffers,
+        counters: Stats,
+        operations: Option<Counter>,
+    ) -> Self {
+        Self {
+            width,
+            height,
+            buffers,
+            counters,
+            operations,
+        }
+    }
+
     /// Pixels across.
     #[must_use]
     pub fn width(&self) -> u32 {
@@ -37,17 +57,17 @@ impl Picture {
         self.height
     }
 
-    /// Red, green, blue (sRGB) and alpha, not premultiplied: with [`Background::None`](crate::Background::None) the share of
-    /// the pixel that shows voxels, else 255.
+    /// Red, green, blue (sRGB) and alpha, not premultiplied. Alpha is 255 everywhere unless the background is
+    /// [`Background::None`](crate::Background::None); then it is the share of the pixel that shows voxels.
     #[must_use]
     pub fn rgba(&self) -> &[[u8; 4]] {
-        &self.rgba
+        &self.buffers.rgba
     }
 
     /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
-        self.rgba.get(self.at(x, y)?).copied()
+        self.buffers.rgba.get(self.at(x, y)?).copied()
     }
 
     /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity without a voxel.
@@ -55,7 +75,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn depth(&self) -> Result<&[f32], Error> {
-        self.numbers(Buffer::Depth)
+        self.floats(Buffer::Depth)
     }
 
     /// Unit normals in world directions; zero without a voxel.
@@ -63,15 +83,16 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn normals(&self) -> Result<&[[f32; 3]], Error> {
-        self.numbers(Buffer::Normal)
+        Ok(self.floats(Buffer::Normal)?.as_chunks().0)
     }
 
-    /// Index of the visible voxel, in finest voxels, and its level, 0 for the object. `[0, 0, 0, -1]` without a voxel.
+    /// Lowest corner of the visible voxel, in units of the finest voxels, and its level (0 for the whole object).
+    /// `[0, 0, 0, -1]` without a voxel.
     ///
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn voxels(&self) -> Result<&[[i32; 4]], Error> {
-        self.numbers(Buffer::Voxel)
+        Ok(self.integers(Buffer::Voxel)?.as_chunks().0)
     }
 
     /// Visible graph node; -1 without one.
@@ -79,10 +100,11 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if the buffer was not requested.
     pub fn nodes(&self) -> Result<&[i32], Error> {
-        self.numbers(Buffer::Node)
+        self.integers(Buffer::Node)
     }
 
-    /// A pixel of [`Picture::voxels`]; `None` without a voxel, and outside the picture.
+    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` without a voxel,
+    /// and outside the picture.
     ///
     /// # Errors
     /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
@@ -97,8 +119,8 @@ impl Picture {
         is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
 
-    /// The engine's counters by name; all engines have `samples_drawn`. Where the fast one left the frame to the machine, it
-    /// has `handed_to_machine` and the reason, such as `handed_for_rule`.
+    /// The engine's counters by name. Names differ by engine; all have `samples_drawn`. The fast engine has
+    /// `handed_to_machine`, 1, where the machine drew the frame instead, and the reason, such as `handed_for_rule`.
     #[must_use]
     pub fn counters(&self) -> &[(&'static str, u64)] {
         &self.counters
@@ -111,7 +133,7 @@ impl Picture {
         counters.find(|(n, _)| *n == name).map(|&(_, count)| count)
     }
 
-    /// The machine's operations and memory accesses, if
+    /// The machine's operations by class, width, stage and level, and its memory accesses, if
     /// [`Renderer::count_operations`](super::Renderer::count_operations) requested them.
     #[must_use]
     pub fn operations(&self) -> Option<&Counter> {
@@ -125,10 +147,10 @@ impl Picture {
     pub fn hash(&self) -> Result<&str, Error> {
         let missing =
             || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
-        self.hash.as_deref().ok_or_else(missing)
+        self.buffers.hash.as_deref().ok_or_else(missing)
     }
 
-    /// Writes the colours as a PNG, or replaces one; whole or not at all.
+    /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses.
@@ -141,8 +163,8 @@ impl Picture {
         .map_err(|e| Error::Write(e.into()))
     }
 
-    /// Writes a buffer as a NumPy array, `height x width`, times the entries per pixel if there are several, or replaces
-    /// one; whole or not at all.
+    /// Writes a buffer as a NumPy array: `height x width`, times the entries per pixel if there are several. Replaces
+    /// an existing file; the file appears whole or not at all.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.
@@ -163,11 +185,11 @@ impl Picture {
     #[doc(hidden)]
     #[must_use]
     pub fn into_buffers(self) -> (Vec<[u8; 4]>, Vec<(Buffer, Values)>) {
-        (self.rgba, self.others)
+        (self.buffers.rgba, self.buffers.others)
     }
 
     pub(super) fn values(&self, buffer: Buffer) -> Result<&Values, Error> {
-        let mut others = self.others.iter();
+        let mut others = self.buffers.others.iter();
         let found = others.find(|(other, _)| *other == buffer);
         found.map(|(_, values)| values).ok_or_else(|| {
             let name = buffer.name();
@@ -177,11 +199,17 @@ impl Picture {
         })
     }
 
-    fn numbers<T: bytemuck::Pod>(&self, buffer: Buffer) -> Result<&[T], Error> {
-        Ok(match self.values(buffer)? {
-            Values::F32(values) => bytemuck::cast_slice(values),
-            Values::I32(values) => bytemuck::cast_slice(values),
-            Values::U8(values) => bytemuck::cast_slice(values),
-        })
+    fn floats(&self, buffer: Buffer) -> Result<&[f32], Error> {
+        match self.values(buffer)? {
+            Values::F32(values) => Ok(values),
+            Values::I32(_) | Values::U8(_) => Ok(&[]),
+        }
+    }
+
+    fn integers(&self, buffer: Buffer) -> Result<&[i32], Error> {
+        match self.values(buffer)? {
+            Values::I32(values) => Ok(values),
+            Values::F32(_) | Values::U8(_) => Ok(&[]),
+        }
     }
 }

@@ -1,24 +1,25 @@
 //! The renderer of the public API.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, NoObserver};
-use rayon::ThreadPoolBuilder;
 
 use super::camera::View;
+use super::kept::{Kept, Key};
+use super::picture::Buffers;
 use super::{Error, Picture, Scene};
-use crate::drawing::{GraphDrawing, GraphStyle, check_samples};
+use crate::drawing::{Canvas, DrawError, DrawnFrame, GraphDrawing, GraphStyle, check_samples};
 use crate::fast::{Fast, FastOptions};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions, Simulated};
-use crate::picture::{Background, Buffer, Rows, Shading, hash_rows, lights};
-use crate::project::{self, CageKind, Coverage, Engine, FrameSetup, SetupOptions};
+use crate::picture::{Background, Buffer, ResolveError, Rows, Shading, hash_rows, lights};
+use crate::project::{
+    self, CageKind, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
+};
 use crate::rays::Rays;
-
-const MOST_THREADS: usize = 1024;
-/// Bytes per sample with its voxel and blending.
-const FRAME_BYTES: u64 = 36;
 
 /// The engine that draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -34,7 +35,8 @@ pub enum EngineKind {
     Rays,
 }
 
-/// Draws scenes. Each setting has a default for ordinary pictures.
+/// Draws scenes. Each setting has a default for ordinary pictures. Threads, engine and frame are kept for the next
+/// picture, until [`Renderer::forget`] or the end of the renderer.
 ///
 /// ```
 /// use shiftvox::{Camera, EngineKind, Renderer, Scene};
@@ -46,15 +48,15 @@ pub enum EngineKind {
 /// assert_eq!(fast.rgba(), oracle.rgba());
 /// # Ok::<(), shiftvox::Error>(())
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Renderer {
     engine: Option<EngineKind>,
     coverage: Coverage,
     level_of_detail: Option<f64>,
     tolerance: Option<f64>,
     cage: Option<CageKind>,
-    samples: Option<u32>,
-    bits: Option<u32>,
+    samples: u32,
+    bits: u32,
     frac: Option<u32>,
     overflow: Option<Overflow>,
     shading: Shading,
@@ -63,47 +65,62 @@ pub struct Renderer {
     counts_operations: bool,
     buffers: Vec<Buffer>,
     is_hashed: bool,
+    kept: Kept,
+}
+
+impl Default for Renderer {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Renderer {
     /// The fast engine, exact coverage, one sample per pixel, shaded, on all threads.
     #[must_use]
     pub fn new() -> Self {
-        Self::default()
+        let options = SetupOptions::default();
+        Self {
+            engine: None,
+            coverage: options.coverage,
+            level_of_detail: None,
+            tolerance: None,
+            cage: None,
+            samples: 1,
+            bits: options.bits,
+            frac: options.frac,
+            overflow: None,
+            shading: Shading::default(),
+            background: Background::default(),
+            threads: 0,
+            counts_operations: false,
+            buffers: Vec::new(),
+            is_hashed: false,
+            kept: Kept::default(),
+        }
     }
 
     setters! {
         /// The engine that draws.
         engine(engine: EngineKind) engine = Some(engine);
-        /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities, which meshes give
-        /// (crate `shiftvox-mesh`).
+        /// The rule by which voxels cover samples. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
+        /// opened with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made from such meshes.
         coverage(coverage: Coverage) coverage = coverage;
         /// The size, pixels, up to which nodes are drawn as one voxel. 0: only leaves. By default half a pixel with
         /// exact coverage, otherwise a pixel.
         level_of_detail(pixels: f64) level_of_detail = Some(pixels);
         /// Samples per pixel along each axis: 1, 2 or 4.
-        samples(along_each_axis: u32) samples = Some(along_each_axis);
+        samples(along_each_axis: u32) samples = along_each_axis;
         /// The deviation, samples, at which a record may change from clip space to screen space: 0 never, infinity
         /// always. Rules other than [`Coverage::Any`] and [`Coverage::Center`] allow only 0.
         tolerance(samples: f64) tolerance = Some(samples);
         /// Representation of a record's vertices. Changes the counters, but not the picture.
         cage(cage: CageKind) cage = Some(cage);
-        /// Treatment of a result that does not fit its word.
-        overflow(overflow: Overflow) overflow = Some(overflow);
-        /// Dependence of a voxel's colour on its orientation.
-        shading(shading: Shading) shading = shading;
-        /// The picture behind the object.
-        background(background: Background) background = background;
-        /// Threads that draw, up to 1024. 0: as many as available. Does not change the picture.
-        threads(threads: usize) threads = threads;
-        /// Whether pictures have a [hash](Picture::hash), which is over all buffers; no by default.
-        hashed(is_hashed: bool) is_hashed = is_hashed;
     }
 
     /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room for).
     #[must_use]
     pub fn word(mut self, bits: u32, fraction_bits: Option<u32>) -> Self {
-        self.bits = Some(bits);
+        self.bits = bits;
         self.frac = fraction_bits;
         self
     }
@@ -117,6 +134,17 @@ impl Renderer {
             .tolerance(paper.tolerance_px)
     }
 
+    setters! {
+        /// Treatment of a result that does not fit its word.
+        overflow(overflow: Overflow) overflow = Some(overflow);
+        /// Dependence of a voxel's colour on its orientation.
+        shading(shading: Shading) shading = shading;
+        /// The picture behind the object.
+        background(background: Background) background = background;
+        /// Threads that draw, up to 1024. 0: as many as available. Does not change the picture.
+        threads(threads: usize) threads = threads;
+    }
+
     /// Counts the operations of the machine, for [`Picture::operations`]. Selects [`EngineKind::Machine`]; another
     /// engine, selected later, is an error.
     #[must_use]
@@ -126,7 +154,8 @@ impl Renderer {
         self
     }
 
-    /// Buffers in addition to the colours; none by default.
+    /// Buffers in addition to the colours; none by default. Bytes per pixel: 4 for [`Buffer::Depth`], [`Buffer::Node`]
+    /// and [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for [`Buffer::Voxel`].
     ///
     /// ```
     /// # use shiftvox::{Buffer, Camera, Renderer, Scene};
@@ -143,10 +172,19 @@ impl Renderer {
         self
     }
 
+    setters! {
+        /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed
+        /// once.
+        hashed(is_hashed: bool) is_hashed = is_hashed;
+    }
+
     /// Draws a picture of `width` x `height` pixels.
     ///
+    /// Several threads may draw with one renderer at the same time.
+    ///
     /// # Errors
-    /// [`Error::Setup`] if camera and settings make no frame, [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
+    /// [`Error::Setup`] if camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
+    /// [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
     /// [`Error::Engine`] if a word overflows, [`Error::Threads`] if the system provides no threads.
     pub fn render(
         &self,
@@ -155,23 +193,82 @@ impl Renderer {
         width: u32,
         height: u32,
     ) -> Result<Picture, Error> {
-        self.check_engine()?;
+        let operations = self.counts_operations.then(Arc::default);
+        let buffer_bytes = |buffer: &Buffer| 4 * buffer.entries() as u64;
+        let bytes = 4 + self.buffers.iter().map(buffer_bytes).sum::<u64>();
         let camera = camera.of_size(width, height)?;
-        match self.threads {
-            0 => self.draw(scene, &camera),
-            1..=MOST_THREADS => {
-                let pool = ThreadPoolBuilder::new().num_threads(self.threads).build();
-                let pool = pool.map_err(|e| Error::Threads(e.into()))?;
-                pool.install(|| self.draw(scene, &camera))
-            }
-            more => {
-                let reason = format!("threads: 0 to {MOST_THREADS}, not {more}");
-                Err(Error::Setting(reason))
-            }
-        }
+        let finish = |drawing: &mut GraphDrawing<'_>, drawn: &mut DrawnFrame| {
+            drawing.resolve(drawn, |resolver| {
+                let all = 0..resolver.size().1;
+                let buffers = self.buffers.iter();
+                let buffers =
+                    buffers.map(|&buffer| Ok((buffer, resolver.rows(buffer, all.clone())?)));
+                Ok(Buffers {
+                    rgba: resolver.colors(all.clone())?,
+                    others: buffers.collect::<Result<_, ResolveError>>()?,
+                    hash: self.is_hashed.then(|| hash_rows(resolver)).transpose()?,
+                })
+            })
+        };
+        let (drawn, buffers) = self.draw(scene, &camera, bytes, operations.as_ref(), finish)?;
+        let counters = drawn.stats;
+        let counted = |operations: Arc<Mutex<Counter>>| std::mem::take(&mut *lock(&operations));
+        let operations = operations.map(counted);
+        Ok(Picture::new((width, height), buffers, counters, operations))
     }
 
-    fn draw(&self, scene: &Scene, camera: &project::Camera) -> Result<Picture, Error> {
+    /// Draws a picture into the caller's pixels, row by row from the top left: red, green, blue (sRGB) and alpha, as in
+    /// [`Picture::rgba`]. Returns the counters, as [`Picture::counters`].
+    ///
+    /// ```
+    /// # use shiftvox::{Camera, Renderer, Scene};
+    /// # let scene = Scene::generate("menger,depth=2")?;
+    /// let mut pixels = vec![[0; 4]; 64 * 48];
+    /// Renderer::new().render_into(&scene, &Camera::fit(&scene), 64, 48, &mut pixels)?;
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash
+    /// or operations were requested, which only a [`Picture`] has.
+    pub fn render_into(
+        &self,
+        scene: &Scene,
+        camera: &impl View,
+        width: u32,
+        height: u32,
+        pixels: &mut [[u8; 4]],
+    ) -> Result<Stats, Error> {
+        let wanted = u64::from(width) * u64::from(height);
+        if pixels.len() as u64 != wanted {
+            let reason = format!(
+                "{} pixels are no picture of {width} x {height}",
+                pixels.len()
+            );
+            return Err(Error::Setting(reason));
+        }
+        if !self.buffers.is_empty() || self.is_hashed || self.counts_operations {
+            let reason = "buffers, hashes and operations are of `render`, not of `render_into`";
+            return Err(Error::Setting(reason.to_owned()));
+        }
+        let camera = camera.of_size(width, height)?;
+        let finish = |drawing: &mut GraphDrawing<'_>, drawn: &mut DrawnFrame| {
+            drawing.resolve(drawn, |resolver| resolver.write_colors(0..height, pixels))
+        };
+        let (drawn, ()) = self.draw(scene, &camera, 0, None, finish)?;
+        Ok(drawn.stats)
+    }
+
+    /// Draws a frame on an idle job, and makes something from it. `pixel_bytes`: memory that `finish` needs per pixel.
+    fn draw<T: Send>(
+        &self,
+        scene: &Scene,
+        camera: &project::Camera,
+        pixel_bytes: u64,
+        operations: Option<&Arc<Mutex<Counter>>>,
+        finish: impl FnOnce(&mut GraphDrawing<'_>, &mut DrawnFrame) -> Result<T, DrawError> + Send,
+    ) -> Result<(DrawnFrame, T), Error> {
+        self.check_engine()?;
         let style = GraphStyle {
             options: self.options()?,
             shading: self.shading,
@@ -179,43 +276,60 @@ impl Renderer {
             buffers: self.buffers.clone(),
             is_hashed: self.is_hashed,
         };
-        let engine = || self.make_engine();
-        let mut drawing = GraphDrawing::new(scene.graph(), scene.up(), style, engine);
-        let entries = self.buffers.iter().map(|buffer| buffer.entries() as u64);
-        drawing.expect_pixel_bytes(4 + 4 * entries.sum::<u64>());
-        let mut drawn = drawing.draw_frame(camera)?;
-        let (rgba, others, hash) = drawing.resolve(&mut drawn, |resolver| {
-            let all = 0..camera.height;
-            let numbers = |&buffer: &Buffer| {
-                let values = resolver.rows(buffer, all.clone());
-                values.map(|values| (buffer, values))
-            };
-            let others = self.buffers.iter().map(numbers);
-            let others = others.collect::<Result<_, _>>()?;
-            let hash = self.is_hashed.then(|| hash_rows(resolver)).transpose()?;
-            Ok((resolver.colors(all)?, others, hash))
-        })?;
-        let operations = match self.counts_operations {
-            true => Some(self.count(scene, camera)?),
-            false => None,
+        let mut job = self.kept.take(self.key())?;
+        let kept = job.canvas.take();
+        let draw = || {
+            let engine = || self.make_engine(operations);
+            // An engine that counts operations is new for each picture.
+            let canvas = kept.filter(|_| operations.is_none());
+            let canvas = canvas.unwrap_or_else(|| Canvas::new(engine()));
+            let mut drawing = GraphDrawing::on(canvas, scene.graph(), scene.up(), style, engine);
+            drawing.expect_pixel_bytes(pixel_bytes);
+            let made = drawing.draw_frame(camera).and_then(|mut drawn| {
+                let made = finish(&mut drawing, &mut drawn)?;
+                Ok((drawn, made))
+            });
+            (made, drawing.into_canvas())
         };
-        Ok(Picture {
-            width: camera.width,
-            height: camera.height,
-            rgba,
-            others,
-            hash,
-            counters: drawn.stats,
-            operations,
-        })
+        let (made, canvas) = match &job.pool {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        job.canvas = Some(canvas);
+        self.kept.idle().push(job);
+        Ok(made?)
     }
 
-    fn make_engine(&self) -> Box<dyn Engine + Send> {
-        match self.engine.unwrap_or_default() {
-            EngineKind::Machine => Box::new(self.machine()),
-            EngineKind::Rays => Box::new(Rays),
-            EngineKind::Fast => {
-                let options = FastOptions::default();
+    /// Frees the memory that is kept for the next picture: that of the largest pictures drawn at the same time.
+    pub fn forget(&self) {
+        self.kept.idle().clear();
+    }
+
+    fn kind(&self) -> EngineKind {
+        self.engine.unwrap_or_default()
+    }
+
+    fn key(&self) -> Key {
+        Key {
+            engine: self.kind(),
+            overflow: self.overflow.unwrap_or_default(),
+            threads: self.threads,
+        }
+    }
+
+    fn make_engine(&self, operations: Option<&Arc<Mutex<Counter>>>) -> Box<dyn Engine + Send> {
+        match (self.kind(), operations) {
+            (EngineKind::Machine, Some(operations)) => Box::new(Counting {
+                machine: self.machine(),
+                operations: Arc::clone(operations),
+            }),
+            (EngineKind::Machine, None) => Box::new(self.machine()),
+            (EngineKind::Rays, _) => Box::new(Rays),
+            (EngineKind::Fast, _) => {
+                let options = FastOptions {
+                    threads: self.threads,
+                    ..FastOptions::default()
+                };
                 Box::new(Fast::new(options, Box::new(self.machine())))
             }
         }
@@ -231,7 +345,7 @@ impl Renderer {
     /// Rejects settings that the engine does not have.
     fn check_engine(&self) -> Result<(), Error> {
         let of_machine = self.cage.is_some() || self.overflow.is_some() || self.tolerance.is_some();
-        let reason = match self.engine.unwrap_or_default() {
+        let reason = match self.kind() {
             EngineKind::Rays if self.coverage != Coverage::Exact => {
                 "the rays draw exact coverage only"
             }
@@ -263,60 +377,77 @@ impl Renderer {
             let reason = "the machine is simulated, not the engine that was given";
             return Err(Error::Setting(reason.to_owned()));
         }
+        let graph = scene.graph();
+        let options = self.options()?;
         let camera = camera.of_size(width, height)?;
-        self.on_machine(scene, &camera, |machine, graph, setup, frame| {
-            let simulated = machine.simulate(graph, setup, frame, hardware, &mut NoObserver);
-            simulated.map_err(|e| Error::Simulate(e.into()))
-        })
-    }
-
-    fn count(&self, scene: &Scene, camera: &project::Camera) -> Result<Counter, Error> {
-        self.on_machine(scene, camera, |machine, graph, setup, frame| {
-            let (_, counter) = machine.render_probed(graph, setup, frame, Counter::new())?;
-            Ok(counter)
-        })
-    }
-
-    fn on_machine<T>(
-        &self,
-        scene: &Scene,
-        camera: &project::Camera,
-        draw: impl FnOnce(&mut Machine, &GraphView<'_>, &FrameSetup, &mut Frame) -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        let (graph, options) = (scene.graph(), self.options()?);
-        check_samples(camera, options.aa_log2, FRAME_BYTES, 0, 0)?;
-        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
+        check_samples(&camera, options.aa_log2, FRAME_BYTES, 0, 0)?;
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
         let light = lights(graph, &setup, self.shading);
         let view = GraphView {
             light: &light,
             ..graph.view()
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        draw(&mut self.machine(), &view, &setup, &mut frame)
+        self.machine()
+            .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)
+            .map_err(|e| Error::Simulate(e.into()))
     }
 
     fn options(&self) -> Result<SetupOptions, Error> {
-        let samples = self.samples.unwrap_or(1);
-        if ![1, 2, 4].contains(&samples) {
-            let reason = format!("a pixel has 1, 2 or 4 samples along each axis, not {samples}");
-            return Err(Error::Setting(reason));
-        }
+        let aa_log2 = match self.samples {
+            1 => 0,
+            2 => 1,
+            4 => 2,
+            other => {
+                return Err(Error::Setting(format!(
+                    "a pixel has 1, 2 or 4 samples along each axis, not {other}"
+                )));
+            }
+        };
         let defaults = SetupOptions::of(self.coverage);
         Ok(SetupOptions {
-            bits: self.bits.unwrap_or(defaults.bits),
+            bits: self.bits,
             frac: self.frac,
             cage: self.cage.unwrap_or(defaults.cage),
             tolerance_px: self.tolerance.unwrap_or(defaults.tolerance_px),
             lod_px: self.level_of_detail.unwrap_or(defaults.lod_px),
-            aa_log2: samples.ilog2(),
+            aa_log2,
             ..defaults
         })
     }
 }
 
+/// Bytes per sample with its voxel and blending.
+const FRAME_BYTES: u64 = 36;
+
+/// The machine with a probe that counts its operations.
+struct Counting {
+    machine: Machine,
+    operations: Arc<Mutex<Counter>>,
+}
+
+fn lock(operations: &Mutex<Counter>) -> MutexGuard<'_, Counter> {
+    operations.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Engine for Counting {
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        let (stats, counter) = self
+            .machine
+            .render_probed(graph, setup, frame, Counter::new())?;
+        *lock(&self.operations) = counter;
+        Ok(stats)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::Camera;
+    use super::super::{Camera, kept::MOST_THREADS};
     use super::*;
 
     fn sponge() -> Scene {
@@ -369,6 +500,51 @@ mod tests {
         }
     }
 
+    /// Memory of earlier pictures, of other scenes, sizes, rules and buffers, changes no later one.
+    #[test]
+    fn a_renderer_that_was_used_draws_as_a_new_one() {
+        let scenes = ["menger,depth=2", "sierpinski,depth=30", "terrain,depth=5"];
+        let scenes = scenes.map(|scene| Scene::generate(scene).expect("a scene"));
+        let all = [Buffer::Depth, Buffer::Normal, Buffer::Voxel, Buffer::Node];
+        let mut used = Renderer::new();
+        for (round, coverage) in [Coverage::Exact, Coverage::Center, Coverage::Alpha]
+            .into_iter()
+            .cycle()
+            .take(7)
+            .enumerate()
+        {
+            let buffers = all.iter().copied().take(round % 5);
+            used = used
+                .coverage(coverage)
+                .buffers(buffers)
+                .hashed(round % 3 == 1);
+            used = used.samples([1, 2, 4][round % 3]).threads(round / 3);
+            for scene in &scenes {
+                for (width, height) in [(40, 30), (30, 40), (30, 40), (1, 1)] {
+                    let camera = Camera::fit(scene).azimuth(f64::from(width));
+                    let again = used
+                        .render(scene, &camera, width, height)
+                        .expect("a picture");
+                    let new = used.clone().render(scene, &camera, width, height);
+                    let new = new.expect("a picture");
+                    assert_eq!(again.rgba(), new.rgba());
+                    assert_eq!(again.counters(), new.counters());
+                    assert_eq!(again.hash().ok(), new.hash().ok());
+                    for buffer in all {
+                        let (again, new) = (again.values(buffer), new.values(buffer));
+                        assert_eq!(again.ok(), new.ok(), "{buffer:?}");
+                    }
+                    if round % 5 == 0 && round % 3 != 1 {
+                        let mut pixels = vec![[0; 4]; (width * height) as usize];
+                        let counted = used.render_into(scene, &camera, width, height, &mut pixels);
+                        assert_eq!(counted.expect("a picture"), again.counters());
+                        assert_eq!(pixels, again.rgba());
+                    }
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_picture_that_is_too_large_is_an_error() {
         let (scene, camera) = (sponge(), Camera::fit(&sponge()));
@@ -377,5 +553,23 @@ mod tests {
         assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
         let drawn = renderer.render(&scene, &camera, u32::MAX, u32::MAX);
         assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
+        let mut pixels = [[0; 4]; 5];
+        let drawn = renderer.render_into(&scene, &camera, 2, 2, &mut pixels);
+        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
+    }
+
+    #[test]
+    fn threads_may_share_a_renderer() {
+        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
+        let renderer = Renderer::new().threads(2);
+        let alone = renderer.render(&scene, &camera, 64, 64).expect("a picture");
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    let drawn = renderer.render(&scene, &camera, 64, 64).expect("a picture");
+                    assert_eq!(drawn.rgba(), alone.rgba());
+                });
+            }
+        });
     }
 }

@@ -9,7 +9,7 @@ use super::{
     Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples,
     milliseconds_since, timed,
 };
-use crate::frame::Colors;
+use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, GraphView};
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
@@ -27,16 +27,31 @@ pub struct GraphStyle {
     pub is_hashed: bool,
 }
 
-/// Engine, frame and an unchanged picture are kept.
+/// A graph drawn from one or many cameras. Engine, frame and an unchanged picture are kept.
 pub struct GraphDrawing<'g> {
     graph: &'g Graph,
     up: Up,
     style: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
-    viewer: Viewer<'g, dyn Engine + Send + 'g>,
+    viewer: Viewer<'g, Box<dyn Engine + Send>>,
     contents: Contents,
     pixel_bytes: u64,
     last: Option<Drawn>,
+}
+
+/// An engine and a frame, to be reused for another graph.
+pub struct Canvas {
+    engine: Box<dyn Engine + Send>,
+    frame: Frame,
+}
+
+impl Canvas {
+    pub fn new(engine: Box<dyn Engine + Send>) -> Self {
+        Self {
+            engine,
+            frame: Frame::nodes_only(0, 0),
+        }
+    }
 }
 
 pub struct DrawnFrame {
@@ -59,8 +74,19 @@ struct Drawn {
 }
 
 impl<'g> GraphDrawing<'g> {
-    /// `engine` makes equal new engines.
+    /// Draws nothing. `engine` makes equal new engines.
     pub fn new(
+        graph: &'g Graph,
+        up: Up,
+        style: GraphStyle,
+        engine: impl Fn() -> Box<dyn Engine + Send> + 'g,
+    ) -> Self {
+        Self::on(Canvas::new(engine()), graph, up, style, engine)
+    }
+
+    /// [`GraphDrawing::new`] on another drawing's canvas, whose engine must be of the kind that `engine` makes.
+    pub fn on(
+        canvas: Canvas,
         graph: &'g Graph,
         up: Up,
         style: GraphStyle,
@@ -73,14 +99,14 @@ impl<'g> GraphDrawing<'g> {
         } else if style.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
             Contents::Voxels
         } else {
-            // A fifth of the memory. Colours depend on voxels only where a node has no normal.
+            // Colours depend on voxels only where a node has no normal. A fifth of the memory.
             Contents::Nodes
         };
         Self {
             graph,
             up,
             style,
-            viewer: Viewer::new(graph.view(), engine(), contents),
+            viewer: Viewer::reusing(graph.view(), canvas.engine, canvas.frame, contents),
             engine: Box::new(engine),
             contents,
             pixel_bytes: COLOR_BYTES,
@@ -88,11 +114,17 @@ impl<'g> GraphDrawing<'g> {
         }
     }
 
-    /// Sets the memory, bytes, that the caller needs per finished pixel; by default 3, for colours.
+    pub fn into_canvas(self) -> Canvas {
+        let (engine, frame) = self.viewer.into_parts();
+        Canvas { engine, frame }
+    }
+
+    /// Sets the memory that the caller needs per finished pixel, bytes, for the check of memory; by default 3, for colours.
     pub fn expect_pixel_bytes(&mut self, bytes: u64) {
         self.pixel_bytes = bytes;
     }
 
+    /// The integers of a frame. Fails when the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
         check_samples(
             camera,
@@ -123,6 +155,7 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
+    /// Draws a frame, unless the viewer shows it already. Errors: see [`DrawError`]; nothing is shown then.
     pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
         let setup = self.setup(camera)?;
         let was_shown = self.viewer.shows(&setup);
@@ -143,7 +176,7 @@ impl<'g> GraphDrawing<'g> {
         Ok((stats, milliseconds_since(started)))
     }
 
-    /// Draws the frame again with voxels if colours depend on them.
+    /// Makes something from a drawn frame. Draws the frame again with voxels if colours depend on them.
     pub fn resolve<T>(
         &mut self,
         drawn: &mut DrawnFrame,

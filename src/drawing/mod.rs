@@ -1,4 +1,5 @@
-//! One trait for everything that can be drawn: voxel graphs, far voxels, textured voxels, triangles, the hybrid.
+//! One trait for everything that can be drawn: voxel graphs, far voxels, textured voxels, triangles, the hybrid. The
+//! [result](Drawable::shown) has one form: colours, buffers, times and counters.
 
 mod graph;
 
@@ -14,22 +15,23 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use graph::{DrawnFrame, GraphDrawing, GraphStyle};
+pub use graph::{Canvas, DrawnFrame, GraphDrawing, GraphStyle};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {
-    /// For a fitted camera.
+    /// The box, and points that enclose the contents, for a fitted camera.
     fn bounds(&self) -> Bounds;
 
     fn up(&self) -> Up;
 
-    /// Draws a frame completely `runs` times (0 counts as 1), and keeps the last. After an error nothing is shown.
+    /// Draws a frame `runs` times (0 counts as 1), each time completely, and keeps the last. After an error nothing is
+    /// shown.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError>;
 
     /// The last picture. Fails when its buffers cannot be made.
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
 
-    /// Draws a camera's frame at each call, on its own engine, to measure times.
+    /// A function that draws the frame of a camera again and again, on its own engine, to measure times.
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
 
@@ -95,8 +97,9 @@ pub enum DrawError {
     Method(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Checks that a picture has at most 2^27 samples and fits in memory. `aa_log2`: logarithm of the samples per pixel and
-/// axis. `held`: bytes that will be freed or reused.
+/// Checks that a picture fits in memory: `sample_bytes` per sample and `pixel_bytes` per pixel. `aa_log2`: logarithm of
+/// the samples per pixel and axis. `held`: memory that will be freed or reused, bytes. Errors: [`DrawError::TooLarge`]
+/// for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
 pub fn check_samples(
     camera: &Camera,
     aa_log2: u32,
@@ -113,7 +116,7 @@ pub fn check_samples(
     Ok(())
 }
 
-/// Less memory is not checked: the check takes longer than drawing a small picture.
+/// Less memory is not checked, because the check takes longer than drawing a small picture.
 const UNCHECKED_BYTES: u64 = 1 << 24;
 /// Bytes per colour of a pixel in a file.
 pub const COLOR_BYTES: u64 = 3;

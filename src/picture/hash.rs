@@ -1,4 +1,4 @@
-//! The hash of a picture: 32 hexadecimal digits.
+//! The identity of a picture: 32 hexadecimal digits.
 
 use xxhash_rust::xxh3::Xxh3;
 
@@ -9,6 +9,7 @@ use super::rows::{Buffer, Rows};
 /// Beginning of every stream; changes with the stream's format.
 const STREAM: &[u8] = b"shiftvox picture 1\n";
 
+/// The buffers of the stream, in its order.
 const BUFFERS: [Buffer; 5] = [
     Buffer::Color,
     Buffer::Depth,
@@ -17,8 +18,11 @@ const BUFFERS: [Buffer; 5] = [
     Buffer::Voxel,
 ];
 
-/// The picture's hash: XXH3 with 128 bits and seed 0 (`spec/picture.md`) of `STREAM`, width, height (u32), and these
-/// buffers, little-endian. Negative zeros become zeros.
+/// The picture's hash: XXH3 with 128 bits and seed 0, as 32 lower-case hexadecimal digits, most significant first.
+///
+/// The stream, all numbers little-endian: the 19 bytes `shiftvox picture 1\n`; width and height (u32); then buffer by
+/// buffer, each row by row, colour (4 bytes per pixel: red, green, blue, alpha), depth (bits of the f32), node (i32),
+/// normal (bits of 3 f32), voxel (4 i32). Negative zeros are replaced by zeros, and there is no NaN. Records are left out.
 pub fn hash(picture: &Picture) -> String {
     let Ok(hash) = hash_rows(picture);
     hash

@@ -17,7 +17,7 @@ const LIGHTS: usize = 1 << 16;
 pub struct Linear {
     /// Linear light of each byte, 0..=65535, rising.
     of: [u16; 256],
-    /// For each linear light the byte whose light is nearest.
+    /// For each linear light the byte whose light is nearest. 64 KB, of which a picture uses a part.
     nearest: Box<[u8; LIGHTS]>,
 }
 
@@ -48,15 +48,24 @@ impl Linear {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))
     }
 
-    /// The colour whose linear light is nearest; of two the brighter. Excess light is full light.
+    /// The colour whose linear light is nearest; of two the brighter.
     #[inline]
     pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
-        light.map(|value| self.nearest[value.min(u32::from(u16::MAX)) as usize])
+        // Excess light is full light.
+        self.encode_16(light.map(|value| value.min(u32::from(u16::MAX))))
+    }
+
+    /// The same for light that is at most full.
+    #[inline]
+    pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
+        light.map(|value| self.nearest[usize::from(value as u16)])
     }
 }
 
-/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend. A node has one light for all
-/// samples: its normal is turned towards the camera's plane, and one without faces the camera.
+/// Linear light by node, 0 to 65535 per channel; empty where the frame's rule does not blend.
+///
+/// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
+/// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
     if !setup.options.coverage.blends() {
         return Vec::new();

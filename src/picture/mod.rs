@@ -1,4 +1,5 @@
-//! From samples to a picture (`spec/picture.md`). Engines that agree on the voxels agree on every byte.
+//! From samples to a picture (`spec/picture.md`): colour, normal, depth, files and the hash. An engine only determines the
+//! voxel of each sample, so engines that agree on the voxels agree on every byte.
 
 mod color;
 mod hash;
@@ -11,6 +12,7 @@ pub mod png;
 mod resolve;
 mod rows;
 mod shade;
+mod shares;
 mod sight;
 
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};

@@ -1,6 +1,6 @@
 //! PNG in and out: 8 bits per channel, sRGB.
 
-use std::io::{Cursor, Write};
+use std::io::{BufRead, Cursor, Seek, Write};
 
 use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
 
@@ -18,6 +18,7 @@ pub struct Image {
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {
+    /// Writes a PNG file. Fails if the picture is empty or its size does not fit its pixels, and those of `to`.
     pub fn write(&self, to: impl Write) -> Result<(), EncodingError> {
         let mut encoder = Encoder::new(to, self.width, self.height);
         encoder.set_color(match self.has_alpha {
@@ -33,7 +34,8 @@ impl Pixels {
     }
 }
 
-/// The bytes of a PNG file; without an alpha channel if all pixels are opaque.
+/// The bytes of a PNG file; without an alpha channel if all pixels are opaque. Fails if the picture is empty or its
+/// size does not fit its pixels.
 pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     Pixels::new(width, height, rgba.to_vec()).write(&mut bytes)?;
@@ -50,8 +52,11 @@ pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 
 /// Reads a PNG file's bytes. Fails if they are not a PNG, or have more than 32768 pixels per side.
 pub fn decode(bytes: &[u8]) -> Result<Image, DecodingError> {
-    let limits = Limits { bytes: 512 << 20 };
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decode_from(Cursor::new(bytes))
+}
+
+fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
+    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: 512 << 20 });
     // Palettes and fewer than 8 bits become 8 bits per channel; 16 bits stay.
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;

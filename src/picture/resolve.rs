@@ -2,20 +2,26 @@
 
 use crate::budget::Shortage;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::npy::Values;
+use super::paint::Painter;
 use super::rows::{Buffer, Rows};
 use super::shade::{Shader, Surface};
+use super::shares::Shares;
 use super::{Background, NO_DEPTH, Picture, Shading};
 use crate::budget;
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
 use crate::project::FrameSetup;
 
-/// The picture of a frame. Colours are means over a pixel's samples, in linear light; other buffers show the sample right of
-/// and below its middle, records all samples.
+/// Makes the picture of a drawn frame.
+///
+/// Colours are averaged over all samples of a pixel, in linear light. Other buffers show the sample right of and below
+/// the pixel's middle (the pixel's only one without anti-aliasing), records all samples together. Fails when the frame
+/// is not of the set-up's size, or does not determine the visible voxels, or indices leave `i32`.
 pub fn resolve(
     frame: &Frame,
     graph: &Graph,
@@ -42,19 +48,24 @@ pub fn resolve(
 }
 
 pub struct Resolver<'f> {
-    pub(super) frame: &'f Frame,
-    pub(super) shader: Shader<'f>,
+    frame: &'f Frame,
+    shader: Shader<'f>,
     origin_index: [i64; 3],
     /// Logarithm of the samples per pixel along an axis.
-    pub(super) aa: u32,
+    aa: u32,
+    /// Made on demand; none where everything is fully lit.
+    shares: OnceLock<Option<Shares>>,
 }
 
 const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes faster than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
 
-/// Column and row of a pixel.
-type At = [u32; 2];
+#[derive(Clone, Copy)]
+struct At {
+    x: u32,
+    y: u32,
+}
 
 impl<'f> Resolver<'f> {
     pub fn new(
@@ -65,23 +76,44 @@ impl<'f> Resolver<'f> {
         background: Background,
     ) -> Result<Self, ResolveError> {
         if (frame.width, frame.height) != (setup.width, setup.height) {
-            let (width, height) = (frame.width, frame.height);
-            return Err(ResolveError::Size(width, height, setup.width, setup.height));
+            return Err(ResolveError::Size(
+                frame.width,
+                frame.height,
+                setup.width,
+                setup.height,
+            ));
         }
         Ok(Self {
             frame,
             shader: Shader::new(graph, setup, shading, background),
             origin_index: setup.placement.origin_index,
             aa: setup.options.aa_log2,
+            shares: OnceLock::new(),
         })
     }
 
-    /// The colours of some rows: red, green, blue, and alpha if `N` is 4.
+    /// The colours of some rows: `N` bytes per pixel, red, green, blue, and alpha if `N` is 4. Fails when a colour
+    /// depends on a voxel that the frame does not determine.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
-        self.each_row(rows, &mut pixels, |y, to| self.row(y, to))?;
+        self.write_colors(rows, &mut pixels)?;
         Ok(pixels)
+    }
+
+    /// [`Resolver::colors`] into the caller's pixels, as many as the rows have. Errors: as [`Resolver::colors`].
+    pub fn write_colors<const N: usize>(
+        &self,
+        rows: Range<u32>,
+        pixels: &mut [[u8; N]],
+    ) -> Result<(), ResolveError> {
+        let Shader { sight, light, .. } = &self.shader;
+        let is_lit = light.is_directed() && self.frame.blend.is_none();
+        let shares = self
+            .shares
+            .get_or_init(|| is_lit.then(|| Shares::new(sight, *light)));
+        let painter = Painter::new(self.frame, &self.shader, shares.as_ref(), self.aa);
+        self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 
     pub fn frame(&self) -> &Frame {
@@ -95,8 +127,11 @@ impl<'f> Resolver<'f> {
 
     /// Pixels that show a voxel at their middle sample.
     pub fn drawn(&self) -> usize {
+        if self.aa == 0 {
+            return self.frame.drawn();
+        }
         let (width, height) = self.size();
-        let row = |y: u32| (0..width).filter(move |&x| self.middle([x, y]).is_some());
+        let row = |y: u32| (0..width).filter(move |&x| self.middle(At { x, y }).is_some());
         (0..height).map(|y| row(y).count()).sum()
     }
 
@@ -110,7 +145,7 @@ impl<'f> Resolver<'f> {
         let mut pixels = budget::filled(PIXELS, nothing, width as usize * rows.len())?;
         self.each_row(rows, &mut pixels, |y, to| {
             for (x, to) in (0..width).zip(to) {
-                if let Some(value) = each([x, y])? {
+                if let Some(value) = each(At { x, y })? {
                     *to = value;
                 }
             }
@@ -135,7 +170,7 @@ impl<'f> Resolver<'f> {
     }
 
     /// The sample right of and below a pixel's middle, and its place in the frame; none if it shows nothing.
-    fn middle(&self, [x, y]: At) -> Option<(u32, u32, usize)> {
+    fn middle(&self, At { x, y }: At) -> Option<(u32, u32, usize)> {
         let half = (1 << self.aa) >> 1;
         let (x, y) = ((x << self.aa) + half, (y << self.aa) + half);
         let at = y as usize * self.frame.width as usize + x as usize;
@@ -154,8 +189,13 @@ impl<'f> Resolver<'f> {
         let Some((x, y, sample)) = self.middle(at) else {
             return Ok(None);
         };
-        let (node, voxel) = (self.frame.node[sample], self.voxel_at(sample)?);
-        Ok(Some(self.shader.surface(x, y, node, voxel)))
+        let voxel = self.voxel_at(sample)?;
+        Ok(Some(self.shader.surface(
+            x,
+            y,
+            self.frame.node[sample],
+            voxel,
+        )))
     }
 
     fn depth(&self, rows: Range<u32>) -> Result<Vec<f32>, ResolveError> {
@@ -196,7 +236,7 @@ impl<'f> Resolver<'f> {
             let Some(records) = &self.frame.records else {
                 return Ok(None);
             };
-            let row = |j| &records[(at[1] as usize * side + j) * width + at[0] as usize * side..];
+            let row = |j| &records[(at.y as usize * side + j) * width + at.x as usize * side..];
             Ok(Some((0..side).flat_map(|j| &row(j)[..side]).sum()))
         })
     }
@@ -226,9 +266,10 @@ impl Rows for Resolver<'_> {
 pub enum ResolveError {
     #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
     Size(u32, u32, u32, u32),
+    /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
     #[error("the file index of a voxel is beyond 32 bits")]
     Index,
-    /// Neither frame nor graph determines the visible voxel.
+    /// Neither a frame of nodes nor the graph determines the visible voxel of a node.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
     #[error(transparent)]

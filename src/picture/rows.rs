@@ -1,4 +1,4 @@
-//! Buffers in groups of rows, so that files and hashes need no whole buffer in memory.
+//! The buffers of a picture in groups of rows, so that files and hashes need no whole buffer in memory.
 
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -66,8 +66,10 @@ pub trait Rows {
 
     fn size(&self) -> (u32, u32);
 
+    /// Some rows of a buffer. Fails when they cannot be made.
     fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Self::Error>;
 
+    /// All rows from the top, in groups.
     fn steps(&self) -> impl Iterator<Item = Range<u32>> {
         let (width, height) = self.size();
         let step = (SHARE / width.max(1)).max(1);

@@ -6,9 +6,10 @@ use super::color::Light;
 use super::linear::Linear;
 use super::sight::{Meeting, Sight};
 use super::{Background, Shading};
-use crate::graph::Graph;
+use crate::graph::{Graph, PackedNormal};
 use crate::project::FrameSetup;
 
+/// Shows samples of one frame. The result for a sample depends on its position, but not on its neighbours.
 pub struct Shader<'g> {
     pub(super) graph: &'g Graph,
     pub(super) sight: Sight,
@@ -48,11 +49,9 @@ impl<'g> Shader<'g> {
         }
     }
 
-    /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel.
+    /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel, given as in a frame.
     pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
-        let share = self.light.on(self.surface(x, y, node, voxel).normal);
-        let light = self.linear.decode(self.graph.color_of(node));
-        light.map(|channel| (channel * share) >> 8)
+        self.light_of(node, &self.surface(x, y, node, voxel))
     }
 
     /// Linear light of a sample that shows nothing. `None`: transparent.
@@ -66,17 +65,26 @@ impl<'g> Shader<'g> {
 
     pub(super) fn surface(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> Surface {
         let meeting = self.sight.meet(x, y, voxel);
-        let normal = self.graph.normal_of(node).decode();
-        let normal = normal.map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
+        let packed = self.graph.normal.get(node as usize).copied();
+        let normal = packed
+            .and_then(PackedNormal::decode)
+            .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
         Surface { meeting, normal }
+    }
+
+    pub(super) fn light_of(&self, node: u32, surface: &Surface) -> [u32; 3] {
+        let color = self.graph.color.get(node as usize).copied();
+        let share = self.light.on(surface.normal);
+        let light = self.linear.decode(color.unwrap_or_default());
+        light.map(|channel| (channel * share) >> 8)
     }
 }
 
 /// Cosine above which a normal is taken to point away from the eye.
-const AWAY: f64 = 0.25;
+pub(super) const AWAY: f64 = 0.25;
 
-/// A normal turned to the visible side: a thin wall has two sides and one normal. Normals that lean away only slightly are
-/// kept.
+/// A normal turned to the visible side. A thin wall has two sides and one normal. Normals that lean away only slightly, as
+/// on rounded corners, are kept.
 pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
     if is_turned(normal, ray) {
         -normal

@@ -3,7 +3,6 @@
 
 use glam::{DMat3, DVec3};
 
-use super::shade::is_turned;
 use crate::project::FrameSetup;
 
 /// A ray that misses a cube by less than this share of the depth counts as a hit: `exact` draws on the outline itself,
@@ -17,10 +16,10 @@ pub(super) struct Sight {
     /// Whether the clip vectors of all points of the object fit 64 bits.
     is_narrow: bool,
     /// Object direction of a clip direction.
-    to_object: DMat3,
+    pub(super) to_object: DMat3,
     depth_unit: f64,
-    /// Half a sample, of the image root: a power of two.
-    half_sample: f64,
+    /// Samples across the image root, doubled.
+    pub(super) root_doubled: f64,
     axes: [DVec3; 3],
 }
 
@@ -42,7 +41,8 @@ impl Sight {
         };
         let to_clip = DMat3::from_cols(column(0), column(1), column(2));
         let to_object = inverse(&to_clip);
-        // Gradients of X, Y and W over the object. W grows along the view axis; its share in X and Y is removed.
+        // Rows of the view: the gradients of X, Y and W over the object. W grows along the view axis; the share of W in
+        // X and Y is removed.
         let rows = to_clip.transpose();
         let forward = rows.z_axis.normalize();
         let across = |row: DVec3| (row - forward * row.dot(forward)).normalize();
@@ -53,7 +53,7 @@ impl Sight {
             is_narrow: is_narrow(setup),
             to_object,
             depth_unit: setup.depth_unit_world(),
-            half_sample: 0.5 / (1u64 << setup.levels) as f64,
+            root_doubled: 2.0 * (1u64 << setup.levels) as f64,
             axes: [across(rows.x_axis), -across(rows.y_axis), -forward],
         }
     }
@@ -94,19 +94,17 @@ impl Sight {
         }
     }
 
-    /// Whether a normal points away from the eye along a sample's ray.
-    pub(super) fn is_turned(&self, normal: DVec3, x: u32, y: u32) -> bool {
-        let direction = self.direction(x, y);
-        // Most do not, and need no unit vector.
-        normal.dot(direction) > 0.0 && is_turned(normal, direction.normalize_or_zero())
+    /// Unit object direction of a sample's ray, as in [`Sight::meet`].
+    pub(super) fn ray(&self, x: u32, y: u32) -> DVec3 {
+        self.direction(x, y).normalize_or_zero()
     }
 
     /// The object direction of a sample's ray along which `W` grows by one.
     fn direction(&self, x: u32, y: u32) -> DVec3 {
         self.to_object
             * DVec3::new(
-                f64::from(2 * x + 1) * self.half_sample,
-                f64::from(2 * y + 1) * self.half_sample,
+                f64::from(2 * x + 1) / self.root_doubled,
+                f64::from(2 * y + 1) / self.root_doubled,
                 1.0,
             )
     }
@@ -151,7 +149,8 @@ fn inverse(m: &DMat3) -> DMat3 {
     DMat3::from_cols(bc / determinant, ca / determinant, ab / determinant).transpose()
 }
 
-/// Where a ray enters and leaves the cube from 0 to `side`, and the axis of the face of entry: of equal ones the first.
+/// The positions at which a ray enters and leaves the cube from 0 to `side`, and the axis of the face of entry: of equal
+/// ones the first.
 fn slabs(eye: DVec3, direction: DVec3, side: f64) -> (f64, f64, usize) {
     let (mut enter, mut exit, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
     for k in 0..3 {

@@ -7,8 +7,8 @@ use crate::budget::Shortage;
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 
-/// Children by occlusion order, nearest first, for octant 000; for other octants exclusive-or with their bits (image-order
-/// paper, 3.2). Normative: the first record to reach a sample draws it.
+/// Children by occlusion order, nearest first, for octant 000: exclusive-or with the octant bits gives the order for any
+/// eye (image-order paper, 3.2). Normative: the first record to reach a sample draws it.
 pub const OCCLUSION_ORDER: [u8; 8] = [7, 6, 5, 3, 4, 2, 1, 0];
 
 /// Why a frame was not finished.
@@ -25,9 +25,9 @@ pub enum EngineError {
 /// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
-/// Draws frames, which depend only on set-up and graph.
+/// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
-    /// [`Engine::render`] without work that only counters need.
+    /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
@@ -37,7 +37,8 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' unlit colours. `of_node`: colours by graph node. `colors` has the size of `setup`.
+    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` has the size of `setup` and is
+    /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -50,11 +51,42 @@ pub trait Engine {
         Ok(())
     }
 
-    /// Draws into `frame`, which has the size of `setup`. After an error its contents have no meaning.
+    /// Draws into `frame`, which has the size of `setup` and is cleared first. Fails when the frame cannot be finished;
+    /// its contents then have no meaning.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError>;
+}
+
+impl<E: Engine + ?Sized> Engine for Box<E> {
+    fn draw(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<(), EngineError> {
+        (**self).draw(graph, setup, frame)
+    }
+
+    fn draw_colors(
+        &mut self,
+        graph: &GraphView<'_>,
+        of_node: &[[u8; 3]],
+        setup: &FrameSetup,
+        colors: &mut Colors,
+    ) -> Result<(), EngineError> {
+        (**self).draw_colors(graph, of_node, setup, colors)
+    }
+
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        (**self).render(graph, setup, frame)
+    }
 }

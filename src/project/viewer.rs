@@ -1,4 +1,5 @@
-//! A frame that is kept, and drawn again only when the set-up changes.
+//! A picture that is kept, and drawn again only when the set-up changes: a [`Viewer`] owns the engine and the frame,
+//! lends the frame only for reading, and borrows the graph.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
 use crate::budget::{self, Shortage};
@@ -18,33 +19,44 @@ pub enum Contents {
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
 /// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
-pub struct Viewer<'g, E: ?Sized> {
+pub struct Viewer<'g, E> {
     graph: GraphView<'g>,
-    engine: Box<E>,
+    engine: E,
     contents: Contents,
     frame: Frame,
     shown: Option<FrameSetup>,
     stats: Option<Stats>,
 }
 
-impl<'g, E: Engine + ?Sized> Viewer<'g, E> {
-    pub fn new(graph: GraphView<'g>, engine: Box<E>, contents: Contents) -> Self {
+impl<'g, E: Engine> Viewer<'g, E> {
+    /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
+    pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
+        Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
+    }
+
+    /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
+    pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
         Self {
             graph,
             engine,
             contents,
-            frame: Frame::nodes_only(0, 0),
+            frame,
             shown: None,
             stats: None,
         }
     }
 
+    pub fn into_parts(self) -> (E, Frame) {
+        (self.engine, self.frame)
+    }
+
+    /// Changes the contents of samples from the next frame on, and shows nothing until then.
     pub fn store(&mut self, contents: Contents) {
         self.contents = contents;
         self.forget();
     }
 
-    /// Returns whether the frame was drawn, and not only kept. After an error nothing is shown.
+    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. After an error nothing is shown.
     pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
         if self.shows(setup) {
             return Ok(false);
@@ -55,12 +67,14 @@ impl<'g, E: Engine + ?Sized> Viewer<'g, E> {
         Ok(true)
     }
 
-    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, all others are 0.
+    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are
+    /// 0. After an error nothing is shown.
     pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
         self.render_lit(setup, &[])
     }
 
-    /// [`Viewer::render`] with the light of the nodes, for rules that blend.
+    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. After an
+    /// error nothing is shown.
     pub fn render_lit(
         &mut self,
         setup: &FrameSetup,
@@ -105,13 +119,15 @@ impl<'g, E: Engine + ?Sized> Viewer<'g, E> {
         self.shown.as_ref() == Some(setup)
     }
 
+    /// Shows nothing; the next frame is drawn in any case.
     pub fn forget(&mut self) {
         self.shown = None;
         self.stats = None;
     }
 
-    /// Makes a frame of the set-up's size, or reuses the last one's memory.
-    fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
+    /// Makes a frame of the set-up's size, or reuses the last one's memory. Shows nothing. Errors: [`Shortage`] if the
+    /// system refuses the memory.
+    pub fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
         self.forget();
         let (width, height) = (setup.width, setup.height);
         let has = match (&self.frame.records, self.frame.voxel.is_empty()) {

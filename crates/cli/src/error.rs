@@ -16,7 +16,6 @@ use shiftvox::whole::WholeError;
 use shiftvox_lab::bench::BenchError;
 use shiftvox_lab::model::ModelError;
 use shiftvox_lab::model::vectors::VectorsError;
-use shiftvox_lab::reproduce::ReproduceError;
 use shiftvox_mesh::drawing::MethodError;
 use shiftvox_mesh::{far, textured};
 
@@ -278,15 +277,6 @@ impl From<OpenError> for CliError {
                 }
             }
             _ => failure,
-        }
-    }
-}
-
-impl From<ReproduceError> for CliError {
-    fn from(error: ReproduceError) -> Self {
-        match error {
-            ReproduceError::Bench(error) => error.into(),
-            ReproduceError::Resolve(error) => error.into(),
         }
     }
 }

@@ -11,8 +11,6 @@ pub(super) use args::ModelArgs;
 #[cfg(feature = "view")]
 pub(super) use brief::brief;
 
-use std::path::Path;
-
 use hwmodel::cycles::{Hardware, Progress as Ticks, Recorder};
 
 use super::console::Console;
@@ -125,11 +123,10 @@ fn simulate(
             &view, setup, hardware, overflow, &mut ticks,
         )?);
     };
-    let mut recorder = Recorder::new(args.files.trace_records);
-    let mut both = (&mut recorder, ticks);
+    let mut both = (Recorder::new(args.files.trace_records), ticks);
     let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
     let mut text = Vec::new();
-    recorder.write_chrome(hardware, &mut text)?;
+    both.0.write_chrome(hardware, &mut text)?;
     whole::write(path, &text, args.export.force)?;
     console.written(path);
     Ok(drawn)

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::args::ModelArgs;
 use super::Found;
+use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;

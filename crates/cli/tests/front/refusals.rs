@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::common::{Assert, Run};
-use crate::program::{folder, json_of, run, shiftvox, stderr_of, stdout_of, words};
+use crate::program::{folder, run, shiftvox, stderr_of, stdout_of, words};
 
 fn sh(folder: &Path, script: &str) -> Assert {
     let mut command = Command::new("sh");
@@ -19,14 +19,22 @@ fn sh(folder: &Path, script: &str) -> Assert {
 fn names_are_shown_escaped() {
     let folder = folder();
     let odd = "t\x1b[2J.vox";
-    run(folder.path(), &["generate", "gen:sphere,depth=3", "-o", odd]).success();
+    run(
+        folder.path(),
+        &["generate", "gen:sphere,depth=3", "-o", odd],
+    )
+    .success();
     let draw = ["render", odd, "--size", "16", "-o", "{stem}.png"];
     let told = run(folder.path(), &draw).success();
     assert!(!stderr_of(&told).contains('\x1b'), "{}", stderr_of(&told));
     assert!(folder.path().join("t\x1b[2J.png").exists());
     run(folder.path(), &draw).code(1);
     let missing = run(folder.path(), &["info", "\x1b[31mred.vox"]).code(4);
-    assert!(!stderr_of(&missing).contains('\x1b'), "{}", stderr_of(&missing));
+    assert!(
+        !stderr_of(&missing).contains('\x1b'),
+        "{}",
+        stderr_of(&missing)
+    );
 }
 
 #[test]

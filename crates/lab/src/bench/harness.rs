@@ -39,7 +39,7 @@ pub(super) struct Contender<'c> {
 pub(super) enum Drawer<'c> {
     Engine(Box<dyn Engine + Send>),
     /// A viewer, which draws only frames that change.
-    Viewer(Box<Viewer<'c, dyn Engine + Send>>),
+    Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
 impl Contender<'_> {
