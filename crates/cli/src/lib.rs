@@ -11,6 +11,7 @@ mod engines;
 pub mod error;
 mod experiment;
 mod far;
+mod fatal_signals;
 mod generate;
 mod info;
 mod manual;
@@ -172,7 +173,8 @@ fn run(line: Vec<OsString>) -> Result<(), CliError> {
         .iter()
         .take_while(|word| *word != "--")
         .any(|word| word == "--json");
-    signals::install(json);
+    signals::tidy_up_when_stopped();
+    fatal_signals::install(json);
     let (cli, matches) = match parse(&line) {
         Ok(parsed) => parsed,
         Err(error) if error.exit_code() == 0 => {

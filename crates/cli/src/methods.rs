@@ -8,8 +8,8 @@ use super::args::{EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::engines;
 use super::error::{CliError, Kind};
+use super::fatal_signals;
 use super::scenes::{self, Scene};
-use super::signals;
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
 use shiftvox::picture::Buffer;
 use shiftvox::project::Camera;
@@ -82,7 +82,7 @@ enum Content {
 /// Opens a scene for the engine of the flags, or else for the one that draws its kind of file.
 pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result<Opened, CliError> {
     let started = Instant::now();
-    signals::reads(name);
+    fatal_signals::reads(name);
     let asked = args.engine.engine;
     let source = Source::find(name);
     let kind = source.as_ref().ok().and_then(Source::kind);

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::signals;
+use super::fatal_signals;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::project::Up;
@@ -58,7 +58,7 @@ pub(super) fn open_source(
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
-    signals::reads(name);
+    fatal_signals::reads(name);
     let mut options = options(args);
     if verify == Verify::All {
         options.voxels.verify_up_to = u64::MAX;
@@ -111,7 +111,7 @@ pub(super) fn read_mesh(
             "{source}: a generator makes voxels, and a mesh is needed here"
         )));
     }
-    signals::reads(source);
+    fatal_signals::reads(source);
     let (mesh, y_up) =
         shiftvox_mesh::open::read_mesh(Path::new(source), &load_options(args), progress)?;
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))

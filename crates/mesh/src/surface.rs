@@ -78,9 +78,11 @@ impl Surface for Mesh {
             Some(normals) => normals.map(point),
             None => [plane_normal(corners); 3],
         };
-        let material = &self.materials[self.material_of[number] as usize];
+        // Decimated meshes have no materials.
+        let material = self.materials.get(self.material_of[number] as usize);
+        let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
         let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
-        let diffuse = point(material.diffuse) * point(tint);
+        let diffuse = point(diffuse) * point(tint);
         let color = |i: u32| match self.vertex_colors.get(i as usize) {
             Some(color) => diffuse * point(color.map(srgb_to_linear)),
             None => diffuse,
@@ -89,7 +91,7 @@ impl Surface for Mesh {
             corners,
             normals,
             colors: self.triangles[number].map(color),
-            alpha: f64::from(material.alpha),
+            alpha: f64::from(alpha),
         }
     }
 

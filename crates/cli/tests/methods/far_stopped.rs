@@ -31,8 +31,6 @@ fn stl() -> Vec<u8> {
 
 /// Triangles alone, as one leaf: built at once, ten megabytes to write.
 const BUILD: &str = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
-/// Many nodes, some of which take their time.
-const NODES: &str = "convert sheet.stl --leaf-triangles 200 --grid 32 --rays 2000000 -q";
 
 fn shiftvox(folder: &Path, line: &str) -> Command {
     let mut command = crate::common::command();
