@@ -322,7 +322,7 @@ fn select<'v>(mut value: &'v Value, path: &str) -> Outcome<&'v Value> {
                 }
                 Some((key, wanted)) => found.retain(|element| match &element[key] {
                     Value::String(text) => text == wanted,
-                    other => other.to_string() == wanted,
+                    other => *other == wanted,
                 }),
             }
         }

@@ -63,7 +63,7 @@ pub struct Family {
     pub variants: Vec<Variant>,
 }
 
-/// The nodes that the machine fetches for a frame: a [`FetchedNodes`].
+/// The nodes that the machine fetches for a frame.
 ///
 /// # Errors
 /// When the machine cannot finish the frame.

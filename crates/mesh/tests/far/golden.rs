@@ -13,8 +13,10 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::city::{city, draw, lit, options, view};
 
+type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
+
 /// Whether it is hybrid, rays, grid and leaf triangles; hashes of the files of the city and a village.
-const FILES: [(bool, Option<u64>, u32, u32, [u32; 2]); 4] = [
+const FILES: [Build; 4] = [
     (false, Some(60_000), 24, 60, [0x317a_3d04, 0x3fee_026a]),
     (false, None, 16, 300, [0x1f88_6761, 0xa6a5_e7d3]),
     (true, Some(60_000), 24, 200, [0x7031_7a4d, 0xe231_4f72]),

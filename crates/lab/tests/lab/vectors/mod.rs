@@ -184,8 +184,11 @@ const COVERAGES: [Coverage; 4] = [
     Coverage::Alpha,
 ];
 
+/// Of a rule, and whether records change space.
+type IsPresent = fn(Coverage, bool) -> bool;
+
 /// Blocks, and whether frames have rows of them: under exact rules or not, where records change space or not.
-const PRESENCE: [(&str, fn(Coverage, bool) -> bool); 6] = [
+const PRESENCE: [(&str, IsPresent); 6] = [
     (
         "filled centre octant_order vertex_pool child_corners child_span border_clip bisector_clip near_node half_clip \
          quadrants node_choice fill_update detail_depth size_limit size_clip",
@@ -245,7 +248,7 @@ fn rows_are_what_the_blocks_give_and_are_there_where_they_should() {
             }
         }
     }
-    for ((.., block), _) in &sums {
+    for (.., block) in sums.keys() {
         let has_rows = |((.., of), rows): (&(_, _, String), &usize)| of == block && *rows > 0;
         assert!(sums.iter().any(has_rows), "{block} has no rows anywhere");
     }

@@ -207,7 +207,7 @@ const WRONG_OUTPUTS: [WrongOutput; 12] = [
     }),
     ("blend_sample", "shares rounded down", |row, right| {
         let left = row.get("left");
-        match left - (left * row.get("weight") >> 8) {
+        match left - ((left * row.get("weight")) >> 8) {
             rest @ 65.. => [&[rest], &right[1..]].concat(),
             _ => right.to_vec(),
         }

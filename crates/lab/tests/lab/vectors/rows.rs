@@ -183,7 +183,7 @@ impl Ports {
             let (part, after) = rest.split_at(*bits as usize);
             rest = after;
             let value = part.iter().fold(0, |v, bit| v << 1 | bit);
-            value - (i128::from(*signed) * part[0] << bits)
+            value - ((i128::from(*signed) * part[0]) << bits)
         };
         Row {
             names: self.names.clone(),
