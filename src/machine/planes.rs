@@ -1,5 +1,8 @@
-//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space. Children's planes follow by shifts and adds of
-//! constants, since moving an edge by another edge adds a constant of the object to its plane `A x e_j`.
+//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
+//!
+//! A ray meets the inside of a cube if and only if for each axis j the four edges along j do not all pass on one side of
+//! it. The plane through the eye and the edge from corner `A` along `e_j` has the normal `A x e_j`. Moving the edge adds
+//! a constant of the object, so children's planes follow by shifts and adds.
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
@@ -9,6 +12,7 @@ use super::record::{Cube, Planes};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
+    /// On both, or not known yet.
     Both,
     Positive,
     Negative,
@@ -24,6 +28,7 @@ impl Side {
     }
 }
 
+/// The function `a x + b y + c` over a node, `x` and `y` from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     ab: [WideWord; 2],

@@ -8,8 +8,8 @@
 //!
 //! All times are whole cycles. The same input gives the same output.
 //!
-//! 1. **Hardware.** Each of [`Hardware::lanes`] has a stack, one block per stage, and [`Hardware::contexts`], each with
-//!    one record at a time. Caches, fill vectors and pixels are shared by all lanes.
+//! 1. **Hardware.** There are [`Hardware::lanes`]. Each has a stack, one block per stage, and [`Hardware::contexts`]. A
+//!    context has one record at a time. Caches, fill vectors and pixels are shared by all lanes.
 //! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in this order: pop, filled?,
 //!    to screen, one pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw, blend, fill update. Stages
 //!    without work are left out. Other records see the effects of a turn from its first cycle.
@@ -37,7 +37,7 @@
 //! 9. **Children** are on the stack of the lane, nearest on top, when the turn ends. A child is *ready* when all earlier
 //!    siblings that it depends on ([`Independence::allows`]) are finished with all their descendants. Other records need
 //!    not be examined: descendants stay in their ancestor's image node and place in the order.
-//! 10. **Next record.** Ready records are listed by lane, the newest on top, below its own earlier siblings. A context
+//! 10. **Next record.** Each lane lists its ready records. A new one goes on top, but below its own earlier siblings. A context
 //!     whose turn has ended takes, in the same cycle, the topmost record of its lane, or the lowest one of the next lane
 //!     (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle contexts
 //!     steal, lowest numbers first.
