@@ -93,7 +93,7 @@ impl FittedCamera {
 }
 
 /// A camera of either kind: [`Camera`] or [`FittedCamera`].
-pub trait View {
+pub trait View: private::Sealed {
     /// The camera of a picture of this size, pixels.
     #[doc(hidden)]
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error>;
@@ -126,4 +126,12 @@ impl View for FittedCamera {
         let camera = fit_camera(&self.bounds, up, direction, fov_degrees, zoom, size);
         Ok(camera)
     }
+}
+
+mod private {
+    /// Only this crate has cameras.
+    #[expect(unnameable_types, reason = "a sealed trait")]
+    pub trait Sealed {}
+    impl Sealed for super::Camera {}
+    impl Sealed for super::FittedCamera {}
 }

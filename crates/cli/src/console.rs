@@ -64,7 +64,7 @@ impl Console {
             Some(kept) => lock(kept).extend([text, "\n"]),
             None => {
                 let mut out = io::stdout().lock();
-                writeln!(out, "{text}")?;
+                writeln!(out, "{}", json_text(text))?;
                 out.flush()?;
             }
         }
@@ -140,6 +140,15 @@ pub(super) fn report_error(error: &CliError) {
 
 fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+}
+
+/// JSON in which terminals find no control characters: those below 32 are escaped already, or ends of lines.
+pub(super) fn json_text(text: &str) -> String {
+    let shown = |letter: char| match letter.is_control() && letter != '\n' {
+        true => format!("\\u{:04x}", u32::from(letter)),
+        false => letter.to_string(),
+    };
+    text.chars().map(shown).collect()
 }
 
 /// A text for a terminal: control characters other than newlines and tabs are escaped.

@@ -185,6 +185,7 @@ exit_codes! {
     BenchError {
         BenchError::Engine { who, source } => return Self::from(source).at(who),
         BenchError::Setup(error) => return error.into(),
+        BenchError::Resolve(error) => return error.into(),
         BenchError::Picture(_) | BenchError::Threads { .. } => Kind::Run,
     }
     MethodError {

@@ -120,7 +120,11 @@ mod handlers {
         remove_unfinished(|| {
             if json {
                 let document = document::failed(None, &error);
-                let _ = writeln!(io::stdout(), "{document:#}");
+                let _ = writeln!(
+                    io::stdout(),
+                    "{}",
+                    console::json_text(&format!("{document:#}"))
+                );
             }
             std::process::exit(i32::from(error.kind.code()));
         });

@@ -87,7 +87,7 @@ struct CommonArgs {
     json: bool,
     /// Threads, 0 for all, which never change the output [default: 0, of measurements 1]. `bench time`
     /// takes a list such as 1,2
-    #[arg(long, global = true, value_name = "N", value_delimiter = ',',
+    #[arg(long, global = true, value_name = "N", value_delimiter = ',', action = ArgAction::Set, num_args = 1,
           value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: Vec<u16>,
 }

@@ -43,6 +43,12 @@ pub(super) fn check_room(
     Ok(budget::check_disk(whole::folder_of(picture), needed)?)
 }
 
+/// A name with fields or numbers must be text.
+pub(crate) fn check_text(path: &Path) -> Result<&str, CliError> {
+    let wrong = || CliError::usage(format!("{}: the name is not UTF-8", path.display()));
+    path.to_str().ok_or_else(wrong)
+}
+
 pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     if ending.eq_ignore_ascii_case("png") {

@@ -106,6 +106,7 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
         };
     };
     outputs::check_picture_name(output)?;
+    outputs::check_text(output)?;
     if args.scenes.len() > 1 && !output.to_string_lossy().contains("{stem}") {
         let (all, output) = (args.scenes.len(), output.display());
         let message = format!("{output}: {all} scenes would be written to one file");

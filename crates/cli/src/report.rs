@@ -57,6 +57,7 @@ pub(super) fn figure(value: &Value) -> String {
         Value::Array(values) => values.iter().map(figure).collect::<Vec<_>>().join(", "),
         value => match (value.as_u64(), value.as_f64()) {
             (Some(whole), _) => grouped(whole),
+            (_, Some(0.0)) => "0".to_owned(),
             (_, Some(real)) if value.is_f64() => {
                 // Six digits or more.
                 let magnitude = real.abs().max(1e-9).log10().floor() as i32;

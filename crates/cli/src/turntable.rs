@@ -112,7 +112,7 @@ pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliErro
 
 /// The pattern with its run of `#` replaced by each frame's number.
 fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
-    let text = pattern.to_string_lossy();
+    let text = outputs::check_text(pattern)?;
     let wrong = || {
         CliError::usage(format!("{text}: the frames need different names"))
             .advise("put one run of # into the name, for example -o out/####.png")

@@ -147,8 +147,7 @@ fn count(row: &mut Row, subject: &Subject, options: SetupOptions) -> Result<(), 
         source,
     })?;
     let shading = (Shading::Lambert, Background::default());
-    let picture = resolve(&frame, graph, &setup, shading.0, shading.1);
-    let picture = picture.map_err(|e| BenchError::Picture(e.to_string()))?;
+    let picture = resolve(&frame, graph, &setup, shading.0, shading.1)?;
     let covered = frame.drawn() as u64;
     row.put("covered_pixels", covered);
     let us = row.number("ms") * 1e3 / covered.max(1) as f64;

@@ -78,7 +78,7 @@ impl Surface for Mesh {
             Some(normals) => normals.map(point),
             None => [plane_normal(corners); 3],
         };
-        // Decimated meshes have no materials.
+        // Meshes of far nodes have no materials.
         let material = self.materials.get(self.material_of[number] as usize);
         let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
         let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);

@@ -172,7 +172,6 @@ fn is_stl(beginning: &[u8], length: u64) -> bool {
 }
 
 /// 84 bytes of header, of which the last four count the triangles, and 50 bytes per triangle.
-/// four count the triangles, and 50 bytes per triangle.
 pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
     let count = beginning
         .get(80..84)

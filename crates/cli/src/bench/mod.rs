@@ -31,7 +31,7 @@ enum Experiment {
     ///
     /// The truth is exact rays, or a mesh's triangles with 256 samples per pixel. A second reference
     /// gives the noise floor. Methods draw in turn, on one thread. --motions films a moving camera
-    /// and measures flicker, and its part from changes of level of detail (pop).
+    /// and measures flicker, also of the worst step.
     Quality(Box<quality::QualityArgs>),
 }
 

@@ -9,6 +9,7 @@ use super::subjects::file_stem;
 use crate::console::Console;
 use crate::document::document;
 use crate::error::CliError;
+use crate::outputs;
 use shiftvox::whole;
 use shiftvox_lab::report::plot::{self, Panel};
 use shiftvox_lab::report::{Row, Table};
@@ -93,6 +94,9 @@ pub(crate) fn check<'p>(
 /// [`check`], where scenes have plots of their own.
 pub(crate) fn check_plots(args: &ExportArgs, scenes: &[String]) -> Result<(), CliError> {
     check(args, [])?;
+    if let Some(path) = &args.export_svg {
+        outputs::check_text(path)?;
+    }
     for path in scenes.iter().filter_map(|scene| plot_path(args, scene)) {
         whole::check_free(&path, args.force)?;
     }

@@ -15,6 +15,7 @@ use super::statistics::Summary;
 use crate::report::{Cell, Row};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::{Graph, Progress};
+use shiftvox::picture::ResolveError;
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
 
 /// How often each contender draws.
@@ -132,7 +133,10 @@ pub enum BenchError {
     /// A frame cannot be set up.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// Samples make no picture, or one that cannot be compared.
+    /// Samples make no picture.
+    #[error(transparent)]
+    Resolve(#[from] ResolveError),
+    /// A picture cannot be compared.
     #[error("{0}")]
     Picture(String),
     /// The system gave no threads.

@@ -96,7 +96,7 @@ fn cell(direction: Vec3) -> usize {
 /// Similar rays, which visit the same boxes, follow one another.
 fn in_order(aims: &[Aim]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..aims.len() as u32).collect();
-    order.sort_by_key(|&number| cell(aims[number as usize].direction));
+    order.sort_by_cached_key(|&number| cell(aims[number as usize].direction));
     order
 }
 

@@ -127,6 +127,10 @@ fn build_grid<S: Surface + ?Sized>(
         .map(|primitive| primitive.positions().map(|p| lattice.point(p)))
         .collect();
     let pairs = fill(&corners, lattice);
+    if pairs.len() >= NEVER as usize {
+        progress.end();
+        return Err(BuildError::TooMany("primitives of all voxels"));
+    }
     let mut grid = GridData {
         cells,
         texels,
@@ -151,10 +155,8 @@ fn build_grid<S: Surface + ?Sized>(
         });
         grid.lists.extend(pairs.iter().map(|&pair| pair as u32));
     }
+    drop(pairs);
     progress.end();
-    if pairs.len() >= NEVER as usize {
-        return Err(BuildError::TooMany("primitives of all voxels"));
-    }
     let columns = columns(&grid.voxels, &grid.lists, cells);
     progress.begin("project textures", columns.len() as u64);
     let projected: Vec<Projected> = columns

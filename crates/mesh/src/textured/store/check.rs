@@ -6,7 +6,7 @@ use crate::textured::levels::surfels;
 use crate::textured::record::{CLEAR, NEVER, Primitive, VoxelRecord};
 
 pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
-    let cells = u64::from(entry.cells).pow(3);
+    let cells = u64::from(entry.cells).saturating_pow(3);
     for (holds, expected) in [
         (
             CellGrid::is_possible(entry.cells, entry.texels),
