@@ -1,5 +1,5 @@
-//! Time of a frame: of the fast engine by instruction set, of the machine by picture size, alone and
-//! counted. Whole pictures: `docs/performance.md`.
+//! Time of a frame: of the fast engine by instruction set, of the machine by picture size, alone and counted, and of small
+//! pictures in a loop. Whole pictures: `docs/performance.md`.
 //!
 //! ```text
 //! cargo bench
@@ -21,6 +21,7 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions};
+use shiftvox::{Renderer, Scene, Shading};
 
 use scenes::graph_of_spec;
 
@@ -123,12 +124,35 @@ fn machine(criterion: &mut Criterion) {
     }
 }
 
+/// Small pictures in a loop: a renderer that is kept, and a new one for each.
+fn small_pictures(criterion: &mut Criterion) {
+    let scene = Scene::from(graph_of_spec("gen:menger,depth=4"));
+    let camera = shiftvox::Camera::fit(&scene);
+    let renderer = Renderer::new().shading(Shading::Flat).threads(1);
+    for size in [64, 256] {
+        let mut group = criterion.benchmark_group(format!("pictures of {size} x {size}"));
+        let mut pixels = vec![[0; 4]; (size * size) as usize];
+        group.bench_function("a renderer that is kept", |bencher| {
+            bencher.iter(|| {
+                let drawn = renderer.render_into(&scene, &camera, size, size, &mut pixels);
+                drawn.expect("a picture")
+            });
+        });
+        group.bench_function("a new renderer for each", |bencher| {
+            bencher.iter(|| {
+                let drawn = renderer.clone().render(&scene, &camera, size, size);
+                drawn.expect("a picture")
+            });
+        });
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = fast, machine
+    targets = fast, machine, small_pictures
 }
 criterion_main!(benches);

@@ -172,7 +172,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// The side of all samples of a window, 0 of no plane; `None`: both may occur.
+    /// The side of all samples of a window, 0 if there is no plane, or `None` where both sides may occur.
     #[inline(always)]
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;

@@ -2,7 +2,7 @@
 
 use super::lanes::{Isa, Lanes, U8x16};
 
-/// By octant: child masks turned: bit `c` is child `c ^ octant`.
+/// Child masks, turned by octant: bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
     let mut table = [[0u8; 256]; 8];
     let mut octant = 0;
@@ -75,8 +75,8 @@ pub(super) static SLABS: [[u64; 4]; 3] = {
     table
 };
 
-/// By axis and by its filled slabs: middle of the filled range from the node's centre, and half its extent, in sides of
-/// a slab; in the axis' lane.
+/// Middle of the filled range, from the node's centre, and half its extent, in sides of a slab. Indexed by axis and by
+/// its filled slabs; the numbers are in the axis' lane.
 pub(super) static EXTENTS: [[[[f32; 4]; 2]; 16]; 3] = {
     let mut table = [[[[0.0; 4]; 2]; 16]; 3];
     let mut slabs = 1u32;

@@ -185,7 +185,7 @@ pub(super) fn grow_shift(tolerance: f64) -> Option<i32> {
     is_approximate.then(|| -(libm::ceil(libm::log2(tolerance)) as i32))
 }
 
-/// A constant factor as a sum of powers of two: places of shifts to the right (negative: to the left).
+/// A constant factor as a sum of powers of two, each given by places of a shift to the right, or to the left if negative.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ShiftSum(Vec<i32>);
 

@@ -99,10 +99,10 @@ pub struct FrameSetup {
     pub eye_ceil: [i64; 3],
     /// Least depth `W` at which `any` and `center` draw.
     pub near: i64,
-    /// By octree level, least depth `W` of a record that may change to screen space; `i64::MAX`: none.
+    /// Least depth `W` of a record that may change to screen space, by octree level. `i64::MAX` where none may.
     pub screen_depth: Vec<i64>,
-    /// By octree level, least depth `W` of a clip-space node with children that level of detail makes a solid;
-    /// `i64::MAX`: none.
+    /// Least depth `W` of a clip-space node with children that level of detail makes a solid, by octree level. `i64::MAX`
+    /// where it makes none.
     pub lod_depth: Vec<i64>,
     /// Whether no word of the frame can overflow.
     pub has_headroom: bool,

@@ -1,5 +1,5 @@
-//! The scenes that every engine must draw to the same bits: small voxels and large leaves, thin and solid, shared and
-//! cyclic, 30 levels deep, a million voxels from the origin, and voxel files.
+//! The scenes that every engine must draw to the same bits. They have small voxels and large leaves, are thin and solid,
+//! shared and cyclic, 30 levels deep, or a million voxels from the origin. Some are voxel files.
 
 use std::sync::OnceLock;
 

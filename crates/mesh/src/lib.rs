@@ -1,7 +1,10 @@
 //! Meshes: read from files, drawn as triangles, turned into voxels.
 //!
-//! [`read`] makes a [`Mesh`] of an OBJ, PLY, STL or glTF file. [`raster`] draws it with a depth buffer, as a reference.
-//! [`voxelize`] finds every voxel that a triangle touches. [`far`] and [`textured`] voxels replace it at a distance.
+//! - [`read`] makes a [`Mesh`] of an OBJ, PLY, STL or glTF file.
+//! - [`raster`] draws it with a depth buffer, as a reference.
+//! - [`voxelize`] finds every voxel that a triangle touches.
+//! - [`far`] and [`textured`] voxels replace it at a distance.
+//!
 //! Rules: `spec/mesh.md`.
 
 mod builder;

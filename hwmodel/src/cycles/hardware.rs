@@ -1,4 +1,4 @@
-//! The description of a hardware design, in TOML. `machines/light.toml` explains each setting.
+//! Descriptions of hardware designs, in TOML. `machines/light.toml` explains each setting.
 
 use std::collections::BTreeMap;
 

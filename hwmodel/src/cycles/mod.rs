@@ -23,9 +23,10 @@
 //!    done. Its delay against a visit with free ports and without misses is *stall*, whose cause is that of the access
 //!    that ended last (of equal ones the first).
 //! 5. **Stack.** Each has `ports` accesses per cycle. A record on another lane's stack takes [`Hardware::steal_cycles`]
-//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*: written to outer memory
-//!    in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both transfers take the
-//!    port to outer memory ([`OuterMemory::cycles`]); waiting for it and the transfer's cycles add to the `spill_cycles`.
+//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*. It is then written to
+//!    outer memory in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both
+//!    transfers take the port to outer memory ([`OuterMemory::cycles`]). Waiting for it and the transfer's cycles add to
+//!    the `spill_cycles`.
 //! 6. **Cache.** Set-associative, replaces the least recently used line. A hit is done after `hit_latency`. A miss waits
 //!    for one of the `misses` slots and for the port to outer memory, which its line then takes; both hold the cache's
 //!    port. It is done after `hit_latency` and the longer of `miss_latency` and the line's own cycles. A hit on the same
@@ -37,10 +38,10 @@
 //! 9. **Children** are on the stack of the lane, nearest on top, when the turn ends. A child is *ready* when all earlier
 //!    siblings that it depends on ([`Independence::allows`]) are finished with all their descendants. Other records need
 //!    not be examined: descendants stay in their ancestor's image node and place in the order.
-//! 10. **Next record.** Each lane lists its ready records. A new one goes on top, but below its own earlier siblings. A context
-//!     whose turn has ended takes, in the same cycle, the topmost record of its lane, or the lowest one of the next lane
-//!     (cyclically) that has one. Then idle contexts of lanes with ready records take those, then other idle contexts
-//!     steal, lowest numbers first.
+//! 10. **Next record.** Each lane lists its ready records. A new record is placed on top, but below its own earlier
+//!     siblings. A context whose turn has ended takes, in the same cycle, the topmost record of its lane, or the lowest
+//!     one of the next lane (cyclically) that has one. Then idle contexts of lanes with ready records take those, then
+//!     other idle contexts steal, lowest numbers first.
 //! 11. **Start.** The work before the first record is a turn of lane 0, context 0, in cycle 0.
 //! 12. **Sequential hardware** ([`Hardware::sequential`]) does one thing at a time, in the order of the record loop.
 //!     Wherever the loop enters another stage, or reports a dependence
@@ -52,12 +53,11 @@
 //!     the lowest lane and context first. An access takes the port of its cache for lookup and inspection, longer for a
 //!     miss that waits for outer memory. An incoming line also takes it for the cycles of its transfer.
 //! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]). A context without records requests a tile, from
-//!     cycle 0 on. In each cycle the earliest request receives the next tile, row by row, and its context begins it in
-//!     the next cycle and draws it to its end, with its own stack and fill vectors.
+//!     cycle 0 on. In each cycle the earliest request receives the next tile, row by row. Its context begins
+//!     the tile in the next cycle and draws it to its end, with its own stack and fill vectors.
 //! 14. **Contexts of a sequential lane** share it: one has the lane. From its request to a cache, or for a tile, until
-//!     the cycle before the answer, another may have it. In each such cycle the context that was answered first, of one
-//!     cycle the lowest number, receives the lane and continues in the next cycle; the cycles of its wait are *block
-//!     busy*. A context with the lane inspects its result in the cycle of the answer.
+//!     the cycle before the answer, another may have it. In each such cycle the context that was answered first receives the
+//!     lane, of one cycle the lowest number. It continues in the next cycle. The cycles of its wait are *block busy*. A context with the lane inspects its result in the cycle of the answer.
 //!
 //! A turn *alone* takes the sum over its visits of the larger of occupancy + latency and the longest latency of an
 //! access that hits. **Work** is the sum over all turns. **Span** is the longest chain of turns alone that had to follow

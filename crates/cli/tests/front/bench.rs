@@ -247,7 +247,7 @@ fn reproduced_results_are_the_same_in_every_run() {
     };
     let one = reproduced("one");
     assert_eq!(one, reproduced("two"));
-    // Of the machine with everything on: two sizes, five scenes, five terrains, four scenes; twice.
+    // The machine with everything on draws two sizes, five scenes, five terrains and four scenes, each twice.
     let hashes = one.iter().filter(|row| row[4].is_string());
     assert_eq!(hashes.count(), 2 * (2 + 5 + 5 + 4));
     assert!(folder.path().join("two/figures.svg").exists());

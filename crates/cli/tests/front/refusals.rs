@@ -1,4 +1,4 @@
-//! What rows of `cases` cannot say: control characters, terminals, full disks, mapped files that change.
+//! Control characters, terminals, full disks, and mapped files that change, which rows of `cases` cannot express.
 #![cfg(unix)]
 
 use std::fs;

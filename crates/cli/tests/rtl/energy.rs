@@ -68,7 +68,7 @@ fn energies_of_pins(liberty: &str) -> PinEnergies {
     cells
 }
 
-/// What a change of a pin takes: of an output, the mean of its tables at the load that is nearest.
+/// Energy of a change of a pin. For an output it is the mean of its tables at the nearest load.
 fn energy_of_pin(pin: &str) -> f64 {
     let value = |key: &str| {
         let line = pin.lines().find_map(|line| line.trim().strip_prefix(key));

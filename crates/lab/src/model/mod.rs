@@ -1,8 +1,12 @@
 //! The hardware model: the cost of a frame on the light hardware, beside a ray caster with multipliers.
 //!
-//! [`frame`] draws a frame and counts it, [`ray_caster`] does it with rays. [`cost`] and [`area`] price the counts, [`clock`]
-//! compares units with the clock, [`mod@floor`] is a bound for all designs. [`report`] collects that, and [`mod@explore`]
-//! repeats it over many designs. Functions fail when the cost tables lack a figure, or a word overflows and traps.
+//! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
+//! - [`cost`] and [`area`] price the counts.
+//! - [`clock`] compares units with the clock.
+//! - [`mod@floor`] is a bound for all designs.
+//! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
+//!
+//! Functions fail when the cost tables lack a figure, or a word overflows and traps.
 #![allow(missing_docs, reason = "the names of figures end with their units")]
 
 pub mod area;

@@ -98,14 +98,14 @@ fn additions_of_a_frame_of_one_voxel() {
     assert_eq!((log.pixels, log.nodes.len()), (1, 1));
 }
 
-/// Figure 2: its cycles on a hardware that has a unit for every operation.
+/// Figure 2: its cycles on a design with a unit for every operation.
 #[test]
 fn cycles_of_a_frame_of_one_voxel() {
-    // The only fill vector is cleared, and the object made in three visits of a cycle; the record is taken, compared with its
-    // fill vector, reads its node (a miss), is drawn (a miss of its attribute) and marks its sample.
+    // The only fill vector is cleared, and the object is made in three visits of a cycle. The record is taken and compared
+    // with its fill vector. It reads its node (a miss), is drawn (a miss of its attribute) and marks its sample.
     let stored = 1 + 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1;
-    // With parents or the path on the stack the object is not stored, its node is not read, and it is drawn in the turn that
-    // makes it: three visits of a cycle, the attribute's miss, the sample's vector cleared and marked.
+    // With parents or the path on the stack the object is not stored, and its node is not read. The turn that makes it draws
+    // it: three visits of a cycle, the attribute's miss, and the sample's vector cleared and marked.
     let never_stored = 3 + (1 + 20) + 2;
     // Four by four samples: the attribute is read for each, and all wait for the first one's line. Then the joined word is
     // written seventeen times, once a cycle: it is cleared, and marked.

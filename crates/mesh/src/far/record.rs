@@ -129,7 +129,7 @@ impl Shader {
 pub struct SideOpacity {
     /// Over all directions, 0 to 1.
     pub scalar: f64,
-    /// The steepness from which on it is opaque; [`STEEPNESSES`]: none.
+    /// The steepness from which on it is opaque, or [`STEEPNESSES`] for none.
     pub solid_from: u8,
 }
 
@@ -375,7 +375,7 @@ pub struct Node {
     pub vertices: [u32; 2],
     /// Triangles of its surface: of an inner node decimated ones, if any.
     pub surface: u32,
-    /// Colours in the table of its surface; 0: each vertex has its own.
+    /// Colours in the table of its surface, or 0 where each vertex has its own.
     pub colors: u16,
     /// Whether normals are those of the triangles' planes, 1 or 0.
     pub is_flat: u8,

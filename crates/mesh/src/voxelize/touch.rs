@@ -1,7 +1,7 @@
 //! Does a triangle touch a cube? Exactly, in integers.
 //!
 //! They are apart if and only if one of these directions separates them: the cube's three axes, the nine products of an
-//! edge and an axis, and the triangle's normal, which is zero and separates nothing for a segment or a point.
+//! edge and an axis, and the triangle's normal. The normal of a segment or a point is zero and separates nothing.
 //!
 //! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61,
 //! as the normal is. Dotted with a corner that is below 2^93: `i128`.

@@ -176,7 +176,7 @@ pub fn explore<E: From<ModelError> + Send>(
         groups[place].push(at);
     }
     progress.begin("points", points.len() as u64);
-    // What waits for points before it, the next point, and the sink.
+    // Results that wait for earlier points, the next point, and the sink.
     let in_order = Mutex::new((BTreeMap::new(), 0, sink));
     // One after the other, so that the points for which the sink waits come first.
     let done = groups.into_iter().par_bridge().try_for_each(|group| {

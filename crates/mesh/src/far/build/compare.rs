@@ -1,5 +1,5 @@
-//! The choice among several representations of a node's triangles by error and bytes: each is drawn from four sides
-//! with the largest pixels for which it is used, and compared with the triangles in light and coverage.
+//! The choice among several representations of a node's triangles, by error and bytes. Each is drawn from four sides
+//! with the largest pixels for which it is used. Light and coverage are compared with those of the triangles.
 
 use glam::{DVec3, DVec4};
 use xxhash_rust::xxh3::xxh3_64;

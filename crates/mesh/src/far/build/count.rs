@@ -137,7 +137,7 @@ const PROBE_BITS: u32 = 22;
 const PARTS: f64 = 64.0;
 
 impl Crossing {
-    /// `past`: the distance behind the voxel at which the probe is stopped; `None` in the voxel.
+    /// `past` is the distance behind the voxel at which the probe is stopped, or `None` in the voxel.
     fn new(probe: usize, past: Option<f64>) -> Self {
         let most = (1u32 << (32 - PROBE_BITS)) - 1;
         let parts = past.map_or(0, |past| {

@@ -1,5 +1,6 @@
-//! Coarser nodes above the root, for pictures smaller than its grid; and the nodes that have voxels: not those almost as
-//! long as the one above, and not those whose triangles each cover many voxels and so take fewer bytes.
+//! Coarser nodes above the root, for pictures smaller than its grid, and the choice of nodes that have voxels.
+//!
+//! A node almost as long as the one above has none, nor one whose triangles each cover many voxels and take fewer bytes.
 
 use super::split::Branch;
 

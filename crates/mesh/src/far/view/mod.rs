@@ -86,7 +86,7 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth, world units, of what is opaque at the sample right of and below the pixel's middle; or infinite.
+    /// View-axis depth, world units, of the opaque surface at the sample right of and below the pixel's middle, or infinite.
     pub depth: Vec<f32>,
     /// The node that is opaque at that sample, or -1.
     pub node: Vec<i32>,

@@ -13,7 +13,7 @@ pub struct Choice {
     /// The size of the largest texel, pixels, at the nearest point of the box around the voxels that are left. 0 without
     /// voxels, infinite from within the box.
     pub texel_px: f64,
-    /// The farthest way from a face to what it shows, seen so.
+    /// The greatest distance between a face and the surface that it shows, pixels, likewise.
     pub behind_px: f64,
 }
 
