@@ -108,12 +108,25 @@ impl Exact {
             }
             is_certain &= least < -doubt && greatest > doubt;
         }
-        is_certain || self.covers_exactly(min, side, sample)
+        is_certain || self.covers_exactly(corner, side, q)
     }
 
+    /// [`Exact::covers`] in integers.
     #[cold]
-    fn covers_exactly(&self, min: [i32; 3], side: i32, [x, y]: [i32; 2]) -> bool {
-        self.outline(min, side, true).covers(self, x, y)
+    fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
+        (0..3).all(|j| {
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            let sides = [0, 1, 2, 3].map(|vertex| {
+                let mut at = corner;
+                for (axis, times) in [(k, vertex & 1), (l, vertex >> 1)] {
+                    for c in 0..3 {
+                        at[c] += self.edge[axis][c] * i64::from(side) * i64::from(times);
+                    }
+                }
+                side_of(cross(at, self.edge[j]), sample)
+            });
+            sides.contains(&1) && sides.contains(&-1)
+        })
     }
 
     #[cold]
@@ -173,7 +186,6 @@ struct Plane {
 
 impl Plane {
     /// The side of all samples of a window, 0 if there is no plane, or `None` where both sides may occur.
-    #[inline(always)]
     fn side(&self, window: &Window) -> Option<i8> {
         let [a, b, c] = self.float;
         let odd = |i: i32| f64::from(i) * 2.0 + 1.0;
@@ -195,8 +207,18 @@ impl Plane {
     }
 
     fn side_of_sample(&self, exact: &Exact, x: i32, y: i32) -> i8 {
-        let side = self.side(&Window::of([x, y, x, y]));
-        side.unwrap_or_else(|| side_of(self.exact, exact.sample([x, y])))
+        let [a, b, c] = self.float;
+        let x_part = a * (f64::from(x) * 2.0 + 1.0);
+        let y_part = b * (f64::from(y) * 2.0 + 1.0);
+        let value = x_part + y_part + c;
+        let doubt = (x_part.abs() + y_part.abs() + c.abs()) * PLANE_ERROR;
+        if value > doubt {
+            1
+        } else if value < -doubt {
+            -1
+        } else {
+            side_of(self.exact, exact.sample([x, y]))
+        }
     }
 }
 

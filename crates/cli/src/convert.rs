@@ -45,8 +45,8 @@ pub(super) struct ConvertArgs {
     /// Triangles below which a node of a .far is a leaf [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     leaf_triangles: Option<u32>,
-    /// Voxels along the longest side of a .far's node (64), or cells along each axis of the grids of a
-    /// .tvx, such as 4,8,16 (16)
+    /// Voxels along the longest side of a .far's node [default: 64]. For a .tvx, cells along each axis of
+    /// its grids, such as 4,8,16 [default: 16]
     #[arg(long, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(2..=255))]
     grid: Vec<u32>,
