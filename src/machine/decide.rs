@@ -173,12 +173,12 @@ fn verdict<P: Probe, L: CageCoordinate>(
         return Verdict::Drop;
     }
     apply_level_of_detail(dp, c, record);
+    let across_near = has_near_plane && crosses_near(dp, c, record);
     let is_drawn = match c.outline {
         OutlineRule::Silhouette => record.cube.solid,
-        OutlineRule::Box => is_in_one_sample(dp, c, record),
-        OutlineRule::Centre => {
-            record.cube.solid && !crosses_near(dp, c, record) && is_at_most_a_sample(dp, c, record)
-        }
+        OutlineRule::Box if across_near => record.cube.solid && is_at_most_a_sample(dp, c, record),
+        OutlineRule::Box => is_in_one_sample(c, record),
+        OutlineRule::Centre => record.cube.solid && is_at_most_a_sample(dp, c, record),
     };
     let is_last = record.cube.level >= c.level_bound;
     // Rounded screen positions cannot separate the vertices of such a small record.
@@ -192,17 +192,14 @@ fn verdict<P: Probe, L: CageCoordinate>(
         OutlineRule::Box => (Verdict::DrawBox, is_last || is_least()),
         OutlineRule::Centre => (Verdict::DrawCentre, is_last),
     };
-    if is_drawn {
-        return draw;
-    }
-    if !is_at_bound {
+    if !is_drawn && !is_at_bound {
         return Verdict::Subdivide;
     }
-    counts.at_level_bound += 1;
-    if crosses_near(dp, c, record) {
-        Verdict::DrawCentre
-    } else {
-        draw
+    counts.at_level_bound += u64::from(!is_drawn);
+    // In one sample, or not to be divided: the centre decides on which side of the near plane it is.
+    match across_near {
+        true => Verdict::DrawCentre,
+        false => draw,
     }
 }
 
@@ -220,7 +217,6 @@ fn is_hidden<P: Probe, L: CageCoordinate>(
             !is_seen(dp, c, canvas, record)
         } else {
             record.place.quad.level < c.levels
-                && !crosses_near(dp, c, record)
                 && is_at_most_a_sample(dp, c, record)
                 && first_undrawn(dp, c, &canvas.fill, record).is_none()
         }
@@ -260,13 +256,8 @@ fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
 }
 
 /// The image-order paper's rule, `any`: a solid whose box lies in one sample.
-fn is_in_one_sample<P: Probe, L: CageCoordinate>(
-    dp: &mut Datapath<P>,
-    c: &Constants,
-    record: &Record<L>,
-) -> bool {
-    let one = record.place.quad.level == c.levels && record.place.inside;
-    if !one || crosses_near(dp, c, record) {
+fn is_in_one_sample<L: CageCoordinate>(c: &Constants, record: &Record<L>) -> bool {
+    if record.place.quad.level != c.levels || !record.place.inside {
         return false;
     }
     // A box within one sample fulfils a level of detail of one sample or more.
