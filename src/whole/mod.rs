@@ -1,8 +1,8 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. A signal
-//! handler must call [`remove_unfinished`] before it ends the program. The files of a killed process are removed by the
-//! next one that writes to the folder. It recognises them by name and by lock, which ends with the process.
+//! A file is written without a name and named when it is whole. So a killed process leaves nothing. Where a system or a
+//! disk has no nameless files, it is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`. A
+//! signal handler must call [`remove_unfinished`] before it ends the program.
 
 mod temporary;
 
@@ -10,10 +10,8 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
-pub use temporary::{FolderLock, TemporaryGuard, remove_unfinished, temporary_folder};
-use temporary::{in_progress, temporary, tidy};
+pub use temporary::{TemporaryFolder, remove_unfinished};
+use temporary::{Unfinished, unfinished};
 
 /// Checks whether a file may be written, before long work. Errors: [`WholeError::Exists`] if it exists and may not be
 /// overwritten, [`WholeError::NoFolder`] without a folder for it, otherwise [`WholeError::Io`].
@@ -87,16 +85,15 @@ pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
     }
 }
 
-/// A written file with a temporary name, removed if it is never renamed.
+/// A written file that is not yet named, and is removed if it never is.
 #[derive(Debug)]
 pub struct Prepared {
-    file: NamedTempFile,
+    file: Unfinished,
     path: PathBuf,
     overwrite: bool,
-    guard: TemporaryGuard,
 }
 
-/// Writes a file under its temporary name. Its folder is created if the folder above exists.
+/// Writes a file without naming it yet. Its folder is created if the folder above exists.
 pub fn prepare(
     path: &Path,
     overwrite: bool,
@@ -105,24 +102,22 @@ pub fn prepare(
     let path = check_place(path, overwrite)?;
     let folder = folder_of(&path);
     make_folder(folder)?;
-    tidy(folder);
-    let (mut file, guard) = temporary(folder, &path).map_err(|e| failed(folder, e))?;
-    fill(file.as_file_mut()).map_err(|e| failed(&path, e))?;
+    let mut file = Unfinished::new(folder, &path).map_err(|e| failed(folder, e))?;
+    fill(file.file()).map_err(|e| failed(&path, e))?;
     if let Ok(old) = fs::metadata(&path) {
         // Impossible for some files of other owners, which are replaced all the same.
-        let _ = file.as_file().set_permissions(old.permissions());
+        let _ = file.file().set_permissions(old.permissions());
     }
     Ok(Prepared {
         file,
         path,
         overwrite,
-        guard,
     })
 }
 
-/// Renames files: all of them, or, if one fails, none that is new.
+/// Names files: all of them, or, if one fails, none that is new.
 pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
-    let mut list = in_progress();
+    let mut list = unfinished();
     let mut kept: Vec<PathBuf> = Vec::new();
     let mut result = Ok(());
     let mut files = files.into_iter();
@@ -130,26 +125,19 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
         file,
         path,
         overwrite,
-        guard,
     } in files.by_ref()
     {
-        let (_open, temporary) = file.into_parts();
         let is_new = fs::symlink_metadata(&path).is_err();
-        let named = match overwrite {
-            true => temporary.persist(&path),
-            false => temporary.persist_noclobber(&path),
-        };
-        list.forget(guard);
-        match named {
+        match file.name(&path, overwrite, &mut list) {
             Ok(()) if is_new => kept.push(path),
             Ok(()) => {}
             Err(e) => {
                 for path in &kept {
                     let _ = fs::remove_file(path);
                 }
-                result = Err(match e.error.kind() {
+                result = Err(match e.kind() {
                     io::ErrorKind::AlreadyExists => WholeError::Exists(path),
-                    _ => failed(&path, e.error),
+                    _ => failed(&path, e),
                 });
                 break;
             }
@@ -228,8 +216,14 @@ mod tests {
         write(&path, b"three", true).unwrap();
         let broken = write_with(&path, true, |file| {
             file.write_all(b"half")?;
+            // Without a name here, or with a temporary one.
             let within = names(&at("new"));
-            assert!(within[0].starts_with(".shiftvox-a.txt-") && within[0].ends_with(".tmp"));
+            let is_temporary = |name: &String| name.starts_with(".shiftvox-a.txt-");
+            assert!(
+                within.iter().all(|n| n == "a.txt" || is_temporary(n)),
+                "{within:?}"
+            );
+            assert_eq!(within.len(), if cfg!(target_os = "linux") { 1 } else { 2 });
             Err(io::Error::other("power cut"))
         });
         assert!(broken.is_err());
@@ -296,34 +290,40 @@ mod tests {
     }
 
     #[test]
-    fn abandoned_files_and_folders_are_removed_and_those_in_use_are_not() {
-        let (folder, at) = folder();
-        let (used, _in_use) = temporary_folder(folder.path()).unwrap();
-        fs::create_dir(at(".shiftvox-left.tmp")).unwrap();
-        for name in [
-            ".shiftvox-left.tmp/rows.hex",
-            ".shiftvox-a.far-123456.tmp",
-            ".shiftvox-b.far-123456.tmp",
-            ".other.tmp",
-            ".shiftvox-a.far",
-        ] {
-            fs::write(at(name), b"half").unwrap();
+    fn files_with_and_without_a_name_are_alike() {
+        for overwrite in [false, true] {
+            for make in [Unfinished::new, Unfinished::with_name] {
+                let (folder, at) = folder();
+                let path = at("a");
+                drop(make(folder.path(), &path).unwrap());
+                for is_first in [true, false] {
+                    let mut new = make(folder.path(), &path).unwrap();
+                    new.file().write_all(b"x").unwrap();
+                    let named = new.name(&path, overwrite, &mut unfinished());
+                    assert_eq!(named.is_ok(), is_first || overwrite);
+                }
+                assert_eq!(names(folder.path()), ["a"]);
+                assert_eq!(fs::read(&path).unwrap(), b"x");
+                assert!(
+                    unfinished()
+                        .iter()
+                        .all(|left| !left.starts_with(folder.path()))
+                );
+            }
         }
-        // Of another process that still writes: a lock is that of an open file.
-        let other = File::open(at(".shiftvox-b.far-123456.tmp")).unwrap();
-        other.lock().unwrap();
-        // As another process would: this one has looked here already.
-        in_progress().tidied.retain(|known| known != folder.path());
+    }
+
+    #[test]
+    fn nothing_of_the_user_is_removed() {
+        let (folder, at) = folder();
+        fs::create_dir(at(".shiftvox-mine.tmp")).unwrap();
+        fs::write(at(".shiftvox-mine.tmp/notes"), b"mine").unwrap();
+        fs::write(at(".shiftvox-a.far-123456.tmp"), b"mine").unwrap();
+        let before = names(folder.path());
         write(&at("a.far"), b"whole", false).unwrap();
-        let used = used.path().file_name().unwrap().to_str().unwrap();
-        let mut left = [
-            ".other.tmp",
-            ".shiftvox-a.far",
-            ".shiftvox-b.far-123456.tmp",
-            used,
-            "a.far",
-        ];
-        left.sort_unstable();
-        assert_eq!(names(folder.path()), left);
+        drop(TemporaryFolder::within(folder.path()).unwrap());
+        fs::remove_file(at("a.far")).unwrap();
+        assert_eq!(names(folder.path()), before);
+        assert!(at(".shiftvox-mine.tmp/notes").exists());
     }
 }

@@ -1,7 +1,6 @@
-//! Temporary files and folders: listed for signal handlers, and locked, so that other processes recognise abandoned
-//! ones.
+//! Files without a name yet, and named temporary files and folders, which are listed for signal handlers.
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -16,26 +15,18 @@ const SUFFIX: &str = ".tmp";
 const MOST_NAME: usize = 100;
 const MOST_TRIES: u32 = 100;
 
-pub(super) struct InProgress {
-    unfinished: Vec<PathBuf>,
-    /// Folders that were searched for abandoned files.
-    pub(super) tidied: Vec<PathBuf>,
-}
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-static IN_PROGRESS: Mutex<InProgress> = Mutex::new(InProgress {
-    unfinished: Vec::new(),
-    tidied: Vec::new(),
-});
-
-pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
-    IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
+/// Temporary paths of this process. While this is held, no signal handler ends it.
+pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes all unfinished files of this process, then calls `end`, during which no file is renamed: for signal
 /// handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
-    let mut list = in_progress();
-    for path in list.unfinished.drain(..) {
+    let mut list = unfinished();
+    for path in list.drain(..) {
         // Other threads may still add files to a folder, and a file may belong to another user.
         for _ in 0..MOST_TRIES {
             let removed = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
@@ -47,130 +38,161 @@ pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     end()
 }
 
-/// A temporary file or folder, listed for removal until this is dropped.
+/// A temporary path, listed for removal by signal handlers until this is dropped.
 #[derive(Debug)]
-pub struct TemporaryGuard(PathBuf);
+pub(super) struct Listed(PathBuf);
 
-impl TemporaryGuard {
-    /// Makes, lists and locks a file or a folder, without an interruption by a signal.
-    fn around<T: AsRef<Path>>(
-        make: impl Fn() -> io::Result<T>,
-        lock: impl Fn(&T) -> bool,
-    ) -> io::Result<(T, Self)> {
-        loop {
-            let mut list = in_progress();
-            let made = make()?;
-            let path = made.as_ref().to_owned();
-            list.unfinished.push(path.clone());
-            drop(list);
-            let guard = Self(path);
-            // Otherwise another process removed it before it was locked. Without locks none removes it.
-            if !lock(&made) || guard.0.exists() {
-                return Ok((made, guard));
-            }
-        }
+impl Listed {
+    /// Makes and lists a file or a folder, without an interruption by a signal.
+    fn around<T: AsRef<Path>>(make: impl Fn() -> io::Result<T>) -> io::Result<(T, Self)> {
+        let mut list = unfinished();
+        let made = make()?;
+        let path = made.as_ref().to_owned();
+        list.push(path.clone());
+        Ok((made, Self(path)))
     }
 }
 
-impl Drop for TemporaryGuard {
+impl Drop for Listed {
     fn drop(&mut self) {
-        in_progress().unfinished.retain(|path| *path != self.0);
+        unfinished().retain(|path| *path != self.0);
     }
 }
 
-impl InProgress {
-    pub(super) fn forget(&mut self, guard: TemporaryGuard) {
-        self.unfinished.retain(|path| *path != guard.0);
-        std::mem::forget(guard);
-    }
-}
-
-/// Creates a temporary folder. It is removed when it is dropped; if the process is killed, by the next one that writes
-/// there.
-pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
-    tidy(parent);
-    let mut builder = Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
-    let make = || {
-        let folder = builder.tempdir_in(parent)?;
-        let open = File::open(folder.path()).ok();
-        Ok(Opened(folder, open))
-    };
-    let lock = |made: &Opened| made.1.as_ref().is_some_and(|open| open.lock().is_ok());
-    let made = TemporaryGuard::around(make, lock);
-    let (Opened(folder, lock), guard) = made.map_err(|e| failed(parent, e))?;
-    let lock = FolderLock {
-        _guard: guard,
-        _lock: lock,
-    };
-    Ok((folder, lock))
-}
-
-struct Opened(TempDir, Option<File>);
-
-impl AsRef<Path> for Opened {
-    fn as_ref(&self) -> &Path {
-        self.0.path()
-    }
-}
-
-/// Protects a temporary folder from other processes.
+/// A folder that is removed with all its contents when it is dropped, or by [`remove_unfinished`].
 #[derive(Debug)]
-pub struct FolderLock {
-    _guard: TemporaryGuard,
-    _lock: Option<File>,
+pub struct TemporaryFolder {
+    // Removed before it leaves the list.
+    folder: TempDir,
+    _listed: Listed,
 }
 
-pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, TemporaryGuard)> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let end = (0..=name.len().min(MOST_NAME))
-        .rev()
-        .find(|&end| name.is_char_boundary(end));
-    let prefix = format!("{PREFIX}{}-", &name[..end.unwrap_or(0)]);
-    let mut builder = Builder::new();
-    builder.prefix(&prefix).suffix(SUFFIX);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file; the process's mask applies.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+impl TemporaryFolder {
+    pub fn within(parent: &Path) -> Result<Self, WholeError> {
+        let mut builder = Builder::new();
+        builder.prefix(PREFIX).suffix(SUFFIX);
+        let made = Listed::around(|| builder.tempdir_in(parent));
+        let (folder, listed) = made.map_err(|e| failed(parent, e))?;
+        Ok(Self {
+            folder,
+            _listed: listed,
+        })
     }
-    let lock = |file: &NamedTempFile| file.as_file().lock().is_ok();
-    TemporaryGuard::around(|| builder.tempfile_in(folder), lock)
+
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
 }
 
-/// Removes the abandoned files of other processes in a folder, when this process first writes to it.
-pub(super) fn tidy(folder: &Path) {
-    {
-        let mut list = in_progress();
-        if list.tidied.iter().any(|known| known == folder) {
-            return;
+/// A file that has no name, or a temporary one.
+#[derive(Debug)]
+pub(super) enum Unfinished {
+    /// It disappears with the process, however that ends.
+    Nameless(File),
+    Named(NamedTempFile, Listed),
+}
+
+impl Unfinished {
+    /// A new file, later to be named `path` in `folder`.
+    pub(super) fn new(folder: &Path, path: &Path) -> io::Result<Self> {
+        match nameless(folder) {
+            Some(file) => Ok(Self::Nameless(file)),
+            None => Self::with_name(folder, path),
         }
-        list.tidied.push(folder.to_owned());
     }
-    // Errors are harmless.
-    let Ok(entries) = fs::read_dir(folder) else {
-        return;
-    };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        let Ok(kind) = entry.file_type() else {
-            continue;
+
+    pub(super) fn with_name(folder: &Path, path: &Path) -> io::Result<Self> {
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
+        let (file, listed) = Listed::around(|| named(folder, path, |to| options.open(to)))?;
+        Ok(Self::Named(file, listed))
+    }
+
+    pub(super) fn file(&mut self) -> &mut File {
+        match self {
+            Self::Nameless(file) => file,
+            Self::Named(file, _) => file.as_file_mut(),
+        }
+    }
+
+    /// Names it, in place of another file if it may. `list` is that of [`unfinished`].
+    pub(super) fn name(
+        self,
+        path: &Path,
+        overwrite: bool,
+        list: &mut Vec<PathBuf>,
+    ) -> io::Result<()> {
+        let temporary = match self {
+            Self::Nameless(file) if !overwrite => return link(&file, path),
+            // A link replaces nothing, but a renamed file does.
+            Self::Nameless(file) => {
+                named(super::folder_of(path), path, |to| link(&file, to))?.into_temp_path()
+            }
+            Self::Named(file, listed) => {
+                list.retain(|path| *path != listed.0);
+                std::mem::forget(listed);
+                file.into_temp_path()
+            }
         };
-        if (kind.is_file() || kind.is_dir()) && name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
-            remove_if_left(&entry.path(), kind.is_dir());
-        }
+        Ok(match overwrite {
+            true => temporary.persist(path)?,
+            false => temporary.persist_noclobber(path)?,
+        })
     }
 }
 
-fn remove_if_left(path: &Path, is_folder: bool) {
-    let Ok(file) = File::options().read(true).write(!is_folder).open(path) else {
-        return;
-    };
-    match file.try_lock() {
-        Ok(()) if is_folder => drop(fs::remove_dir_all(path)),
-        Ok(()) => drop(fs::remove_file(path)),
-        Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
-    }
+/// Makes something with a temporary name that tells the later one.
+fn named<T>(
+    folder: &Path,
+    path: &Path,
+    make: impl FnMut(&Path) -> io::Result<T>,
+) -> io::Result<NamedTempFile<T>> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = &name[..name.floor_char_boundary(MOST_NAME)];
+    let prefix = format!("{PREFIX}{name}-");
+    Builder::new()
+        .prefix(&prefix)
+        .suffix(SUFFIX)
+        .make_in(folder, make)
+}
+
+/// A file without a name, where the system has such files and can name them later.
+#[cfg(target_os = "linux")]
+fn nameless(folder: &Path) -> Option<File> {
+    use rustix::fs::{Mode, OFlags};
+
+    let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
+    let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(0o666)).ok()?);
+    open_path(&file).exists().then_some(file)
+}
+
+#[cfg(target_os = "linux")]
+fn link(file: &File, to: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD};
+
+    let from = open_path(file);
+    Ok(rustix::fs::linkat(
+        CWD,
+        from,
+        CWD,
+        to,
+        AtFlags::SYMLINK_FOLLOW,
+    )?)
+}
+
+#[cfg(target_os = "linux")]
+fn open_path(file: &File) -> PathBuf {
+    use std::os::fd::AsRawFd;
+
+    PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn nameless(_: &Path) -> Option<File> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
 }

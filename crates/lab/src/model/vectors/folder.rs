@@ -74,7 +74,7 @@ pub(super) fn write<T>(
     let parent = whole::folder_of(path);
     whole::make_folder(parent)?;
     // Removed with everything left in it, whatever happens.
-    let (shelter, _in_use) = whole::temporary_folder(parent)?;
+    let shelter = whole::TemporaryFolder::within(parent)?;
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
