@@ -17,8 +17,7 @@ fn presets_can_be_read_and_written_and_every_setting_is_explained() {
     let adders = |stage| paper.unit(stage, OpClass::Add).unwrap().count;
     assert_eq!((adders(Stage::VertexPool), adders(Stage::Pop)), (57, 8));
     assert_eq!(paper.unit(Stage::VertexPool, OpClass::Shift), None);
-    let text = Hardware::preset("huge").unwrap_err().to_string();
-    assert!(text.contains("tiny, paper, light and wide"), "{text}");
+    assert!(Hardware::preset("huge").is_err());
 }
 
 /// A part of the tiny hardware, its replacement, and a part of the error.
