@@ -276,13 +276,16 @@ mod tests {
 
     #[test]
     fn bits_by_hand() {
-        let span = |least, greatest| NumberSpan { least, greatest }.bits();
-        assert_eq!(span(0, 0), 0);
-        assert_eq!(span(0, 255), 8);
-        assert_eq!(span(0, 256), 9);
-        assert_eq!(span(-1, 0), 1);
-        assert_eq!(span(-128, 127), 8);
-        assert_eq!(span(-129, 0), 9);
-        assert_eq!(span(-1, 128), 9);
+        let spans = [
+            (0, 0),
+            (0, 255),
+            (0, 256),
+            (-1, 0),
+            (-128, 127),
+            (-129, 0),
+            (-1, 128),
+        ];
+        let bits = spans.map(|(least, greatest)| NumberSpan { least, greatest }.bits());
+        assert_eq!(bits, [0, 8, 9, 1, 8, 9, 9]);
     }
 }
