@@ -9,7 +9,7 @@ mod table;
 
 pub use rows::{CostError, Goal, Quantity};
 pub use sums::{
-    Breakdown, Costing, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies,
-    memory_energy_of, operation_of, tallies,
+    Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
+    operation_of,
 };
 pub use table::{Cost, CostTable, Fit};

@@ -17,7 +17,7 @@ pub trait Workload {
     /// Makes the first records.
     ///
     /// # Errors
-    /// Those of the workload.
+    /// Of the workload, as of the other methods.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
     /// Executes a record's turn. New records go into the empty `children`, nearest first, at most eight.
@@ -46,7 +46,7 @@ pub trait Workload {
 /// A new record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
-    /// The workload's number of it.
+    /// The workload's number.
     pub item: u32,
     /// Place in the occlusion order, 0 (nearest) to 7.
     pub place: u8,
@@ -54,14 +54,12 @@ pub struct Child {
     pub image_node: ImageNode,
 }
 
-/// A node of a quadtree.
+/// A node of a quadtree: level (0 = root), column and row among `2^level`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(missing_docs, reason = "names of the fields say what they are")]
 pub struct ImageNode {
-    /// Level, 0 = root.
     pub level: u32,
-    /// Column among `2^level`.
     pub x: u32,
-    /// Row among `2^level`.
     pub y: u32,
 }
 
@@ -122,7 +120,7 @@ struct Done {
     passes: u64,
 }
 
-/// The probe of a turn: operations as passes through units, and accesses, by stage.
+/// The probe of a turn: passes through units, and accesses, by stage.
 #[derive(Debug)]
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],

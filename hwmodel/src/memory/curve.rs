@@ -5,16 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::hash::NumberMap;
 
-/// One size of cache and its misses.
+/// One size of cache, in lines and bytes, and its misses.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct MissPoint {
-    /// Size of the cache, in lines.
     pub lines: u64,
-    /// Size of the cache, in bytes.
     pub bytes: u64,
-    /// Lines that were fetched.
     pub misses: u64,
-    /// Misses divided by accesses, 0..=1; 0 without accesses.
+    /// `misses` divided by accesses, 0 to 1; 0 without accesses.
     pub miss_rate: f64,
 }
 
@@ -87,7 +85,7 @@ impl MissCurve {
         let now = self.now;
         self.now += 1;
         if let Some(before) = self.last.insert(line, now) {
-            // Lines accessed since: all known ones less those last accessed up to `before`, including this one.
+            // Lines accessed since: all less those last accessed up to `before`.
             let distance = self.last.len() as u64 - u64::from(self.marks_up_to(before));
             self.note(distance as usize);
             self.mark(before, 0u32.wrapping_sub(1));
@@ -136,7 +134,7 @@ impl MissCurve {
         }
     }
 
-    /// Number of accesses; one that spans lines counts once per line.
+    /// One that spans lines counts once per line.
     pub fn accesses(&self) -> u64 {
         self.accesses
     }

@@ -21,12 +21,10 @@ named! {
 /// Bits of a record by its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the other fields are as in `RecordKind`")]
 pub struct RecordBits {
-    /// Of [`RecordKind::Clip`].
     pub clip: u32,
-    /// Of [`RecordKind::Screen`].
     pub screen: u32,
-    /// Of [`RecordKind::Finest`].
     pub finest: u32,
     /// First octree level of finest voxels, if known.
     pub finest_level: Option<u32>,

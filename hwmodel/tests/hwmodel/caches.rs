@@ -1,7 +1,7 @@
-//! Miss curves and traffic against plain models.
+//! Caches, miss curves and traffic against plain models.
 
 use crate::common::at;
-use hwmodel::memory::{MemoryProbe, MissCurve, Widths};
+use hwmodel::memory::{Cache, MemoryProbe, MissCurve, Widths};
 use hwmodel::{Memory, Probe, Stage};
 use proptest::prelude::*;
 
@@ -53,6 +53,22 @@ fn addresses() -> impl Strategy<Value = Vec<u64>> {
 }
 
 proptest! {
+    /// Each set is a cache of its own lines.
+    #[test]
+    fn a_cache_is_a_curve_per_set(
+        addresses in addresses(), sets in 1u32..9, ways in 1u32..9, line in 1u32..100,
+    ) {
+        let mut cache = Cache::new(sets * ways * line, ways, line);
+        let mut curves = vec![MissCurve::new(1); sets as usize];
+        for &address in &addresses {
+            cache.access(address);
+            let number = address / u64::from(line);
+            curves[(number % u64::from(sets)) as usize].access(number, 1);
+        }
+        let misses: u64 = curves.iter().map(|curve| curve.misses(ways.into())).sum();
+        prop_assert_eq!((cache.hits(), cache.misses()), (addresses.len() as u64 - misses, misses));
+    }
+
     #[test]
     fn the_curve_is_all_fully_associative_caches(addresses in addresses(), line in 1u32..100) {
         check_curve(&addresses, line);

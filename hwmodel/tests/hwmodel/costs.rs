@@ -2,7 +2,7 @@
 
 use crate::common::at;
 use hwmodel::cost::{
-    Cost, CostError, CostTable, Costing, Fit, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
+    Cost, CostError, CostTable, Fit, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
@@ -201,7 +201,7 @@ fn energy_line_by_line() {
         for (class, bits, times) in operations {
             counter.op(class, bits, at(stage, 3), times);
         }
-        let sum = energy_of(&counter, &table, Costing { shifts }).unwrap();
+        let sum = energy_of(&counter, &table, shifts).unwrap();
         let lines = sum.lines.iter();
         let lines = lines.map(|line| format!("{} {} {}", line.operation, line.width, line.times));
         assert_eq!(lines.collect::<Vec<_>>().join(", "), expected);

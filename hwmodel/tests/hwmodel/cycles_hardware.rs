@@ -32,8 +32,8 @@ clock_mhz = 50.0 -> clock_mhz = 0.0 -> clock_mhz is 0.0; it
 clock_mhz = 50.0 -> clock_mhz = 1e300 -> clock_mhz is 1e300; it must be 0.001 to 1000000
 name = "tiny" -> name = " " -> name is " "; it must be a line of text
 name = "tiny" -> name = "a\nb" -> name is "a\nb"; it must be
-wires = ["shift"] -> wires = ["shift", "add"] -> `add` is among `wires`, which take no units, and has a [units.add]
-wires = ["shift"] -> wires = [] -> nothing does `shift`; give it a [units.shift]
+wires = ["shift"] -> wires = ["shift", "add"] -> `add` is among `wires`, which take no units, and has a [units]
+wires = ["shift"] -> wires = [] -> `shift` has neither a [units] nor a place among `wires`
 add = { count = 1 -> add = { count = 0 -> units.add.count is 0
 min_max = { count = 1 -> min_max = { count = 0 -> units.min_max.count is 0
 interval = 1, width -> interval = 0, width -> units.add.interval is 0; it must be 1 to 16777216

@@ -123,7 +123,6 @@ fn check_all<T: Number>(sizes: (u32, u32), (a, b, places): (i64, i64, u32)) {
     run(SELECT, b, &|dp| dp.select(false, x, y).raw());
     run(COMPARE, (a < b).into(), &|dp| dp.lt(x, y).into());
     run(COMPARE, (a <= b).into(), &|dp| dp.le(x, y).into());
-    run(COMPARE, (a == b).into(), &|dp| dp.equal(x, y).into());
     run(COMPARE, (a < 0).into(), &|dp| dp.is_negative(x).into());
     run(COMPARE, (a > 0).into(), &|dp| dp.is_positive(x).into());
     run(COMPARE, (a == 0).into(), &|dp| dp.is_zero(x).into());
@@ -262,18 +261,6 @@ fn formats_have_16_to_64_bits_with_a_bit_beside_sign_and_fraction() {
         let wide = format.wide();
         let found = (format.bits(), format.frac(), wide.bits(), wide.frac());
         assert_eq!(found, (bits, frac, 64.min(2 * bits), frac));
-        let (least, greatest) = (least(bits), greatest(bits));
-        assert_eq!(
-            (format.min().into(), format.max().into()),
-            (least, greatest)
-        );
-        for value in [least - 1, least, greatest, greatest + 1] {
-            let holds = i64::try_from(value).is_ok_and(|value| format.holds(value));
-            assert_eq!(
-                holds,
-                (least..=greatest).contains(&value),
-                "{value} in {bits} bits"
-            );
-        }
+        assert_eq!(i128::from(format.max()), greatest(bits));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hwmodel::cost::{CostTable, Costing, Goal, ShiftUnits};
+use hwmodel::cost::{CostTable, Goal, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
@@ -148,7 +148,7 @@ impl HardwareArgs {
         if let Some(path) = &self.costs {
             let name = path.display().to_string();
             let text = read(path)?;
-            let own = CostTable::empty()
+            let own = CostTable::default()
                 .with_overrides(&name, &text)
                 .map_err(CliError::input)?;
             // An operation that the model never prices is a typing error.
@@ -165,11 +165,9 @@ impl HardwareArgs {
         }
         Ok(Prices {
             table,
-            costing: Costing {
-                shifts: match self.shifters {
-                    true => ShiftUnits::Variable,
-                    false => ShiftUnits::Wires,
-                },
+            shifts: match self.shifters {
+                true => ShiftUnits::Variable,
+                false => ShiftUnits::Wires,
             },
             goal: self.goal,
         })

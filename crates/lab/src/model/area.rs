@@ -179,7 +179,7 @@ fn shifters(
     hardware: &Hardware,
     prices: &Prices,
 ) -> BTreeMap<(Stage, u32), u64> {
-    match prices.costing.shifts {
+    match prices.shifts {
         ShiftUnits::Wires if hardware.sequential => counted.shifts.variable_in_steps(),
         ShiftUnits::Wires => counted.shifts.variable(),
         ShiftUnits::Variable => {

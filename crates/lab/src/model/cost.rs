@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
+    Breakdown, CostError, CostTable, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
@@ -21,7 +21,7 @@ use shiftvox::project::FrameSetup;
 #[derive(Debug, Clone)]
 pub struct Prices {
     pub table: CostTable,
-    pub costing: Costing,
+    pub shifts: ShiftUnits,
     pub goal: Goal,
 }
 
@@ -30,7 +30,7 @@ impl Prices {
     pub fn shipped() -> Result<Self, CostError> {
         Ok(Self {
             table: CostTable::load_shipped()?,
-            costing: Costing::default(),
+            shifts: ShiftUnits::Wires,
             goal: Goal::Area,
         })
     }
@@ -182,8 +182,8 @@ pub fn operations_energy(
     shifts: &ShiftProbe,
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
-    let mut sum = energy_of(counter, &prices.table, prices.costing)?;
-    if prices.costing.shifts == ShiftUnits::Wires {
+    let mut sum = energy_of(counter, &prices.table, prices.shifts)?;
+    if prices.shifts == ShiftUnits::Wires {
         let mut by_bits = BTreeMap::<u32, u64>::new();
         for ((_, bits), times) in shifts.variable() {
             *by_bits.entry(bits).or_default() += times;
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(counter.ops_of(OpClass::Shift), 10);
         for (shifts_are, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
             let prices = Prices {
-                costing: Costing { shifts: shifts_are },
+                shifts: shifts_are,
                 ..prices.clone()
             };
             let sum = operations_energy(&counter, &shifts, &prices).unwrap();

@@ -3,7 +3,7 @@
 
 use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable, Tally, energy_of_tallies};
-use hwmodel::cycles::{self, Hardware, HardwareError};
+use hwmodel::cycles::{self, Hardware};
 use hwmodel::memory::{Cache, PIXEL_BITS};
 use serde::{Deserialize, Serialize};
 
@@ -50,11 +50,8 @@ pub struct RayRun {
     error: CoverageError,
 }
 
-fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
-    Cache::new(u64::from(cache.bytes), cache.ways, cache.line_bytes).map_err(|error| {
-        // `Hardware::check` lets none through that this refuses.
-        ModelError::Hardware(HardwareError::Syntax(error.to_string()))
-    })
+fn cache_of(cache: &cycles::Cache) -> Cache {
+    Cache::new(cache.bytes, cache.ways, cache.line_bytes)
 }
 
 /// Casts a frame's rays beside node caches of several sizes. `exact` is the true picture.
@@ -70,9 +67,9 @@ pub fn cast(
     let mut nodes = Vec::new();
     for &bytes in node_caches {
         let like = hardware.node_cache;
-        nodes.push(cache_of(&cycles::Cache { bytes, ..like })?);
+        nodes.push(cache_of(&cycles::Cache { bytes, ..like }));
     }
-    let mut attributes = cache_of(&hardware.attribute_cache)?;
+    let mut attributes = cache_of(&hardware.attribute_cache);
     let node_entry = u64::from(hardware.node_cache.entry_bytes);
     let attribute_entry = u64::from(hardware.attribute_cache.entry_bytes);
     let view = graph.view();

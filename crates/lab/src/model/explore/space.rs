@@ -206,7 +206,7 @@ impl Space {
         });
         let impossible =
             |error: HardwareError| wrong(&format!("point {number}, {}", in_words(&values)), error);
-        let syntax = |error: toml::de::Error| HardwareError::Syntax(error.message().to_owned());
+        let syntax = |error: toml::de::Error| HardwareError(error.message().to_owned());
         let drawing: Drawing = drawing
             .try_into()
             .map_err(|error| impossible(syntax(error)))?;
