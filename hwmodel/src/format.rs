@@ -47,9 +47,6 @@ pub enum FormatError {
 
 impl Format {
     /// A format of `bits` (16..=64) with `frac` (0..=bits-2) fraction bits.
-    ///
-    /// # Errors
-    /// When either number is out of its range.
     pub const fn new(bits: u32, frac: u32) -> Result<Self, FormatError> {
         if bits < MIN_BITS || bits > MAX_BITS {
             return Err(FormatError::Bits(bits));

@@ -1,5 +1,4 @@
-//! Shifts by how far their places vary, from the places of every line that shifts. A shift that is always by one place
-//! is wires; others need a shifter.
+//! How far the places of each shift vary. A shift that is always by one place is wires; others need a shifter.
 
 use std::collections::BTreeMap;
 use std::panic::Location;
@@ -60,7 +59,7 @@ impl Seen {
     }
 }
 
-/// A probe that records by how many places every line shifts.
+/// A probe of the places by which every line shifts.
 ///
 /// ```
 /// use hwmodel::shifts::{ShiftKind, ShiftProbe};

@@ -1,7 +1,4 @@
-//! Area, delay and energy of operations, from tables in which every row names its source.
-//!
-//! The crate ships `tables/area.toml` and `tables/energy.toml`. A user's own rows take precedence. An operation without
-//! rows is an error.
+//! Area, delay and energy of operations, from tables in which every row names its source (`tables/*.toml`, and a user's).
 
 mod rows;
 mod sums;

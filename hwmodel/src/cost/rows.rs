@@ -53,7 +53,7 @@ impl Goal {
     }
 }
 
-/// Why a table cannot be read (the file, the row and the problem) or has no answer (the request and how to add a row).
+/// The problem of a table or of a request, and how to add a row.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct CostError(pub(super) String);

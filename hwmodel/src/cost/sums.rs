@@ -129,9 +129,6 @@ fn tallies(counter: &Counter, shifts: ShiftUnits) -> Vec<Tally> {
 /// assert!((energy.total - 100.0).abs() < 1e-9); // pJ
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
-///
-/// # Errors
-/// When an operation has no row.
 pub fn energy_of(
     counter: &Counter,
     table: &CostTable,
@@ -141,9 +138,6 @@ pub fn energy_of(
 }
 
 /// Energy of operations of any kind, in picojoules.
-///
-/// # Errors
-/// When an operation has no row.
 pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for tally in tallies {
@@ -168,9 +162,6 @@ pub enum Store {
 }
 
 /// Energy of accesses, in picojoules.
-///
-/// # Errors
-/// When a row is missing, or a memory is far larger than all rows.
 pub fn memory_energy_of(
     accesses: &BTreeMap<Memory, Accesses>,
     widths: &Widths,

@@ -36,7 +36,7 @@ pub struct Cost {
     pub source: String,
 }
 
-/// Rows of several tables, a user's over the shipped ones.
+/// Rows of several tables, a user's over the shipped ones. A request without a row is an error.
 ///
 /// ```
 /// use hwmodel::cost::{CostTable, Fit, Goal};
@@ -60,9 +60,6 @@ const FARTHEST: f64 = 4.0;
 
 impl CostTable {
     /// The tables that ship with the crate.
-    ///
-    /// # Errors
-    /// None, since a test checks the shipped files.
     pub fn load_shipped() -> Result<Self, CostError> {
         Self::default()
             .with_overrides(AREA_FILE, include_str!("../../tables/area.toml"))?
@@ -70,7 +67,6 @@ impl CostTable {
     }
 
     /// The same table with rows of another over it; errors and reports call it `file`.
-    ///
     /// They replace all rows of the same operation, quantity and goal; rows without goal replace those of both goals.
     ///
     /// # Errors
@@ -87,31 +83,22 @@ impl CostTable {
     }
 
     /// Area of a unit, in NAND2 equivalents.
-    ///
-    /// # Errors
-    /// When no row has it.
     pub fn area(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::Nand2, operation, width, Some(goal))
     }
 
     /// Delay of a unit, in picoseconds.
-    ///
-    /// # Errors
-    /// When no row has it.
     pub fn delay(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::DelayPs, operation, width, Some(goal))
     }
 
     /// Energy of an operation, in picojoules.
-    ///
-    /// # Errors
-    /// When no row has it.
     pub fn energy(&self, operation: &str, width: u32) -> Result<Cost, CostError> {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
 
-    /// Between rows linear in the width, or in its square for areas and energies of quadratic operations. Below the first
-    /// row proportional. Above the last extrapolated from two rows, up to four times the widest.
+    /// Linear between rows, in the width or in its square (areas and energies of quadratic operations). Proportional below
+    /// the first row. Extrapolated from two rows above the last, up to four times the widest.
     fn cost(
         &self,
         quantity: Quantity,
@@ -143,13 +130,9 @@ impl CostTable {
         Ok(cost(quantity, operation, goal, &weights, fit))
     }
 
-    /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in picojoules; `operation` is `sram_read` or
-    /// `sram_write`.
-    ///
+    /// Energy of an access (`sram_read` or `sram_write`) of `bits` bits to a memory of `bytes` bytes, in picojoules.
     /// Proportional to the bits, and linear in the square root of the size, as the length of wires.
-    ///
-    /// # Errors
-    /// When no row has it, also for a memory more than four times as long and wide as that of the largest row.
+    /// An error for a memory more than four times as long and wide as that of the largest row.
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
@@ -204,7 +187,6 @@ impl CostTable {
     }
 }
 
-/// The error for a figure at a size in words; `why` follows the request.
 fn no_figure(
     quantity: Quantity,
     operation: &str,

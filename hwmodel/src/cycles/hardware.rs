@@ -69,7 +69,7 @@ impl OuterMemory {
     }
 }
 
-/// Organisation of the record loop's data. Pictures under rules of exact coverage do not depend on it.
+/// Organisation of the record loop's data. Exact pictures do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
@@ -84,7 +84,7 @@ pub struct Organisation {
 }
 
 impl Organisation {
-    /// The organisation under rules that do not draw outlines: without recomputed vertices and occlusion tests.
+    /// Under rules that do not draw outlines: without recomputed vertices and occlusion tests.
     #[must_use]
     pub fn without_outlines(self) -> Self {
         let stack = match self.stack {
@@ -106,16 +106,16 @@ pub enum StackHolds {
     /// All visible children, each with its vertices.
     #[default]
     Children,
-    /// Subdivided records, with masks of the remaining children, which are made one by one.
+    /// Subdivided records, with masks of the remaining children.
     Parents,
-    /// Node and remaining children of each parent. The rest is computed back from a descendant.
+    /// Node and remaining children of each parent; the rest is computed back from a descendant.
     Path,
 }
 
 /// Most levels above the tiles of an image.
 pub const MAX_TILE_LEVELS: u32 = 8;
 
-/// Children of a record that may be in progress at once. A dependent one waits for the subtrees of earlier ones.
+/// Children of a record that may be in progress at once. Others wait for the subtrees of earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {
@@ -124,9 +124,9 @@ pub enum Independence {
     /// Those of one class of the occlusion order, as in the image-order paper: the nearest, the next three, the next
     /// three or the farthest. Under rules that are not exact, two may cover the same sample, and the first keeps it.
     Classes,
-    /// Those whose image nodes are disjoint: all results are the serial ones.
+    /// Those with disjoint image nodes: all results are the serial ones.
     Image,
-    /// Those allowed by either rule.
+    /// Those of either rule.
     Both,
 }
 
@@ -160,9 +160,9 @@ pub struct Stack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackOverflow {
-    /// It is written to outer memory, and read back for its turn.
+    /// Written to outer memory, and read back for its turn.
     Spill,
-    /// The frame ends with an error.
+    /// An error.
     Error,
 }
 
@@ -205,7 +205,7 @@ pub struct Pixels {
     pub own_port: bool,
 }
 
-/// Why a description is invalid: the field, its value and the allowed ones.
+/// An invalid field, its value and the allowed ones.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("hardware description: {0}")]
 pub struct HardwareError(pub String);
@@ -220,9 +220,6 @@ pub const PRESETS: [(&str, &str); 4] = [
 
 impl Hardware {
     /// Reads and checks a description.
-    ///
-    /// # Errors
-    /// With the line or the field.
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let hardware: Self =
             toml::from_str(text).map_err(|error| HardwareError(error.to_string()))?;
@@ -231,9 +228,6 @@ impl Hardware {
     }
 
     /// A shipped description, by its name in [`PRESETS`].
-    ///
-    /// # Errors
-    /// For another name.
     pub fn preset(name: &str) -> Result<Self, HardwareError> {
         let preset = PRESETS.iter().find(|(of, _)| *of == name);
         let unknown = || HardwareError(format!("none of the name `{name}` ships"));
@@ -269,10 +263,7 @@ impl Hardware {
         u64::from(self.lanes) * u64::from(self.contexts)
     }
 
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// With the first field out of its range.
+    /// Reports the first number out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
         let organisation = &self.organisation;
         if self.name.trim().is_empty() || self.name.contains(char::is_control) {
@@ -335,7 +326,6 @@ impl Cache {
     }
 }
 
-/// The least and the greatest value of a field.
 fn limits(field: &str) -> (u32, u32) {
     match field {
         "lanes" => (1, MAX_LANES),

@@ -31,9 +31,6 @@ impl Recorder {
 
     /// Writes trace events (JSON) for Perfetto or `chrome://tracing`: lanes are processes, contexts are threads, one
     /// microsecond is one cycle.
-    ///
-    /// # Errors
-    /// Those of `to`.
     pub fn write_chrome(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
         let clock = hardware.clock_mhz;
         write!(

@@ -11,30 +11,21 @@ pub(super) const WIDTHS: usize = 128;
 
 /// The simulated work: records, one turn each, called in the order of simulated time.
 pub trait Workload {
-    /// Failure of a turn.
+    /// Ends the simulation.
     type Error;
 
     /// Makes the first records.
-    ///
-    /// # Errors
-    /// Of the workload, as of the other methods.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Executes a record's turn. New records go into the empty `children`, nearest first, at most eight.
-    ///
-    /// # Errors
-    /// Those of the workload.
+    /// Executes a record's turn and adds its children, nearest first, at most eight.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Number of tiles, which replace [`Self::start`] on hardware that [hands them out](Hardware::hands_out_tiles).
+    /// Number of tiles, which replace the start on hardware that [hands them out](Hardware::hands_out_tiles).
     fn tiles(&self) -> u32 {
         0
     }
 
-    /// Begins a tile and makes its first records, at most eight.
-    ///
-    /// # Errors
-    /// Those of the workload.
+    /// As [`start`](Self::start), for a tile.
     fn begin_tile(&mut self, _: u32, _: &mut Vec<Child>) -> Result<(), Self::Error> {
         Ok(())
     }
@@ -48,9 +39,9 @@ pub trait Workload {
 pub struct Child {
     /// The workload's number.
     pub item: u32,
-    /// Place in the occlusion order, 0 (nearest) to 7.
+    /// In the occlusion order, 0 (nearest) to 7.
     pub place: u8,
-    /// Part of the picture, within its parent's.
+    /// Within its parent's.
     pub image_node: ImageNode,
 }
 
@@ -161,7 +152,6 @@ impl TurnLog {
                 };
                 let by_width = &mut passes_of[stage as usize][class as usize];
                 for (bits, passes) in by_width.iter_mut().enumerate() {
-                    // At most 127: it fits.
                     *passes = (bits as u32).div_ceil(unit.width.max(1)).max(1) as u8;
                 }
             }
@@ -382,7 +372,6 @@ pub(super) struct Visit {
 pub(super) struct TurnVisits {
     pub(super) visits: Vec<Visit>,
     pub(super) accesses: Vec<Access>,
-    /// Cycles without any waiting.
     pub(super) alone: u64,
     /// Cycles with the longest waits, alone on the hardware.
     pub(super) worst: u64,

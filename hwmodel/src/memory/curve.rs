@@ -63,7 +63,7 @@ impl MissCurve {
         self.line_bytes
     }
 
-    /// Accesses `bytes` bytes, at least one, from an address: each of their lines, in order.
+    /// Accesses each line of `bytes` bytes, at least one.
     pub fn access(&mut self, byte_address: u64, bytes: u64) {
         let line_bytes = u64::from(self.line_bytes);
         let end = byte_address.saturating_add(bytes.saturating_sub(1));
@@ -139,7 +139,7 @@ impl MissCurve {
         self.accesses
     }
 
-    /// Number of different lines: the misses of a cache that holds everything.
+    /// Number of different lines.
     pub fn distinct_lines(&self) -> u64 {
         self.last.len() as u64
     }
@@ -151,7 +151,7 @@ impl MissCurve {
         self.distinct_lines() + far.sum::<u64>()
     }
 
-    /// The curve at 1, 2, 4, ... lines, up to the first size that holds every line.
+    /// The curve at 1, 2, 4, ... lines, up to a size that holds all.
     pub fn points(&self) -> Vec<MissPoint> {
         let sizes = (0..).map(|power| 1 << power);
         let last = self.distinct_lines().max(1).next_power_of_two();

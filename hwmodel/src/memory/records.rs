@@ -1,4 +1,4 @@
-//! Kinds of record on the stack, which need different numbers of bits.
+//! Kinds of record on the stack, and their bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -65,8 +65,7 @@ impl RecordBits {
     }
 }
 
-/// A probe of the kinds of records on the stack. A record that divides has changed to screen space with all that it
-/// pushes.
+/// A probe of the records on the stack. One that divides is in screen space with all that it pushes.
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};

@@ -97,12 +97,12 @@ impl MemoryProbe {
         self.touched[memory as usize].distinct
     }
 
-    /// Miss curves, in the order in which they were requested.
+    /// Miss curves, in the order of requests.
     pub fn curves(&self) -> &[(Memory, MissCurve)] {
         &self.curves
     }
 
-    /// Most records that the stack held at once.
+    /// Most records on the stack.
     pub fn deepest_stack(&self) -> u64 {
         self.deepest
     }
