@@ -77,9 +77,8 @@ impl Descent {
     }
 }
 
-/// The cages of the voxels on a path of octants from the root, the root's first, changed to screen space where the
-/// machine does so. Fails if a word overflows. The machine has these vertices relative to a node of the quadtree, where
-/// they are never larger.
+/// The cages of the voxels on a path of octants from the root, the root's first, in screen space where the machine
+/// changes them. Fails if a word overflows. Relative to the machine's quadtree nodes they are never larger.
 pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     with_cage!(setup, L => cages_as::<L>(setup, path))
 }
@@ -109,8 +108,8 @@ pub struct Positions {
     pub samples: [Option<[f64; 2]>; 8],
 }
 
-/// Calls `visit` for some voxels and all their ancestors, each once, until a word overflows. Voxels are given as in a
-/// frame: lowest corner in finest voxels, and level.
+/// Calls `visit` for some voxels (as in a frame: lowest corner in finest voxels, and level) and all their ancestors, each
+/// once, until a word overflows.
 pub fn visit_positions(setup: &FrameSetup, voxels: &[[i32; 4]], visit: &mut dyn FnMut(&Positions)) {
     let ancestors = |&[x, y, z, level]: &[i32; 4]| {
         let levels = 0..=(level.max(0) as u32).min(setup.depth);
