@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use crate::common::*;
-use hwmodel::cycles::{Cause, Child, Hardware, ImageNode, Recorder, START, VisitSpan, simulate};
+use hwmodel::cycles::{Child, Hardware, ImageNode, Recorder, START, VisitSpan, simulate};
 use hwmodel::{Memory, OpClass, Probe, Stage};
 use serde_json::Value;
 use toml::Table;
@@ -87,10 +87,8 @@ fn records<'t>(lines: &[&'t str]) -> (Vec<&'t str>, Vec<Node>) {
 
 /// A list as an object whose keys are a field of its elements.
 fn keyed(list: &Value, field: &str) -> Value {
-    let elements = list.as_array().unwrap().iter();
-    elements
-        .map(|of| (of[field].as_str().unwrap(), of.clone()))
-        .collect()
+    let entry = |of: &Value| (of[field].as_str().unwrap().to_owned(), of.clone());
+    list.as_array().unwrap().iter().map(entry).collect()
 }
 
 fn check(name: &str, hardware: &Table, sections: &BTreeMap<&str, Vec<&str>>) {
@@ -108,17 +106,21 @@ fn check(name: &str, hardware: &Table, sections: &BTreeMap<&str, Vec<&str>>) {
             Some(&item) => names[item as usize],
             None => "tile",
         };
-        let (lane, context, stage) = (visit.lane, visit.context, visit.stage);
-        let times =
-            [visit.arrives, visit.begins, visit.frees, visit.ends].map(|time| time.to_string());
-        let stall = visit
-            .stall
-            .map(|(cause, cycles)| format!(" {cause:?} {cycles}"));
-        let stall = stall.unwrap_or_default();
-        format!(
-            "{record} {lane}.{context} {stage:?} {}{stall}",
-            times.join(" ")
-        )
+        let VisitSpan {
+            lane,
+            context,
+            stage,
+            arrives,
+            begins,
+            frees,
+            ends,
+            stall,
+            ..
+        } = visit;
+        let stall = stall.map_or_else(String::new, |(cause, cycles)| {
+            format!(" {cause:?} {cycles}")
+        });
+        format!("{record} {lane}.{context} {stage:?} {arrives} {begins} {frees} {ends}{stall}")
     };
     let found: Vec<String> = recorder.visits().iter().map(row).collect();
     let mut left: Vec<&str> = found.iter().map(String::as_str).collect();
@@ -137,17 +139,6 @@ fn check(name: &str, hardware: &Table, sections: &BTreeMap<&str, Vec<&str>>) {
     let mut json = serde_json::to_value(&report).unwrap();
     json["stages"] = keyed(&json["stages"], "stage");
     json["bounds"] = keyed(&json["bounds"], "resource");
-    let stalls = |cause| {
-        report
-            .stages
-            .iter()
-            .map(|of| of.stalls.of(cause))
-            .sum::<u64>()
-    };
-    json["stalls"] = Cause::ALL
-        .iter()
-        .map(|&cause| (cause.name(), stalls(cause)))
-        .collect();
     for line in sections.get("report").into_iter().flatten() {
         let (path, expected) = line.rsplit_once(' ').unwrap();
         let found = json.pointer(path).map(Value::to_string);
