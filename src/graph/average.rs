@@ -114,14 +114,4 @@ mod tests {
         }
         assert_eq!((encode(1 << 24), encode(u64::MAX)), (255, 255));
     }
-
-    #[test]
-    fn black_and_white_average_in_linear_light() {
-        let mut sum = Sum::default();
-        sum.add_voxel([0, 0, 255], PackedNormal::encode(DVec3::X));
-        sum.add_voxel([255, 0, 255], PackedNormal::encode(DVec3::Y));
-        assert_eq!(sum.color(), [188, 0, 255]);
-        let normal = sum.normal().decode().unwrap_or_default();
-        assert!(normal.dot(DVec3::new(1.0, 1.0, 0.0).normalize()) > 0.9999);
-    }
 }

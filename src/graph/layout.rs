@@ -116,35 +116,26 @@ mod tests {
     fn words_by_hand() {
         let graph = GraphView {
             depth: 3,
-            root: 0,
             mask: &[0b11, 0, 0b111, 0, 0b11, 0],
             first: &[1, 0, 3, 0, 6, 0],
-            links: &[],
-            opacity: &[],
-            light: &[],
+            ..GraphView::default()
         };
         let plain = NodeLayout::new(&graph, true, false);
-        assert_eq!(plain.words(4, 2), 4..5);
         let bricks = NodeLayout::new(&graph, true, true);
-        assert_eq!(bricks.words(0, 0), 0..1);
-        assert_eq!(bricks.words(1, 1), 1..3);
-        assert_eq!(bricks.words(2, 1), 3..5);
-        assert!(bricks.words(4, 2).is_empty());
         assert_eq!((plain.bricks(), bricks.bricks()), (0..0, 1..3));
+        assert_eq!(plain.words(4, 2), 4..5);
+        let words = [(0, 0), (1, 1), (2, 1)].map(|(node, level)| bricks.words(node, level));
+        assert_eq!(words, [0..1, 1..3, 3..5]);
+        assert!(bricks.words(4, 2).is_empty());
         // A leaf, the node with two voxels, a leaf.
         let second = 0b101 << 56 | 3 << 28 | 6;
         let words = NodeLayout::brick_words(&graph, 2);
         assert_eq!(words, Some([0xff_03_ff, second]));
-        let many = GraphView {
-            first: &[1, 0, 3, 0, 1 << 28, 0],
-            ..graph
-        };
-        assert_eq!(NodeLayout::brick_words(&many, 2), None);
-        let linked = GraphView {
-            links: &[1, 2],
-            ..graph
-        };
-        assert!(NodeLayout::new(&linked, true, true).bricks.is_none());
+        let mut other = graph;
+        other.first = &[1, 0, 3, 0, 1 << 28, 0];
+        assert_eq!(NodeLayout::brick_words(&other, 2), None);
+        other.links = &[1, 2];
+        assert!(NodeLayout::new(&other, true, true).bricks.is_none());
         // Lists that are shared, side by side: each level begins behind the one above, but voxels do not follow on
         // those before.
         let shared = GraphView {

@@ -148,22 +148,16 @@ impl PushedVoxels {
 mod tests {
     use super::*;
 
-    /// Voxel `i` of a row that runs through all axes.
-    fn record(i: u32) -> PushedVoxel {
-        let index = [i % 100, i / 100 % 200, i / 20_000].map(|c| c as i32 - 50);
-        PushedVoxel::new(index, i, [(i & 255) as u8; 3], PackedNormal::NONE)
-    }
-
     #[test]
     fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
         assert_eq!(size_of::<PushedVoxel>(), 20);
         let count = 2 * PIECE + 1000;
-        let mut grown = PushedVoxels::default();
-        let mut reserved = PushedVoxels::default();
+        let (mut grown, mut reserved) = (PushedVoxels::default(), PushedVoxels::default());
         for i in 0..count as u32 {
-            // The last of each thousand lies where the first does.
-            let mut pushed = record(if i % 1000 == 999 { i - 999 } else { i });
-            pushed.sequence = i;
+            // The last of each thousand lies where the first does, in a row that runs through all axes.
+            let at = if i % 1000 == 999 { i - 999 } else { i };
+            let index = [at % 100, at / 100 % 200, at / 20_000].map(|c| c as i32 - 50);
+            let pushed = PushedVoxel::new(index, i, [i as u8; 3], PackedNormal::NONE);
             grown.push(pushed).unwrap();
             if i == 1 {
                 // A later, smaller one changes nothing.
@@ -175,15 +169,16 @@ mod tests {
             let first = grown.len().next_power_of_two().max(4);
             assert!(room <= first.min(grown.len() + PIECE).max(4));
         }
-        assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
-        assert_eq!((reserved.len(), reserved.pieces.len()), (count, 2));
-        let grown = grown.sorted([-50; 3]).unwrap();
-        let reserved = reserved.sorted([-50; 3]).unwrap();
-        assert_eq!(grown.len(), count - count / 1000);
+        let pieces = [&grown, &reserved].map(|pushed| (pushed.len(), pushed.pieces.len()));
+        assert_eq!(pieces, [(count, 3), (count, 2)]);
+        let [grown, reserved] = [grown, reserved].map(|pushed| pushed.sorted([-50; 3]).unwrap());
         assert!(grown.is_sorted_by_key(PushedVoxel::key));
         let parts = |r: &PushedVoxel| (r.key(), r.sequence, r.color);
         assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
         // The last pushed stays.
-        assert_eq!(grown[0].sequence, 999);
+        assert_eq!(
+            (grown.len(), grown[0].sequence),
+            (count - count / 1000, 999)
+        );
     }
 }
