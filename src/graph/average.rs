@@ -20,28 +20,9 @@ static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     })
 });
 
-/// Highest bits of linear light, by which [`encode`] starts its search.
-const BEGINNING_BITS: u32 = 12;
-
-/// For each value of these bits: the number of sRGB values that are darker than all such light.
-static DARKER: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let darker = |beginning: u32| {
-        let least = beginning << (24 - BEGINNING_BITS);
-        LINEAR.partition_point(|&entry| entry < least) as u8
-    };
-    (0..1 << BEGINNING_BITS).map(darker).collect()
-});
-
 fn encode(linear: u64) -> u8 {
     let table: &[u32; 256] = &LINEAR;
-    let beginning = (linear >> (24 - BEGINNING_BITS)) as usize;
-    // More than full light is as bright as full light.
-    let mut above = DARKER
-        .get(beginning)
-        .map_or(255, |&darker| usize::from(darker));
-    while above < 256 && u64::from(table[above]) < linear {
-        above += 1;
-    }
+    let above = table.partition_point(|&entry| u64::from(entry) < linear);
     if above == 0 {
         return 0;
     }

@@ -134,16 +134,14 @@ impl Builder {
         let voxels = tree.color.len() as u64 - u64::from(tree.level_start[depth as usize]);
         Ok(Graph {
             depth,
-            root: 0,
             mask: tree.mask.into(),
             first: tree.first.into(),
-            links: Vec::new().into(),
             color: tree.color.into(),
             normal: tree.normal.into(),
-            opacity: Vec::new().into(),
             level_start: tree.level_start,
             voxels,
             placement,
+            ..Graph::default()
         })
     }
 }

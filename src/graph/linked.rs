@@ -1,6 +1,6 @@
 //! Small graphs made by hand, which may be cyclic.
 
-use super::{Graph, Invalid, PackedNormal, Placement, Store};
+use super::{Graph, Invalid, PackedNormal};
 
 /// Collects nodes. Their children may be any nodes; the root is the first.
 ///
@@ -49,16 +49,12 @@ impl LinkedGraph {
         }
         let mut graph = Graph {
             depth: self.depth,
-            root: 0,
             mask: mask.into(),
             first: first.into(),
             links: links.into(),
             color: self.nodes.iter().map(|(color, _)| *color).collect(),
             normal: vec![PackedNormal::NONE; self.nodes.len()].into(),
-            opacity: Store::default(),
-            level_start: Vec::new(),
-            voxels: 0,
-            placement: Placement::default(),
+            ..Graph::default()
         };
         graph.validate_shape()?;
         graph.validate_children()?;

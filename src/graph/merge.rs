@@ -194,16 +194,15 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     };
     let mut merged = Graph {
         depth: graph.depth,
-        root: 0,
         mask: masks.into(),
         first: firsts.into(),
         links: links.into(),
         color: chosen.iter().map(|&n| graph.color_of(n)).collect(),
         normal: chosen.iter().map(|&n| graph.normal_of(n)).collect(),
         opacity,
-        level_start: Vec::new(),
         voxels: graph.voxels,
         placement: graph.placement,
+        ..Graph::default()
     };
     if ordered {
         level_start.push(merged.len() as u32);

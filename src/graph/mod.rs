@@ -71,7 +71,7 @@ pub struct PackedNormal(pub u16);
 /// have neither mask nor child list. Five bytes per node, five more for one that may have children. A node without
 /// children is solid and, as in the image-order paper (section 2.2), its own child. A node reached at level `depth`
 /// is a voxel, even if it has children: this ends a cyclic graph.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Graph {
     /// Levels below the root: the object is a cube of `2^depth` finest voxels a side.
     pub depth: u32,

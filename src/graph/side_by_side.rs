@@ -40,16 +40,14 @@ impl Graph {
         };
         Some(Self {
             depth: self.depth,
-            root: 0,
             mask: nodes().map(|node| view.mask(node)).collect(),
             first: nodes().map(first_of).collect(),
-            links: Store::default(),
             color: nodes().map(|node| self.color_of(node)).collect(),
             normal: nodes().map(|node| self.normal_of(node)).collect(),
             opacity,
-            level_start: Vec::new(),
             voxels: self.voxels,
             placement: self.placement,
+            ..Self::default()
         })
     }
 }

@@ -94,27 +94,10 @@ impl Number {
     }
 
     pub(super) fn parse(word: &[u8]) -> Option<Self> {
-        if let Some(whole) = parse_short(word) {
-            return Some(Self::Whole(whole));
-        }
         let text = std::str::from_utf8(word).ok()?;
         let whole = text.parse().map(Self::Whole);
         whole.or_else(|_| text.parse().map(Self::Real)).ok()
     }
-}
-
-/// A whole number of up to 18 digits, as nearly all are.
-#[inline]
-fn parse_short(word: &[u8]) -> Option<i64> {
-    let (digits, sign) = match word {
-        [b'-', digits @ ..] => (digits, -1),
-        digits => (digits, 1),
-    };
-    if digits.is_empty() || digits.len() > 18 {
-        return None;
-    }
-    let digit = |sum: i64, d: &u8| d.is_ascii_digit().then(|| 10 * sum + i64::from(d - b'0'));
-    digits.iter().try_fold(0, digit).map(|sum| sign * sum)
 }
 
 impl fmt::Display for Number {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::scratch::{Scratch, Spool};
 use super::tree::LevelArrays;
-use crate::graph::{BuildError, Graph, Placement, Store};
+use crate::graph::{BuildError, Graph, Placement};
 
 pub(super) struct Built {
     pub(super) depth: u32,
@@ -31,16 +31,10 @@ impl Built {
         }
         Ok(Graph {
             depth: self.depth,
-            root: 0,
-            mask: Store::default(),
-            first: Store::default(),
-            links: Store::default(),
-            color: Store::default(),
-            normal: Store::default(),
-            opacity: Store::default(),
             level_start,
             voxels: self.counts[self.depth as usize],
             placement,
+            ..Graph::default()
         })
     }
 

@@ -12,7 +12,8 @@ pub(super) const VERSION_WITH_OPACITY: u32 = 2;
 pub(super) const FORMAT: Format = Format {
     ending: ".vxg",
     magic: MAGIC,
-    version: VERSION,
+    versions: &[VERSION, VERSION_WITH_OPACITY],
+    header_bytes: HEADER_BYTES,
     signature: "the signature of a .vxg file",
     not_ours: "is this a .vxg file? Convert other formats with `convert`",
 };

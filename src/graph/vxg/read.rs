@@ -10,9 +10,9 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::VxgError;
 use super::format::{
     FORMAT, HEADER_BYTES, KINDS, MAX_LEVEL_STARTS, MESH_Y_UP, NO_MESH, SECTIONS, Section, VERSION,
-    VERSION_WITH_OPACITY, at, entry_at, layout,
+    at, entry_at, layout,
 };
-use crate::graph::file::{self, Fields, padding_after, range};
+use crate::graph::file::{self, Fields, range};
 use crate::graph::map::{Access, advise};
 use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
@@ -90,9 +90,7 @@ struct Header {
 
 impl Header {
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, VxgError> {
-        FORMAT.check_byte_order(path)?;
-        let known = [VERSION, VERSION_WITH_OPACITY];
-        let fields = FORMAT.read_of::<HEADER_BYTES>(&known, beginning, file_bytes, path)?;
+        let fields = FORMAT.read(beginning, file_bytes, path)?;
         let sections = read_sections(&fields, file_bytes)?;
         let levels = fields.u32_at(at::LEVELS) as usize;
         fields.ensure(levels <= MAX_LEVEL_STARTS, at::LEVELS, || {
@@ -171,7 +169,7 @@ impl Header {
 
     fn verify_sections(&self, graph: &Graph, bytes: &[u8], path: &Path) -> Result<(), VxgError> {
         let places = self.sections.iter().map(Section::place);
-        padding_after(HEADER_BYTES as u64, bytes, places, path)?;
+        FORMAT.check_padding(bytes, places, path)?;
         for ((name, ..), section) in KINDS.iter().zip(&self.sections) {
             let actual = xxh3_64(&bytes[range(section.place())]);
             if actual != section.checksum {

@@ -140,12 +140,12 @@ fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTES] {
+fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> Vec<u8> {
     let version = match table.len() {
         SECTIONS => VERSION,
         _ => VERSION_WITH_OPACITY,
     };
-    FORMAT.header_of(version, file_bytes, |put| {
+    FORMAT.header(version, file_bytes, |put| {
         put(at::DEPTH, &graph.depth.to_le_bytes());
         put(at::ROOT, &graph.root.to_le_bytes());
         put(at::VOXELS, &graph.voxels.to_le_bytes());

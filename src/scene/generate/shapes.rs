@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::list::Settings;
 use super::{gradient, hash, palette};
-use crate::graph::{Graph, PackedNormal, Placement, Progress, Store, Voxel};
+use crate::graph::{Graph, PackedNormal, Progress, Voxel};
 
 /// Cells of the truss along a side.
 const CELLS: i32 = 8;
@@ -181,15 +181,12 @@ pub(super) fn wires(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
 pub(super) fn sierpinski(settings: &Settings) -> Graph {
     Graph {
         depth: settings.depth,
-        root: 0,
         mask: vec![0b0110_1001].into(),
         first: vec![0].into(),
         links: vec![0; 4].into(),
         color: vec![[226, 174, 88]].into(),
         normal: vec![PackedNormal::NONE].into(),
-        opacity: Store::default(),
-        level_start: Vec::new(),
         voxels: 4u64.saturating_pow(settings.depth),
-        placement: Placement::default(),
+        ..Graph::default()
     }
 }

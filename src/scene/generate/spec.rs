@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::list::{GENERATORS, Generator, Settings, Shape};
-use crate::graph::{Graph, GraphView, Progress, Voxel};
+use crate::graph::{Graph, Progress, Voxel};
 
 pub const PREFIX: &str = "gen:";
 
@@ -107,34 +107,15 @@ impl Spec {
             Shape::Linked(make) => {
                 let graph = make(&self.settings);
                 progress.begin("walking the graph", 0);
-                walk(&graph.view(), &graph.color, graph.root, 0, [0; 3], sink);
+                for cell in graph.voxels() {
+                    sink(Voxel {
+                        index: cell.corner,
+                        color: graph.color_of(cell.node),
+                        normal: None,
+                    });
+                }
                 progress.end();
             }
-        }
-    }
-}
-
-fn walk(
-    graph: &GraphView<'_>,
-    color: &[[u8; 3]],
-    node: u32,
-    level: u32,
-    index: [i32; 3],
-    sink: &mut dyn FnMut(Voxel),
-) {
-    if level == graph.depth {
-        sink(Voxel {
-            index,
-            color: color[node as usize],
-            normal: None,
-        });
-        return;
-    }
-    for octant in 0..8u8 {
-        if let Some(child) = graph.child(node, octant) {
-            let bits = [octant >> 2 & 1, octant >> 1 & 1, octant & 1];
-            let child_index = [0, 1, 2].map(|k| index[k] << 1 | i32::from(bits[k]));
-            walk(graph, color, child, level + 1, child_index, sink);
         }
     }
 }
@@ -149,14 +130,6 @@ impl fmt::Display for Spec {
         Ok(())
     }
 }
-
-impl PartialEq for Spec {
-    fn eq(&self, other: &Self) -> bool {
-        self.generator.name == other.generator.name && self.settings == other.settings
-    }
-}
-
-impl Eq for Spec {}
 
 #[cfg(test)]
 mod tests {

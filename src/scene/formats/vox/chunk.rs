@@ -18,16 +18,11 @@ pub(super) struct Chunk<'a> {
     pub content: &'a [u8],
 }
 
-/// The children of `MAIN`, one after another; ends after the first error.
-pub(super) struct Chunks<'a> {
-    bytes: &'a [u8],
-    next: usize,
-    end: usize,
-    broken: bool,
-}
-
-/// Checks the file's head and goes to the first child of `MAIN`.
-pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
+/// Checks the file's head. Returns the children of `MAIN`, which end after the first error, and the number of bytes after
+/// them.
+pub(super) fn chunks(
+    bytes: &[u8],
+) -> Result<(impl Iterator<Item = Result<Chunk<'_>, Box<Fault>>>, usize), Box<Fault>> {
     if bytes.len() < 8 || &bytes[..4] != b"VOX " {
         return Err(Fault::new(
             "file header",
@@ -47,45 +42,29 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
             DAMAGED,
         ));
     }
-    let first = 8 + HEADER + content;
-    Ok(Chunks {
-        bytes,
-        next: first,
-        end: first + children,
-        broken: false,
-    })
-}
-
-impl Chunks<'_> {
-    pub(super) fn left_over(&self) -> usize {
-        self.bytes.len() - self.end
-    }
-}
-
-impl<'a> Iterator for Chunks<'a> {
-    type Item = Result<Chunk<'a>, Box<Fault>>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.broken || self.next == self.end {
+    let mut offset = 8 + HEADER + content;
+    let end = offset + children;
+    let next = move || {
+        if offset == end {
             return None;
         }
-        let offset = self.next;
-        Some(match header(self.bytes, offset, self.end, "MAIN") {
-            Ok((id, content, children)) => {
-                let begin = offset + HEADER;
-                self.next = begin + content + children;
-                Ok(Chunk {
-                    id,
-                    offset,
-                    content: &self.bytes[begin..begin + content],
-                })
-            }
+        let (id, content, children) = match header(bytes, offset, end, "MAIN") {
+            Ok(header) => header,
             Err(fault) => {
-                self.broken = true;
-                Err(fault)
+                offset = end;
+                return Some(Err(fault));
             }
-        })
-    }
+        };
+        let begin = offset + HEADER;
+        let chunk = Chunk {
+            id,
+            offset,
+            content: &bytes[begin..begin + content],
+        };
+        offset = begin + content + children;
+        Some(Ok(chunk))
+    };
+    Ok((std::iter::from_fn(next), bytes.len() - end))
 }
 
 /// A chunk's id and its two sizes, which together end no later than `end`.

@@ -87,8 +87,7 @@ fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'
         palette: Palette::default_colors(),
     };
     let mut size: Option<(Chunk<'_>, [u32; 3])> = None;
-    let chunks = chunk::chunks(bytes)?;
-    let left_over = chunks.left_over();
+    let (chunks, left_over) = chunk::chunks(bytes)?;
     if left_over > 0 {
         info.warnings.push(format!(
             "{left_over} bytes after the end of the file's main chunk were not read"
