@@ -1,7 +1,6 @@
 //! Averages of colour and normal, exact and independent of the order.
 //!
-//! Colours are averaged in linear light: a far wall of black and white voxels is sRGB 188, not 128. The sums are
-//! integers (linear light in 24 bits, normals in 2^-20).
+//! Colours are averaged in linear light, in 24 bits; normals in 2^-20. Sums of up to 2^32 voxels fit 64 bits.
 
 use std::sync::LazyLock;
 
@@ -34,7 +33,6 @@ fn encode(linear: u64) -> u8 {
     (above - usize::from(to_above > to_below)) as u8
 }
 
-/// Sums of colours and normals of up to 2^32 voxels: 24 + 32 bits of light, 21 + 32 bits of normal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Sum {
     count: u64,
@@ -50,7 +48,6 @@ impl Sum {
         }
         if let Some(unit) = normal.decode() {
             for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                // Towards zero, for both signs.
                 *sum += (part * UNIT_NORMAL) as i64;
             }
         }

@@ -14,7 +14,6 @@ pub struct Cell {
 #[derive(Debug)]
 pub struct Voxels<'g> {
     graph: &'g Graph,
-    /// The next cell last; at most seven per level.
     stack: Vec<Cell>,
 }
 
@@ -65,10 +64,8 @@ impl Graph {
         }
     }
 
-    /// Lowest corner, in finest voxels, and level of the one voxel that shows a node.
-    ///
-    /// One binary search per level. None in graphs whose nodes may be in several places or are not stored level by level,
-    /// and for leaves above the finest level.
+    /// Lowest corner, in finest voxels, and level of the one voxel that shows a node. None where nodes may be in several
+    /// places or are not stored level by level, and for leaves above the finest level.
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -132,13 +129,12 @@ impl Graph {
         !self.level_start.is_empty()
     }
 
-    /// Counts the finest voxels, also those inside solid leaves, repeated parts as often as they occur; saturates.
+    /// Counts the finest voxels, also those inside solid leaves and in repeated parts; saturates.
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {
             return self.count_tree_voxels();
         }
-        // Voxels below a node, by node.
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
             let level = (self.depth - height) as usize;
@@ -159,7 +155,6 @@ impl Graph {
         below.get(self.root as usize).copied().unwrap_or(0)
     }
 
-    /// The same for a tree stored level by level.
     fn count_tree_voxels(&self) -> u64 {
         let levels = self.level_start.windows(2).zip(0u32..);
         levels.fold(0u64, |total, (ends, level)| {
@@ -170,7 +165,6 @@ impl Graph {
             } else {
                 let has_masks = |at: u32| (at as usize).min(self.mask.len());
                 let inner = has_masks(nodes.start)..has_masks(nodes.end);
-                // Nodes without a mask have no children.
                 let beyond = nodes.len() - inner.len();
                 let masks = self.mask[inner].iter();
                 (masks.filter(|&&mask| mask == 0).count() + beyond) as u64

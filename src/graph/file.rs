@@ -38,7 +38,6 @@ pub enum FileError {
     },
     #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
     ByteOrder { file: PathBuf, ending: &'static str },
-    /// The graph to be written breaks an invariant.
     #[error("the graph cannot be stored: {0}")]
     Graph(#[from] Invalid),
 }
@@ -74,7 +73,6 @@ impl FileError {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
 
-    /// For errors of the operating system.
     fn refused(path: &Path, doing: &'static str) -> impl Fn(io::Error) -> Self {
         move |source| Self::Io {
             file: path.to_owned(),
@@ -89,7 +87,6 @@ pub struct Opened<'p> {
     file: File,
     path: &'p Path,
     pub bytes: u64,
-    /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
 }
 
@@ -139,7 +136,6 @@ impl Bytes {
     }
 }
 
-/// A place in a mapped file, which lies within the address space.
 pub fn range([begin, end]: [u64; 2]) -> Range<usize> {
     begin as usize..end as usize
 }
@@ -162,7 +158,6 @@ pub struct Format {
     pub not_ours: &'static str,
 }
 
-/// Bytes of a header, except that of `.vxg`.
 pub const HEADER_BYTES: usize = 128;
 
 pub(super) mod at {
@@ -334,7 +329,6 @@ pub fn write<'s>(
     out.write_all(header)?;
     let mut written = header.len() as u64;
     for ([begin, end], bytes) in sections {
-        // Less than the alignment.
         out.write_all(&[0; ALIGNMENT as usize][..(begin - written) as usize])?;
         out.write_all(bytes)?;
         written = end;

@@ -4,9 +4,8 @@ use std::ops::Range;
 
 use super::GraphView;
 
-/// A node is a word: its children, which of them are leaves, and where they begin. A *brick* is a node two levels above
-/// the finest voxels, in two words (see [`Self::brick_words`]). Its children are not read, because the places of its
-/// voxels follow from its bits.
+/// A node is a word. A *brick* is a node two levels above the finest voxels, in two words (see [`Self::brick_words`]),
+/// from which the places of its voxels follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
     /// Whether a node says which of its children are leaves, so that leaves need not be read.
@@ -21,7 +20,6 @@ struct Bricks {
     end: u32,
 }
 
-/// Bits of a number in a brick's second word.
 const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
@@ -43,7 +41,7 @@ impl NodeLayout {
         self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
     }
 
-    /// The words of a brick: its voxels, a byte per child (all ones for a leaf); then
+    /// The words of a brick. The first has its voxels, a byte per child (all ones for a leaf), the second
     /// `leaves << 56 | where children begin << 28 | where voxels begin`. `None`: a number does not fit.
     pub fn brick_words(graph: &GraphView<'_>, brick: u32) -> Option<[u64; 2]> {
         let (mut voxels, mut leaves, mut first_voxel) = (0, 0, None);

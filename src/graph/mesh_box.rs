@@ -1,5 +1,4 @@
-//! The part of a mesh's shape that fitted cameras use. Every file made of a mesh keeps it, so that all methods are seen
-//! from the same place.
+//! The part of a mesh's shape that fitted cameras use, kept in every file made of a mesh.
 
 use super::place;
 
@@ -7,14 +6,12 @@ const PARTS: f64 = 512.0;
 
 /// The box around a mesh with bevelled corners, and its vertical axis.
 ///
-/// A bevel is the plane that cuts a corner off at one share of its three edges, beyond which the mesh has no vertex. A
-/// share is less than half an edge, so bevels do not meet, and the 24 points where bevels and edges meet enclose the
-/// mesh. Fitted to the box alone, a camera would show round objects smaller.
+/// A bevel cuts a corner off at one share of its three edges, beyond which the mesh has no vertex. A share is less than
+/// half an edge, so the 24 points where bevels and edges meet enclose the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshBox {
     /// Lowest corner, world units, rounded to single precision.
     pub low: [f64; 3],
-    /// Highest corner, likewise.
     pub high: [f64; 3],
     /// Bevels of the corners `x << 2 | y << 1 | z`, in 512ths of the edges.
     pub bevels: [u8; 8],
@@ -22,7 +19,6 @@ pub struct MeshBox {
 }
 
 impl MeshBox {
-    /// Rounds to single precision as all files store it.
     pub fn new((low, high): ([f64; 3], [f64; 3]), bevels: [u8; 8], y_up: bool) -> Self {
         let centre = place::centre(low, high);
         let kept =
@@ -58,7 +54,6 @@ impl MeshBox {
         [0, 1, 2].map(|k| [self.low, self.high][corner >> (2 - k) & 1][k])
     }
 
-    /// Whether a camera can show it and resolve parts of length `finest`.
     pub(super) fn can_be_seen(&self, finest: f64) -> bool {
         let (mut longest, mut is_box) = (0.0f64, true);
         for k in 0..3 {
@@ -87,7 +82,6 @@ fn bevels((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 
             *least = least.min(x + y + z);
         }
     }
-    // A step less, so that rounding excludes no point; saturates.
     least.map(|share| (share * PARTS - 1.0) as u8)
 }
 

@@ -1,8 +1,6 @@
 //! Morton order: the bits of x, y and z interleaved, x highest.
 
-/// Most bits per coordinate: three fit 63 bits.
 pub(super) const MAX_BITS: u32 = 21;
-/// Longest side of a box of voxels.
 pub(super) const MAX_SIDE: u64 = 1 << MAX_BITS;
 
 /// Inserts two zeros after each of 21 bits.
@@ -42,7 +40,6 @@ pub(super) fn pack(index: [i32; 3]) -> u64 {
 
 /// The Morton key of a packed index, counted from a corner at most `2^21 - 1` below it.
 pub(super) fn key_from(packed: u64, corner: [i32; 3]) -> u64 {
-    // The extent is at most 2^21, so the low bits give the distance.
     key([0, 1, 2].map(|axis| {
         let low_bits = (packed >> (axis as u32 * MAX_BITS)) as u32;
         low_bits.wrapping_sub(corner[axis] as u32) & (MAX_SIDE as u32 - 1)

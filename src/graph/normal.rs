@@ -1,9 +1,8 @@
 //! Normals in two bytes: octahedral, one byte per axis.
 //!
 //! The sphere is projected to the octahedron `|x| + |y| + |z| = 1`, its lower half is folded over the upper, and the
-//! resulting square is a grid of 255 by 255 points. A byte holds `-127..=127` as `1..=255`, so the value 0 means "no
-//! normal". The six axes are exact. The nearest of the four grid points around a direction is taken: the error stays
-//! below 0.7 degrees.
+//! resulting square is a grid of 255 by 255 points. A byte holds `-127..=127` as `1..=255`; 0 means "no normal". The
+//! nearest grid point is taken: the error stays below 0.7 degrees.
 
 use glam::DVec3;
 
@@ -30,7 +29,6 @@ impl PackedNormal {
         if unit.z < 0.0 {
             (u, v) = fold(u, v);
         }
-        // Not negative before the cast, which therefore rounds down.
         let floor = |x: f64| f64::from((x * STEPS + STEPS) as i32) - STEPS;
         let low_u = floor(u).clamp(-STEPS, STEPS - 1.0);
         let low_v = floor(v).clamp(-STEPS, STEPS - 1.0);
@@ -39,7 +37,6 @@ impl PackedNormal {
             let (u, v) = (low_u + du, low_v + dv);
             let point = unfold(u, v);
             let along = unit.dot(point);
-            // The square of the cosine with its sign, up to a factor.
             let likeness = along * along.abs() / point.length_squared();
             if likeness > best.0 {
                 let byte = |step: f64| (step as i16 + ZERO as i16) as u16;

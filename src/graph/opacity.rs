@@ -12,7 +12,6 @@ pub const MOST_OPACITY: u8 = 15;
 impl Opacity {
     pub const OPAQUE: Self = Self([0xff; 3]);
 
-    /// From opacities by axis, seen from the side of low and of high coordinates; clamped to 15.
     pub fn new(sides: [[u8; 2]; 3]) -> Self {
         Self(sides.map(|[low, high]| low.min(MOST_OPACITY) | high.min(MOST_OPACITY) << 4))
     }

@@ -26,7 +26,6 @@ pub fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
 /// Whether a camera can show a box of the world and resolve its parts of length `finest`.
 pub fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
     let most = FARTHEST.min(finest * STEPS);
-    // NaN is not within.
     let is_near = |c: f64| (-most..=most).contains(&c);
     (SHORTEST..=FARTHEST).contains(&finest) && low.into_iter().chain(high).all(is_near)
 }

@@ -1,5 +1,5 @@
-//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents while it moves. So voxels
-//! are kept in pieces, which become one array at the end, each freed after it is copied.
+//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents, so they are kept in
+//! pieces, each freed after it is copied to one array at the end.
 
 use rayon::prelude::*;
 
@@ -7,7 +7,6 @@ use super::build::BuildError;
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
-/// Sides of the bounding box from its lowest to its highest voxel, finest voxels.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
     let mut extent = [0; 3];
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
@@ -23,7 +22,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece, 40 MB; a reserved one may have more. Allocators return such blocks to the system at once.
+/// Voxels per piece, 40 MB; a reserved one may have more.
 const PIECE: usize = 1 << 21;
 
 const VOXELS: &str = "voxels that are sorted";
@@ -80,7 +79,6 @@ impl PushedVoxel {
 /// All voxels pushed, 20 bytes each, and room for at most one piece.
 #[derive(Debug, Default)]
 pub(super) struct PushedVoxels {
-    /// Only the last may be empty, if it was reserved.
     pieces: Vec<Vec<PushedVoxel>>,
 }
 
@@ -92,7 +90,6 @@ impl PushedVoxels {
     /// Reserves memory in one piece, which then need not be copied.
     pub(super) fn reserve(&mut self, more: usize) {
         let room = self.pieces.last().map_or(0, |p| p.capacity() - p.len());
-        // Less than a piece is reserved when needed.
         if more <= room.max(PIECE) {
             return;
         }
@@ -103,11 +100,9 @@ impl PushedVoxels {
         self.pieces.push(Vec::with_capacity(more));
     }
 
-    /// Adds a voxel. Fails when the system refuses memory for another piece.
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
-            // The first grows: most objects in tests are small.
             None => self.pieces.push(vec![record]),
             Some(_) => {
                 let mut piece = budget::room(VOXELS, PIECE)?;
@@ -126,8 +121,7 @@ impl PushedVoxels {
         Ok(sorted)
     }
 
-    /// All voxels in one array, with their Morton keys. A piece is freed before the next one is copied, so memory holds
-    /// at most one piece twice.
+    /// All voxels in one array, with their Morton keys.
     fn in_one(mut self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         if self.pieces.len() == 1
             && let Some(mut only) = self.pieces.pop()

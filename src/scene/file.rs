@@ -53,7 +53,6 @@ pub struct SceneFile<R = File> {
     stream: R,
     length: u64,
     kind: Option<FileKind>,
-    /// At most [`DETECT_BYTES`].
     beginning: Vec<u8>,
 }
 

@@ -47,7 +47,6 @@ impl Scalar {
             Self::I16 => Number::Whole((bits as i16).into()),
             Self::I32 => Number::Whole((bits as i32).into()),
             Self::U8 | Self::U16 | Self::U32 | Self::I64 => Number::Whole(bits as i64),
-            // Too large to be an index.
             Self::U64 => i64::try_from(bits).map_or(Number::Real(bits as f64), Number::Whole),
             Self::F32 => Number::Real(f32::from_bits(bits as u32).into()),
             Self::F64 => Number::Real(f64::from_bits(bits)),
@@ -68,7 +67,6 @@ impl Number {
     pub fn whole(self) -> Option<i64> {
         match self {
             Self::Whole(n) => Some(n),
-            // Below 2^53 the casts are exact.
             Self::Real(x) => {
                 let whole = x as i64;
                 (whole as f64 == x && x.abs() < 9_007_199_254_740_992.0).then_some(whole)

@@ -23,7 +23,6 @@ pub(super) struct Finest {
     pub(super) color: Spool,
     own_normal: Spool,
     clusters: Spool,
-    /// Cluster copies for the blocks beside their own.
     halo: Sorter,
     pub(super) voxels: u64,
     lacking: bool,
@@ -218,7 +217,6 @@ impl FinestInProgress {
     }
 }
 
-/// The nodes of some clusters. Fills the normals that are missing, where there is a grid.
 fn nodes_of(
     clusters: &[[u64; 2]],
     mut color: &[[u8; 3]],

@@ -104,7 +104,6 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Closes nodes that do not contain the next cluster, and opens those that do.
     fn open_above(&mut self, cluster_key: u64, cluster_level: usize) -> io::Result<()> {
         let new_level = first_new_level(self.before, cluster_key, cluster_level as u32) as usize;
         if self.before.is_some() {
@@ -125,7 +124,6 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Writes the open nodes of a level and below, lowest first.
     fn close(&mut self, from: usize) -> io::Result<()> {
         for level in (from..self.open.len()).rev() {
             let Open { mask, first, sum } = self.open[level];
@@ -145,7 +143,6 @@ impl TreeWriter {
         normals.push(&node.normal.0.to_le_bytes())
     }
 
-    /// The levels above the finest, and the number of nodes per level.
     pub(super) fn finish(mut self) -> io::Result<(Vec<LevelArrays>, Vec<u64>)> {
         if self.before.is_some() {
             self.close(0)?;

@@ -48,7 +48,6 @@ fn to_rows(word: u64) -> u64 {
 /// Puts cluster `(x * 3 + y) * 3 + z` of the 27 in and around the surroundings' middle into its place.
 #[inline]
 pub(in crate::graph) fn put(rows: &mut Surroundings, neighbour: usize, cluster_rows: u64) {
-    /// First place in the surroundings, first place in the cluster, how many.
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
     let (to_x, from_x, count_x) = SPAN[neighbour / 9];
     let (to_y, from_y, count_y) = SPAN[neighbour / 3 % 3];

@@ -38,7 +38,7 @@ const ROW_MOMENTS: [i64; 32] = {
     table
 };
 
-/// Sums of five numbers, at -2 to 2 along an axis, weighted by [`WEIGHT`], times the place to the power of 0, 1 and 2.
+/// Weighted sums of five numbers, times the place to the power of 0, 1 and 2.
 #[inline(always)]
 fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
     let [a, b, c, d, e] = [of(0), of(1), of(2), of(3), of(4)];
@@ -75,7 +75,6 @@ pub(super) struct Moments {
 impl Moments {
     #[inline]
     pub(super) fn around(rows: &Surroundings, [x, y, z]: [usize; 3]) -> Self {
-        // Along x by the table, then along y in each plane, then along z.
         let planes: [[i64; 3]; 5] = std::array::from_fn(|k| {
             let rows = &rows[z + k];
             along(|j| ROW_MOMENTS[usize::from(rows[y + j] >> x & 31)])
@@ -96,7 +95,7 @@ impl Moments {
         }
     }
 
-    /// The normal; `outward`: the preferred side of a thin wall.
+    /// `outward` is the preferred side of a thin wall.
     pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
         if self.mass <= LONE_MASS {
             return PackedNormal::NONE;

@@ -16,16 +16,12 @@ use crate::graph::file::{self, Fields, range};
 use crate::graph::map::{Access, advise};
 use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
-/// Opens a file: maps it, and checks the header and that all sections are there.
-///
-/// No section is read. A graph from a damaged file may look wrong, but walking it never panics: see [`super`]. Fails
-/// when the file cannot be read, is something else, is truncated, or its header is damaged.
+/// Maps a file. Fails when it cannot be read, is something else, is truncated, or its header is damaged.
 pub fn open(path: &Path) -> Result<Graph, VxgError> {
     Ok(open_with_header(path)?.0)
 }
 
-/// Opens a file and checks all of it: checksums, padding and every index. Errors: as [`open`], and when any byte is not
-/// as it was written.
+/// Opens a file and checks all of it: checksums, padding and every index.
 pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     let (graph, header, map) = open_with_header(path)?;
     advise(&map, Access::Whole);
@@ -34,8 +30,7 @@ pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     Ok(graph)
 }
 
-/// A graph from the bytes of a whole file, checked like [`verify`]. It owns its arrays. Errors name the file
-/// `(memory)`. Errors: as [`verify`].
+/// A graph from the bytes of a whole file, checked like [`verify`]. Errors name the file `(memory)`.
 pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
     let path = Path::new("(memory)");
     let header = Header::read(bytes, bytes.len() as u64, path)?;
@@ -59,7 +54,6 @@ fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError>
     Ok((graph, header, map))
 }
 
-/// The whole file, from which arrays are taken: as windows of the map, or as copies.
 enum Source<'f> {
     Mapped(&'f Arc<Mmap>),
     Held(&'f [u8]),
@@ -146,7 +140,6 @@ impl Header {
         Ok(graph)
     }
 
-    /// The byte of the file at which an invariant is broken.
     fn locate(&self, invalid: Invalid, path: &Path) -> VxgError {
         let arrays = KINDS.iter().zip(&self.sections);
         let array = { arrays }.find(|((_, array, _), _)| *array == invalid.array);

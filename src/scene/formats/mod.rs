@@ -58,7 +58,6 @@ pub struct Format {
     kind: FileKind,
     pub ending: &'static str,
     pub name: &'static str,
-    /// Its files begin with one of these.
     marks: &'static [&'static [u8]],
     /// Tells files without a mark by their first bytes and length.
     accepts: fn(&[u8], u64) -> bool,
@@ -95,7 +94,6 @@ pub static FORMATS: [Format; 12] = {
 };
 
 impl Format {
-    /// For tests of all readers of voxels.
     pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
         match self.contents {
             Contents::Voxels(_) => self.marks,
@@ -179,7 +177,6 @@ pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
     count.is_some_and(|count| length == 84 + 50 * u64::from(u32::from_le_bytes(count)))
 }
 
-/// A text without its byte order mark.
 fn text(beginning: &[u8]) -> &[u8] {
     beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning)
 }

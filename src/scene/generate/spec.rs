@@ -92,7 +92,6 @@ impl Spec {
         }
     }
 
-    /// The graph of a scene with cycles.
     pub fn linked(&self) -> Option<Graph> {
         match self.generator.shape {
             Shape::Voxels(_) => None,

@@ -12,7 +12,6 @@ use super::numbers::{Number, Scalar};
 pub use header::{Element, Header, Property};
 use source::Source;
 
-/// Longest line of an ASCII body, bytes.
 const MAX_LINE: usize = 1 << 20;
 
 const CUT: &str = "the file is cut short; export or copy it again";
@@ -37,7 +36,6 @@ pub struct Row<'r> {
     pub offset: u64,
     /// One number per property; 0 for a list.
     pub values: &'r [Number],
-    /// Numbers of the list that was asked for.
     pub list: &'r [Number],
 }
 
@@ -62,7 +60,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         self.source.offset
     }
 
-    /// Skips all elements of the next kind.
     pub fn skip(&mut self, element: &Element) -> Result<(), Problem> {
         let is_list = |property: &Property| property.list.is_some();
         let is_text = self.header.encoding == Encoding::Ascii;
@@ -254,7 +251,6 @@ fn parse_row(
     }
     match words.next() {
         None => Ok(()),
-        // Lines of an element without properties are not looked at.
         Some(_) if element.properties.is_empty() => Ok(()),
         Some(word) => Err(fault(
             format!(

@@ -1,8 +1,7 @@
 //! Iterates over the chunks of a `.vox` file, and reads the fields of a chunk.
 //!
-//! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the size of
-//! its content, the size of its children, the content, and the children. Numbers are little endian. Every size is
-//! compared with the bytes left before use: no allocation depends on a number alone.
+//! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the sizes of
+//! content and children, the content, and the children. Every size is compared with the bytes left before use.
 
 use super::DAMAGED;
 use crate::scene::fault::{Fault, printable};
@@ -100,16 +99,13 @@ fn header(
     Ok((id, content as usize, children as usize))
 }
 
-/// Attributes of scene nodes, as bytes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Dict<'a> {
     entries: Vec<(&'a [u8], &'a [u8])>,
-    /// Where it begins in the file.
     pub offset: u64,
 }
 
 impl<'a> Dict<'a> {
-    /// The value of a key; of the last one where it is repeated.
     pub(super) fn get(&self, key: &str) -> Option<&'a [u8]> {
         let found = self
             .entries
@@ -119,7 +115,6 @@ impl<'a> Dict<'a> {
         found.map(|(_, value)| *value)
     }
 
-    /// Whether a switch is on: present with the value 1.
     pub(super) fn is_set(&self, key: &str) -> bool {
         self.get(key)
             .is_some_and(|value| value.trim_ascii() == b"1")
@@ -183,7 +178,6 @@ impl<'a> Fields<'a> {
         &self.part
     }
 
-    /// Byte offset of the next field in the file.
     pub(super) fn offset(&self) -> u64 {
         (self.base + self.at) as u64
     }

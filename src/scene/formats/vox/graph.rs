@@ -1,8 +1,7 @@
 //! The scene graph: transform, group and shape nodes, layers, and the placements of models that they make.
 //!
-//! A file of some kilobytes can place a model a million times, by nodes with many parents. So placements are found
-//! before any voxel is passed on: their number is known, and a repeated placement costs nothing. Of an animation the
-//! first key frame is read.
+//! A small file can place a model a million times, by nodes with many parents. So placements are found before any voxel
+//! is passed on, and a repeated one costs nothing. Of an animation the first key frame is read.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -12,7 +11,7 @@ use super::{AGAIN, DAMAGED};
 use crate::scene::SceneInfo;
 use crate::scene::fault::{Fault, Problem};
 
-/// Most visits of nodes and models, which the file's length does not bound: many nodes may name one as their child.
+/// Most visits of nodes and models, which the file's length does not bound.
 const MAX_VISITS: u64 = 1 << 20;
 
 struct Node {
@@ -159,8 +158,6 @@ impl SceneGraph {
         Ok(placed.into_iter().map(|(placement, _)| placement).collect())
     }
 
-    /// Visits each placement of a model, with its shape node, its transform and whether it is hidden, in the order of
-    /// the file's lists.
     fn walk<'g>(
         &'g self,
         mut visit: impl FnMut(&'g Node, u32, Transform, bool) -> Result<(), Box<Fault>>,
@@ -279,7 +276,6 @@ fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<F
     }
     Ok(NodeKind::Transform {
         child,
-        // -1: on no layer.
         layer: (layer != u32::MAX).then_some(layer),
         transform,
     })

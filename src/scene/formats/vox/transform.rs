@@ -5,7 +5,6 @@
 pub(super) struct Transform {
     /// `source[row]`: the axis whose coordinate goes to axis `row`.
     source: [u8; 3],
-    /// 1 or -1 for each row.
     sign: [i64; 3],
     translation: [i64; 3],
 }

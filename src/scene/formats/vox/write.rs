@@ -6,19 +6,15 @@ use std::io::{self, Write};
 use super::quantize;
 use crate::graph::Voxel;
 
-/// Largest side of a model; a voxel's coordinate is one byte.
 const MODEL_SIDE: i32 = 256;
 
 type Stored = ([u8; 3], [u8; 3]);
 
-/// Collects voxels and writes them as `.vox`.
+/// Collects voxels and writes them as `.vox`, 6 bytes per voxel and the size of the file.
 ///
-/// Space is cut into blocks of 256 voxels per side at multiples of 256. Each block with a voxel becomes a model as
-/// small as its voxels allow. The scene graph places it so that every voxel keeps its index, also a negative one. Of
-/// several voxels at one index the last one is kept. Up to 255 colours are kept exactly; more are reduced by median
-/// cut. The format has no normals.
-///
-/// Memory: 6 bytes per voxel and the size of the file.
+/// Each block of 256 voxels per side becomes a model as small as its voxels allow, which the scene graph puts in its
+/// place. Of several voxels at one index the last is kept. Up to 255 colours are kept exactly; more are reduced by
+/// median cut.
 #[derive(Debug, Default)]
 pub struct VoxWriter {
     blocks: BTreeMap<[i32; 3], Vec<Stored>>,
@@ -29,7 +25,6 @@ pub struct VoxWritten {
     pub voxels: u64,
     pub models: u32,
     pub colors_given: usize,
-    /// Colours in the palette, at most 255.
     pub colors_kept: usize,
 }
 
@@ -107,7 +102,6 @@ fn keep_last(stored: &mut Vec<Stored>) {
     stored.dedup_by_key(|(position, _)| *position);
 }
 
-/// Lowest position, and the size from there; 1 without voxels.
 fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
     let mut low = [u8::MAX; 3];
     let mut high = [0u8; 3];
