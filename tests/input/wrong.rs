@@ -91,49 +91,39 @@ fn messages_about_texts_and_arrays() {
     }
 }
 
+/// Format of a PLY or type of an array, columns or order, rows, and a part of the message.
+const NUMBERS: &str = "
+binary_little_endian | float x, float y, float z | 0 0 0; 1 0.5 2 | vertex 1, property y at byte 145: expected a whole number, the voxel's index, found 0.5
+binary_little_endian | float x, float y, float z | inf 0 0 | found inf
+binary_big_endian | int x, int y, int z, int red, int green, int blue | 0 0 0 256 0 0 | property red at byte
+<f4 | rows | 0 0 0; 1 2 2.5 | row 1, column 2 at byte 93: expected a whole number of 64 bits, the voxel's index, found 2.5
+<f8 | columns | NaN 0 0 | row 0, column 0
+<i4 | rows | 0 0 0 1 -2 3 | expected a colour from 0 to 255, found -2
+<i8 | columns | 0 0 0; 0 1e12 0 | row 1 at byte 80: expected voxel indices that fit 32 bits with sign, found y = 1000000000000
+";
+
 #[test]
 fn messages_about_numbers() {
-    let [int, float] = ["int x, int y, int z", "float x, float y, float z"];
-    let colored = "int x, int y, int z, int red, int green, int blue";
-    let little = |columns, rows: &[[f64; 3]]| cloud(FORMATS[1], columns, rows);
-    let short = little(int, &[[1.0, 2.0, 3.0]]);
-    for (bytes, part) in [
-        (
-            little(float, &[[0.0; 3], [1.0, 0.5, 2.0]]),
-            "vertex 1, property y at byte 145: expected a whole number, the voxel's index, found 0.5",
-        ),
-        (little(float, &[[f64::INFINITY; 3]]), "found inf"),
-        (
-            cloud(FORMATS[2], colored, &[[0.0, 0.0, 0.0, 256.0, 0.0, 0.0]]),
-            "property red at byte",
-        ),
-        (
-            short[..short.len() - 1].to_vec(),
-            "vertex 0 at byte 127: expected as many elements as the header says",
-        ),
-        (
-            array(1, "<f4", false, &[[0.0; 3], [1.0, 2.0, 2.5]]),
-            "row 1, column 2 at byte 93: expected a whole number of 64 bits, the voxel's index",
-        ),
-        (array(1, "<f8", true, &[[f64::NAN; 3]]), "row 0, column 0"),
-        (
-            array(1, "<i4", false, &[[0.0, 0.0, 0.0, 1.0, -2.0, 3.0]]),
-            "expected a colour from 0 to 255, found -2",
-        ),
-        (
-            array(1, "<i8", true, &[[0.0; 3], [0.0, 1e12, 0.0]]),
-            "row 1 at byte 80: expected voxel indices that fit 32 bits with sign, found y = 10000",
-        ),
-        (npy(1, "{'fortran_order': False}", &[]), "an entry 'descr'"),
-        (npy(4, "{}", &[]), "version 1, 2 or 3, found 4"),
-        (npy(2, "", &[])[..10].to_vec(), "byte 10: expected 2 bytes"),
-        (
-            b"\x93NUMPY\x02\0\xff\xff\xff\x7f{}".to_vec(),
-            "one of 2147483647 bytes",
-        ),
-    ] {
+    for row in NUMBERS.lines().skip(1) {
+        let [format, columns, rows, part] = row.split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("{row}");
+        };
+        let numbers = |row: &str| row.split(' ').map(|n| n.parse().unwrap()).collect();
+        let rows: Vec<Vec<f64>> = rows.split("; ").map(numbers).collect();
+        let bytes = match format.starts_with('<') {
+            true => array(1, format, columns == "columns", &rows),
+            false => cloud(format, columns, &rows),
+        };
         refused(&bytes, part);
     }
+    let short = cloud(FORMATS[1], "int x, int y, int z", &[[1.0, 2.0, 3.0]]);
+    let part = "vertex 0 at byte 127: expected as many elements as the header says";
+    refused(&short[..short.len() - 1], part);
+    refused(&npy(1, "{'fortran_order': False}", &[]), "an entry 'descr'");
+    refused(&npy(4, "{}", &[]), "version 1, 2 or 3, found 4");
+    refused(&npy(2, "", &[])[..10], "byte 10: expected 2 bytes");
+    let long = b"\x93NUMPY\x02\0\xff\xff\xff\x7f{}";
+    refused(long, "one of 2147483647 bytes");
     // Counts of a header are not believed.
     let lists = "element vertex N;property list uint double w;property int x;property int y;property int z;";
     for format in FORMATS {
@@ -146,84 +136,81 @@ fn messages_about_numbers() {
     }
 }
 
+/// The parts of a `.vox` file, see [`compose`], and a part of the message.
+const FILES: &str = "
+XYZI 4 | a chunk SIZE before each XYZI
+SIZE 12 | a chunk XYZI after each SIZE
+SIZE 12; voxel | a chunk XYZI after each SIZE
+SIZE 8 | 4 bytes of the size along z, found 0 bytes left
+RGBA 4 | expected at least one model
+voxel; RGBA 1022 | chunk RGBA
+voxel; RGBA 1028 | 1028 bytes
+turned 3 | chunk nTRN (node 2), attribute _r
+turned 5 | two different axes of 0, 1, 2, bits 4-6 signs, found 5
+turned 132 | found 132
+placed 1 2 | three whole numbers of 32 bits, found \"1 2\"
+placed 1 2 3 4 | found \"1 2 3 4\"
+placed 0 0 0; shape 6; group 6 | the id of the chunk nSHP (node 6)
+voxel; moved 0 1; group 1 0 | without circles, found node 0
+voxel; group 0 0 | chunk nGRP (node 0)
+voxel; moved 0 7 | a node with id 7
+voxel; shape 3 0 | the root has id 0
+voxel; shape 0 1 | chunk nSHP (node 0) at byte 64: expected a model from 0 to 0, found model 1
+";
+
+/// A file of nodes with their numbers, models of a voxel, two places of which one is turned or placed, and chunks with
+/// their lengths.
+fn compose(text: &str) -> VoxFile {
+    text.split("; ").fold(VoxFile::default(), |file, item| {
+        let (name, rest) = item.split_once(' ').unwrap_or((item, ""));
+        let numbers: Vec<u32> = rest.split(' ').flat_map(str::parse).collect();
+        match (name, &numbers[..]) {
+            ("voxel", _) => file.model([1, 1, 1], &[[0, 0, 0, 1]]),
+            ("turned", _) => two_places(&[("_r", rest)], &[]),
+            ("placed", _) => two_places(&[("_t", rest)], &[]),
+            ("moved", &[id, child]) => file.moved([id, child], &[]),
+            ("group", [id, children @ ..]) => file.group(*id, children),
+            ("shape", [id]) => file.shape(*id, &[]),
+            ("shape", [id, model]) => file.shape(*id, &[(*model, &[])]),
+            (id, [length, ..]) => file.chunk(
+                id.as_bytes().try_into().unwrap(),
+                &vec![0; *length as usize],
+            ),
+            _ => panic!("{item}"),
+        }
+    })
+}
+
 #[test]
 fn messages_about_vox_files() {
+    for row in FILES.lines().skip(1) {
+        let (text, part) = row.split_once(" | ").unwrap();
+        refused(&compose(text).bytes(), part);
+    }
     let good = two_places(&[], &[]).bytes();
-    let claims = |at: usize, value: u32| {
-        let mut bytes = good.clone();
-        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
-        bytes
-    };
-    refused(
-        &good[..good.len() - 5],
-        "test: chunk \"MAIN\" at byte 8: expected 0 bytes of content and",
-    );
-    refused(&claims(12, 4), "\"MAIN\" at byte 8");
-    refused(
-        &claims(24, 4_000_000_000),
-        "chunk \"SIZE\" at byte 20: expected 4000000000 bytes of content",
-    );
-    let part = "chunk XYZI at byte 56: expected a number of voxels that fits the chunk, at most 1, found 77";
-    refused(&claims(56, 77), part);
-    let (none, one) = (VoxFile::default, one_voxel);
-    let turned = |rotation| two_places(&[("_r", rotation)], &[]);
-    let moved = |by| two_places(&[("_t", by)], &[]);
-    let frame = &[][..];
-    for (file, part) in [
-        (none(), "expected at least one model"),
+    let part = "test: chunk \"MAIN\" at byte 8: expected 0 bytes of content and";
+    refused(&good[..good.len() - 5], part);
+    for (at, value, part) in [
+        (12, 4, "\"MAIN\" at byte 8"),
         (
-            none().chunk(b"XYZI", &[0; 4]),
-            "a chunk SIZE before each XYZI",
+            24,
+            4_000_000_000u32,
+            "\"SIZE\" at byte 20: expected 4000000000 bytes",
         ),
         (
-            none().chunk(b"SIZE", &[0; 12]),
-            "a chunk XYZI after each SIZE",
-        ),
-        (
-            none().chunk(b"SIZE", &[0; 12]).chunks(&one().bytes()[20..]),
-            "a chunk XYZI after each SIZE",
-        ),
-        (
-            none().chunk(b"SIZE", &[0; 8]),
-            "4 bytes of the size along z, found 0 bytes left",
-        ),
-        (one().chunk(b"RGBA", &[0; 1022]), "chunk RGBA"),
-        (one().chunk(b"RGBA", &[0; 1028]), "1028 bytes"),
-        (turned("3"), "chunk nTRN (node 2), attribute _r"),
-        (
-            turned("5"),
-            "two different axes of 0, 1, 2, bits 4-6 signs, found 5",
-        ),
-        (turned("132"), "found 132"),
-        (
-            moved("1 2"),
-            "three whole numbers of 32 bits, found \"1 2\"",
-        ),
-        (moved("1 2 3 4"), "found \"1 2 3 4\""),
-        (
-            two_places(&[], &[]).shape(6, &[]).group(6, &[]),
-            "the id of the chunk nSHP (node 6)",
-        ),
-        (
-            one().moved([0, 1], frame).group(1, &[0]),
-            "without circles, found node 0",
-        ),
-        (one().group(0, &[0]), "chunk nGRP (node 0)"),
-        (one().moved([0, 7], frame), "a node with id 7"),
-        (one().shape(3, &[(0, &[])]), "the root has id 0"),
-        (
-            one().shape(0, &[(1, &[])]),
-            "chunk nSHP (node 0) at byte 64: expected a model from 0 to 0, found model 1",
+            56,
+            77,
+            "chunk XYZI at byte 56: expected a number of voxels that fits the chunk, at most 1, found 77",
         ),
     ] {
-        refused(&file.bytes(), part);
+        let mut bytes = good.clone();
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        refused(&bytes, part);
     }
     // Scenes that are too large.
     let apart = |first, second| two_places(&[("_t", first)], &[("_t", second)]).bytes();
-    assert_eq!(
-        read(&apart("-1048575 0 0", "1048575 0 0")).unwrap().0.len(),
-        2
-    );
+    let (voxels, _) = read(&apart("-1048575 0 0", "1048575 0 0")).unwrap();
+    assert_eq!(voxels.len(), 2);
     for (first, second, part) in [
         ("-1048576 0 0", "1048576 0 0", "at least 2097153 along x"),
         ("2147483647 0 0", "0 0 0", "x = 2147483648"),
@@ -232,10 +219,10 @@ fn messages_about_vox_files() {
     }
     let path = Path::new("/nowhere/at all.vox");
     let error = read_voxels(path, &ReadOptions::default(), &mut |_| (), &Silent).unwrap_err();
-    assert!(matches!(error, SceneError::Io { .. }));
     let text = error.to_string();
+    let part = "/nowhere/at all.vox: cannot open the file: ";
     assert!(
-        text.starts_with("/nowhere/at all.vox: cannot open the file: "),
+        text.starts_with(part) && matches!(error, SceneError::Io { .. }),
         "{text}"
     );
 }
