@@ -154,28 +154,6 @@ fn boxes_of_one_voxel_and_of_the_longest_side() {
     assert_eq!(flat, BuildError::Placement);
 }
 
-fn sierpinski(depth: u32) -> Graph {
-    let mut graph = LinkedGraph::new(depth);
-    let own = Some(0);
-    graph.add_node([9, 8, 7], [own, None, None, own, None, own, own, None]);
-    let graph = graph.build().unwrap();
-    graph.validate().unwrap();
-    graph
-}
-
-#[test]
-fn a_sierpinski_tetrahedron_is_one_node() {
-    let graph = sierpinski(4);
-    assert_eq!((graph.len(), graph.voxels), (1, 256));
-    let cells = cells(&graph);
-    assert_eq!(cells.len(), 256);
-    // Its voxels have an even number of ones in each bit of x, y, z.
-    assert!(cells.iter().all(|([x, y, z], ..)| x ^ y ^ z == 0));
-    assert_eq!(graph.nodes_per_level(), [1; 5]);
-    assert_eq!(sierpinski(30).voxels, 1 << 60);
-    assert_eq!(sierpinski(30).voxels().take(1000).count(), 1000);
-}
-
 /// Random graphs, some of them cyclic, have the same cells and colours when equal nodes are merged, and when their lists
 /// lie side by side. A node is where `links` had it.
 #[test]
