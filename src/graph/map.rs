@@ -15,24 +15,18 @@ pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
     Ok(Arc::new(map))
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::graph) enum Access {
-    Scattered,
-    Whole,
-}
-
-/// Advises the system how the file is read, where it has such a call.
-pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
+/// Advises the system that all of the file is read, or scattered pages, where it has such a call.
+pub(in crate::graph) fn advise(map: &Mmap, is_whole: bool) {
     #[cfg(unix)]
     {
-        let advice = match access {
-            Access::Scattered => memmap2::Advice::Random,
-            Access::Whole => memmap2::Advice::Sequential,
+        let advice = match is_whole {
+            true => memmap2::Advice::Sequential,
+            false => memmap2::Advice::Random,
         };
         let _ = map.advise(advice);
     }
     #[cfg(not(unix))]
-    let _ = (map, access);
+    let _ = (map, is_whole);
 }
 
 /// Drops the pages of a range of bytes. False where the system has no such call, or refuses it.

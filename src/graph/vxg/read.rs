@@ -13,7 +13,7 @@ use super::format::{
     at, entry_at, layout,
 };
 use crate::graph::file::{self, Fields, range};
-use crate::graph::map::{Access, advise};
+use crate::graph::map::advise;
 use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
 /// Maps a file. Fails when it cannot be read, is something else, is truncated, or its header is damaged.
@@ -24,9 +24,9 @@ pub fn open(path: &Path) -> Result<Graph, VxgError> {
 /// Opens a file and checks all of it: checksums, padding and every index.
 pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     let (graph, header, map) = open_with_header(path)?;
-    advise(&map, Access::Whole);
+    advise(&map, true);
     header.verify_sections(&graph, &map, path)?;
-    advise(&map, Access::Scattered);
+    advise(&map, false);
     Ok(graph)
 }
 
@@ -49,7 +49,7 @@ fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError>
         let offset = at::FILE_BYTES as u64;
         return Err(VxgError::damaged(path, "header", offset, expected));
     }
-    advise(&map, Access::Scattered);
+    advise(&map, false);
     let graph = header.graph(&Source::Mapped(&map), path)?;
     Ok((graph, header, map))
 }

@@ -114,9 +114,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                     let mut is_whole = true;
                     for (at, property) in element.properties.iter().enumerate() {
                         let kept = (list == Some(at)).then_some(&mut kept);
-                        let value = self.binary(property, big_endian, kept);
-                        let value =
-                            value.map_err(|error| error.at_part(|| part(element, number)))?;
+                        let value = self.binary((element, number), property, big_endian, kept)?;
                         is_whole &= value.is_some();
                         values.extend(value);
                         if !is_whole {
@@ -154,6 +152,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
     /// Reads a binary number, or a list and returns 0; `None` if the file ends first.
     fn binary(
         &mut self,
+        (element, number): (&Element, u64),
         property: &Property,
         big_endian: bool,
         kept: Option<&mut Vec<Number>>,
@@ -167,7 +166,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         };
         let Some(length) = length.whole().and_then(|length| u64::try_from(length).ok()) else {
             return Err(Fault::new(
-                "",
+                part(element, number),
                 offset,
                 "a list's length that is not negative",
                 length.to_string(),
@@ -186,17 +185,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
             }
         }
         Ok(Some(Number::Whole(0)))
-    }
-}
-
-impl Problem {
-    fn at_part(mut self, part: impl FnOnce() -> String) -> Self {
-        if let Self::Invalid(fault) = &mut self
-            && fault.part.is_empty()
-        {
-            fault.part = part();
-        }
-        self
     }
 }
 
