@@ -135,7 +135,8 @@ impl Scene {
             nodes.push(if below(2) == 0 {
                 let by = [0; 3].map(|_| below(span) as i32 - span as i32 / 2);
                 let first = below(3);
-                let rotation = first | (first + 1 + below(2)) % 3 << 2 | below(8) << 4;
+                let second = (first + 1 + below(2)) % 3;
+                let rotation = first | second << 2 | below(8) << 4;
                 let turned = u32::from(is_wild && below(16) == 0);
                 Node::Moves(by, (rotation ^ turned) as u8, child(below))
             } else {

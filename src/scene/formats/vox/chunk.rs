@@ -10,6 +10,8 @@ const HEADER: usize = 12;
 
 const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
 
+type Fallible<T> = Result<T, Box<Fault>>;
+
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub id: [u8; 4],
@@ -19,9 +21,7 @@ pub(super) struct Chunk<'a> {
 
 /// Checks the file's head. Returns the children of `MAIN`, which end after the first error, and the number of bytes after
 /// them.
-pub(super) fn chunks(
-    bytes: &[u8],
-) -> Result<(impl Iterator<Item = Result<Chunk<'_>, Box<Fault>>>, usize), Box<Fault>> {
+pub(super) fn chunks(bytes: &[u8]) -> Fallible<(impl Iterator<Item = Fallible<Chunk<'_>>>, usize)> {
     if bytes.len() < 8 || &bytes[..4] != b"VOX " {
         return Err(Fault::new(
             "file header",
