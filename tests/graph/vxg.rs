@@ -9,7 +9,7 @@ use shiftvox::scene::{FileKind, detect};
 
 use crate::{at, build, bytes_of, parts, seal};
 
-/// A tree, the same merged, with opacities, and of a mesh; a cyclic graph; a voxel.
+/// A tree, the tree merged, a cyclic graph, a voxel, and the tree with opacities and of a mesh.
 fn small_graphs() -> [Graph; 6] {
     let voxels = [[0; 3], [1, 0, 0], [1, 1, 0], [-5, 3, 2], [6; 3], [7, 6, 6]];
     let tree = build(&voxels.map(at));

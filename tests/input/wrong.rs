@@ -20,7 +20,7 @@ pub(crate) fn refused(bytes: &[u8], part: &str) -> SceneError {
     error
 }
 
-/// Each row is a file's text, with `;` for line ends, and a part of the message. `PLY` stands for its first lines in
+/// Each row is a file's text, with `;` for line ends, and a part of the message. `PLY` means its first lines in
 /// text, `POINTS` for a header of two vertices.
 const TEXTS: &str = "
 DOOD is not a voxel | test: not a known scene file: it begins with \"DOOD
