@@ -21,7 +21,7 @@ pub(crate) fn refused(bytes: &[u8], part: &str) -> SceneError {
 }
 
 /// Each row is a file's text, with `;` for line ends, and a part of the message. `PLY` means its first lines in
-/// text, `POINTS` for a header of two vertices.
+/// text, `POINTS` a header of two vertices.
 const TEXTS: &str = "
 DOOD is not a voxel | test: not a known scene file: it begins with \"DOOD
 solid a; | has triangles and no voxels
