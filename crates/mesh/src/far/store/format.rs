@@ -12,7 +12,8 @@ use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
     magic: *b"\x89FAR\r\n\x1a\n",
-    version: 6,
+    versions: &[6],
+    header_bytes: HEADER_BYTES,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
@@ -78,7 +79,9 @@ pub(in crate::far) fn write_parts(
         bevels: settings.bevels,
         ..Zeroable::zeroed()
     };
-    let header = FORMAT.header(end, |put| put(FIELDS, bytemuck::bytes_of(&fields)));
+    let header = FORMAT.header(FORMAT.versions[0], end, |put| {
+        put(FIELDS, bytemuck::bytes_of(&fields))
+    });
     // The zeros before the data are written before an empty section.
     let sections = [(node_place, nodes), ([begin; 2], &[][..])];
     file::write(&FORMAT, &header, sections.into_iter(), out)?;

@@ -18,7 +18,7 @@ use crate::far::FarSettings;
 use crate::far::record::Node;
 use crate::geometry::point;
 use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
 use shiftvox::graph::map::release;
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
@@ -85,12 +85,11 @@ impl FarFile {
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, FarError> {
-        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
         let places = layout(header.nodes, header.data_bytes);
         let [place, section] = places;
-        check_padding(all, places.into_iter(), path)?;
+        FORMAT.check_padding(all, places.into_iter(), path)?;
         let damaged =
             |section, offset, expected| FarError::damaged(path, section, offset, expected);
         let node_bytes = &all[range(place)];

@@ -11,7 +11,8 @@ pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89TVX\r\n\x1a\n",
-    version: 2,
+    versions: &[2],
+    header_bytes: HEADER_BYTES,
     signature: "the signature of a .tvx file",
     not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
 };

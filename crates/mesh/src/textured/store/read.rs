@@ -16,7 +16,7 @@ use crate::textured::levels::Levels;
 use crate::textured::record::{Primitive, Texel, VoxelRecord, list_of};
 use crate::textured::{CellGrid, Element};
 use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
 #[derive(Debug)]
@@ -45,7 +45,6 @@ impl TexturedFile {
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, TexturedError> {
-        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
         let entries = read_entries(&header, all, path)?;
@@ -55,7 +54,7 @@ impl TexturedFile {
             let offset = layout.entries[0];
             return Err(TexturedError::damaged(path, "grids", offset, expected));
         }
-        check_padding(all, layout.sections(), path)?;
+        FORMAT.check_padding(all, layout.sections(), path)?;
         let mut file = Self {
             path: path.to_owned(),
             is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
