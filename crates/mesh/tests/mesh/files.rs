@@ -8,26 +8,26 @@ use shiftvox_mesh::{Beside, ColorSpace, LoadOptions, Mesh, MeshFormat, SameFolde
 use super::shapes::{load, squares};
 use super::shared::{has, soup};
 
-/// The library `a b.mtl`, and no other file.
-struct Library<'l>(&'l str);
+/// Files by a function of their name.
+pub(super) struct Files<F>(pub(super) F);
 
-impl Beside for Library<'_> {
+impl<F: Fn(&str) -> Option<Vec<u8>>> Beside for Files<F> {
     fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        match name {
-            "a b.mtl" => Ok(self.0.into()),
-            _ => Err(io::ErrorKind::NotFound.into()),
-        }
+        self.0(name).ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 }
 
+/// Reads a mesh beside the library `a b.mtl`.
 fn obj(text: &str, mtl: &str, mtl_colors: ColorSpace) -> Mesh {
     let options = LoadOptions { mtl_colors };
-    let (text, beside) = (text.as_bytes(), Library(mtl));
-    read(text, MeshFormat::Obj, "a file", &beside, &options, &Silent).unwrap()
+    let library = Files(|name: &str| (name == "a b.mtl").then(|| mtl.into()));
+    let text = text.as_bytes();
+    read(text, MeshFormat::Obj, "a file", &library, &options, &Silent).unwrap()
 }
 
-fn material(mesh: &Mesh, triangle: usize) -> &str {
-    &mesh.materials()[mesh.material_of()[triangle] as usize].name
+fn materials(mesh: &Mesh) -> Vec<&str> {
+    let name = |&m: &u32| &mesh.materials()[m as usize].name[..];
+    mesh.material_of().iter().map(name).collect()
 }
 
 #[test]
@@ -62,8 +62,7 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
         let names = ["red one", "red one", "red one", "blue", "no material"];
-        assert_eq!([0, 1, 2, 3, 4].map(|n| material(&mesh, n)), names);
-        assert_eq!(mesh.triangles().len(), 5);
+        assert_eq!(materials(&mesh), names);
         assert_eq!(mesh.corner_normals().len(), 0);
         let [first, blue] = [0, 3].map(|n| &mesh.materials()[mesh.material_of()[n] as usize]);
         assert!((first.diffuse[0] - red).abs() < 1e-4);
@@ -90,7 +89,7 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let mtl = "\u{feff}newmtl red\nKd 0.5 \\\n0 0\n";
     let mesh = obj(text, mtl, ColorSpace::Srgb);
     assert_eq!(soup(&mesh), [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
-    assert_eq!(material(&mesh, 0), "red");
+    assert_eq!(materials(&mesh), ["red"]);
     assert_eq!(mesh.warnings(), [""; 0]);
 }
 
@@ -102,13 +101,7 @@ fn only_the_folder_of_the_mesh_is_searched() {
     std::fs::write(folder.path().join("secret.mtl"), b"outside").unwrap();
     std::fs::write(inside.join("a.mtl"), b"inside").unwrap();
     let beside = SameFolder::new(&inside);
-    for name in [
-        "a.mtl",
-        "./a.mtl",
-        "../elsewhere/a.mtl",
-        "/tmp/a.mtl",
-        "C:\\models\\a.mtl",
-    ] {
+    for name in "a.mtl ./a.mtl ../elsewhere/a.mtl /tmp/a.mtl C:\\models\\a.mtl".split(' ') {
         assert_eq!(beside.read(name).unwrap(), b"inside", "{name}");
     }
     for name in ["../secret.mtl", "..", "", "/"] {
