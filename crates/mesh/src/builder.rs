@@ -298,45 +298,32 @@ fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
 mod tests {
     use super::*;
 
-    /// A builder with four positions, of which three are on a line.
-    fn four() -> MeshBuilder {
+    #[test]
+    fn some_triangles_are_left_out_and_normals_and_colours_may_come_late() {
         let mut builder = MeshBuilder::new();
-        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]] {
+        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [f32::NAN; 3]] {
             builder.position(position);
         }
-        builder
-    }
-
-    #[test]
-    fn triangles_that_cannot_be_drawn_are_left_out_with_a_warning() {
-        let mut builder = four();
-        let nan = builder.position([f32::NAN, 0.0, 0.0]);
-        for triangle in [[0, 1, 2], [0, 1, 1], [0, 1, 3], [0, 1, nan]] {
+        builder.colored_position([2.0, 0.0, 0.0], [1, 2, 3]);
+        for triangle in [[0, 1, 2], [0, 1, 1], [0, 1, 4], [0, 1, 3]] {
             builder.triangle(triangle, None, 9).unwrap();
         }
+        let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
+        builder.triangle([0, 1, 2], Some(bad), 0).unwrap();
         let error = builder.triangle([0, 1, 5], None, 0).unwrap_err();
         assert_eq!((error.index, error.positions), (5, 5));
         let mesh = builder.finish("a.obj").unwrap();
-        assert_eq!(mesh.triangles(), [[0, 1, 2]]);
-        assert_eq!(mesh.warnings().len(), 2);
-        assert!(mesh.warnings()[0].starts_with("1 of 4 triangles with a coordinate"));
-        assert!(mesh.warnings()[1].starts_with("2 of 4 triangles without area"));
+        assert_eq!(mesh.triangles(), [[0, 1, 2]; 2]);
+        assert!(mesh.warnings()[0].starts_with("1 of 5 triangles with a coordinate"));
+        assert!(mesh.warnings()[1].starts_with("2 of 5 triangles without area"));
         assert_eq!(mesh.bounds().1, DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!(mesh.materials().len(), 1);
-    }
-
-    #[test]
-    fn normals_and_colours_may_come_late() {
-        let mut builder = four();
-        let last = builder.colored_position([5.0; 3], [1, 2, 3]);
-        builder.triangle([0, 1, 2], None, 0).unwrap();
-        let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
-        builder.triangle([0, 1, last], Some(bad), 0).unwrap();
-        let mesh = builder.finish("a").unwrap();
+        assert_eq!(
+            (mesh.materials().len(), mesh.material_of()),
+            (1, &[0, 0][..])
+        );
         assert_eq!(mesh.vertex_colors()[3..], [[255; 3], [1, 2, 3]]);
-        assert_eq!(mesh.corner_normals()[0], [[0.0, 0.0, 1.0]; 3]);
-        let [a, b, c] = mesh.corner_normals()[1];
-        assert_eq!(a, b);
-        assert_eq!(c, [0.0, 1.0, 0.0]);
+        let plane = [0.0, 0.0, 1.0];
+        let normals = [[plane; 3], [plane, plane, [0.0, 1.0, 0.0]]];
+        assert_eq!(mesh.corner_normals(), normals);
     }
 }

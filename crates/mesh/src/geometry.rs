@@ -125,21 +125,3 @@ impl Sets {
         self.0[a.max(b) as usize] = a.min(b);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_of_corners() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        for (point, shares) in [
-            (DVec3::X, [0.0, 1.0, 0.0]),
-            (DVec3::new(0.25, 0.25, 5.0), [0.5, 0.25, 0.25]),
-            (DVec3::splat(9.0), [0.0, 0.5, 0.5]),
-        ] {
-            assert_eq!(barycentric(&triangle, point), shares);
-        }
-        assert_eq!(barycentric(&[DVec3::ZERO; 3], DVec3::X), [1.0 / 3.0; 3]);
-    }
-}

@@ -24,12 +24,6 @@ pub mod textured;
 #[doc(hidden)]
 pub mod voxelize;
 
-#[cfg(test)]
-extern crate self as shiftvox_mesh;
-#[cfg(test)]
-#[path = "../tests/shared/mod.rs"]
-mod shared;
-
 use glam::DVec3;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 
@@ -118,3 +112,9 @@ impl Mesh {
         sizes.iter().map(|&size| size as u64).sum()
     }
 }
+
+#[cfg(test)]
+extern crate self as shiftvox_mesh;
+#[cfg(test)]
+#[path = "../tests/shared/mod.rs"]
+mod shared;

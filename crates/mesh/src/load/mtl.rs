@@ -133,34 +133,3 @@ impl Found {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_have_names_after_their_options() {
-        let options = "-s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 sub/a b.png";
-        assert_eq!(file_name(options).as_deref(), Some("sub/a b.png"));
-        assert_eq!(file_name("-clamp on"), None);
-        assert_eq!(file_name(""), None);
-    }
-
-    #[test]
-    fn materials_with_what_is_odd_about_them() {
-        let text =
-            b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
-            map_Kd wood.png\nnewmtl d\nKd spectral x.rfl\nnewmtl \xfc\n";
-        let library = read(text, &LoadOptions::default());
-        let (materials, textures): (Vec<Material>, Vec<_>) = library.materials.into_iter().unzip();
-        let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
-        assert_eq!(names, ["a b", "c", "d", "\u{fffd}"]);
-        assert_eq!(materials[0].diffuse[..2], [1.0, 0.0]);
-        assert_eq!(materials[0].alpha, 0.75);
-        assert_eq!(materials[1].alpha, 0.5);
-        assert_eq!(materials[2].diffuse, materials[3].diffuse);
-        assert_eq!(library.odd_line, Some(11));
-        let wood = Some("wood.png".to_owned());
-        assert_eq!(textures, [None, wood, None, None]);
-    }
-}

@@ -82,26 +82,3 @@ impl Edges {
             .all(|edge| edge.at + edge.right * x + edge.down * y >= 0)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pixels_are_told_from_their_corners() {
-        let far = SUBPIXELS * 10;
-        let edges = Edges::new([[0, 0], [far, 0], [0, far]]).unwrap();
-        assert_eq!(edges.seen_from([1, 1]).cover(), Cover::All);
-        assert_eq!(edges.seen_from([5, 4]).cover(), Cover::Part);
-        assert_eq!(edges.seen_from([20, 4]).cover(), Cover::Nothing);
-        assert!(Edges::new([[0, 0], [3, 3], [5, 5]]).is_none());
-    }
-
-    #[test]
-    fn the_largest_triangles_fit() {
-        let most = 80_000 * SUBPIXELS;
-        let edges = Edges::new([[-most, -most], [most, -most], [most, most]]).unwrap();
-        assert!(edges.seen_from([32767, 0]).covers([0, 0]));
-        assert!(!edges.seen_from([0, 32767]).covers([0, 0]));
-    }
-}

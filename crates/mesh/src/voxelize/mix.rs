@@ -110,37 +110,3 @@ fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
     let mean = corners.iter().copied().sum::<DVec3>() / corners.len() as f64;
     (area_of(corners), mean)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_within_a_cube_have_their_area_and_middle() {
-        let half = DVec3::splat(0.5);
-        for (triangle, area, middle) in [
-            // A plane through the middle, far larger than the cube.
-            (
-                [[-9.0, -9.0, 0.5], [20.0, -9.0, 0.5], [-9.0, 20.0, 0.5]],
-                1.0,
-                half,
-            ),
-            // The regular hexagon across the diagonal: side sqrt(1/2).
-            (
-                [[4.5, -1.5, -1.5], [-1.5, 4.5, -1.5], [-1.5, -1.5, 4.5]],
-                0.75 * 3f64.sqrt(),
-                half,
-            ),
-            // A triangle that touches in a corner.
-            (
-                [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]],
-                0.0,
-                DVec3::ONE,
-            ),
-        ] {
-            let found = part_in_unit_cube(&triangle.map(DVec3::from_array));
-            assert!((found.0 - area).abs() < 1e-12, "{found:?}");
-            assert!((found.1 - middle).length() < 1e-12, "{found:?}");
-        }
-    }
-}

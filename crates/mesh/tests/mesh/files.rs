@@ -57,7 +57,8 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 2 0\nv 0 1 0\nusemtl red one\n\
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
-    let mtl = "newmtl red one\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\nd 0.5\nmap_Kd a.png\nnewmtl gone\nd 0\n";
+    let mtl = "# c\nKd 1 1 1\nnewmtl red one\n Kd 0.5 0 0\nTr 0.25\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
+        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nnewmtl \u{fc}\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -67,8 +68,10 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         let [first, blue] = [0, 3].map(|n| &mesh.materials()[mesh.material_of()[n] as usize]);
         assert!((first.diffuse[0] - red).abs() < 1e-4);
         assert_eq!(first.diffuse[1..], [0.0; 2]);
-        assert_eq!(blue.alpha, 0.5);
+        assert_eq!((first.alpha, blue.alpha), (0.75, 0.5));
+        assert_eq!(blue.diffuse, [0.0, 0.0, 1.0]);
         let warnings = [
+            "a b.mtl: line 11 is not understood",
             "a.png cannot be read",
             "none.mtl cannot be read",
             "1 triangles have no material",

@@ -63,7 +63,7 @@ fn textures_of_obj_files_are_averaged_over_triangles() {
     let at = folder.path();
     let materials = at.join("materials");
     fs::create_dir_all(materials.join("pictures")).unwrap();
-    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -s 1 1 1 pictures/wood grain.png\n";
+    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 pictures/wood grain.png\n";
     fs::write(materials.join("a.mtl"), mtl).unwrap();
     fs::write(at.join("a.obj"), OBJ.replace("a.mtl", "materials/a.mtl")).unwrap();
     let picture = materials.join("pictures/wood grain.png");
