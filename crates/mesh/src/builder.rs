@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::SceneError;
 use super::geometry::{plane_normal, point};
 use super::load::{Fault, Place, Problem};
-use super::{Material, Mesh};
+use super::{Material, Mesh, Surface};
 use shiftvox::budget::{self, Shortage};
 
 /// Most positions and triangles of a mesh: both are numbered in 32 bits.
@@ -30,10 +30,7 @@ type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
-    /// Whether any triangle came with normals; those before it got their plane's.
-    has_normals: bool,
     not_finite: u64,
-    first_not_finite: u64,
     degenerate: u64,
     invisible: u64,
     /// Triangles of opacity 0, while there are no others.
@@ -86,11 +83,10 @@ impl MeshBuilder {
         let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
         let needed = needed as u64;
         budget::check(WHAT, needed)?;
-        let had = mesh
-            .positions
-            .try_reserve_exact(positions)
-            .and_then(|()| mesh.triangles.try_reserve_exact(triangles))
-            .and_then(|()| mesh.material_of.try_reserve_exact(triangles));
+        let (corners, materials) = (&mut mesh.triangles, &mut mesh.material_of);
+        let had = mesh.positions.try_reserve_exact(positions);
+        let had = had.and_then(|()| corners.try_reserve_exact(triangles));
+        let had = had.and_then(|()| materials.try_reserve_exact(triangles));
         had.map_err(|_| Shortage {
             what: WHAT,
             needed,
@@ -139,9 +135,6 @@ impl MeshBuilder {
         self.seen += 1;
         let [a, b, c] = corners.map(|i| point(self.mesh.positions[i as usize]));
         if !(a.is_finite() && b.is_finite() && c.is_finite()) {
-            if self.not_finite == 0 {
-                self.first_not_finite = self.seen;
-            }
             self.not_finite += 1;
             return Ok(());
         }
@@ -167,33 +160,22 @@ impl MeshBuilder {
             self.mesh.tints.resize(self.mesh.triangles.len(), [1.0; 3]);
             self.mesh.tints.push(tint);
         }
-        // No zero: `across` is not, though its length may round to it.
-        let plane = across.normalize_or(DVec3::Z).as_vec3().to_array();
-        if normals.is_some() && !self.has_normals {
-            self.has_normals = true;
-            self.fill_normals();
-        }
-        if self.has_normals {
-            let given = normals.unwrap_or([plane; 3]);
-            let sound = given.map(|normal| unit(normal).unwrap_or(plane));
-            self.mesh.corner_normals.push(sound);
-        }
-        self.mesh.triangles.push(corners);
-        self.mesh.material_of.push(material);
-        Ok(())
-    }
-
-    fn fill_normals(&mut self) {
         let mesh = &mut self.mesh;
-        let positions = &mesh.positions;
-        mesh.corner_normals = mesh
-            .triangles
-            .iter()
-            .map(|corners| {
-                let plane = plane_normal(corners.map(|i| point(positions[i as usize])));
-                [plane.as_vec3().to_array(); 3]
-            })
-            .collect();
+        if normals.is_some() || !mesh.corner_normals.is_empty() {
+            // Earlier triangles get the normal of their plane.
+            for number in mesh.corner_normals.len()..mesh.triangles.len() {
+                let plane = plane_normal(Surface::corners(mesh, number));
+                mesh.corner_normals.push([plane.as_vec3().to_array(); 3]);
+            }
+            // No zero: `across` is not, though its length may round to it.
+            let plane = across.normalize_or(DVec3::Z);
+            let given = normals.map_or([plane; 3], |normals| normals.map(point));
+            let sound = given.map(|n| n.try_normalize().unwrap_or(plane).as_vec3().to_array());
+            mesh.corner_normals.push(sound);
+        }
+        mesh.triangles.push(corners);
+        mesh.material_of.push(material);
+        Ok(())
     }
 
     fn show_hidden(&mut self) {
@@ -232,25 +214,22 @@ impl MeshBuilder {
             let fault = Fault::new("mesh", Place::Whole, expected, "more", "split the mesh");
             return Err(in_file(Problem::Limit(fault)));
         }
-        let complaints = [
+        let mut told = Vec::new();
+        for (count, what) in [
             (
                 self.not_finite,
-                format!(
-                    "with a coordinate that is infinite or not a number (the first: triangle {})",
-                    self.first_not_finite
-                ),
+                "with a coordinate that is infinite or not a number",
             ),
             (
                 self.degenerate,
-                "without area (corners equal, or on a line)".into(),
+                "without area (corners equal, or on a line)",
             ),
-            (self.invisible, "of a material with opacity 0".into()),
-        ];
-        let mut told: Vec<String> = complaints
-            .iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} of {} triangles {what}", self.seen))
-            .collect();
+            (self.invisible, "of a material with opacity 0"),
+        ] {
+            if count > 0 {
+                told.push(format!("{count} of {} triangles {what}", self.seen));
+            }
+        }
         if self.mesh.triangles.is_empty() {
             let found = match &told[..] {
                 [] => "none".to_owned(),
@@ -268,10 +247,9 @@ impl MeshBuilder {
         if mesh.materials.is_empty() {
             mesh.materials.push(Material::default_color());
         }
-        for material in &mut mesh.material_of {
-            if *material as usize >= mesh.materials.len() {
-                *material = 0;
-            }
+        let is_known = |material: u32| (material as usize) < mesh.materials.len();
+        for material in mesh.material_of.iter_mut().filter(|m| !is_known(**m)) {
+            *material = 0;
         }
         if !mesh.tints.is_empty() {
             mesh.tints.resize(mesh.triangles.len(), [1.0; 3]);
@@ -286,12 +264,6 @@ impl MeshBuilder {
         mesh.corner_normals.shrink_to_fit();
         Ok(mesh)
     }
-}
-
-fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
-    point(normal)
-        .try_normalize()
-        .map(|unit| unit.as_vec3().to_array())
 }
 
 #[cfg(test)]

@@ -35,7 +35,6 @@ pub struct DecimateError(String);
 /// The weight of a normal's change by its own length, in extents of the mesh, where triangles are counted. It equals
 /// moving the surface by a hundredth of its extent.
 const NORMAL_WEIGHT: f32 = 0.01;
-/// The weight of the greatest change of a colour channel.
 const COLOR_WEIGHT: f32 = 0.1;
 /// Least cosine between a normal and the plane of a triangle that takes it.
 const FACES_ALIKE: f64 = 0.5;
@@ -48,18 +47,12 @@ type Key = (Place, u32, [u8; 3]);
 type Place = [u64; 3];
 
 /// Decimates a mesh; `None` where no triangle is left.
-///
-/// # Errors
-/// [`DecimateError`].
 pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
     decimate_between(mesh, how, |_| None)
 }
 
 /// Decimates a part of a mesh. Positions that it shares with other parts stay. For these, `shared` gives the normals of
 /// all triangles there, each as long as its triangle's area.
-///
-/// # Errors
-/// [`DecimateError`].
 pub fn decimate_between<'n>(
     mesh: &Mesh,
     how: &Decimation,

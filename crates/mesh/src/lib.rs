@@ -8,13 +8,17 @@
 //! Rules: `spec/mesh.md`.
 
 mod builder;
+#[doc(hidden)]
 pub mod decimate;
+#[doc(hidden)]
 pub mod drawing;
 pub mod far;
+#[doc(hidden)]
 pub mod generate;
 mod geometry;
 mod load;
 mod material;
+#[doc(hidden)]
 pub mod open;
 pub mod raster;
 mod scene_options;

@@ -11,23 +11,18 @@ use shiftvox::drawing::Figures;
 use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
 
-/// Settings for drawing far voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarStyle {
     /// Largest voxel, pixels; above 0.
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// The opacities that are used.
     pub opacity: Opacity,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
 impl FarStyle {
-    /// The options of a viewer.
     pub fn options(&self, view: &RasterCamera) -> ViewOptions {
         ViewOptions {
             voxel_px: self.voxel_px,
@@ -48,11 +43,9 @@ pub struct FarMethod<'f> {
     style: FarStyle,
 }
 
-/// A file of far voxels that is drawn, once or from many cameras.
 pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
 
 impl<'f> FarDrawing<'f> {
-    /// Nothing is drawn yet.
     pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
         Self::of(FarMethod {
             file,

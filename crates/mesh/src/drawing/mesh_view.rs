@@ -11,9 +11,6 @@ use shiftvox::project::{Camera, CameraError};
 const NEAR: f64 = 1e-6;
 
 /// A camera's view of the contents of a box.
-///
-/// # Errors
-/// When the camera has no direction or a number that is not finite.
 pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<RasterCamera, CameraError> {
     let axes = camera.axes()?;
     let farthest = (camera.eye - low)
@@ -57,7 +54,6 @@ pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
     )
 }
 
-/// A picture of far voxels as those of other engines, without normals and voxels.
 pub fn picture_of_far(drawn: FarPicture) -> Picture {
     let size = (drawn.width, drawn.height);
     picture(size, drawn.rgba, drawn.depth, drawn.node)

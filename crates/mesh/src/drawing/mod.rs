@@ -24,24 +24,18 @@ pub use triangles::{TrianglesDrawing, TrianglesMethod, TrianglesStyle};
 /// Why a method of meshes did not draw a frame: the contents of [`DrawError::Method`].
 #[derive(Debug, thiserror::Error)]
 pub enum MethodError {
-    /// Far voxels cannot be drawn so.
     #[error(transparent)]
     Far(#[from] crate::far::view::ViewError),
-    /// Textured voxels cannot be drawn so.
     #[error(transparent)]
     Textured(#[from] crate::textured::view::ViewError),
-    /// A file of textured voxels has no grid with so many cells.
     #[error("the file has no grid of {cells} cells")]
     NoGrid {
-        /// The requested number.
         cells: u32,
         /// The numbers of cells of the file's grids.
         has: Vec<u32>,
     },
-    /// Triangles cannot be drawn so.
     #[error(transparent)]
     Raster(#[from] RasterError),
-    /// A pixel cannot have so many samples.
     #[error(transparent)]
     Samples(#[from] SamplesError),
 }
@@ -55,28 +49,20 @@ impl From<MethodError> for DrawError {
 /// Least memory of a sample, bytes: colour, depth, and the triangle or node that is seen.
 const MESH_SAMPLE_BYTES: u64 = 8;
 
-/// A picture that a method drew, with the covered share of each pixel.
 pub struct Drawn {
     picture: Picture,
     coverage: Vec<f32>,
     counters: Figures,
 }
 
-/// A method of drawing a mesh.
 pub trait Method: Clone + Send {
-    /// The bounds for a fitted camera.
     fn mesh_box(&self) -> MeshBox;
 
     /// Samples per pixel and axis, as a power of two, that take memory at the same time.
     fn aa_log2(&self) -> u32;
 
-    /// Draws a frame.
-    ///
-    /// # Errors
-    /// See [`MethodError`].
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError>;
 
-    /// The method's name and other figures of it.
     fn details(&self) -> Figures;
 }
 

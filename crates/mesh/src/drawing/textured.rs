@@ -15,44 +15,33 @@ use shiftvox::picture::{Background, Shading};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Erosion {
     /// The level of fewest faces, of all grids, whose texels are at most so many pixels; above 0.
-    Auto {
-        /// Pixels.
-        texel_px: f64,
-    },
+    Auto { texel_px: f64 },
     /// So often; beyond the last level primitives alone are left.
     Level {
-        /// Erosions.
         level: u32,
         /// The grid, by its number of cells; else the one that fits the view best.
         cells: Option<u32>,
     },
 }
 
-/// Settings for drawing textured voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedStyle {
-    /// Level of detail.
     pub erosion: Erosion,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
-/// A file of textured voxels and how it is drawn.
 #[derive(Clone)]
 pub struct TexturedMethod<'f> {
     file: &'f TexturedFile,
     style: TexturedStyle,
 }
 
-/// A file of textured voxels that is drawn, once or from many cameras.
 pub type TexturedDrawing<'f> = MethodDrawing<TexturedMethod<'f>>;
 
 impl<'f> TexturedDrawing<'f> {
-    /// Nothing is drawn yet.
     pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
         Self::of(TexturedMethod { file, style })
     }

