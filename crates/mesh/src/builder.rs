@@ -8,7 +8,6 @@ use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh, Surface};
 use shiftvox::budget::{self, Shortage};
 
-/// Most positions and triangles of a mesh: both are numbered in 32 bits.
 const MOST: usize = u32::MAX as usize;
 
 /// A triangle names a position that does not exist.
@@ -20,7 +19,6 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
-/// A triangle as it is given: corners, normals, material, tint.
 type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
@@ -48,7 +46,6 @@ impl MeshBuilder {
     /// Adds a material and returns its number.
     pub fn material(&mut self, material: Material) -> u32 {
         self.mesh.materials.push(material);
-        // More would not fit a file.
         (self.mesh.materials.len() - 1) as u32
     }
 
@@ -196,7 +193,6 @@ impl MeshBuilder {
         self.invisible = 0;
         let seen = self.seen;
         for (corners, normals, material, tint) in hidden {
-            // In range: it was when it was given.
             let _ = self.textured_triangle(corners, normals, material, tint);
         }
         self.seen = seen;

@@ -36,12 +36,9 @@ pub struct DecimateError(String);
 /// moving the surface by a hundredth of its extent.
 const NORMAL_WEIGHT: f32 = 0.01;
 const COLOR_WEIGHT: f32 = 0.1;
-/// Least cosine between a normal and the plane of a triangle that takes it.
 const FACES_ALIKE: f64 = 0.5;
-/// Numbers of a vertex beside its position: a normal, a colour.
 const ATTRIBUTES: usize = 6;
 
-/// The identity of a vertex: position, material, colour.
 type Key = (Place, u32, [u8; 3]);
 
 type Place = [u64; 3];
@@ -113,7 +110,6 @@ struct Vertices {
     attributes: Vec<[f32; ATTRIBUTES]>,
     keys: Vec<Key>,
     indices: Vec<u32>,
-    /// Normals at each position, as long as the areas of their triangles.
     normals: HashMap<Place, Vec<DVec3>>,
 }
 
@@ -208,12 +204,10 @@ impl Vertices {
     }
 }
 
-/// Zeros of both signs are one place.
 fn place_of(position: [f64; 3]) -> Place {
     position.map(|x| (x + 0.0).to_bits())
 }
 
-/// The mean colour of textures at each position of each material, linear light.
 fn tints(mesh: &Mesh) -> HashMap<(Place, u32), DVec3> {
     let mut sums: HashMap<(Place, u32), (DVec3, f64)> = HashMap::new();
     for (number, &tint) in mesh.tints.iter().enumerate() {
@@ -232,7 +226,6 @@ fn tints(mesh: &Mesh) -> HashMap<(Place, u32), DVec3> {
     sums.into_iter().map(mean).collect()
 }
 
-/// Steps of a coordinate over the box of a compact mesh.
 const STEPS: f64 = 65535.0;
 /// Bytes of a compact mesh beside its lists: the box and three counts.
 const HEADER: u64 = 6 * 4 + 3 * 4;
@@ -308,7 +301,6 @@ mod tests {
 
     #[test]
     fn flat_parts_lose_triangles_and_keep_their_materials() {
-        // A square of two materials.
         let square = shape(|builder| {
             let other = builder.material(Material::of_srgb("other", [0; 3]));
             for (left, material) in [(0, 0), (8, other)] {

@@ -37,7 +37,6 @@ pub fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     [1.0 - of_b - of_c, of_b, of_c]
 }
 
-/// The mean of the corners' values by their shares.
 pub(crate) fn blend(of: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
     of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2]
 }
@@ -45,7 +44,6 @@ pub(crate) fn blend(of: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
 /// Most corners of a triangle that was cut at six planes, and one more.
 const MOST: usize = 10;
 
-/// A convex polygon.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Polygon {
     corners: [DVec3; MOST],

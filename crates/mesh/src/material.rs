@@ -37,7 +37,6 @@ impl Material {
         }
     }
 
-    /// The material of triangles without one.
     pub(crate) fn default_color() -> Self {
         Self::of_srgb("no material", DEFAULT_COLOR)
     }
@@ -69,7 +68,6 @@ pub fn srgb_to_linear(byte: u8) -> f32 {
     LINEAR[usize::from(byte)]
 }
 
-/// Steps of [`FIRST`].
 const SLOTS: usize = 4096;
 
 /// For each step of light the first byte whose light is not below it.
@@ -83,7 +81,6 @@ static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
 /// The sRGB byte whose linear light is nearest; of two the brighter.
 pub fn linear_to_srgb(light: f64) -> u8 {
     let table: &[f32; 256] = &LINEAR;
-    // NaN becomes 0, which is black.
     let slot = ((light * SLOTS as f64) as usize).min(SLOTS - 1);
     let mut above = usize::from(FIRST[slot]);
     while above < 256 && f64::from(table[above]) < light {

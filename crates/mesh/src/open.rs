@@ -12,7 +12,6 @@ use shiftvox::scene::{
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
 use crate::{Beside, LoadOptions, Mesh, Nothing, SameFolder, mesh_box};
 
-/// Levels at which the voxels of many more levels are estimated.
 const COUNTED_DEPTH: u32 = 8;
 
 /// How a mesh becomes a scene.
@@ -85,7 +84,6 @@ pub fn read_mesh(
     Ok((mesh, is_y_up(file.kind)))
 }
 
-/// Whether +Y is up, by the custom of the format.
 fn is_y_up(kind: FileKind) -> bool {
     kind != FileKind::Stl
 }

@@ -45,7 +45,6 @@ impl Method for TrianglesMethod<'_> {
     }
 
     fn aa_log2(&self) -> u32 {
-        // Samples are held bin by bin.
         0
     }
 

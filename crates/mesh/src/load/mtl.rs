@@ -8,7 +8,6 @@ use crate::Material;
 pub(super) struct Library {
     /// In the order of the file, each with the name of the picture that its colour is multiplied by.
     pub(super) materials: Vec<(Material, Option<String>)>,
-    /// First line that could not be understood.
     pub(super) odd_line: Option<usize>,
 }
 

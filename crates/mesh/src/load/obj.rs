@@ -44,7 +44,6 @@ struct File {
     /// The builder's number and the texture of each material. The first is that of faces without a material.
     materials: Vec<(u32, Option<String>)>,
     by_name: HashMap<String, usize>,
-    /// The material of the next faces.
     current: usize,
     libraries: usize,
 }
@@ -154,7 +153,6 @@ impl File {
         Ok(is_corner.then_some(corner))
     }
 
-    /// How many positions, texture coordinates and normals there are.
     fn counts(&self) -> [usize; 3] {
         let (uvs, normals) = (&self.texture_coordinates, &self.normals);
         [self.positions.len(), uvs.len(), normals.len()]
@@ -181,7 +179,6 @@ impl File {
                 "{name}: line {line} is not understood and was passed over"
             ));
         }
-        // Names of pictures are relative to the library.
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         for (material, texture) in library.materials {
             let texture = texture.map(|name| folder.join(name).to_string_lossy().into_owned());
@@ -273,7 +270,6 @@ fn out_of_range(index: i64, count: usize, line: u64) -> Problem {
     .into()
 }
 
-/// At most 40 characters of a line, quoted.
 fn shown(line: &str) -> String {
     let begin: String = line.chars().take(40).collect();
     let more = if begin.len() < line.len() { "..." } else { "" };

@@ -11,14 +11,11 @@ use shiftvox::scene::is_binary_stl;
 use super::{Fault, Place, Problem};
 use crate::{Material, MeshBuilder};
 
-/// Bytes before the first triangle of a binary file.
 const HEADER: usize = 84;
-/// Bytes of a triangle of a binary file.
 const TRIANGLE: usize = 50;
 
 type Corners = [[f32; 3]; 3];
 
-/// Equal corners become one position.
 pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
     builder.material(Material::default_color());
     let mut numbers = HashMap::new();
@@ -89,7 +86,6 @@ fn facet<'t>(words: &mut SplitWhitespace<'t>) -> Result<Option<Corners>, Option<
     Ok(corners.try_into().ok())
 }
 
-/// The fault of a file that is neither text nor as long as its header says.
 fn cut_binary(bytes: &[u8]) -> Box<Fault> {
     let count = bytes
         .get(80..HEADER)

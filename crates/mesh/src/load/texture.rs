@@ -14,11 +14,9 @@ use shiftvox::picture::png;
 use shiftvox::srgb::to_linear;
 
 const MOST_ACROSS: u32 = 16_384;
-/// Most bytes of all textures of a mesh once they are decoded.
 const MOST_BYTES: u64 = 1 << 30;
 const MOST_SAMPLES: u32 = 48;
 
-/// A decoded picture, repeated in all directions.
 #[derive(Debug)]
 pub(super) struct Texture {
     width: u32,
@@ -44,7 +42,6 @@ impl Texture {
             let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
             decoder.decode_headers().map_err(failed)?;
             let size = decoder.dimensions().unwrap_or_default();
-            // Both are at most 65,535 in a JPEG.
             (width, height) = (size.0 as u32, size.1 as u32);
             check_size(width, height, most_bytes)?;
             texels = decoder.decode().map_err(failed)?;
@@ -113,17 +110,14 @@ fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The textures of a mesh, each read once.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     known: HashMap<String, Option<Rc<Texture>>>,
     bytes: u64,
-    /// Names and reasons.
     failed: Vec<(String, String)>,
 }
 
 impl Textures {
-    /// The texture of a name, read where it was not read before.
     pub(super) fn get(
         &mut self,
         name: &str,

@@ -6,16 +6,12 @@ use super::RasterCamera;
 use super::clip::Outline;
 use crate::Surface;
 
-/// Pixels along a bin's side.
 pub(super) const BIN: u32 = 32;
-/// Triangles that are sorted at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The triangles of each bin, in their order.
 pub(super) struct Bins {
     columns: u32,
     rows: u32,
-    /// One after the other; each a list for each bin.
     chunks: Vec<Vec<Vec<u32>>>,
 }
 

@@ -16,11 +16,9 @@ struct Edge {
     down: i64,
 }
 
-/// A triangle of the picture's plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Edges([Edge; 3]);
 
-/// A triangle's coverage of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     Nothing,
@@ -29,7 +27,6 @@ pub(super) enum Cover {
 }
 
 impl Edges {
-    /// Two edges and the line between their ends; `None` without area.
     pub(crate) fn new(points: [[i64; 2]; 3]) -> Option<Self> {
         let [a, b, c] = points;
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -51,7 +48,6 @@ impl Edges {
         })))
     }
 
-    /// The edges as seen from a pixel's corner.
     #[inline]
     pub(super) fn seen_from(&self, pixel: [i64; 2]) -> Self {
         Self(self.0.map(|edge| Edge {
@@ -60,7 +56,6 @@ impl Edges {
         }))
     }
 
-    /// How much of the pixel at step (0, 0) is covered, as far as its corners decide it.
     #[inline]
     pub(super) fn cover(&self) -> Cover {
         let mut all = true;
@@ -74,7 +69,6 @@ impl Edges {
         if all { Cover::All } else { Cover::Part }
     }
 
-    /// Whether a sample so many steps from the corner is covered.
     #[inline]
     pub(crate) fn covers(&self, [x, y]: [i64; 2]) -> bool {
         self.0

@@ -75,10 +75,8 @@ impl Samples {
     }
 }
 
-/// Where the samples of a rectangle of pixels lie.
 pub(super) struct Places {
     per_pixel: usize,
-    /// Of each pixel, or once where all pixels have the same.
     table: Vec<[i32; 2]>,
 }
 
@@ -92,7 +90,6 @@ impl Places {
         let table = (0..pixels)
             .flat_map(|i| {
                 let pixel = [corner[0] + i % columns, corner[1] + i / columns];
-                // Below 4096.
                 (0..per_pixel).map(move |number| samples.place(pixel, number).map(|c| c as i32))
             })
             .collect();

@@ -8,7 +8,6 @@ const POINTS: usize = 8;
 /// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
-/// A number that looks random, of the masks of a node.
 pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)

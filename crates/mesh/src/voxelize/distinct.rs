@@ -22,7 +22,6 @@ pub(super) struct Distinct {
 impl Distinct {
     /// Takes 9 bytes per triangle in addition to the numbers.
     pub(super) fn of<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> Self {
-        // Fewer than 2^32: the grid made sure.
         let count = surface.len() as u32;
         let hash = |number: u32| {
             let corners = grid.corners(surface, number);
@@ -39,7 +38,6 @@ impl Distinct {
             let mut firsts: HashMap<Key, u32> = HashMap::new();
             for number in alike.iter().map(|&hash| hash as u32) {
                 let triangle = surface.triangle(number as usize);
-                // Zeros without their sign.
                 let bits = |n: DVec3| n.to_array().map(|c| (c + 0.0).to_bits());
                 let key = (grid.corners(surface, number), triangle.normals.map(bits));
                 let first = *firsts.entry(key).or_insert(number);

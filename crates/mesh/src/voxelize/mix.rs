@@ -11,9 +11,7 @@ use crate::geometry::{Polygon, barycentric, blend};
 use crate::material::linear_to_srgb;
 use shiftvox::graph::PackedNormal;
 
-/// Weight of a touch alone, in faces of the voxel.
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
-/// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
 
 #[derive(Debug, Default)]

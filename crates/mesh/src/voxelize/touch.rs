@@ -6,11 +6,9 @@
 //! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61,
 //! as the normal is. Dotted with a corner that is below 2^93: `i128`.
 
-/// A direction that lies in the plane of two axes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Flat {
     parts: [i64; 2],
-    /// Least and greatest value over the triangle.
     low: i64,
     high: i64,
 }
@@ -41,13 +39,11 @@ pub(crate) struct Prepared {
     pub(crate) low: [i64; 3],
     pub(crate) high: [i64; 3],
     pub(crate) normal: [i64; 3],
-    /// The normal dotted with any corner.
     pub(crate) offset: i128,
     /// For each axis the directions of the three edges in the plane of the others.
     flats: [[Flat; 3]; 3],
 }
 
-/// The other two axes, so that the three are in cyclic order.
 pub(crate) const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 impl Prepared {

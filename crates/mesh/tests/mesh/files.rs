@@ -96,6 +96,20 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     assert_eq!(mesh.warnings(), [""; 0]);
 }
 
+/// An exporter wrote `Tr 1` for opaque materials until 2023.
+#[test]
+fn a_model_is_opaque_if_all_of_it_would_vanish() {
+    let text =
+        "mtllib a b.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nusemtl glass\nf 3 2 1\n";
+    let glass = "newmtl red\nTr 1\nnewmtl glass\nTr 1\n";
+    let mesh = obj(text, glass, ColorSpace::Srgb);
+    has(mesh.warnings(), &["drawn opaque"]);
+    assert_eq!(mesh.materials()[1].alpha, 1.0);
+    assert_eq!(materials(&mesh), ["red", "glass"]);
+    let mesh = obj(text, &glass.replacen("Tr 1", "Tr 0", 1), ColorSpace::Srgb);
+    assert_eq!(materials(&mesh), ["red"]);
+}
+
 #[test]
 fn only_the_folder_of_the_mesh_is_searched() {
     let folder = tempfile::tempdir().unwrap();

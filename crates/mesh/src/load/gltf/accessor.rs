@@ -10,10 +10,8 @@ pub(super) struct Numbers<'b> {
     bytes: &'b [u8],
     stride: usize,
     pub(super) count: usize,
-    /// Numbers of an element.
     pub(super) width: usize,
     component: u32,
-    /// Bytes of a number.
     size: usize,
     normalized: bool,
 }
@@ -137,7 +135,6 @@ impl<'b> Numbers<'b> {
     }
 }
 
-/// The bytes of a buffer view, where they are within its buffer.
 pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers) -> Option<&'b [u8]> {
     let buffer = buffers.by_number.get(view.buffer)?;
     slice(buffer, view.byte_offset, view.byte_length)

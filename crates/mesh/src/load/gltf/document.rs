@@ -63,7 +63,6 @@ pub(super) struct Mesh {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Primitive {
-    /// Accessors by name.
     pub(super) attributes: HashMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,

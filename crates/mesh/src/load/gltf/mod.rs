@@ -101,10 +101,8 @@ fn read_document(
     scene::Reader::new(&document, &buffers, beside, json.len()).read(builder)
 }
 
-/// The bytes of all buffers. One address is read once.
 struct Buffers {
     by_number: Vec<Rc<Vec<u8>>>,
-    /// Bytes of all, each once.
     bytes: usize,
 }
 
@@ -149,7 +147,6 @@ impl Buffers {
     }
 }
 
-/// The bytes of a `data:` address, where it is one in base64.
 fn decoded(uri: &str) -> Option<Vec<u8>> {
     let (_, text) = uri.strip_prefix("data:")?.split_once(";base64,")?;
     let text = text.trim_end_matches('=');
@@ -169,7 +166,6 @@ fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Probl
     })
 }
 
-/// An address with its `%20`s resolved.
 fn unescaped(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
@@ -183,7 +179,6 @@ fn unescaped(uri: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A fault at a numbered part of a document that is damaged.
 fn broken(part: &str, number: usize, expected: &str, found: &str) -> Problem {
     fault_of(part, number, expected, found, BROKEN)
 }

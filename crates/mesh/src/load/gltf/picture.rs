@@ -8,7 +8,6 @@ use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::load::texture::{Texture, Textures};
 
-/// A texture and where corners are on it.
 pub(super) struct Painted<'d> {
     pub(super) texture: Rc<Texture>,
     pub(super) uvs: Numbers<'d>,

@@ -17,7 +17,6 @@ const FREE_TRIANGLES: u64 = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: u64 = 16;
 
-/// A primitive's corners: their order and their number.
 struct Sizes<'d> {
     mode: u32,
     positions: Numbers<'d>,
@@ -29,7 +28,6 @@ pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers,
     beside: &'d dyn Beside,
-    /// Positions and triangles that may be made.
     most: u64,
     skipped_modes: u64,
     morphed: u64,
@@ -89,7 +87,6 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
-    /// The meshes that nodes show, and their places.
     fn shown(&mut self) -> Result<Vec<(usize, DMat4)>, Problem> {
         let nodes = &self.document.nodes;
         let scene = self.document.scene.unwrap_or(0);
@@ -156,7 +153,6 @@ impl<'d> Reader<'d> {
         room.map_err(|short| fault("memory for all triangles".to_owned(), short.to_string()))
     }
 
-    /// The positions and triangles of a mesh.
     fn size_of(&self, mesh: usize) -> Result<[usize; 2], Problem> {
         let mut sum = [0; 2];
         for primitive in &self.mesh(mesh)?.primitives {
@@ -167,7 +163,6 @@ impl<'d> Reader<'d> {
         Ok(sum)
     }
 
-    /// The corners of a primitive, or none if it has no triangles.
     fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, Problem> {
         let mode = primitive.mode.unwrap_or(4);
         if !(4..=6).contains(&mode) {
@@ -289,14 +284,12 @@ impl<'d> Reader<'d> {
             });
             let tint = painted.as_ref().and_then(|painted| painted.mean(triangle));
             let corners = triangle.map(|i| base + i);
-            // In range: checked just now.
             let _ = builder.textured_triangle(corners, given, material, tint);
         }
         Ok(())
     }
 }
 
-/// A node's place in its parent.
 fn transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix);
