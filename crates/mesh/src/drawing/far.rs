@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::mesh_view::{light_of, picture_of_far};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
@@ -66,12 +66,17 @@ impl Method for FarMethod<'_> {
 
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = self.style.options(view);
-        let (mut drawn, counts) = self.viewer.draw(view, &options)?;
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_far(drawn),
-            counters: counters(&counts),
-        })
+        let (drawn, counts) = self.viewer.draw(view, &options)?;
+        let (size, nodes) = ((drawn.width, drawn.height), drawn.node);
+        let (coverage, counters) = (drawn.coverage, counters(&counts));
+        Ok(Drawn::new(
+            size,
+            drawn.rgba,
+            drawn.depth,
+            nodes,
+            coverage,
+            counters,
+        ))
     }
 
     fn details(&self) -> Figures {

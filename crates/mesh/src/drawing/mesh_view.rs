@@ -1,10 +1,9 @@
-//! Cameras, light and pictures of renderers of meshes.
+//! Cameras and light of renderers of meshes.
 
 use glam::DVec3;
 
-use crate::far::view::FarPicture;
-use crate::raster::{Light, NO_TRIANGLE, RasterCamera, RasterPicture};
-use shiftvox::picture::{AMBIENT, KEY_LIGHT, Picture, Shading};
+use crate::raster::{Light, RasterCamera};
+use shiftvox::picture::{AMBIENT, KEY_LIGHT, Shading};
 use shiftvox::project::{Camera, CameraError};
 
 /// Share of the distance to the farthest corner below which nothing is drawn.
@@ -39,42 +38,6 @@ pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
     match shading {
         Shading::Lambert => Some(light),
         Shading::Flat => None,
-    }
-}
-
-/// A rasterised picture as those of other engines, without normals and voxels;
-/// its node is 0 where a triangle is seen, else -1.
-pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
-    let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
-    picture(
-        (drawn.width, drawn.height),
-        drawn.rgba,
-        drawn.depth,
-        drawn.triangle.iter().map(node).collect(),
-    )
-}
-
-pub fn picture_of_far(drawn: FarPicture) -> Picture {
-    let size = (drawn.width, drawn.height);
-    picture(size, drawn.rgba, drawn.depth, drawn.node)
-}
-
-fn picture(
-    (width, height): (u32, u32),
-    rgba: Vec<[u8; 4]>,
-    depth: Vec<f32>,
-    node: Vec<i32>,
-) -> Picture {
-    let pixels = rgba.len();
-    Picture {
-        width,
-        height,
-        rgba,
-        depth,
-        normal: vec![[0.0; 3]; pixels],
-        voxel: vec![[0, 0, 0, -1]; pixels],
-        node,
-        records: None,
     }
 }
 

@@ -14,7 +14,7 @@ use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Picture, Pixels};
 use shiftvox::project::{Bounds, Camera, Up};
 
-use crate::raster::{RasterCamera, RasterError, SamplesError};
+use crate::raster::{NO_TRIANGLE, RasterCamera, RasterError, RasterPicture, SamplesError};
 use mesh_view::view_of;
 
 pub use far::{FarDrawing, FarMethod, FarStyle, resident};
@@ -53,6 +53,41 @@ pub struct Drawn {
     picture: Picture,
     coverage: Vec<f32>,
     counters: Figures,
+}
+
+impl Drawn {
+    /// A picture without normals and voxels. A node is -1 where nothing is seen.
+    fn new(
+        (width, height): (u32, u32),
+        rgba: Vec<[u8; 4]>,
+        depth: Vec<f32>,
+        node: Vec<i32>,
+        coverage: Vec<f32>,
+        counters: Figures,
+    ) -> Self {
+        let picture = Picture {
+            width,
+            height,
+            normal: vec![[0.0; 3]; rgba.len()],
+            voxel: vec![[0, 0, 0, -1]; rgba.len()],
+            rgba,
+            depth,
+            node,
+            records: None,
+        };
+        Self {
+            picture,
+            coverage,
+            counters,
+        }
+    }
+
+    fn of_triangles(drawn: RasterPicture, counters: Figures) -> Self {
+        let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
+        let nodes = drawn.triangle.iter().map(node).collect();
+        let (size, coverage) = ((drawn.width, drawn.height), drawn.coverage);
+        Self::new(size, drawn.rgba, drawn.depth, nodes, coverage, counters)
+    }
 }
 
 pub trait Method: Clone + Send {

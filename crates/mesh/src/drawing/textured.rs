@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::mesh_view::{light_of, picture_of_triangles};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
@@ -85,12 +85,8 @@ impl Method for TexturedMethod<'_> {
                 background: self.style.background.color(),
             },
         };
-        let (mut drawn, counts) = draw(self.file, view, &options)?;
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_triangles(drawn),
-            counters: counters(self.file, &counts),
-        })
+        let (drawn, counts) = draw(self.file, view, &options)?;
+        Ok(Drawn::of_triangles(drawn, counters(self.file, &counts)))
     }
 
     fn details(&self) -> Figures {

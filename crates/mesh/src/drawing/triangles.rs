@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::mesh_view::{light_of, picture_of_triangles};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::raster::{self, RasterCamera, RasterOptions, Samples};
 use crate::{Mesh, mesh_box};
@@ -55,16 +55,11 @@ impl Method for TrianglesMethod<'_> {
             light: light_of(view, self.style.shading),
             background: self.style.background.color(),
         };
-        let mut drawn = raster::draw(self.mesh, view, &options, self.progress)?;
+        let drawn = raster::draw(self.mesh, view, &options, self.progress)?;
         let samples = drawn.rgba.len() * samples.per_pixel();
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_triangles(drawn),
-            counters: vec![
-                ("triangles", json!(self.mesh.triangles().len())),
-                ("samples", json!(samples)),
-            ],
-        })
+        let triangles = self.mesh.triangles().len();
+        let counters = vec![("triangles", json!(triangles)), ("samples", json!(samples))];
+        Ok(Drawn::of_triangles(drawn, counters))
     }
 
     fn details(&self) -> Figures {

@@ -40,8 +40,8 @@ fn read(path: &Path) -> Mesh {
     read_mesh(path, &Default::default(), &Silent).unwrap().0
 }
 
-/// Triangles on parts of a picture: half of its left half, a half of it all, of its right side with what is transparent,
-/// of the left side five pictures up and four to the left, of what is transparent, and at no place.
+/// Six triangles on a picture. They lie in its left half, over both halves, and in the right half. The others lie in a
+/// repetition of the left half, in the transparent part, and nowhere.
 const OBJ: &str = "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 1 1 0\n\
     vt 0.02 0.98\nvt 0.45 0.98\nvt 0.02 0.3\nf 1/1 2/2 3/3\n\
     vt 0 1\nvt 1 1\nvt 0 0.25\nf 1/4 2/5 3/6\n\

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use glam::{DAffine3, DMat3, DVec3, EulerRot};
+use glam::{DAffine3, DMat3, DVec3};
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
 use shiftvox::split_mix::SplitMix;
@@ -46,16 +46,23 @@ pub(super) fn random(seed: u64, count: usize) -> Mesh {
 
 #[test]
 fn colours_and_normals_are_as_recorded() {
-    let recorded = [(12, 2), (40, 4), (7, 6)].map(|(count, depth)| {
-        let found = voxels(&random(count, count as usize), depth);
-        xxh3_64(format!("{found:?}").as_bytes())
-    });
+    let skew = DMat3::from_cols_array(&[1.0, 0.2, 0.0, 0.0, -2.0, 0.5, 0.3, 0.0, 1.0]);
+    let places = [DMat3::IDENTITY, skew].map(DAffine3::from_mat3);
+    let recorded = [
+        voxels(&random(12, 12), 2),
+        voxels(&random(40, 40), 4),
+        voxels(&random(7, 7), 6),
+        voxels(&Instances::new(random(9, 9), places.to_vec()), 5),
+    ]
+    .map(|found| xxh3_64(format!("{found:?}").as_bytes()));
     let expected = [
         0x8d37_7528_aa34_aee9,
         0xed23_f6bb_ff3e_1f95,
         0x5e35_dacd_6a8a_a056,
+        0x4725_1bc9_47c9_848d,
     ];
     assert_eq!(recorded, expected, "{recorded:#x?}");
+    on_any_threads(|| voxels(&ball(12), 7));
 }
 
 #[test]
@@ -83,21 +90,6 @@ fn normals_are_of_the_surface_and_colours_by_area_in_linear_light() {
         // Voxel 0 holds x from 0 to 0.5, which is white. Voxel 1 holds half of each.
         assert_eq!(voxel.color, [[255; 3], [188; 3]][voxel.index[0] as usize]);
         assert!(normal(&voxel).z > 1.0 - 1e-9);
-    }
-}
-
-#[test]
-fn threads_change_nothing_and_instances_are_moved_meshes() {
-    let mesh = ball(12);
-    on_any_threads(|| voxels(&mesh, 7));
-    let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 1.1, -0.7);
-    let places = [1.0, 2.0].map(|x| DAffine3::from_mat3_translation(turn * x, DVec3::X * x));
-    let instances = Instances::new(mesh.clone(), places.to_vec());
-    for number in 0..instances.len() {
-        let place = places[number / mesh.len()];
-        let expected = Surface::corners(&mesh, number % mesh.len());
-        let expected = expected.map(|corner| place.transform_point3(corner));
-        assert_eq!(Surface::corners(&instances, number), expected);
     }
 }
 
