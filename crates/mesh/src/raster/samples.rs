@@ -120,6 +120,8 @@ mod tests {
                 }
             }
         }
-        assert!(Samples::new(2, Pattern::Regular).is_err());
+        let regular = |per_pixel| Samples::new(per_pixel, Pattern::Regular);
+        assert!(regular(2).is_err());
+        assert_eq!([1, 4, 16].map(|n| regular(n).unwrap().middle()), [0, 3, 10]);
     }
 }

@@ -129,6 +129,25 @@ fn normals_turn_and_colours_become_srgb() {
 }
 
 #[test]
+fn alpha_counts_by_its_mode() {
+    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let material = |mode: &str, alpha: f64, cutoff: Value| {
+        let color = json!({"baseColorFactor": [1, 1, 1, alpha]});
+        json!({"alphaMode": mode, "alphaCutoff": cutoff, "pbrMetallicRoughness": color})
+    };
+    json["materials"] = json!([
+        material("OPAQUE", 0.2, Value::Null),
+        material("BLEND", 0.25, Value::Null),
+        material("MASK", 0.5, Value::Null),
+        material("MASK", 0.4, Value::Null),
+        material("MASK", 0.4, json!(0.3)),
+    ]);
+    let mesh = load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap();
+    let alphas = mesh.materials().iter().map(|material| material.alpha);
+    assert!(alphas.eq([1.0, 1.0, 0.25, 1.0, 0.0, 1.0]));
+}
+
+#[test]
 fn a_file_with_many_references_is_read_once() {
     let mut json = gltf_json("");
     json["buffers"] = json!(vec![json!({"uri": "a%20b.bin", "byteLength": 60}); 1000]);

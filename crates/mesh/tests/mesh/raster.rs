@@ -29,6 +29,11 @@ fn triangles_are_lit_like_voxels_on_both_sides() {
         (DVec3::NEG_Z, DVec3::NEG_Z, [90, 120, 150, 255]),
         // At a right angle only the ambient quarter is left; 150 is 0.305 of the light.
         (DVec3::Z, DVec3::X, [44, 61, 78, 255]),
+        (
+            DVec3::Z,
+            DVec3::new(12.0, 0.0, 5.0) / 13.0,
+            [66, 90, 113, 255],
+        ),
     ] {
         let light = Light {
             towards,

@@ -121,8 +121,8 @@ fn textures_of_gltf_files_are_averaged_over_triangles() {
     let in_buffer = json!({"bufferView": 3, "mimeType": "image/png"});
     let in_address = json!({"uri": data_uri(&png)});
     let moved = json!({"offset": [0.5, 0]});
-    // (u, v) becomes (v, -u), then (v, 1 - u).
-    let turned = json!({"rotation": PI / 2.0, "scale": [1, 0.7], "offset": [0, 1]});
+    // (u, v) becomes (v, -u), less than the transparent part.
+    let turned = json!({"rotation": PI / 2.0, "scale": [0.3, 0.7], "offset": [0, 0.6]});
     for (image, transform, color) in [
         (json!({"uri": "a%20picture.png"}), json!({}), green),
         (in_buffer.clone(), json!({}), green),
