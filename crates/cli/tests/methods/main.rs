@@ -6,8 +6,5 @@ mod common;
 mod compared;
 mod far_stopped;
 #[allow(dead_code, reason = "the mesh crate's tests use the rest")]
-#[path = "../../../mesh/tests/mesh/gltf_bytes.rs"]
-mod gltf_bytes;
-#[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/shapes.rs"]
 mod shapes;
