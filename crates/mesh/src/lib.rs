@@ -10,6 +10,7 @@
 mod builder;
 pub mod decimate;
 pub mod drawing;
+#[doc(hidden)]
 pub mod far;
 pub mod generate;
 mod geometry;

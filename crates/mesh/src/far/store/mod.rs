@@ -13,7 +13,7 @@ pub(in crate::far) mod surface;
 
 pub use budget::Resident;
 pub use data::NodeData;
+pub use format::encode;
 pub(in crate::far) use format::write_parts;
-pub use format::{encode, write_to};
 pub use read::FarFile;
 pub use shiftvox::graph::file::FileError as FarError;

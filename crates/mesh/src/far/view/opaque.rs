@@ -1,6 +1,5 @@
 //! Opaque voxels and triangles, with a depth buffer.
 
-use std::borrow::Borrow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -21,6 +20,7 @@ use shiftvox::graph::{PackedNormal, Silent};
 
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
 
+/// Neighbouring pixels mostly show one node.
 const RESOLVED: usize = 1 << 12;
 
 /// For each pixel depth (bits of a positive `f32`) and number of the nearest voxel or triangle.
@@ -30,7 +30,8 @@ pub(super) struct Opaque<'f> {
     options: ViewOptions,
     words: Vec<AtomicU64>,
     pictures: Vec<(RasterPicture, Vec<u32>)>,
-    has_tie: bool,
+    /// Triangles of different batches were equally deep.
+    pub(super) has_tie: bool,
 }
 
 impl<'f> Opaque<'f> {
@@ -51,17 +52,14 @@ impl<'f> Opaque<'f> {
         })
     }
 
-    /// Draws what is opaque of some nodes, in any order and batches, unless [`Opaque::has_tie`].
-    pub(super) fn draw<N: Borrow<Chosen> + Sync>(
+    /// Draws what is opaque of some nodes, in any order and batches, unless there is a tie.
+    pub(super) fn draw(
         &mut self,
-        nodes: impl IntoIterator<Item = N>,
+        nodes: &[Chosen],
         counts: &mut FarCounts,
     ) -> Result<(), ViewError> {
-        let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
-        let drawn = nodes
-            .par_iter()
-            .map(|node| self.voxels(node.number))
-            .collect::<Result<Vec<u64>, ViewError>>()?;
+        let drawn = nodes.par_iter().map(|node| self.voxels(node.number));
+        let drawn = drawn.collect::<Result<Vec<u64>, ViewError>>()?;
         counts.opaque_voxels += drawn.iter().sum::<u64>();
         let with_surface = nodes.iter().map(|node| node.number);
         let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
@@ -102,9 +100,9 @@ impl<'f> Opaque<'f> {
                 let depth = (square.depth as f32).to_bits();
                 let word = u64::from(depth) << 32 | u64::from(number);
                 let hexagon = places.hexagon(&self.view, &square);
-                let [[x0, y0], [x1, y1]] = hexagon.pixels(&self.view);
-                for y in y0..y1 {
-                    for x in x0..x1 {
+                let [columns, rows] = hexagon.pixels(&self.view);
+                for y in rows {
+                    for x in columns.clone() {
                         if hexagon.holds(x, y) {
                             self.put(y * width + x, word);
                         }
@@ -124,7 +122,6 @@ impl<'f> Opaque<'f> {
 
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
         let surface = Surfaces::of(self.file, nodes)?;
-        let numbers: Vec<u32> = surface.places.iter().map(|place| place.2).collect();
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
@@ -136,20 +133,17 @@ impl<'f> Opaque<'f> {
             if at == NO_TRIANGLE {
                 continue;
             }
-            let id = voxels + numbers[at as usize];
+            let id = voxels + surface.places[at as usize].2;
             let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
             let there = self.words[pixel].load(Ordering::Relaxed);
             let is_triangle = there as u32 >= voxels && there != EMPTY;
             self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
             self.put(pixel, word);
         }
+        let numbers: Vec<u32> = surface.places.iter().map(|place| place.2).collect();
         let drawn = numbers.len() as u64;
         self.pictures.push((picture, numbers));
         Ok(drawn)
-    }
-
-    pub(super) fn has_tie(&self) -> bool {
-        self.has_tie
     }
 
     pub(super) fn depths(&self) -> Vec<f32> {
@@ -159,35 +153,24 @@ impl<'f> Opaque<'f> {
 
     pub(super) fn nodes(&self) -> Vec<i32> {
         let voxels = self.file.voxels();
-        self.words
-            .iter()
-            .map(|word| {
-                let word = word.load(Ordering::Relaxed);
-                let id = word as u32;
-                let node = if word == EMPTY {
-                    return -1;
-                } else if id < voxels {
-                    last_from(self.file.first_voxels(), id)
-                } else {
-                    last_from(self.file.first_triangles(), id - voxels)
-                };
-                i32::try_from(node).unwrap_or(i32::MAX)
-            })
-            .collect()
+        let node = |word: &AtomicU64| {
+            let word = word.load(Ordering::Relaxed);
+            let node = match word as u32 {
+                _ if word == EMPTY => return -1,
+                id if id < voxels => last_from(self.file.first_voxels(), id),
+                id => last_from(self.file.first_triangles(), id - voxels),
+            };
+            i32::try_from(node).unwrap_or(i32::MAX)
+        };
+        self.words.iter().map(node).collect()
     }
 
     pub(super) fn resolve(&self) -> Vec<Pixel> {
-        let mut pixels = vec![Pixel::default(); self.words.len()];
+        let pixels = (0..self.words.len()).into_par_iter();
+        let pixels = pixels.with_min_len(RESOLVED);
         pixels
-            .par_chunks_mut(RESOLVED)
-            .enumerate()
-            .for_each(|(chunk, pixels)| {
-                let mut last = None;
-                for (at, pixel) in pixels.iter_mut().enumerate() {
-                    *pixel = self.pixel(chunk * RESOLVED + at, &mut last);
-                }
-            });
-        pixels
+            .map_init(|| None, |last, pixel| self.pixel(pixel, last))
+            .collect()
     }
 
     /// `last`: the node whose data was needed last.
@@ -249,9 +232,8 @@ impl<'f> Opaque<'f> {
 
 /// The node that an item belongs to.
 fn last_from(first: &[u32], item: u32) -> usize {
-    first
-        .partition_point(|&first| first <= item)
-        .saturating_sub(1)
+    let after = first.partition_point(|&first| first <= item);
+    after.saturating_sub(1)
 }
 
 pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {

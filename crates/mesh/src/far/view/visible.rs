@@ -56,9 +56,10 @@ pub(super) struct VisibleNodes {
     pub(super) branches: Vec<usize>,
 }
 
+/// Without a memory, nothing is culled.
 pub(super) fn walk(
     cut: &Cut<'_>,
-    memory: &VisibilityHistory,
+    memory: Option<&VisibilityHistory>,
     opaque: &mut Opaque<'_>,
     counts: &mut FarCounts,
 ) -> Result<VisibleNodes, ViewError> {
@@ -74,7 +75,7 @@ pub(super) fn walk(
         let Some(found) = cut.classify(number, counts) else {
             continue;
         };
-        if !memory.was_visible(number) {
+        if memory.is_some_and(|memory| !memory.was_visible(number)) {
             waiting.insert(place(&found), found);
         } else if found.is_drawn {
             walked.drawn.push(found);
