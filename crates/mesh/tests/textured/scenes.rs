@@ -25,7 +25,6 @@ pub fn mesh_of(triangles: &[Corners]) -> Option<Mesh> {
     builder.finish("a random mesh").ok()
 }
 
-/// The colour of triangle `number`.
 pub fn color_of(number: u32) -> [u8; 3] {
     let [r, g, b, _] = (number * 77 + 5).to_le_bytes();
     [r, g, b]
@@ -48,7 +47,6 @@ pub fn random_triangles() -> impl Strategy<Value = Vec<Corners>> {
     prop::collection::vec(prop::array::uniform3(corner), 1..24)
 }
 
-/// Cells and texels of a small grid.
 pub fn small_grids() -> impl Strategy<Value = (u32, u32, Element)> {
     let cells = prop::sample::select(vec![2u32, 4, 6, 8]);
     let element = prop::sample::select(vec![Element::Cube, Element::Sides]);
@@ -63,12 +61,10 @@ pub fn options(grids: &[u32], texels: u32, element: Element) -> BuildOptions {
     }
 }
 
-/// Builds with one grid.
 pub fn built(mesh: &Mesh, cells: u32, texels: u32, element: Element) -> TexturedData {
     build(mesh, &options(&[cells], texels, element), &Silent).unwrap()
 }
 
-/// The built data as a file.
 pub fn file_of(data: &TexturedData) -> TexturedFile {
     TexturedFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
