@@ -52,7 +52,7 @@ fn files_hold_the_data_that_was_built_on_any_number_of_threads() {
         for (number, built) in data.grids.iter().enumerate() {
             let grid = file.grid(number);
             assert_eq!(grid.voxels(), built.voxels);
-            assert_eq!(grid.cell_grid().cells(), [2, 4][number]);
+            assert_eq!(grid.cell_grid().cells, [2, 4][number]);
             let projected = [grid.entry().projected, grid.entry().projected_afresh];
             assert_eq!(projected, [built.projected, built.projected_afresh]);
             let textures = 0..grid.entry().textures as u32;

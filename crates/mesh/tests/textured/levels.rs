@@ -35,7 +35,7 @@ fn check(file: &TexturedFile) -> u32 {
     let cell = |number: usize| voxels[number].cell.map(i32::from);
     let mut expected: Cells = (0..voxels.len()).map(cell).collect();
     assert_eq!(expected.len(), voxels.len());
-    let middle = grid.cell_grid().cells() as i32 / 2;
+    let middle = grid.cell_grid().cells as i32 / 2;
     for row in levels.rows() {
         let left = voxels.len() - row.voxels as usize..voxels.len();
         let cells: Cells = left.clone().map(cell).collect();

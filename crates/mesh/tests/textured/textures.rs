@@ -43,7 +43,7 @@ fn seen(
     slice: u32,
     texel: [u32; 2],
 ) -> Option<usize> {
-    let (step, half) = (lattice.texel_steps() as i128, lattice.cells() / 2);
+    let (step, half) = (lattice.texel_steps as i128, lattice.cells / 2);
     let outwards = if slice >= half { 1 } else { -1 };
     let volume = slice.min(half)..=slice.max(half - 1);
     let p = texel.map(|t| i128::from(t) * step + step / 2);
@@ -54,7 +54,7 @@ fn seen(
         }
         let depth = along(points, corners.map(|c| i128::from(c[axis])), p);
         let at = (depth / i128::from(lattice.cell_steps())) as u32;
-        let is_there = volume.contains(&at.min(lattice.cells() - 1));
+        let is_there = volume.contains(&at.min(lattice.cells - 1));
         is_there.then_some((depth * outwards, number))
     });
     // The farthest out; of several the first.

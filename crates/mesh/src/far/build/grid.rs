@@ -19,20 +19,13 @@ impl Grid {
         let extent = high - low;
         let steps = f64::from(side.clamp(2, 255) - 1);
         // As stored: so that the viewer's voxels are those that were sampled.
-        let voxel = f64::from((extent.max_element() / steps) as f32);
-        let voxel = if voxel > 0.0 {
-            voxel
-        } else {
-            f64::from(f32::MIN_POSITIVE)
-        };
+        let voxel = f64::from(((extent.max_element() / steps) as f32).max(f32::MIN_POSITIVE));
         let origin = (low - DVec3::splat(voxel / 2.0)).as_vec3().as_dvec3();
-        let cells = (extent / voxel)
-            .to_array()
-            .map(|steps| (steps + 0.5) as u32 as f64 + 1.0);
+        let cells = (extent / voxel).to_array();
         Self {
             origin,
             voxel,
-            cells: cells.map(|c| c.min(255.0) as u8),
+            cells: cells.map(|c| ((c + 0.5).floor() + 1.0).min(255.0) as u8),
         }
     }
 
@@ -76,8 +69,8 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Visits each voxel along a line, with the distance (in voxels) at which the line leaves it. Distances are whole numbers
-    /// of 2^-32 voxels, so that steps are exact and need no branch.
+    /// Visits each voxel along a line, with the distance (in voxels) at which the line leaves it. Distances are whole
+    /// numbers of 2^-32 voxels, so that steps are exact and need no branch.
     #[inline]
     pub(super) fn along(
         &self,

@@ -23,13 +23,12 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
         };
         let side = (branch.high - branch.low).max_element();
         has_voxels[number] = number <= coarser || side <= STEP * above[number];
-        let nearest = if has_voxels[number] {
-            side
-        } else {
-            above[number]
-        };
         for child in children.into_iter().filter(|&child| child > 0) {
-            above[child] = nearest;
+            above[child] = if has_voxels[number] {
+                side
+            } else {
+                above[number]
+            };
         }
     }
     has_voxels
@@ -50,7 +49,7 @@ pub(super) fn leave_out_dense(
 /// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
 const LEAST: [u32; 2] = [32, 16];
 
-/// Puts nodes of half the voxels along a side, and so on, above a root with children. Gives how many.
+/// Puts nodes of half the voxels along a side, and so on, above a root with children. Returns how many.
 pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
     let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
         return 0;

@@ -32,23 +32,19 @@ pub(super) struct ShaderFit {
 }
 
 pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit {
+    let fit = |shader| ShaderFit {
+        square_error: error(&shader, samples),
+        shader,
+    };
     let count = samples.len().max(1) as f64;
-    let flat = flat(samples, normal);
-    let square_error = error(&flat, samples);
-    if square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
-        let complex = complex(samples);
-        let complex_error = error(&complex, samples);
-        if complex_error < WORTH_IT * square_error {
-            return ShaderFit {
-                shader: complex,
-                square_error: complex_error,
-            };
+    let flat = fit(flat(samples, normal));
+    if flat.square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
+        let complex = fit(complex(samples));
+        if complex.square_error < WORTH_IT * flat.square_error {
+            return complex;
         }
     }
-    ShaderFit {
-        shader: flat,
-        square_error,
-    }
+    flat
 }
 
 /// A side that nothing looks upon is solid: it is hidden.
@@ -125,11 +121,8 @@ fn flat(samples: &[SurfaceSample], normal: DVec3) -> Shader {
         sums[side].1 += 1.0;
     }
     let colors = [0, 1].map(|side| {
-        let (sum, count) = if sums[side].1 > 0.0 {
-            sums[side]
-        } else {
-            sums[1 - side]
-        };
+        let is_seen = sums[side].1 > 0.0;
+        let (sum, count) = sums[if is_seen { side } else { 1 - side }];
         sum / f64::max(count, 1.0)
     });
     Shader::Flat { normal, colors }
@@ -150,7 +143,8 @@ fn complex(samples: &[SurfaceSample]) -> Shader {
     Shader::Complex {
         normals: std::array::from_fn(|k| {
             let [.., x, y, z] = values[k];
-            DVec3::new(x, y, z).normalize_or(main_direction(k))
+            let main = DVec3::AXES[k / 2] * [1.0, -1.0][k % 2];
+            DVec3::new(x, y, z).normalize_or(main)
         }),
         colors: std::array::from_fn(|k| {
             let [r, g, b, ..] = values[k];
@@ -159,23 +153,12 @@ fn complex(samples: &[SurfaceSample]) -> Shader {
     }
 }
 
-fn main_direction(number: usize) -> DVec3 {
-    let axis = [DVec3::X, DVec3::Y, DVec3::Z][number / 2];
-    if number.is_multiple_of(2) {
-        axis
-    } else {
-        -axis
-    }
-}
-
 fn error(shader: &Shader, samples: &[SurfaceSample]) -> f64 {
-    samples
-        .iter()
-        .map(|sample| {
-            let (normal, color) = shader.seen_from(sample.towards_eye);
-            let of_color = (color - sample.color).length_squared() / 3.0;
-            let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
-            of_color + NORMAL_WEIGHT * of_normal
-        })
-        .sum()
+    let error = |sample: &SurfaceSample| {
+        let (normal, color) = shader.seen_from(sample.towards_eye);
+        let of_color = (color - sample.color).length_squared() / 3.0;
+        let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
+        of_color + NORMAL_WEIGHT * of_normal
+    };
+    samples.iter().map(error).sum()
 }

@@ -19,7 +19,7 @@ pub(super) struct Target<'t> {
     pub(super) distance: f64,
 }
 
-#[derive(Debug, Clone)]
+/// Some of the triangles of a range.
 pub(super) struct Own<'t> {
     range: Range<usize>,
     is_taken: Option<&'t [bool]>,
@@ -93,13 +93,6 @@ fn cell(direction: Vec3) -> usize {
     (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
 }
 
-/// Similar rays, which visit the same boxes, follow one another.
-fn in_order(aims: &[Aim]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..aims.len() as u32).collect();
-    order.sort_by_cached_key(|&number| cell(aims[number as usize].direction));
-    order
-}
-
 impl Target<'_> {
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
@@ -111,11 +104,10 @@ impl Target<'_> {
         if here != NOWHERE {
             return here;
         }
-        let near = (0..27).map(|step| {
+        let mut near = (0..27).map(|step| {
             let step = point([step % 3, step / 3 % 3, step / 9]);
             number(end + (step - DVec3::ONE) * END_WITHIN)
         });
-        let mut near = near.into_iter();
         near.find(|&slot| slot != NOWHERE).unwrap_or(NOWHERE)
     }
 
@@ -132,7 +124,9 @@ impl Target<'_> {
         let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
         let (mut queries, mut meetings) = (Vec::new(), Vec::new());
         for batch in aims.chunks(BATCH) {
-            let order = in_order(batch);
+            // Similar rays, which visit the same boxes, follow one another.
+            let mut order: Vec<u32> = (0..batch.len() as u32).collect();
+            order.sort_by_cached_key(|&number| cell(batch[number as usize].direction));
             let begin = shots.len();
             queries.clear();
             shots.extend(batch.iter().map(|aim| Shot {
@@ -154,27 +148,19 @@ impl Target<'_> {
             }));
             self.occluders.nearest(&around, &queries, &mut meetings)?;
             for ((&number, query), meeting) in order.iter().zip(&queries).zip(&meetings) {
-                if *meeting != Meeting::NONE {
-                    self.end(
-                        &mut shots[begin + number as usize],
-                        query,
-                        meeting,
-                        slot,
-                        beyond,
-                    );
+                if *meeting == Meeting::NONE {
+                    continue;
+                }
+                let shot = &mut shots[begin + number as usize];
+                let length = f64::from(query.most) / self.grid.voxel;
+                shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
+                shot.triangle = meeting.triangle;
+                if self.own.contains(meeting.triangle as usize) {
+                    shot.touched = self.voxel_at(shot.end_point(), slot);
                 }
             }
         }
         Ok(())
-    }
-
-    fn end(&self, shot: &mut Shot, query: &Query, meeting: &Meeting, slot: &[u32], beyond: f64) {
-        let length = f64::from(query.most) / self.grid.voxel;
-        shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
-        shot.triangle = meeting.triangle;
-        if self.own.contains(meeting.triangle as usize) {
-            shot.touched = self.voxel_at(shot.end_point(), slot);
-        }
     }
 
     #[inline]
