@@ -1,4 +1,4 @@
-//! Parts of large objects stay opaque, thin ones keep their area, and surfaces of hybrid nodes join.
+//! Large objects stay opaque, thin ones keep their area, and surfaces of hybrid nodes join.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,6 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, build};
-use shiftvox_mesh::generate::{Kind, generate};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::city::{draw, file_of};
@@ -96,16 +95,6 @@ fn no_background_shows_between_nodes() {
         let [_, mixed] = draw_hiding(&mesh, &data, Opacity::Six, [0.6, 0.3]);
         assert!(mixed >= 3, "{mixed} pictures of three levels or more");
     }
-}
-
-#[test]
-fn leaves_of_trees_become_voxels_and_a_house_stays_a_surface() {
-    let data = hybrid(&generate(Kind::Garden, 3), 1000);
-    let coarsest = &data.nodes[0];
-    assert!(coarsest.voxels() > 100, "{coarsest:?}");
-    assert!((10..2000).contains(&coarsest.surface), "{coarsest:?}");
-    let whole: u64 = data.nodes.iter().map(Node::surface_bytes).sum();
-    assert!(coarsest.drawn_bytes() * 10 < whole);
 }
 
 /// Spokes of a wheel.

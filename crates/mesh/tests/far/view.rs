@@ -1,12 +1,10 @@
-//! The view: culling and memory budgets never change a picture, and a pixel is the mean of its samples.
+//! The view: culling and memory budgets never change a picture.
 
 use std::collections::HashSet;
 
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
-use shiftvox_mesh::raster::RasterCamera;
-use shiftvox_mesh::srgb_to_linear;
 
 use super::city::{city, draw, far, file_of, lit, view};
 use super::shared::triangles;
@@ -132,50 +130,4 @@ fn tiny_voxels_are_replaced_by_the_triangles() {
     let pairs = picture.rgba.iter().zip(&expected.rgba);
     assert!(pairs.filter(|(a, b)| a != b).count() < 40);
     assert_eq!(picture.depth, expected.depth);
-}
-
-/// Each pixel of a picture `across` times as large is a sample of the smaller one.
-#[test]
-fn a_pixel_is_the_mean_of_its_samples() {
-    let file = file_of(&far(false));
-    for (opacity, distance, across) in [(Opacity::None, 60.0, 2), (Opacity::Six, 300.0, 4)] {
-        let view = view(30.0, 0.5, distance, 48);
-        let larger = RasterCamera {
-            focal_px: view.focal_px * f64::from(across),
-            width: view.width * across,
-            height: view.height * across,
-            ..view
-        };
-        let drawn = |view: &RasterCamera, samples_across: u32, voxel_px: f64| {
-            let options = ViewOptions {
-                samples_across,
-                opacity,
-                ..lit(view, voxel_px)
-            };
-            draw(&file, view, &options).0
-        };
-        let picture = drawn(&view, across, 1.0);
-        let samples = drawn(&larger, 1, f64::from(across));
-        for number in 0..48 * 48 {
-            let (x, y) = (number % 48 * across, number / 48 * across);
-            let at = |i: u32, j: u32| ((y + j) * larger.width + x + i) as usize;
-            let mean = |of: &dyn Fn(usize) -> f32| {
-                let own = (0..across * across).map(|i| at(i % across, i / across));
-                own.map(of).sum::<f32>() / (across * across) as f32
-            };
-            let number = number as usize;
-            for (k, &byte) in picture.rgba[number][..3].iter().enumerate() {
-                let mean = mean(&|i| srgb_to_linear(samples.rgba[i][k]));
-                // Samples and pixels are each rounded to a byte.
-                let [low, high] = [byte.saturating_sub(1), byte.saturating_add(1)];
-                let is_near = (srgb_to_linear(low)..=srgb_to_linear(high)).contains(&mean);
-                assert!(is_near, "{opacity:?}, pixel {number}, {k}");
-            }
-            let coverage = mean(&|i| samples.coverage[i]);
-            assert!((coverage - picture.coverage[number]).abs() < 1e-5);
-            let middle = at(across / 2, across / 2);
-            assert_eq!(picture.depth[number], samples.depth[middle]);
-            assert_eq!(picture.node[number], samples.node[middle]);
-        }
-    }
 }

@@ -25,10 +25,7 @@ pub fn looking(
     focal_px: f64,
 ) -> RasterCamera {
     let forward = (target - eye).normalize();
-    let helper = match forward.y.abs() > 0.99 {
-        true => DVec3::X,
-        false => DVec3::Y,
-    };
+    let helper = [DVec3::Y, DVec3::X][usize::from(forward.y.abs() > 0.99)];
     let right = forward.cross(helper).normalize();
     RasterCamera {
         eye,
@@ -42,7 +39,7 @@ pub fn looking(
     }
 }
 
-/// A view in which the bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
+/// The bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
 pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
     let (low, high) = Surface::bounds(mesh);
     let (middle, side) = ((low + high) / 2.0, (high - low).length());
@@ -60,7 +57,7 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Triangles with a regular pattern of samples, unlit, without a background.
+/// Unlit, with a regular pattern of samples, without a background.
 pub fn plain(samples: u32) -> RasterOptions {
     RasterOptions {
         samples: Samples::new(samples, Pattern::Regular).unwrap(),
@@ -69,7 +66,6 @@ pub fn plain(samples: u32) -> RasterOptions {
     }
 }
 
-/// The triangles of a surface, drawn with a regular pattern of samples.
 pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,
@@ -109,9 +105,7 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
 /// A grey mesh of positions and their numbers.
 pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     shape(|builder| {
-        for &position in positions {
-            builder.position(position);
-        }
+        positions.iter().for_each(|&p| _ = builder.position(p));
         for &triangle in triangles {
             builder.triangle(triangle, None, 0).unwrap();
         }
@@ -133,7 +127,6 @@ pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [[f32; 3]; 4], material: u3
     triangle(builder, [a, c, d], material);
 }
 
-/// Adds a box, whose faces are two triangles each.
 pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
     let corner = |i: usize| [0, 1, 2].map(|k| [low[k], high[k]][i >> k & 1]);
     for face in [
@@ -148,7 +141,7 @@ pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material
     }
 }
 
-/// Adds a surface of rows and columns of quads.
+/// Rows and columns of quads.
 pub fn sheet(
     builder: &mut MeshBuilder,
     [rows, columns]: [u32; 2],
@@ -164,7 +157,7 @@ pub fn sheet(
     }
 }
 
-/// Adds a surface of revolution around a line along y, through heights and radii from top to bottom.
+/// A surface of revolution around a line along y, through heights and radii from top to bottom.
 pub fn turned(
     builder: &mut MeshBuilder,
     middle: DVec3,

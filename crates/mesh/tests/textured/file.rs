@@ -80,51 +80,48 @@ fn truncated_and_damaged_files_are_refused() {
     }
 }
 
+/// The first sub-texture of a face with a number below another.
+fn face(data: &mut TexturedData, below: u32) -> &mut u32 {
+    let faces = data.grids[0].voxels.iter_mut();
+    let mut faces = faces.flat_map(|v| &mut v.textures);
+    faces.find(|texture| **texture < below).unwrap()
+}
+
 /// With right checksums.
 #[test]
 fn inconsistent_contents_are_refused() {
     type Harm = fn(&mut TexturedData);
-    let harms: [(&str, Harm); 18] = [
-        ("a missing primitive", |d| d.grids[0].lists[0] = 99),
-        ("lists that do not rise", |d| d.grids[1].lists.reverse()),
-        ("a primitive in no list", |d| {
-            d.primitives.extend_from_within(..1)
-        }),
-        ("a cell outside", |d| d.grids[1].voxels[0].cell[2] = 4),
-        ("a voxel twice", |d| {
-            d.grids[1].voxels[1] = d.grids[1].voxels[0]
-        }),
-        ("voxels out of order", |d| d.grids[1].voxels.swap(0, 1)),
-        ("a list beyond the end", |d| {
-            d.grids[0].voxels[1].first = u32::MAX
-        }),
-        ("a late first list", |d| d.grids[0].voxels[0].first = 1),
-        ("a missing sub-texture", |d| {
-            let mut faces = d.grids[0].voxels.iter_mut().flat_map(|v| &mut v.textures);
-            *faces.find(|t| **t < CLEAR).unwrap() = 1000;
-        }),
-        ("a face without sub-texture", |d| {
-            let mut faces = d.grids[0].voxels.iter_mut().flat_map(|v| &mut v.textures);
-            *faces.find(|t| **t != NEVER).unwrap() = NEVER;
-        }),
-        ("half a texel", |d| d.grids[0].textures[0].opacity = 7),
-        ("a texel without normal", |d| {
+    let harms: [Harm; 18] = [
+        // Primitives: missing, falling, in no list, no number, and a larger box.
+        |d| d.grids[0].lists[0] = 99,
+        |d| d.grids[1].lists.reverse(),
+        |d| d.primitives.extend_from_within(..1),
+        |d| d.primitives[0].corners[1][2] = f32::NAN,
+        |d| d.high.x += 1.0,
+        // Voxels: outside, twice, out of order, of another depth; lists of them that end or begin late.
+        |d| d.grids[1].voxels[0].cell[2] = 4,
+        |d| d.grids[1].voxels[1] = d.grids[1].voxels[0],
+        |d| d.grids[1].voxels.swap(0, 1),
+        |d| d.grids[1].voxels.last_mut().unwrap().depth += 1,
+        |d| d.grids[0].voxels[1].first = u32::MAX,
+        |d| d.grids[0].voxels[0].first = 1,
+        // Sub-textures: missing, and none; texels: half transparent, without a normal.
+        |d| *face(d, CLEAR) = 1000,
+        |d| *face(d, NEVER) = NEVER,
+        |d| d.grids[0].textures[0].opacity = 7,
+        |d| {
             let mut texels = d.grids[0].textures.iter_mut();
             texels.find(|t| t.opacity == 255).unwrap().normal = 0;
-        }),
-        ("another depth", |d| {
-            d.grids[1].voxels.last_mut().unwrap().depth += 1
-        }),
-        ("no number", |d| d.primitives[0].corners[1][2] = f32::NAN),
-        ("a larger box", |d| d.high.x += 1.0),
-        ("an odd grid", |d| d.grids[1].cells = 5),
-        ("grids from fine to coarse", |d| d.grids.reverse()),
-        ("no grids", |d| d.grids.clear()),
+        },
+        // Grids: odd, from fine to coarse, none.
+        |d| d.grids[1].cells = 5,
+        |d| d.grids.reverse(),
+        |d| d.grids.clear(),
     ];
-    for (name, harm) in harms {
+    for (number, harm) in harms.into_iter().enumerate() {
         let mut data = small();
         harm(&mut data);
-        assert!(is_refused(&encode(&data).unwrap()), "{name}");
+        assert!(is_refused(&encode(&data).unwrap()), "{number}");
     }
 }
 

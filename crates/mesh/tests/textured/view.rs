@@ -9,7 +9,7 @@ use shiftvox_mesh::textured::view::{
 };
 use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
-use super::scenes::{balls, built, file_of, mesh_of, options, rectangle};
+use super::scenes::{balls, built, file_of, options};
 use super::shared::{difference, directions, looking, on_any_threads, plain, triangles};
 
 fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
@@ -104,29 +104,6 @@ fn from_anywhere_levels_cover_at_most_a_cell_around_the_mesh() {
     // The bias that spec/textured.md states for this scene.
     let shares = [missing, extra].map(|n| n as f64 / all as f64);
     assert!(shares[0] < 0.22 && shares[1] < 0.51, "{shares:?}");
-}
-
-#[test]
-fn transparent_texels_show_the_surface_behind() {
-    // A frame in one half, in front of a wall in the other, both on the cells' outer faces: nothing is displaced.
-    let quads = [
-        rectangle(8.0, [0.0, 0.0], [8.0, 2.0]),
-        rectangle(8.0, [0.0, 6.0], [8.0, 8.0]),
-        rectangle(8.0, [0.0, 2.0], [2.0, 6.0]),
-        rectangle(8.0, [6.0, 2.0], [8.0, 6.0]),
-        rectangle(0.0, [0.0, 0.0], [8.0, 8.0]),
-    ];
-    let mesh = mesh_of(quads.as_flattened()).unwrap();
-    let file = file_of(&built(&mesh, 2, 16, Element::Cube));
-    let view = view(DVec3::new(4.0, 4.0, 30.0), DVec3::splat(4.0), 120, 20.0);
-    let (picture, counts) = drawn(&file, &view, 0);
-    assert_eq!(counts.primitives, 0);
-    let full = triangles(&mesh, &view, 1, None, None);
-    assert_eq!(covered(&picture), covered(&full));
-    // Only the border of the hole is on the border of texels.
-    let pairs = picture.depth.iter().zip(&full.depth);
-    let differing = pairs.filter(|(a, b)| (*a - *b).abs() > 1e-3).count();
-    assert!(differing <= 4 * 120, "{differing}");
 }
 
 #[test]

@@ -65,14 +65,27 @@ impl Target<'_> {
             Rays::PerVoxel(_) => most / 2,
             Rays::InAll(rays) => rays.min(most).div_ceil(2),
         };
-        let mut found = Found::new(&touched, &slot, most_visibility_rays);
+        let mut found = Found {
+            touched: &touched,
+            slot: &slot,
+            shots: Vec::new(),
+            most: most_visibility_rays as usize,
+            is_seen: vec![false; touched.len()],
+            tests: vec![0; touched.len()],
+            followed: vec![0; touched.len()],
+        };
         found.find_visible(self, &mut chance)?;
         let visibility_rays = found.shots.len();
         let aims = (0..touched.len() as u32).filter(|&number| found.is_seen[number as usize]);
         let aims: Vec<u32> = aims.collect();
         let left = most - visibility_rays as u32;
         let mut aimed = vec![0; touched.len()];
-        let mut prober = Prober::new(self, &aims, &mut chance);
+        let mut prober = Prober {
+            target: self,
+            aims: &aims,
+            directions: aims.iter().map(|_| Directions::new(&mut chance)).collect(),
+            chance: &mut chance,
+        };
         match rays {
             Rays::PerVoxel(probes) => {
                 let first = FIRST_PROBES.min(probes);
@@ -187,21 +200,9 @@ struct Prober<'p> {
     aims: &'p [u32],
     directions: Vec<Directions>,
     chance: &'p mut SplitMix,
-    beyond: f64,
 }
 
-impl<'p> Prober<'p> {
-    fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut SplitMix) -> Self {
-        let cells = point(target.grid.cells);
-        Self {
-            target,
-            aims,
-            directions: aims.iter().map(|_| Directions::new(chance)).collect(),
-            chance,
-            beyond: cells.length() + FOLLOWED,
-        }
-    }
-
+impl Prober<'_> {
     fn probe(
         &mut self,
         wanted: impl Fn(usize) -> u32,
@@ -232,8 +233,9 @@ impl<'p> Prober<'p> {
             }
         }
         let begin = found.shots.len();
+        let beyond = point(self.target.grid.cells).length() + FOLLOWED;
         self.target
-            .shoot(&rays, self.beyond, found.slot, &mut found.shots)?;
+            .shoot(&rays, beyond, found.slot, &mut found.shots)?;
         for shot in &found.shots[begin..] {
             if shot.touched != NOWHERE {
                 found.is_seen[shot.touched as usize] = true;
@@ -256,19 +258,7 @@ struct Found<'s> {
 
 type Look = (u32, Aim);
 
-impl<'s> Found<'s> {
-    fn new(touched: &'s [Touched], slot: &'s [u32], most: u32) -> Self {
-        Self {
-            touched,
-            slot,
-            shots: Vec::new(),
-            most: most as usize,
-            is_seen: vec![false; touched.len()],
-            tests: vec![0; touched.len()],
-            followed: vec![0; touched.len()],
-        }
-    }
-
+impl Found<'_> {
     fn find_visible(&mut self, target: &Target<'_>, chance: &mut SplitMix) -> io::Result<()> {
         let touched = self.touched;
         let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();

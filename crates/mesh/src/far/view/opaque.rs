@@ -183,13 +183,11 @@ impl<'f> Opaque<'f> {
             };
         }
         let (id, voxels) = (word as u32, self.file.voxels());
-        let light = if id < voxels {
-            self.voxel_light(id, last)
-        } else {
-            self.triangle_light(pixel, id - voxels)
-        };
         Pixel {
-            light,
+            light: match id < voxels {
+                true => self.voxel_light(id, last),
+                false => self.triangle_light(pixel, id - voxels),
+            },
             coverage: 1.0,
             depth: f32::from_bits((word >> 32) as u32),
         }
