@@ -30,7 +30,7 @@ pub(crate) enum Format {
 }
 
 /// Small sound files of every kind, made by the program, and how many of their bytes are header and tables.
-fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
+pub(crate) fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
     let mut files = Vec::new();
     for graph in graphs() {
         let mut bytes = Vec::new();
@@ -151,6 +151,14 @@ pub(crate) fn edited(mut choices: impl Iterator<Item = u64>) -> Option<(Format, 
     Some((*format, seal(bytes, first >> 32 & 3 != 0)?))
 }
 
+pub(crate) fn is_sound(format: Format, bytes: &[u8]) -> bool {
+    match format {
+        Format::Vxg => vxg::from_bytes(bytes).is_ok(),
+        Format::Far => FarFile::from_bytes(bytes).is_ok_and(|file| file.verify().is_ok()),
+        Format::Tvx => TexturedFile::from_bytes(bytes).is_ok_and(|file| file.verify().is_ok()),
+    }
+}
+
 /// Reads, verifies and draws a file as the program does. Returns whether it is sound. Graphs are written to `path` and
 /// mapped.
 pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
@@ -186,9 +194,11 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 let up = shiftvox::Up::Z;
                 draw(&mut GraphDrawing::new(graph, up, style, engine));
             }
-            read.is_ok()
         }
-        Format::Far => FarFile::from_bytes(bytes).is_ok_and(|file| {
+        Format::Far => {
+            let Ok(file) = FarFile::from_bytes(bytes) else {
+                return false;
+            };
             let style = FarStyle {
                 voxel_px: 1.0,
                 aa_log2: 0,
@@ -197,9 +207,11 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 background,
             };
             draw(&mut FarDrawing::new(&file, style));
-            file.verify().is_ok()
-        }),
-        Format::Tvx => TexturedFile::from_bytes(bytes).is_ok_and(|file| {
+        }
+        Format::Tvx => {
+            let Ok(file) = TexturedFile::from_bytes(bytes) else {
+                return false;
+            };
             let (level, cells) = (1, None);
             for erosion in [
                 Erosion::Auto { texel_px: 1.0 },
@@ -213,9 +225,9 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
                 };
                 draw(&mut TexturedDrawing::new(&file, style));
             }
-            file.verify().is_ok()
-        }),
+        }
     }
+    is_sound(format, bytes)
 }
 
 /// Draws a small picture from near and far. An open file can be drawn.

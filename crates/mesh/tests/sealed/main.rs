@@ -40,6 +40,20 @@ unsafe impl GlobalAlloc for Limited {
 }
 
 #[test]
+fn truncated_and_damaged_files_are_refused() {
+    for (format, sound, _) in exercise::sound_files() {
+        let is_sound = |bytes: &[u8]| exercise::is_sound(format, bytes);
+        assert!(is_sound(&sound) && !is_sound(&[&sound[..], &[0]].concat()));
+        for at in 0..sound.len() {
+            let mut damaged = sound.clone();
+            damaged[at] ^= 1 << (at % 8);
+            let is_refused = !is_sound(&damaged) && !is_sound(&sound[..at]);
+            assert!(is_refused, "{format:?}, byte {at}");
+        }
+    }
+}
+
+#[test]
 fn edited_files_are_refused_or_drawn() {
     let folder = tempfile::tempdir().unwrap();
     // Of each format: refused, sound.
