@@ -51,7 +51,6 @@ fn blocks(is_walled: bool) -> Mesh {
     builder.finish("city").unwrap()
 }
 
-/// Small nodes, used from near.
 pub(crate) fn options() -> BuildOptions {
     BuildOptions {
         rays: Some(150_000),
@@ -62,7 +61,6 @@ pub(crate) fn options() -> BuildOptions {
     }
 }
 
-/// The city as far voxels.
 pub(crate) fn far(is_walled: bool) -> FarData {
     build(&blocks(is_walled), &options(), &Silent).unwrap()
 }
@@ -71,7 +69,6 @@ pub(crate) fn file_of(data: &FarData) -> FarFile {
     FarFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
 
-/// A view of the city from an angle around it and a distance.
 pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> RasterCamera {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let target = DVec3::new(20.0, 2.0, 21.0);

@@ -43,8 +43,8 @@ fn files_hold_the_data_that_was_built() {
     }
 }
 
-/// With right checksums. Some bytes may have any value: the centre (48..72), the distance (72..80), the settings (80,
-/// 84), the bevels (104..112), and of the root its box, origin and voxel, its counts and the fit's error.
+/// With right checksums. Centre, distance, settings and bevels may have any value. So may the root's box, grid, counts
+/// and error.
 #[test]
 fn fields_are_checked_behind_their_checksums() {
     let (city, hybrid) = (far(false), hybrid(&generate(Kind::Village, 3), 500));
@@ -69,7 +69,7 @@ fn fields_are_checked_behind_their_checksums() {
     }
     type Harm = fn(&mut Vec<Node>);
     let harms: [Harm; 5] = [
-        // A child on the level of its parent, a first child that is not the next node, a second child outside.
+        // A child on its parent's level, a first child that is not the next node, a second child outside.
         |n| n[1].level = n[0].level,
         |n| n[0].children[0] += 1,
         |n| n[0].children[1] = u32::MAX,

@@ -39,8 +39,8 @@ fn nested_spheres(rows: u32, inner: f64) -> Mesh {
     builder.finish("spheres").unwrap()
 }
 
-/// Draws white around red, before white, from all sides, in four sizes; red must show nowhere. Distances are a first one
-/// and a step. Returns the pixels of inner nodes, and the pictures with nodes of three levels or more.
+/// Draws white around red from all sides, in four sizes; red must not show. Distances: first and step. Returns pixels of
+/// inner nodes, and pictures with nodes of three levels or more.
 fn draw_hiding(
     mesh: &Mesh,
     data: &FarData,
@@ -97,7 +97,6 @@ fn no_background_shows_between_nodes() {
     }
 }
 
-/// Spokes of a wheel.
 fn spokes(radius: f64) -> Mesh {
     shape(|builder| {
         for k in 0..24 {
@@ -115,8 +114,7 @@ fn spokes(radius: f64) -> Mesh {
     })
 }
 
-/// Spokes thinner than a voxel keep their area within a tenth. Spokes of two voxels, of which several lie behind each
-/// other at the edge, grow by less than a quarter.
+/// Within a tenth if thinner than a voxel. Spokes of two voxels, of which some hide others, grow by less than a quarter.
 #[test]
 fn thin_tubes_keep_their_area() {
     for (radius, most) in [(0.003, 0.1), (0.01, 0.1), (0.03, 0.25)] {

@@ -53,7 +53,6 @@ fn culling_never_changes_the_picture() {
 fn hidden_branches_cost_no_work() {
     let data = far(true);
     let file = file_of(&data);
-    // The wall hides the city.
     let view = view(0.0, 0.02, 80.0, 160);
     let draw = |viewer: &mut FarViewer<'_>, culling| {
         let options = ViewOptions {

@@ -1,4 +1,4 @@
-//! Files of each format, edited and put right, and all that is done with such a file. The fuzz target `edited` has it too.
+//! Files of each format, edited and repaired, and every use of such a file. The fuzz target `edited` has it too.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -18,7 +18,6 @@ use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
 use super::seal;
 
-/// Two squares and a thin spike.
 const OBJ: &str = "v 0 0 0\nv 4 0 1\nv 4 4 2\nv 0 4 1\nv 1 1 5\nv 1.2 1 5\nv 3 3 9\nv 0 0 3\n\
                    v 4 0 3\nv 4 4 3\nv 0 4 3\nf 1 2 3 4\nf 5 6 7\nf 8 9 10 11\n";
 
@@ -29,7 +28,7 @@ pub(crate) enum Format {
     Tvx,
 }
 
-/// Small sound files of every kind, made by the program, and how many of their bytes are header and tables.
+/// Small files of every kind, and how many of their bytes are header and tables.
 pub(crate) fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
     let mut files = Vec::new();
     for graph in graphs() {
@@ -70,7 +69,6 @@ pub(crate) fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
     files
 }
 
-/// A tree, the same with opacities, with equal subtrees merged, and a cyclic graph.
 fn graphs() -> [Graph; 4] {
     let [tree, with_opacities] = [false, true].map(|opacities| {
         let mut options = OpenOptions::default();
@@ -126,7 +124,6 @@ fn edit(bytes: &mut [u8], fields: usize, choice: u64) {
         7..10 => old ^ 1 << (value % (8 * width as u64)),
         10 => value,
         11 => u64::from(value as u8),
-        // Another field's.
         12 => field(place(value)).unwrap_or(old),
         _ if width == 8 => odd.to_bits(),
         _ => u64::from((odd as f32).to_bits()),
@@ -134,8 +131,7 @@ fn edit(bytes: &mut [u8], fields: usize, choice: u64) {
     bytes[at..at + width].copy_from_slice(&new.to_le_bytes()[..width]);
 }
 
-/// A sound file after edits, with right lengths and checksums. The first choice is the file, and whether places within
-/// it are put right too. `None` where a length is too large.
+/// A sound file after edits, repaired. The first choice is the file, and whether places within it are repaired too.
 pub(crate) fn edited(mut choices: impl Iterator<Item = u64>) -> Option<(Format, Vec<u8>)> {
     static FILES: OnceLock<Vec<(Format, Vec<u8>, usize)>> = OnceLock::new();
     let first = choices.next()?;
@@ -159,8 +155,7 @@ pub(crate) fn is_sound(format: Format, bytes: &[u8]) -> bool {
     }
 }
 
-/// Reads, verifies and draws a file as the program does. Returns whether it is sound. Graphs are written to `path` and
-/// mapped.
+/// Reads, verifies and draws a file as the program does. Returns whether it is sound. Graphs are mapped from `path`.
 pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
     let (shading, background) = (Shading::Lambert, Background::default());
     match format {

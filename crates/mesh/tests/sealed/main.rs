@@ -1,6 +1,4 @@
-//! Files that were edited and whose lengths and checksums are right all the same: refused, or drawn, in little memory.
-//!
-//! A test crate of its own, because its allocator refuses too much.
+//! Edited files with right lengths and checksums are refused or drawn, in little memory: the allocator refuses more.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod exercise;
@@ -34,7 +32,7 @@ unsafe impl GlobalAlloc for Limited {
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         self.0.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: as in `alloc`; the pointer came from there.
+        // SAFETY: the pointer came from `alloc`.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -60,14 +58,12 @@ fn edited_files_are_refused_or_drawn() {
     let mut found = [[0u32; 2]; 3];
     for seed in 0..1500 {
         let mut random = SplitMix::new(seed);
-        // The file, and 0 to 4 edits.
         let edits = random.below(5);
         let choices = (0..=edits).map(|_| random.bits());
         let Some((format, bytes)) = exercise::edited(choices) else {
             continue;
         };
         let path = folder.path().join("edited.vxg");
-        // Shown where the test fails.
         println!("seed {seed}");
         let is_sound = exercise::exercise(format, &bytes, &path);
         found[format as usize][usize::from(is_sound)] += 1;

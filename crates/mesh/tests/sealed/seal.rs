@@ -1,7 +1,5 @@
-//! Files of sections behind checksums, `.vxg`, `.far` and `.tvx`, put right after any damage: length, zeros between
-//! sections, checksums. Faults are then in the fields alone. Follows `spec/graph.md`, `spec/far.md` and
-//! `spec/textured.md`, and shares no code with the program. Each function gives `None` where a header says too much. The
-//! fuzz targets have it too.
+//! Repairs length, zeros and checksums of damaged `.vxg`, `.far` and `.tvx` files, so that faults are in fields alone.
+//! Shares no code with the program. `None` of files that would be too long. The fuzz targets use it too.
 
 use std::ops::Range;
 
@@ -49,8 +47,7 @@ fn slot(section: &Range<u64>) -> Range<usize> {
     section.start as usize..section.end as usize
 }
 
-/// Writes the length and the checksums of sections, each with its place: the last first, because tables hold checksums of
-/// later sections. Sections beyond the file, or that end before they begin, have none.
+/// Writes the length and the checksums of sections, each with its place: last ones first, because tables hold them.
 fn sealed(mut bytes: Vec<u8>, header: usize, sections: &[(Range<u64>, usize)]) -> Vec<u8> {
     let length = bytes.len() as u64;
     put(&mut bytes, 16, length);

@@ -17,7 +17,7 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 
 pub type Corners = [[f32; 3]; 3];
 
-/// A camera at `eye`, turned to `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
+/// A length of 1 at a distance of 1 is `focal_px` pixels.
 pub fn looking(
     eye: DVec3,
     target: DVec3,
@@ -47,7 +47,6 @@ pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCa
     looking(eye, middle, [size; 2], f64::from(size) * distance)
 }
 
-/// Directions spread over the sphere.
 pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
@@ -85,7 +84,7 @@ pub fn area(coverage: &[f32]) -> f64 {
     coverage.iter().map(|&share| f64::from(share)).sum()
 }
 
-/// Root mean square difference of the red, green and blue bytes of two pictures, after a conversion of each byte.
+/// Root mean square of differences of converted bytes of colours.
 pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f64 {
     let square = |(a, b): (&[u8; 4], &[u8; 4])| -> f64 {
         (0..3).map(|k| (value(a[k]) - value(b[k])).powi(2)).sum()
@@ -94,7 +93,6 @@ pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f6
     (sum / (3 * a.len()) as f64).sqrt()
 }
 
-/// A mesh whose material 0 is grey.
 pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     let mut builder = MeshBuilder::new();
     builder.material(Material::of_srgb("grey", [90, 120, 150]));
@@ -102,7 +100,6 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     builder.finish("a shape").unwrap()
 }
 
-/// A grey mesh of positions and their numbers.
 pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     shape(|builder| {
         positions.iter().for_each(|&p| _ = builder.position(p));
@@ -157,7 +154,7 @@ pub fn sheet(
     }
 }
 
-/// A surface of revolution around a line along y, through heights and radii from top to bottom.
+/// A surface of revolution around y, through heights and radii.
 pub fn turned(
     builder: &mut MeshBuilder,
     middle: DVec3,
@@ -191,7 +188,6 @@ pub fn sphere(
     turned(builder, middle, &profile, columns, material);
 }
 
-/// A ball of radius 1 around the origin.
 pub fn ball(rows: u32) -> Mesh {
     shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [rows, 2 * rows], 0))
 }

@@ -72,7 +72,6 @@ fn face(data: &mut TexturedData, below: u32) -> &mut u32 {
     faces.find(|texture| **texture < below).unwrap()
 }
 
-/// With right checksums.
 #[test]
 fn inconsistent_contents_are_refused() {
     type Harm = fn(&mut TexturedData);
@@ -83,14 +82,14 @@ fn inconsistent_contents_are_refused() {
         |d| d.primitives.extend_from_within(..1),
         |d| d.primitives[0].corners[1][2] = f32::NAN,
         |d| d.high.x += 1.0,
-        // Voxels: outside, twice, out of order, of another depth; lists of them that end or begin late.
+        // Voxels: outside, twice, out of order, of another depth, with lists that end or begin late.
         |d| d.grids[1].voxels[0].cell[2] = 4,
         |d| d.grids[1].voxels[1] = d.grids[1].voxels[0],
         |d| d.grids[1].voxels.swap(0, 1),
         |d| d.grids[1].voxels.last_mut().unwrap().depth += 1,
         |d| d.grids[0].voxels[1].first = u32::MAX,
         |d| d.grids[0].voxels[0].first = 1,
-        // Sub-textures: missing, and none; texels: half transparent, without a normal.
+        // A sub-texture that is missing, or none. A texel that is half transparent, or without a normal.
         |d| *face(d, CLEAR) = 1000,
         |d| *face(d, NEVER) = NEVER,
         |d| d.grids[0].textures[0].opacity = 7,

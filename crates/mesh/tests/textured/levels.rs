@@ -28,7 +28,7 @@ fn eroded(cells: &Cells, element: Element) -> Cells {
     cells.iter().filter(keeps).copied().collect()
 }
 
-/// Checks all levels of a file's grid against definitions. Returns the number of the last level.
+/// Checks all levels against definitions. Returns the last.
 fn check(file: &TexturedFile) -> u32 {
     let grid = file.grid(0);
     let (levels, voxels) = (grid.levels(), grid.voxels());
@@ -41,7 +41,6 @@ fn check(file: &TexturedFile) -> u32 {
         let cells: Cells = left.clone().map(cell).collect();
         assert_eq!(cells, expected, "level {}", row.level);
         expected = eroded(&expected, grid.element());
-        // Primitives of the voxels that are gone.
         let gone = (0..left.start).flat_map(|v| grid.list(v)).copied();
         let gone: BTreeSet<u32> = gone.collect();
         let mut found = levels.primitives(row.level).to_vec();

@@ -10,7 +10,7 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::shared::{self, Corners, shape, soup};
 
-/// Triangles, each with the colour [`color_of`] its number. Triangles without area are left out.
+/// Without triangles that have no area.
 pub fn mesh_of(triangles: &[Corners]) -> Option<Mesh> {
     let mut builder = MeshBuilder::new();
     let has_area = |corners: &&Corners| {
@@ -30,15 +30,13 @@ pub fn color_of(number: u32) -> [u8; 3] {
     [r, g, b]
 }
 
-/// The two triangles of a rectangle at a height z.
 pub fn rectangle(z: f32, low: [f32; 2], high: [f32; 2]) -> [Corners; 2] {
     let [a, b] = [[low[0], low[1], z], [high[0], low[1], z]];
     let [c, d] = [[high[0], high[1], z], [low[0], high[1], z]];
     [[a, b, c], [a, c, d]]
 }
 
-/// Triangles with most corners on a coarse lattice, so that many lie on the borders of cells and through the middles of
-/// texels.
+/// Many corners lie on borders of cells and on middles of texels.
 pub fn random_triangles() -> impl Strategy<Value = Vec<Corners>> {
     let coarse = (0u8..=16).prop_map(|n| f32::from(n) * 0.5);
     let any = (0u32..1 << 20).prop_map(|n| n as f32 / 131_072.0);

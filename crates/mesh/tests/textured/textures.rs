@@ -9,15 +9,13 @@ use super::scenes::{balls, built, color_of, mesh_of, random_triangles, rectangle
 
 type Point = [i128; 2];
 
-/// The axes across and down a face that stands on an axis.
 const FACE: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 fn area([a, b, c]: [Point; 3]) -> i128 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a triangle covers a point of the plane, as if the point were moved to the right by almost nothing, and down
-/// by almost nothing of that.
+/// As if the point were moved to the right by almost nothing, and down by almost nothing of that.
 fn covers(points: [Point; 3], p: Point) -> bool {
     let sides = [0, 1, 2].map(|i| {
         let (a, b) = (points[i], points[(i + 1) % 3]);
@@ -57,13 +55,11 @@ fn seen(
         let is_there = volume.contains(&at.min(lattice.cells - 1));
         is_there.then_some((depth * outwards, number))
     });
-    // The farthest out; of several the first.
     let best = depths.max_by_key(|&(depth, number)| (depth, std::cmp::Reverse(number)));
     best.map(|(_, number)| number)
 }
 
-/// Compares all sub-textures of a grid with volumes projected afresh. Returns the number of texels, and of those that
-/// see something.
+/// Compares all sub-textures of a grid with volumes projected afresh. Returns the number of texels, and of covered ones.
 fn compare(data: &TexturedData) -> [u64; 2] {
     let grid = &data.grids[0];
     let lattice = CellGrid::around(data.low, data.high, grid.cells, grid.texels);
@@ -125,7 +121,7 @@ fn slices_save_projections_and_equal_sub_textures_are_stored_once() {
     assert!(compared > 2000 && 3 * seeing > compared, "{seeing}");
     let grid = &data.grids[0];
     assert!(grid.projected_afresh > 2 * grid.projected);
-    // Most faces of a wall of two colours are alike: one of each triangle, and those along the line between them.
+    // Most faces of a wall of two triangles are equal, except those along the line between them.
     let wall = mesh_of(&rectangle(0.0, [0.0; 2], [8.0; 2])).unwrap();
     let grid = &built(&wall, 16, 4, Element::Cube).grids[0];
     let shown = grid.voxels.iter().flat_map(|v| v.textures);

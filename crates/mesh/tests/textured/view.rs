@@ -20,7 +20,6 @@ fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera 
     }
 }
 
-/// One sample per pixel, unlit, without a background.
 fn shown(detail: Detail) -> ViewOptions {
     ViewOptions {
         detail,
@@ -66,8 +65,7 @@ fn along_an_axis_levels_cover_the_same_as_the_mesh_within_a_texel() {
         assert!(count(&full) > 10_000);
         for level in 0..=file.grid(0).levels().last() {
             let found = covered(&drawn(&file, &view, level).0);
-            // A texel, as much again for the last bit of perspective, and rounding: 4 pixels. Faces that are seen edge
-            // on show as hairs.
+            // Texels, perspective and rounding: 4 pixels. Faces seen edge on show as hairs.
             let hairs = beyond(&found, &full, 300, 4);
             assert!(hairs < count(&full) / 100, "{away} {level}: {hairs}");
             assert_eq!(beyond(&full, &found, 300, 4), 0, "{away} {level}");
@@ -155,7 +153,6 @@ fn levels_are_chosen_by_the_size_of_texels() {
     let near = choose(&file, &view(centre, DVec3::ZERO, 256, 40.0), 1.0);
     assert_eq!(near.texel_px, 0.0);
     assert_eq!(near.level, file.grid(near.grid).levels().last());
-    // A given level gets a grid.
     let far = view(centre + DVec3::X * 1e5, centre, 64, 40.0);
     let near = view(centre + DVec3::X * 6.0, centre, 2048, 40.0);
     assert_eq!(
@@ -173,7 +170,6 @@ fn levels_are_chosen_by_the_size_of_texels() {
     }
 }
 
-/// Decibel, over all of the picture.
 fn psnr(reference: &[[u8; 4]], picture: &[[u8; 4]]) -> f64 {
     -20.0 * libm::log10(difference(reference, picture, |b| f64::from(b) / 255.0).max(1e-5))
 }
@@ -181,7 +177,7 @@ fn psnr(reference: &[[u8; 4]], picture: &[[u8; 4]]) -> f64 {
 #[test]
 fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
     let background = Some([20, 20, 30]);
-    // Texels of a pixel alone would allow levels that are worse by so many decibel.
+    // Of a level with texels of a pixel alone, decibel.
     let mut worst_by_texels: f64 = 0.0;
     let mut with_textures = 0;
     for kind in [Kind::Village, Kind::Tree, Kind::Wheel, Kind::Garden] {

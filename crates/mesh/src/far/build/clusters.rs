@@ -17,13 +17,8 @@ pub(super) const MAKING: u64 = 320;
 pub(super) const MADE: u64 = 80;
 
 pub(super) struct Occluders {
-    places: Vec<Place>,
+    parts: Vec<Part>,
     held: Held,
-}
-
-struct Place {
-    around: Around,
-    first: u32,
 }
 
 enum Held {
@@ -48,7 +43,7 @@ pub(super) struct Part {
 impl Occluders {
     /// `within`: a file, and the most bytes in memory beside a cluster per thread.
     pub(super) fn new<C, I>(
-        parts: &[Part],
+        parts: Vec<Part>,
         corners: C,
         within: Option<(File, u64)>,
     ) -> io::Result<Self>
@@ -67,20 +62,13 @@ impl Occluders {
                     bytes: 0,
                     here: VecDeque::new(),
                 };
-                for part in parts {
+                for part in &parts {
                     cache.put(make(part))?;
                 }
                 Held::Some(Mutex::new(cache))
             }
         };
-        let place = |part: &Part| Place {
-            around: part.around,
-            first: part.triangles.start as u32,
-        };
-        Ok(Self {
-            places: parts.iter().map(place).collect(),
-            held,
-        })
+        Ok(Self { parts, held })
     }
 
     /// The triangles that stop rays, which begin within a box.
@@ -93,15 +81,15 @@ impl Occluders {
         meetings.clear();
         meetings.resize(queries.len(), Meeting::NONE);
         // The nearest first: what is met there hides what is behind.
-        let places = self.places.iter().enumerate();
-        let near = places.map(|(number, place)| (place.around.square_from(within), number));
+        let parts = self.parts.iter().enumerate();
+        let near = parts.map(|(number, part)| (part.around.square_from(within), number));
         let mut near: Vec<(f32, usize)> = near.collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, number) in near {
-            let Place { around, first } = &self.places[number];
+            let Part { around, triangles } = &self.parts[number];
             if is_any_entered(around, queries, meetings) {
                 let cluster = self.get(number)?;
-                cluster.meet_all(around, *first, queries, meetings);
+                cluster.meet_all(around, triangles.start as u32, queries, meetings);
             }
         }
         Ok(())
@@ -200,7 +188,7 @@ mod tests {
             let parts: Vec<Part> = (0..3000 / size).map(part).collect();
             let corners = |own: Range<usize>| triangles[own].iter().copied();
             let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
-            let occluders = Occluders::new(&parts, corners, within).unwrap();
+            let occluders = Occluders::new(parts, corners, within).unwrap();
             let mut meetings = Vec::new();
             occluders.nearest(&around, &queries, &mut meetings).unwrap();
             meetings

@@ -1,8 +1,4 @@
-//! Hits and passes of probes, as `spec/far.md` defines them. Weights spread the lines through a voxel evenly. A voxel is
-//! opaque from where all probes onto its surface, at a steepness, are stopped in it or right behind: it is part of a
-//! large object.
-
-use std::ops::ControlFlow;
+//! Hits and passes of probes, and solid parts (`spec/far.md`).
 
 use glam::DVec3;
 
@@ -181,7 +177,7 @@ impl<'p> Probes<'p> {
                     }
                     is_over |= is_end || leave > end;
                 }
-                ControlFlow::Continue(())
+                true
             });
             weights.push(1.0 / aims.max(1) as f32);
         }

@@ -1,7 +1,5 @@
 //! The uniform grid of a node: which voxels there are, which a ray crosses.
 
-use std::ops::ControlFlow;
-
 use glam::DVec3;
 
 use crate::geometry::point;
@@ -69,14 +67,14 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Visits each voxel along a line, with the distance (in voxels) at which the line leaves it. Distances are whole
-    /// numbers of 2^-32 voxels, so that steps are exact and need no branch.
+    /// Visits voxels along a line while `visit` returns true, with the distance (in voxels) at which the line leaves each.
+    /// Distances are whole numbers of 2^-32 voxels, so that steps are exact and need no branch.
     #[inline]
     pub(super) fn along(
         &self,
         from: DVec3,
         direction: DVec3,
-        mut visit: impl FnMut(usize, f64) -> ControlFlow<()>,
+        mut visit: impl FnMut(usize, f64) -> bool,
     ) {
         let cells = point(self.cells);
         let per_cell = direction.recip();
@@ -117,7 +115,7 @@ impl Grid {
         let ([mut x, mut y, mut z], [of_x, of_y, of_z]) = (next, size);
         loop {
             let nearest = x.min(y).min(z);
-            if visit(number as usize, nearest as f64 / UNITS).is_break() || nearest >= end {
+            if !visit(number as usize, nearest as f64 / UNITS) || nearest >= end {
                 return;
             }
             // All ones where that plane is crossed; where several are, through an edge or corner.

@@ -1,12 +1,10 @@
-//! Coarser nodes above the root, for pictures smaller than its grid, and the choice of nodes that have voxels.
-//!
-//! A node almost as long as the one above has none, nor one whose triangles each cover many voxels and take fewer bytes.
+//! Coarser nodes above the root, and the choice of nodes that have voxels (`spec/far.md`, Grid).
 
 use super::split::Branch;
 
-/// A node has voxels if its side is at most this share of that of the next node above that has.
+/// Of the side of the next node above that has voxels.
 const STEP: f64 = 0.7;
-/// Most voxels of a node for each of its triangles. So many take 180 bytes or more, a triangle 15 to 35.
+/// Most voxels of a node per triangle. So many take 180 bytes or more, a triangle 15 to 35.
 const MOST_VOXELS: usize = 16;
 
 pub(super) fn is_dense(touched: usize, triangles: usize) -> bool {

@@ -43,7 +43,7 @@ use room::{Room, shares};
 use sample::Rays;
 use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
-use shot::{Own, Target};
+use shot::Target;
 use split::{Branch, split};
 use spool::{Done, Spool};
 use surface::{MOST_TRIANGLES, Surfaces};
@@ -255,7 +255,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let within = within.transpose()?;
     let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
     let parts = parts(&branches, |point| triangles.place(point));
-    let occluders = Occluders::new(&parts, corners, within).map_err(|e| failed(folder, &e))?;
+    let occluders = Occluders::new(parts, corners, within).map_err(|e| failed(folder, &e))?;
     progress.end();
     let surfaces = options
         .hybrid
@@ -267,7 +267,8 @@ fn fill<F: Read + Write + Seek + Send>(
     let target = |number: usize, branch: &Branch| Target {
         occluders: &occluders,
         grid: grid(number, branch),
-        own: Own::all(branch.triangles()),
+        own: branch.triangles(),
+        taken: None,
         distance: options.distance_voxels,
     };
     progress.begin("find voxels", order.len() as u64);
@@ -326,7 +327,17 @@ fn fill<F: Read + Write + Seek + Send>(
         };
         match &surfaces {
             Some(surfaces) if branch.count <= MOST_TRIANGLES => {
-                let thin = |node: &mut Node, thin: &[bool]| voxels(node, &target.of(thin));
+                let thin = |node: &mut Node, thin: &[bool]| {
+                    let (own, taken) = (branch.triangles(), Some(thin));
+                    voxels(
+                        node,
+                        &Target {
+                            own,
+                            taken,
+                            ..target
+                        },
+                    )
+                };
                 surfaces.inner(&node, branch.triangles(), thin)
             }
             _ => {

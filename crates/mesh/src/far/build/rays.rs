@@ -1,5 +1,4 @@
-//! The first triangle on each ray; of equally near ones the lowest number. Triangles are held in *clusters*, subtrees of
-//! the hierarchy with a ray hierarchy each.
+//! The first triangle on each ray; of equally near ones the lowest number.
 
 use std::io::{self, Read};
 

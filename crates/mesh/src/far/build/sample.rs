@@ -1,7 +1,6 @@
 //! Visibility rays and probes at a node (`spec/far.md`).
 
 use std::io;
-use std::ops::ControlFlow;
 
 use glam::DVec3;
 
@@ -53,7 +52,7 @@ impl Target<'_> {
     ) -> io::Result<Sampled> {
         let seed = seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15;
         let mut chance = SplitMix::new(seed);
-        let own = self.own.numbers();
+        let own = self.own.clone().filter(|&number| self.has(number));
         let own = own.map(|number| (number, triangles.corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
         let _admitted = admit(touched.len());
@@ -185,10 +184,7 @@ impl Target<'_> {
                 if touched != NOWHERE && (is_before || touched == shot.touched) {
                     crossings[touched as usize] += 1;
                 }
-                match is_before {
-                    true => ControlFlow::Continue(()),
-                    false => ControlFlow::Break(()),
-                }
+                is_before
             });
         }
         crossings

@@ -9,7 +9,7 @@ use crate::far::record::{Opacity, OpacityKind, STEEPNESSES, Shader, SideOpacity,
 /// Beside a colour's error: both are 0 to 1.
 const NORMAL_WEIGHT: f64 = 0.25;
 const GOOD_ENOUGH: f64 = 5e-4;
-/// A complex shader, three times as large, must be better by this factor.
+/// For a complex shader, which takes three times as many bytes.
 const WORTH_IT: f64 = 0.7;
 const LEAST_SAMPLES: usize = 6;
 const OPAQUE_FROM: f64 = 0.97;
@@ -20,9 +20,8 @@ const NOISE: f64 = 5.0;
 /// Added hits and passes, so that a few rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A voxel is solid seen at a steepness if no more than this share of the probes passes, by weight, ...
+/// Of a solid voxel, by weight and in number.
 const MOST_PASSED: f64 = 0.05;
-/// ... and so many or more were stopped there and above.
 const LEAST_STOPPED: u32 = 4;
 
 #[derive(Debug, Clone, Copy)]

@@ -15,47 +15,10 @@ const STEPS_TO_S: u32 = 2;
 pub(super) struct Target<'t> {
     pub(super) occluders: &'t Occluders,
     pub(super) grid: Grid,
-    pub(super) own: Own<'t>,
+    pub(super) own: Range<usize>,
+    /// Its own triangles that count, or `None` for all.
+    pub(super) taken: Option<&'t [bool]>,
     pub(super) distance: f64,
-}
-
-/// Some of the triangles of a range.
-pub(super) struct Own<'t> {
-    range: Range<usize>,
-    is_taken: Option<&'t [bool]>,
-}
-
-impl<'t> Own<'t> {
-    pub(super) fn all(range: Range<usize>) -> Self {
-        Self {
-            range,
-            is_taken: None,
-        }
-    }
-
-    pub(super) fn contains(&self, triangle: usize) -> bool {
-        let is_taken = |taken: &[bool]| taken[triangle - self.range.start];
-        self.range.contains(&triangle) && self.is_taken.is_none_or(is_taken)
-    }
-
-    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, 't> {
-        self.range.clone().filter(|&number| self.contains(number))
-    }
-}
-
-impl<'t> Target<'t> {
-    pub(super) fn of<'s>(&self, is_taken: &'s [bool]) -> Target<'s>
-    where
-        't: 's,
-    {
-        Target {
-            own: Own {
-                range: self.own.range.clone(),
-                is_taken: Some(is_taken),
-            },
-            ..*self
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -94,6 +57,11 @@ fn cell(direction: Vec3) -> usize {
 }
 
 impl Target<'_> {
+    pub(super) fn has(&self, triangle: usize) -> bool {
+        let is_taken = |taken: &[bool]| taken[triangle - self.own.start];
+        self.own.contains(&triangle) && self.taken.is_none_or(is_taken)
+    }
+
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
         let number = |at: DVec3| {
@@ -155,7 +123,7 @@ impl Target<'_> {
                 let length = f64::from(query.most) / self.grid.voxel;
                 shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
                 shot.triangle = meeting.triangle;
-                if self.own.contains(meeting.triangle as usize) {
+                if self.has(meeting.triangle as usize) {
                     shot.touched = self.voxel_at(shot.end_point(), slot);
                 }
             }

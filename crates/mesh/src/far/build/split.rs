@@ -1,5 +1,4 @@
-//! The hierarchy: triangles split in two by the surface area heuristic, at the best plane between 32 slices along each
-//! axis. A node's triangles are a range.
+//! The hierarchy, by the surface area heuristic. A node's triangles are a range.
 
 use std::ops::Range;
 

@@ -1,7 +1,4 @@
-//! The hybrid: parts wider than a voxel stay a decimated surface, and thinner parts become voxels.
-//!
-//! Of several candidates for each inner node, `compare.rs` chooses. Shared corners stay in place, so that neighbouring
-//! nodes of any levels join without a gap.
+//! The candidates for an inner node of a hybrid (`spec/far.md`), of which `compare.rs` chooses.
 
 use std::ops::Range;
 

@@ -7,7 +7,7 @@ use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Around;
 use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
-use super::shot::{Own, Target};
+use super::shot::Target;
 use super::split::split;
 use super::{MOST_RAYS, Ordered};
 use crate::far::blend::by_cosines;
@@ -38,7 +38,7 @@ fn sampled(mesh: &Mesh, own: usize, cells: [u8; 3], rays: u32) -> (Vec<Seen>, Sa
         around: Around::of(low, high),
     };
     let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
-    let occluders = Occluders::new(&[part], corners, None).unwrap();
+    let occluders = Occluders::new(vec![part], corners, None).unwrap();
     let grid = Grid {
         origin: DVec3::ZERO,
         voxel: 1.0,
@@ -47,7 +47,8 @@ fn sampled(mesh: &Mesh, own: usize, cells: [u8; 3], rays: u32) -> (Vec<Seen>, Sa
     let target = Target {
         occluders: &occluders,
         grid,
-        own: Own::all(0..own),
+        own: 0..own,
+        taken: None,
         distance: 64.0,
     };
     let mut seen = Vec::new();

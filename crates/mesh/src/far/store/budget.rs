@@ -1,5 +1,4 @@
-//! Keeps unpacked data of nodes to a budget, by the clock algorithm: a node that was used since the hand last passed is
-//! spared once.
+//! Keeps unpacked data of nodes to a budget by the clock algorithm, which spares nodes once that were used.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};

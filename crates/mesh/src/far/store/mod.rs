@@ -1,7 +1,4 @@
-//! The `.far` file: hierarchy and data apart, mapped and used in place.
-//!
-//! Opening a file checks every field of header and hierarchy. A node's data is unpacked and checked when it is first
-//! needed; [`FarFile::verify`] reads all.
+//! The `.far` file, mapped and used in place. A node's data is unpacked and checked when it is first needed.
 
 mod budget;
 mod check;

@@ -1,11 +1,5 @@
-//! Far voxels to a picture.
-//!
-//! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
-//! 2. Opaque voxels and triangles into one word per pixel, depth above and number below. The least counts, so that the
-//!    result is independent of order, threads and culling.
-//! 3. `visible`, with the depth pyramid of `fill`: hidden branches of the hierarchy are culled.
-//! 4. The winners' colours, then transparent voxels over them.
-//! 5. With several samples per pixel all this happens per sample, and `samples` averages them.
+//! Far voxels to a picture: `cut` chooses nodes, `visible` and `fill` cull hidden ones, `opaque` draws into a depth buffer,
+//! `transparent` over it. `samples` averages several samples per pixel.
 
 mod cut;
 mod fill;
@@ -177,8 +171,8 @@ impl<'f> FarViewer<'f> {
                 height: pixels.height,
                 rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
                 coverage: drawn.iter().map(|p| p.coverage).collect(),
-                node: samples::middles(opaque.nodes(), size, across as usize),
-                depth: samples::middles(opaque.depths(), size, across as usize),
+                node: samples::middles(&opaque.nodes(), size, across as usize),
+                depth: samples::middles(&opaque.depths(), size, across as usize),
             },
             counts,
         ))

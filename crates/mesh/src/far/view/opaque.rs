@@ -13,7 +13,7 @@ use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
 use crate::geometry::point;
 use crate::raster::{
-    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
+    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
 };
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
@@ -29,7 +29,8 @@ pub(super) struct Opaque<'f> {
     view: RasterCamera,
     options: ViewOptions,
     words: Vec<AtomicU64>,
-    pictures: Vec<(RasterPicture, Vec<u32>)>,
+    /// Colours and numbers of triangles, of each batch.
+    pictures: Vec<(Vec<[u8; 4]>, Vec<u32>)>,
     /// Triangles of different batches were equally deep.
     pub(super) has_tie: bool,
 }
@@ -127,23 +128,22 @@ impl<'f> Opaque<'f> {
             light: self.options.light,
             background: None,
         };
-        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let mut picture = raster::draw(&surface, &self.view, &options, &Silent)?;
         let voxels = self.file.voxels();
-        for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
-            if at == NO_TRIANGLE {
+        for (pixel, at) in picture.triangle.iter_mut().enumerate() {
+            if *at == NO_TRIANGLE {
                 continue;
             }
-            let id = voxels + surface.places[at as usize].2;
+            *at = surface.places[*at as usize].2;
+            let (id, depth) = (voxels + *at, picture.depth[pixel]);
             let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
             let there = self.words[pixel].load(Ordering::Relaxed);
             let is_triangle = there as u32 >= voxels && there != EMPTY;
             self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
             self.put(pixel, word);
         }
-        let numbers: Vec<u32> = surface.places.iter().map(|place| place.2).collect();
-        let drawn = numbers.len() as u64;
-        self.pictures.push((picture, numbers));
-        Ok(drawn)
+        self.pictures.push((picture.rgba, picture.triangle));
+        Ok(surface.places.len() as u64)
     }
 
     pub(super) fn depths(&self) -> Vec<f32> {
@@ -217,14 +217,12 @@ impl<'f> Opaque<'f> {
     }
 
     fn triangle_light(&self, pixel: usize, number: u32) -> [f32; 3] {
-        for (picture, numbers) in &self.pictures {
-            let at = picture.triangle[pixel];
-            if at != NO_TRIANGLE && numbers[at as usize] == number {
-                let [r, g, b, _] = picture.rgba[pixel];
-                return [r, g, b].map(srgb_to_linear);
-            }
-        }
-        [0.0; 3]
+        let is_there = |(_, numbers): &&(_, Vec<u32>)| numbers[pixel] == number;
+        let found = self.pictures.iter().find(is_there);
+        found.map_or([0.0; 3], |(colors, _)| {
+            let [r, g, b, _] = colors[pixel];
+            [r, g, b].map(srgb_to_linear)
+        })
     }
 }
 

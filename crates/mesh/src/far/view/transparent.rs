@@ -1,5 +1,4 @@
-//! Transparent voxels before what is opaque, front to back. A pixel has 4 x 4 parts, each with its transmittance so far.
-//! A voxel is in the parts whose middles its square covers: squares side by side cover each part once.
+//! Transparent voxels over opaque ones, front to back, by the 4 x 4 parts of a pixel (`spec/far.md`).
 
 use std::ops::Range;
 

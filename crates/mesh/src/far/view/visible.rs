@@ -1,8 +1,5 @@
-//! The visible nodes: traverses the hierarchy front to back and culls hidden nodes.
-//!
-//! A branch that was visible in the last frame is walked without a test, and its nodes are drawn first. Any other
-//! branch's box is tested against the picture of the batch before the last, as a GPU's late answers are. Culled nodes
-//! are behind drawn ones in every pixel, so memory cannot change the picture.
+//! Traverses the hierarchy front to back and culls hidden nodes (`spec/far.md`, Culling). Culled nodes are behind drawn
+//! ones in every pixel, so memory cannot change the picture.
 
 use std::collections::BTreeMap;
 
