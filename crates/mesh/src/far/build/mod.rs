@@ -264,13 +264,6 @@ fn fill<F: Read + Write + Seek + Send>(
         let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
         Grid::around(low, high, levels::grid_of(number, coarser, options.grid))
     };
-    let target = |number: usize, branch: &Branch| Target {
-        occluders: &occluders,
-        grid: grid(number, branch),
-        own: branch.triangles(),
-        taken: None,
-        distance: options.distance_voxels,
-    };
     progress.begin("find voxels", order.len() as u64);
     let touched = |(number, branch): (usize, &Branch)| {
         if branch.children.is_none() {
@@ -316,32 +309,29 @@ fn fill<F: Read + Write + Seek + Send>(
         if !has_voxels[number] {
             return Ok((node, pack(&Default::default(), &[])));
         }
-        let target = target(number, branch);
-        set_grid(&mut node, &target.grid, scale);
+        let grid = grid(number, branch);
+        set_grid(&mut node, &grid, scale);
         // The root has seed 0, whatever its number.
         let seed = (number as u64).wrapping_sub(coarser as u64);
-        let voxels = |node: &mut Node, target: &Target<'_>| {
+        let voxels = |node: &mut Node, taken: Option<&[bool]>| {
+            let target = Target {
+                occluders: &occluders,
+                grid,
+                own: branch.triangles(),
+                taken,
+                distance: options.distance_voxels,
+            };
             let rays = rays[number];
-            let lists = fit(node, target, rays, seed, &triangles, &room, options);
+            let lists = fit(node, &target, rays, seed, &triangles, &room, options);
             lists.map_err(|e| failed(folder, &e))
         };
         match &surfaces {
             Some(surfaces) if branch.count <= MOST_TRIANGLES => {
-                let thin = |node: &mut Node, thin: &[bool]| {
-                    let (own, taken) = (branch.triangles(), Some(thin));
-                    voxels(
-                        node,
-                        &Target {
-                            own,
-                            taken,
-                            ..target
-                        },
-                    )
-                };
+                let thin = |node: &mut Node, thin: &[bool]| voxels(node, Some(thin));
                 surfaces.inner(&node, branch.triangles(), thin)
             }
             _ => {
-                let lists = voxels(&mut node, &target)?;
+                let lists = voxels(&mut node, None)?;
                 Ok((node, pack(&lists, &[])))
             }
         }
