@@ -3,8 +3,6 @@
 #![no_main]
 #![allow(clippy::unwrap_used)]
 
-#[path = "../../crates/mesh/tests/sealed/edit.rs"]
-mod edit;
 #[path = "../../crates/mesh/tests/sealed/exercise.rs"]
 mod exercise;
 #[path = "../../crates/mesh/tests/sealed/seal.rs"]

@@ -80,8 +80,8 @@ fn describe_grid(grid: &Grid<'_>) -> Value {
         })
     };
     json!({
-        "cells": lattice.cells(),
-        "texels": lattice.texels(),
+        "cells": lattice.cells,
+        "texels": lattice.texels,
         "element": match grid.element() {
             Element::Cube => "cube",
             Element::Sides => "sides",

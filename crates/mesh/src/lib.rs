@@ -12,6 +12,7 @@ mod builder;
 pub mod decimate;
 #[doc(hidden)]
 pub mod drawing;
+#[doc(hidden)]
 pub mod far;
 #[doc(hidden)]
 pub mod generate;

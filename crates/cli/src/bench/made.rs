@@ -199,7 +199,7 @@ impl Made {
                         None => Erosion::Auto { texel_px: 1.0 },
                         Some(level) => Erosion::Level {
                             level,
-                            cells: Some(of.0.grid(0).cell_grid().cells()),
+                            cells: Some(of.0.grid(0).cell_grid().cells),
                         },
                     };
                     textured(of, erosion, aa_log2, style)

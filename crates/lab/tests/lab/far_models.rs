@@ -20,8 +20,16 @@ fn camera(file: &FarFile, frame: u32) -> Camera {
     let way = f64::from(frame) / f64::from(FRAMES);
     let near = 0.5 - 0.5 * (std::f64::consts::TAU * way).cos();
     let distance = size * (2.5 + (0.33 - 2.5) * near);
-    let up = if file.y_up() { DVec3::Y } else { DVec3::Z };
-    let side = if file.y_up() { DVec3::Z } else { DVec3::X };
+    let up = if file.settings.y_up {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let side = if file.settings.y_up {
+        DVec3::Z
+    } else {
+        DVec3::X
+    };
     let turned = DQuat::from_axis_angle(up, std::f64::consts::TAU * way) * side;
     Camera {
         eye: target + (turned + up * 0.3).normalize() * distance,

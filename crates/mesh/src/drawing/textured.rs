@@ -53,7 +53,7 @@ impl TexturedMethod<'_> {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
             Erosion::Level { level, cells } => (level, cells),
         };
-        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells();
+        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells;
         let grid = match cells {
             None => choose_grid(self.file, view, level),
             Some(cells) => (0..self.file.grids())
@@ -96,7 +96,7 @@ impl Method for TexturedMethod<'_> {
 
 fn counters(file: &TexturedFile, counts: &TexturedCounts) -> Figures {
     let choice = &counts.choice;
-    let cells = file.grid(choice.grid).cell_grid().cells();
+    let cells = file.grid(choice.grid).cell_grid().cells;
     vec![
         ("grid", json!(cells)),
         ("erosion", json!(choice.level)),

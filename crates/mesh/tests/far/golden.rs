@@ -1,6 +1,4 @@
-//! Hashes of built files, of their pictures and of the counts of work: any change to the build or the view shows here.
-//!
-//! The order of additions in a vector product differs between processors, and with it the last bit.
+//! Hashes of files, pictures and counts of work. The last bit of a vector product differs between processors.
 #![cfg(target_arch = "x86_64")]
 
 use shiftvox::graph::Silent;
@@ -15,7 +13,7 @@ use super::city::{city, draw, lit, options, view};
 
 type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 
-/// Whether it is hybrid, rays, grid and leaf triangles; hashes of the files of the city and a village.
+/// Hybrid, rays, grid, leaf triangles; hashes of the city and a village.
 const FILES: [Build; 4] = [
     (false, Some(60_000), 24, 60, [0x317a_3d04, 0x3fee_026a]),
     (false, None, 16, 300, [0x1f88_6761, 0xa6a5_e7d3]),
@@ -23,7 +21,7 @@ const FILES: [Build; 4] = [
     (true, None, 16, 300, [0xbe9c_9872, 0xaa66_dac3]),
 ];
 
-/// Distance, height of the eye, voxel size, samples across, opacities, and the hash of pictures and counts.
+/// Distance, height, voxel size, samples across, opacities, hash.
 const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
     (60.0, 0.02, 1.0, 1, Opacity::Six, 0x9b46_8999),
     (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x3937_0096),

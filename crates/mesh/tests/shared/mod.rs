@@ -17,7 +17,7 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 
 pub type Corners = [[f32; 3]; 3];
 
-/// A camera at `eye`, turned to `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
+/// A length of 1 at a distance of 1 is `focal_px` pixels.
 pub fn looking(
     eye: DVec3,
     target: DVec3,
@@ -25,10 +25,7 @@ pub fn looking(
     focal_px: f64,
 ) -> RasterCamera {
     let forward = (target - eye).normalize();
-    let helper = match forward.y.abs() > 0.99 {
-        true => DVec3::X,
-        false => DVec3::Y,
-    };
+    let helper = [DVec3::Y, DVec3::X][usize::from(forward.y.abs() > 0.99)];
     let right = forward.cross(helper).normalize();
     RasterCamera {
         eye,
@@ -42,7 +39,7 @@ pub fn looking(
     }
 }
 
-/// A view in which the bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
+/// The bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
 pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
     let (low, high) = Surface::bounds(mesh);
     let (middle, side) = ((low + high) / 2.0, (high - low).length());
@@ -50,7 +47,6 @@ pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCa
     looking(eye, middle, [size; 2], f64::from(size) * distance)
 }
 
-/// Directions spread over the sphere.
 pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
@@ -60,7 +56,7 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Triangles with a regular pattern of samples, unlit, without a background.
+/// Unlit, with a regular pattern of samples, without a background.
 pub fn plain(samples: u32) -> RasterOptions {
     RasterOptions {
         samples: Samples::new(samples, Pattern::Regular).unwrap(),
@@ -69,7 +65,6 @@ pub fn plain(samples: u32) -> RasterOptions {
     }
 }
 
-/// The triangles of a surface, drawn with a regular pattern of samples.
 pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,
@@ -89,7 +84,7 @@ pub fn area(coverage: &[f32]) -> f64 {
     coverage.iter().map(|&share| f64::from(share)).sum()
 }
 
-/// Root mean square difference of the red, green and blue bytes of two pictures, after a conversion of each byte.
+/// Root mean square of differences of converted bytes of colours.
 pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f64 {
     let square = |(a, b): (&[u8; 4], &[u8; 4])| -> f64 {
         (0..3).map(|k| (value(a[k]) - value(b[k])).powi(2)).sum()
@@ -98,7 +93,6 @@ pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f6
     (sum / (3 * a.len()) as f64).sqrt()
 }
 
-/// A mesh whose material 0 is grey.
 pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     let mut builder = MeshBuilder::new();
     builder.material(Material::of_srgb("grey", [90, 120, 150]));
@@ -106,12 +100,9 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     builder.finish("a shape").unwrap()
 }
 
-/// A grey mesh of positions and their numbers.
 pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     shape(|builder| {
-        for &position in positions {
-            builder.position(position);
-        }
+        positions.iter().for_each(|&p| _ = builder.position(p));
         for &triangle in triangles {
             builder.triangle(triangle, None, 0).unwrap();
         }
@@ -133,7 +124,6 @@ pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [[f32; 3]; 4], material: u3
     triangle(builder, [a, c, d], material);
 }
 
-/// Adds a box, whose faces are two triangles each.
 pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
     let corner = |i: usize| [0, 1, 2].map(|k| [low[k], high[k]][i >> k & 1]);
     for face in [
@@ -148,7 +138,7 @@ pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material
     }
 }
 
-/// Adds a surface of rows and columns of quads.
+/// Rows and columns of quads.
 pub fn sheet(
     builder: &mut MeshBuilder,
     [rows, columns]: [u32; 2],
@@ -164,7 +154,7 @@ pub fn sheet(
     }
 }
 
-/// Adds a surface of revolution around a line along y, through heights and radii from top to bottom.
+/// A surface of revolution around y, through heights and radii.
 pub fn turned(
     builder: &mut MeshBuilder,
     middle: DVec3,
@@ -198,7 +188,6 @@ pub fn sphere(
     turned(builder, middle, &profile, columns, material);
 }
 
-/// A ball of radius 1 around the origin.
 pub fn ball(rows: u32) -> Mesh {
     shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [rows, 2 * rows], 0))
 }

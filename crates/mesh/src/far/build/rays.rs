@@ -1,5 +1,4 @@
-//! The first triangle on each ray; of equally near ones the lowest number. Triangles are held in *clusters*, subtrees of
-//! the hierarchy with a ray hierarchy each.
+//! The first triangle on each ray; of equally near ones the lowest number.
 
 use std::io::{self, Read};
 
@@ -18,6 +17,15 @@ pub(super) struct Query {
     pub(super) origin: Vec3,
     pub(super) direction: Vec3,
     pub(super) most: f32,
+}
+
+impl Query {
+    fn ray(&self) -> Ray {
+        Ray {
+            origin: self.origin.into(),
+            direction: self.direction.into(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,10 +61,7 @@ impl Around {
     fn is_entered(&self, query: &Query, before: f32) -> bool {
         let per_unit = Vec3A::from(query.direction).recip();
         let origin = Vec3A::from(query.origin);
-        let (a, b) = (
-            (self.low - origin) * per_unit,
-            (self.high - origin) * per_unit,
-        );
+        let [a, b] = [self.low, self.high].map(|corner| (corner - origin) * per_unit);
         // A ray within a plane of the box gives what is not a number there, which counts as within.
         let enter = a.min(b).to_array().into_iter().fold(0.0, f32::max);
         let leave = a.max(b).to_array().into_iter().fold(before, f32::min);
@@ -64,10 +69,8 @@ impl Around {
     }
 
     pub(super) fn square_from(&self, other: &Self) -> f32 {
-        let apart = (self.low - other.high)
-            .max(other.low - self.high)
-            .max(Vec3A::ZERO);
-        apart.length_squared()
+        let apart = (self.low - other.high).max(other.low - self.high);
+        apart.max(Vec3A::ZERO).length_squared()
     }
 }
 
@@ -122,10 +125,7 @@ impl Cluster {
 
     fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
-        let ray = Ray {
-            origin: query.origin.into(),
-            direction: query.direction.into(),
-        };
+        let ray = query.ray();
         bvh::traverse(&self.nodes, &ray, most, |place| {
             let distance = meet(&self.triangles[place], &ray);
             if distance.is_infinite() || distance > meeting.distance.min(query.most) {
@@ -190,10 +190,7 @@ mod tests {
     use shiftvox::split_mix::SplitMix;
 
     fn nearest_of_all(triangles: &[[DVec3; 3]], query: &Query, size: f32) -> Meeting {
-        let ray = Ray {
-            origin: query.origin.into(),
-            direction: query.direction.into(),
-        };
+        let ray = query.ray();
         let mut nearest = Meeting::NONE;
         for (number, corners) in triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|corner| corner.as_vec3a());
@@ -216,7 +213,7 @@ mod tests {
         let mut met = 0;
         for round in 0..200 {
             let size = [1.0, 8.0, 1e4][round % 3];
-            let count = 1 + dice.below(300) as usize;
+            let count = 1 + dice.below(300);
             let mut place = |around: DVec3, size: f64| {
                 let coordinate = |_| (dice.below(17) as f64 - 8.0) * size / 8.0;
                 around + DVec3::from_array([0; 3].map(coordinate))

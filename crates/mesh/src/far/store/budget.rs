@@ -1,5 +1,4 @@
-//! Keeps unpacked data of nodes to a budget, by the clock algorithm: a node that was used since the hand last passed is
-//! spared once.
+//! Keeps unpacked data of nodes to a budget by the clock algorithm, which spares nodes once that were used.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,19 +15,14 @@ pub(super) struct Budget {
 #[derive(Debug, Default)]
 struct Clock {
     here: VecDeque<(usize, u64)>,
-    bytes: u64,
-    most_bytes: u64,
-    released: u64,
+    resident: Resident,
 }
 
-/// The state of a budget.
+/// The use of a budget: bytes now, the most that there were, and nodes released.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Resident {
-    /// Bytes of nodes that are in memory.
     pub bytes: u64,
-    /// The most that there were.
     pub most_bytes: u64,
-    /// How often a node was let go of.
     pub released: u64,
 }
 
@@ -53,7 +47,7 @@ impl Budget {
         if self.is_here[node].swap(true, Ordering::Relaxed) {
             return;
         }
-        while clock.bytes.saturating_add(bytes) > self.most
+        while clock.resident.bytes.saturating_add(bytes) > self.most
             && let Some((other, its)) = clock.here.pop_front()
         {
             if self.was_used[other].swap(false, Ordering::Relaxed) {
@@ -62,21 +56,18 @@ impl Budget {
             }
             release(other);
             self.is_here[other].store(false, Ordering::Relaxed);
-            clock.bytes -= its;
-            clock.released += 1;
+            clock.resident.bytes -= its;
+            clock.resident.released += 1;
         }
-        clock.bytes += bytes;
-        clock.most_bytes = clock.most_bytes.max(clock.bytes);
+        let resident = &mut clock.resident;
+        resident.bytes += bytes;
+        resident.most_bytes = resident.most_bytes.max(resident.bytes);
         clock.here.push_back((node, bytes));
     }
 
     pub(super) fn resident(&self) -> Resident {
         let clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
-        Resident {
-            bytes: clock.bytes,
-            most_bytes: clock.most_bytes,
-            released: clock.released,
-        }
+        clock.resident
     }
 }
 

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::FarData;
-use crate::far::record::{NODE_BYTES, Node};
+use crate::far::record::NODE_BYTES;
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
 
 pub(super) const FORMAT: Format = Format {
@@ -46,23 +46,14 @@ pub(super) fn layout(nodes: u64, data_bytes: u64) -> [[u64; 2]; 2] {
     [nodes, section_after(nodes[1], data_bytes, 1)]
 }
 
-/// Writes far voxels.
-///
-/// # Errors
-/// Errors of `out`; a machine that stores the highest byte first.
-pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
-    write_parts(data, data.packed.len() as u64, out, |out| {
-        out.write_all(&data.packed)
-    })
-}
-
+/// Writes a file whose data `copy` writes.
 pub(in crate::far) fn write_parts(
     data: &FarData,
     data_bytes: u64,
     out: &mut dyn Write,
     copy: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let nodes: &[u8] = bytemuck::cast_slice::<Node, u8>(&data.nodes);
+    let nodes: &[u8] = bytemuck::cast_slice(&data.nodes);
     let [node_place, [begin, end]] = layout(data.nodes.len() as u64, data_bytes);
     let settings = &data.settings;
     let fields = Fields {
@@ -89,11 +80,10 @@ pub(in crate::far) fn write_parts(
 }
 
 /// The bytes of a whole file.
-///
-/// # Errors
-/// As [`write_to`].
 pub fn encode(data: &FarData) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    write_to(data, &mut bytes)?;
+    write_parts(data, data.packed.len() as u64, &mut bytes, |out| {
+        out.write_all(&data.packed)
+    })?;
     Ok(bytes)
 }

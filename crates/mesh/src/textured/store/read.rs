@@ -159,13 +159,10 @@ impl TexturedFile {
         for number in 0..self.grids() {
             let grid = self.grid(number);
             grid.ensure()?;
-            let voxels = grid.voxels();
-            let cells = voxels.iter().map(|voxel| voxel.cell.map(u32::from));
+            let voxels = grid.voxels().iter();
+            let cells = voxels.clone().map(|voxel| voxel.cell.map(u32::from));
             let depths = depths(cells, grid.entry().cells, grid.element());
-            let wrong = voxels
-                .iter()
-                .zip(depths)
-                .position(|(v, depth)| v.depth != depth);
+            let wrong = voxels.zip(depths).position(|(v, depth)| v.depth != depth);
             if let Some(voxel) = wrong {
                 let at = (voxel * size_of::<VoxelRecord>()) as u64;
                 let expected = format!("the erosion depth of voxel {voxel} of grid {number}");
@@ -224,8 +221,7 @@ impl<'f> Grid<'f> {
         self.places().map(|[begin, end]| end - begin)
     }
 
-    /// A sub-texture, row after row; `number` is below the entry's.
-    /// Texels are as they are in the file: [`Grid::ensure`] checks them.
+    /// A sub-texture, row after row, as it is in the file; [`Grid::ensure`] checks it.
     pub fn texture(&self, number: u32) -> &'f [Texel] {
         let face = (self.entry().texels * self.entry().texels) as usize;
         &self.texels()[number as usize * face..][..face]

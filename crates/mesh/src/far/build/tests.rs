@@ -7,8 +7,8 @@ use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Around;
 use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
-use super::shader_fit::ShaderFit;
-use super::shot::{Own, Target};
+use super::shot::Target;
+use super::split::split;
 use super::{MOST_RAYS, Ordered};
 use crate::far::blend::by_cosines;
 use crate::far::record::STEEPNESSES;
@@ -23,12 +23,8 @@ fn boxes(boxes: &[([f32; 3], [f32; 3])]) -> Mesh {
     })
 }
 
-fn sampled(
-    mesh: &Mesh,
-    own: usize,
-    cells: [u8; 3],
-    rays: u32,
-) -> (Vec<(Seen, ShaderFit)>, Sampled) {
+/// Samples a grid with the first triangles, which the others may hide.
+fn sampled(mesh: &Mesh, own: usize, cells: [u8; 3], rays: u32) -> (Vec<Seen>, Sampled) {
     let order: Vec<u32> = (0..Surface::len(mesh) as u32).collect();
     let triangles = Ordered {
         surface: mesh,
@@ -42,7 +38,7 @@ fn sampled(
         around: Around::of(low, high),
     };
     let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
-    let occluders = Occluders::new(&[part], corners, None).unwrap();
+    let occluders = Occluders::new(vec![part], corners, None).unwrap();
     let grid = Grid {
         origin: DVec3::ZERO,
         voxel: 1.0,
@@ -51,29 +47,22 @@ fn sampled(
     let target = Target {
         occluders: &occluders,
         grid,
-        own: Own::all(0..own),
+        own: 0..own,
+        taken: None,
         distance: 64.0,
     };
     let mut seen = Vec::new();
-    let keep = |voxel: &Seen, shown: &ShaderFit, _| seen.push((voxel.clone(), *shown));
+    let keep = |voxel: &Seen, _: &_, _| seen.push(voxel.clone());
     let found = target.sample(Rays::InAll(rays), MOST_RAYS, 7, &triangles, |_| (), keep);
     (seen, found.unwrap())
-}
-
-fn all(mesh: &Mesh, cells: [u8; 3], rays: u32) -> (Vec<(Seen, ShaderFit)>, Sampled) {
-    sampled(mesh, Surface::len(mesh), cells, rays)
-}
-
-fn six(seen: &[(Seen, ShaderFit)], place: [u8; 3]) -> [f64; 6] {
-    let (seen, _) = seen.iter().find(|(seen, _)| seen.place == place).unwrap();
-    let [front, back] = [0, 1].map(|side| seen.counted_below(side, STEEPNESSES));
-    front.with(&back).six()
 }
 
 #[test]
 fn a_voxel_with_a_solid_lower_half_has_opacities_that_blend_by_cosines() {
     let half = boxes(&[([0.0; 3], [1.0, 0.5, 1.0])]);
-    let opacity = six(&all(&half, [1; 3], 60_000).0, [0; 3]);
+    let (seen, _) = sampled(&half, 12, [1; 3], 60_000);
+    let [front, back] = [0, 1].map(|side| seen[0].counted_below(side, STEEPNESSES));
+    let opacity = front.with(&back).six();
     for (found, expected) in opacity.into_iter().zip([0.5, 0.5, 1.0, 1.0, 0.5, 0.5]) {
         assert!((found - expected).abs() < 0.02, "{opacity:?}");
     }
@@ -87,6 +76,13 @@ fn a_voxel_with_a_solid_lower_half_has_opacities_that_blend_by_cosines() {
 }
 
 #[test]
+fn equal_triangles_are_split_by_number() {
+    let (branches, _) = split(100, |_| [DVec3::ZERO, DVec3::X, DVec3::Y], 2);
+    let leaves = branches.iter().filter(|b| b.children.is_none());
+    assert_eq!(leaves.count(), 100);
+}
+
+#[test]
 fn enclosed_voxels_are_dropped_whoever_hides_them() {
     let core = ([3.2; 3], [4.8; 3]);
     let shell = ([0.5; 3], [7.5; 3]);
@@ -96,9 +92,9 @@ fn enclosed_voxels_are_dropped_whoever_hides_them() {
     assert_eq!((seen.len(), found.hits), (0, 0));
     // All rays are visibility rays, because there is nothing to probe.
     assert_eq!(found.rays, 8 * MOST_VISIBILITY_RAYS);
-    let (both, _) = all(&boxes(&[core, shell]), [8; 3], 20_000);
+    let (both, _) = sampled(&boxes(&[core, shell]), 24, [8; 3], 20_000);
     let is_outer = |seen: &Seen| seen.place.iter().any(|&c| c == 0 || c == 7);
-    assert!(both.iter().all(|(seen, _)| is_outer(seen)));
+    assert!(both.iter().all(is_outer));
 }
 
 #[test]
