@@ -10,15 +10,14 @@ use serde_json::Value;
 /// The ports of a row: name, first number, count.
 type Names = Rc<BTreeMap<String, (usize, usize)>>;
 
-/// A row: the numbers of its ports, in order.
+/// The numbers of the ports, in order.
 #[derive(Clone)]
 pub(super) struct Row {
-    pub(super) names: Names,
+    names: Names,
     pub(super) values: Vec<i128>,
 }
 
 impl Row {
-    /// All numbers of a port.
     pub(super) fn of(&self, name: &str) -> &[i128] {
         let (first, count) = self.names[name];
         &self.values[first..first + count]
@@ -26,10 +25,10 @@ impl Row {
 
     /// The number of a port that has one.
     pub(super) fn get(&self, name: &str) -> i128 {
-        match self.of(name) {
-            &[one] => one,
-            several => panic!("{name}: {several:?}"),
-        }
+        let [one] = *self.of(name) else {
+            panic!("{name} has several numbers");
+        };
+        one
     }
 
     pub(super) fn flag(&self, name: &str) -> bool {
@@ -45,18 +44,16 @@ impl Row {
         Cage(self.of(name).to_vec())
     }
 
-    pub(super) fn map(&self, name: &str, mut change: impl FnMut(i128) -> i128) -> Self {
-        let (first, count) = self.names[name];
+    /// With another value of one number.
+    pub(super) fn with(&self, at: usize, value: i128) -> Self {
         let mut changed = self.clone();
-        for value in &mut changed.values[first..first + count] {
-            *value = change(*value);
-        }
+        changed.values[at] = value;
         changed
     }
 }
 
 /// One coordinate of eight vertices: themselves, or a corner and three edges.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone)]
 pub(super) struct Cage(pub(super) Vec<i128>);
 
 impl Cage {
@@ -70,11 +67,11 @@ impl Cage {
     }
 
     pub(super) fn least(&self) -> i128 {
-        *self.vertices().iter().min().unwrap()
+        self.vertices().into_iter().min().unwrap()
     }
 
     pub(super) fn greatest(&self) -> i128 {
-        *self.vertices().iter().max().unwrap()
+        self.vertices().into_iter().max().unwrap()
     }
 
     pub(super) fn each(&self, f: impl Fn(i128) -> i128) -> Self {
@@ -87,56 +84,31 @@ impl Cage {
         Self(numbers.map(|(&v, &w)| a * v + b * w).collect())
     }
 
-    pub(super) fn children(&self) -> Vec<Self> {
+    /// The cages of the eight children, one after another.
+    pub(super) fn children(&self) -> Vec<i128> {
         if let [corner, x, y, z] = self.0[..] {
             // Towards zero, as `/` does.
             let [x, y, z] = [x / 2, y / 2, z / 2];
             let child = |c: i128| {
                 let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
-                Self(vec![moved, x, y, z])
+                [moved, x, y, z]
             };
-            return (0..8).map(child).collect();
+            return (0..8).flat_map(child).collect();
         }
-        // The 27 points. A coordinate of 1 is the midpoint of 0 and 2; z is resolved last, so it is the outermost midpoint.
+        // Of 27 points. A coordinate of 1 is the midpoint of 0 and 2; z is the outermost midpoint.
         fn point(corners: &[i128], at: [usize; 3]) -> i128 {
-            for k in [2, 1, 0] {
-                if at[k] == 1 {
-                    let (mut low, mut high) = (at, at);
-                    (low[k], high[k]) = (0, 2);
-                    let sum = point(corners, low) + point(corners, high);
-                    return sum.div_euclid(2);
-                }
-            }
-            corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2]
-        }
-        let child = |c: usize| {
-            let corner = |v: usize| {
-                let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
-                point(&self.0, at)
+            let Some(k) = (0..3).rfind(|&k| at[k] == 1) else {
+                return corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2];
             };
-            Self((0..8).map(corner).collect())
+            let (mut low, mut high) = (at, at);
+            (low[k], high[k]) = (0, 2);
+            (point(corners, low) + point(corners, high)).div_euclid(2)
+        }
+        let corner = |c: usize, v: usize| {
+            let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
+            point(&self.0, at)
         };
-        (0..8).map(child).collect()
-    }
-}
-
-/// `a * 2^places`, rounded down.
-pub(super) fn scaled(a: i128, places: i128) -> i128 {
-    match places >= 0 {
-        true => a << places,
-        false => a.div_euclid(1 << (-places).min(100)),
-    }
-}
-
-pub(super) struct Constants {
-    pub(super) fraction: i128,
-    shifts: Vec<i128>,
-}
-
-impl Constants {
-    /// The extent that `size_limit` allows.
-    pub(super) fn share(&self, a: i128, below: i128) -> i128 {
-        self.shifts.iter().map(|s| scaled(a, -(s + below))).sum()
+        (0..64).map(|i| corner(i / 8, i % 8)).collect()
     }
 }
 
@@ -208,16 +180,6 @@ pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
     text.lines()
         .map(|line| serde_json::from_str(line).unwrap())
         .collect()
-}
-
-pub(super) fn constants_of(manifest: &Value) -> Constants {
-    let constants = &manifest["constants"];
-    let number = |value: &Value| i128::from(value.as_i64().unwrap());
-    let shifts = constants["size_shifts"].as_array().unwrap();
-    Constants {
-        fraction: number(&constants["screen_fraction_bits"]),
-        shifts: shifts.iter().map(number).collect(),
-    }
 }
 
 pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
