@@ -198,19 +198,3 @@ pub fn panel(title: &str, rows: &[Row]) -> Option<Panel> {
     }
     Some(panel)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_papers_list_is_complete() {
-        let list: List = toml::from_str(List::PAPER).unwrap();
-        let titles: Vec<&str> = list.run.iter().map(|run| run.table.as_str()).collect();
-        for part in ["Table I", "Objects", "order"] {
-            assert!(titles.iter().any(|title| title.contains(part)), "{part}");
-        }
-        assert_eq!(list.run[0].sizes, PAPER_TABLE_I.map(|(side, _)| side));
-        assert_eq!(list.scenes().len(), 10);
-    }
-}

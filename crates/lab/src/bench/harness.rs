@@ -275,10 +275,10 @@ fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use std::sync::{Arc, Mutex};
 
-    use super::*;
-    use shiftvox::graph::{GraphView, Silent};
+    use shiftvox::graph::{GraphView, LinkedGraph, Silent};
     use shiftvox::project::{Camera, SetupOptions};
 
     struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
@@ -300,7 +300,9 @@ mod tests {
 
     #[test]
     fn contenders_take_turns_in_pools_of_their_own() {
-        let graph = crate::test_graphs::one_node(0, 0, [1, 2, 3]);
+        let mut graph = LinkedGraph::new(0);
+        graph.add_node([1, 2, 3], [None; 8]);
+        let graph = graph.build().unwrap();
         let camera = Camera {
             eye: glam::DVec3::new(0.5, -3.0, 0.5),
             target: glam::DVec3::splat(0.5),
@@ -309,36 +311,33 @@ mod tests {
             width: 4,
             height: 2,
         };
-        let setup =
-            FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default()).unwrap();
+        let setup = FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default());
+        let setup = setup.unwrap();
         let notes = Arc::new(Mutex::new(Vec::new()));
-        let contender = |name: &'static str, threads| Contender {
+        let mut contenders = [("a", 1), ("b", 2)].map(|(name, threads)| Contender {
             name: name.to_owned(),
             graph: &graph,
             setup: setup.clone(),
             threads,
             drawer: Drawer::Engine(Box::new(NameRecorder(name, Arc::clone(&notes)))),
             attributes: Vec::new(),
-        };
-        let mut contenders = [contender("a", 1), contender("b", 2)];
+        });
         let schedule = Schedule { warmup: 1, runs: 2 };
         let mut seen = Vec::new();
-        let measured = Harness::new(schedule, &Silent)
-            .race(&mut contenders, &mut |place, frame| {
-                seen.push((place, frame.drawn()));
-            })
-            .unwrap();
-        let round = [("a", 1), ("b", 2)];
-        assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
+        let mut look = |place, frame: &Frame| seen.push((place, frame.drawn()));
+        let mut harness = Harness::new(schedule, &Silent);
+        let measured = harness.race(&mut contenders, &mut look).unwrap();
+        assert_eq!(*notes.lock().unwrap(), [("a", 1), ("b", 2)].repeat(4));
         assert_eq!(seen, [(0, 1), (1, 1)]);
-        let [one, two] = &measured[..] else {
-            panic!("two contenders");
-        };
-        assert_eq!((one.0.wall.runs, two.0.wall.runs), (2, 2));
-        // Counters are those of the first frame, which is not timed; one
-        // thread's time is measured for one thread alone.
-        assert_eq!(two.1, [("frames", 2)]);
-        assert_eq!(two.0.thread, None);
-        assert_eq!(one.0.thread.is_some(), cfg!(unix));
+        // Counters are those of the first frame, which is not timed; one thread's time is measured for
+        // one thread alone.
+        let found = measured.into_iter().map(|(times, counters)| {
+            let has_thread = times.thread.is_some();
+            (times.wall.runs, has_thread, counters)
+        });
+        let expected = [(2, cfg!(unix), 1), (2, false, 2)];
+        let expected =
+            expected.map(|(runs, thread, frames)| (runs, thread, vec![("frames", frames)]));
+        assert_eq!(found.collect::<Vec<_>>(), expected);
     }
 }

@@ -55,14 +55,22 @@ mod tests {
 
     #[test]
     fn order_statistics() {
-        let odd = Summary::of(&[5.0, 1.0, 2.0]);
-        assert_eq!((odd.runs, odd.min_ms, odd.median_ms), (3, 1.0, 2.0));
-        // Deviations 3, 1, 0.
-        assert_eq!((odd.max_ms, odd.deviation_ms), (5.0, 1.0));
-        let even = Summary::of(&[10.0, 2.0, 4.0, 3.0]);
-        // Deviations 6.5, 1.5, 0.5, 0.5.
-        assert_eq!((even.median_ms, even.deviation_ms), (3.5, 1.0));
-        assert_eq!(Summary::of(&[7.0]).deviation_ms, 0.0);
-        assert_eq!(Summary::of(&[]), Summary::default());
+        let summary = |runs, [min_ms, median_ms, max_ms, deviation_ms]: [f64; 4]| Summary {
+            runs,
+            min_ms,
+            median_ms,
+            max_ms,
+            deviation_ms,
+        };
+        for (times, expected) in [
+            // Deviations 3, 1, 0.
+            (&[5.0, 1.0, 2.0][..], summary(3, [1.0, 2.0, 5.0, 1.0])),
+            // Deviations 6.5, 1.5, 0.5, 0.5.
+            (&[10.0, 2.0, 4.0, 3.0], summary(4, [2.0, 3.5, 10.0, 1.0])),
+            (&[7.0], summary(1, [7.0, 7.0, 7.0, 0.0])),
+            (&[], Summary::default()),
+        ] {
+            assert_eq!(Summary::of(times), expected);
+        }
     }
 }

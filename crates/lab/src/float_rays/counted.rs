@@ -140,25 +140,36 @@ pub fn count(
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
     use crate::float_rays::FloatRays;
     use crate::measure::CoverageError;
+    use shiftvox::frame::NO_NODE;
     use shiftvox::graph::{Graph, Silent};
     use shiftvox::project::{Camera, Engine, SetupOptions};
     use shiftvox_mesh::open::{OpenOptions, open};
 
-    fn setup(spec: &str, camera: &Camera) -> (Graph, FrameSetup) {
+    fn scene(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, FrameSetup) {
+        let camera = Camera {
+            eye: DVec3::from_array(eye),
+            target: DVec3::from_array(target),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: side,
+            height: side,
+        };
         let graph = open(spec, &OpenOptions::default(), &Silent).unwrap().graph;
         let options = SetupOptions::default();
-        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap();
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
         (graph, setup)
     }
 
-    type Counted = (Frame, FloatRayCounts, Vec<RayRead>);
-
-    fn counted(graph: &Graph, setup: &FrameSetup, order: RayOrder, layout: NodeLayout) -> Counted {
+    fn counted(
+        (graph, setup): &(Graph, FrameSetup),
+        order: RayOrder,
+        layout: NodeLayout,
+    ) -> (Frame, FloatRayCounts, Vec<RayRead>) {
         let mut frame = Frame::new(setup.width, setup.height, false);
         let mut reads = Vec::new();
         let mut note = |read| reads.push(read);
@@ -166,26 +177,18 @@ mod tests {
         (frame, counts, reads)
     }
 
-    fn camera(eye: [f64; 3], target: [f64; 3], side: u32) -> Camera {
-        Camera {
-            eye: DVec3::from_array(eye),
-            target: DVec3::from_array(target),
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: side,
-            height: side,
-        }
-    }
-
     #[test]
     fn a_ray_that_misses_costs_its_set_up() {
         // All components of all four directions are below 0: nothing is mirrored.
-        let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
-        let (graph, setup) = setup("gen:sphere,depth=2", &camera);
-        let (frame, counts, _) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
+        let scene = scene(
+            "gen:sphere,depth=2",
+            [90.0, 80.0, 70.0],
+            [70.0, 60.0, 50.0],
+            2,
+        );
+        let (frame, counts, _) = counted(&scene, RayOrder::Rows, NodeLayout::default());
         assert_eq!((frame.drawn(), counts.rays, counts.cells), (0, 4, 0));
-        let rays = 4;
-        // Steps, and those one after the other.
+        // Steps per ray, and those one after the other.
         for (step, steps, waits) in [
             // The inverse of three slopes.
             (FloatStep::FloatDivide, 3, 1),
@@ -200,47 +203,49 @@ mod tests {
             (FloatStep::AttributeRead, 0, 0),
         ] {
             let found = (counts.of(step), counts.waits(step));
-            assert_eq!(found, (steps * rays, waits * rays), "{step:?}");
+            assert_eq!(found, (steps * 4, waits * 4), "{step:?}");
         }
-        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
+        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * 4);
     }
 
     #[test]
-    fn it_draws_the_ray_caster_s_picture_and_tells_of_every_node() {
-        let camera = camera([100.0, -45.0, 80.0], [32.0, 32.0, 20.0], 128);
-        let (graph, setup) = setup("gen:terrain,depth=6", &camera);
+    fn it_draws_the_ray_caster_s_picture_and_reports_every_read() {
+        let scene = scene(
+            "gen:terrain,depth=6",
+            [100.0, -45.0, 80.0],
+            [32.0, 32.0, 20.0],
+            128,
+        );
+        let (graph, setup) = &scene;
         let mut plain = Frame::new(128, 128, false);
-        let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
-        let (frame, counts, reads) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
-        let error = CoverageError::between(&frame.voxel, &plain.voxel);
-        assert!(error.covered > 1000 && error.differing() <= 8, "{error:?}");
-        let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
-        assert!(counts.cells.abs_diff(steps) * 100 < steps);
+        let stats = FloatRays.render(&graph.view(), setup, &mut plain).unwrap();
+        let (frame, counts, reads) = counted(&scene, RayOrder::Rows, NodeLayout::default());
+        assert!(counts.cells.abs_diff(stats[2].1) * 100 < stats[2].1);
         // Each ray that hits reads the attribute of its voxel.
         let attributes = reads.iter().filter_map(|read| match read {
             RayRead::Attribute(node) => Some(*node),
             RayRead::Node(_) => None,
         });
-        let shown = frame.node.iter().copied();
-        assert!(attributes.eq(shown.filter(|&node| node != shiftvox::frame::NO_NODE)));
-        let hits = frame.drawn() as u64;
+        let shown = frame.node.iter().copied().filter(|&node| node != NO_NODE);
+        assert!(attributes.eq(shown));
+        let (hits, node_reads) = (frame.drawn() as u64, counts.of(FloatStep::NodeRead));
         assert_eq!(counts.of(FloatStep::AttributeRead), hits);
         assert_eq!(counts.of(FloatStep::PixelWrite), hits);
-        let node_reads = counts.of(FloatStep::NodeRead);
         assert_eq!(node_reads + hits, reads.len() as u64);
         // A node that says which children are leaves saves each ray that hits the last read.
         let masks = NodeLayout::new(&graph.view(), true, false);
-        let (same, with_masks, _) = counted(&graph, &setup, RayOrder::Rows, masks);
+        let (same, with_masks, _) = counted(&scene, RayOrder::Rows, masks);
         assert_eq!(same, frame);
         assert_eq!(with_masks.of(FloatStep::NodeRead) + hits, node_reads);
         // A chain is no longer than all steps of a kind.
         for step in FloatStep::ALL {
             assert!(counts.waits(step) <= counts.of(step), "{step:?}");
         }
-        // The other orders draw the same, but for roundings.
-        for order in [RayOrder::Tiles, RayOrder::Morton] {
-            let (frame, other, _) = counted(&graph, &setup, order, NodeLayout::default());
-            assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
+        // All orders draw the same, but for roundings.
+        for order in RayOrder::ALL {
+            let (frame, other, _) = counted(&scene, order, NodeLayout::default());
+            let error = CoverageError::between(&frame.voxel, &plain.voxel);
+            assert!(error.covered > 1000 && error.differing() <= 8, "{error:?}");
             assert_eq!(other.rays, counts.rays);
             assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());
         }

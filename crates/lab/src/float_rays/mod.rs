@@ -135,9 +135,9 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
     use crate::measure::CoverageError;
     use shiftvox::frame::{NO_NODE, NO_VOXEL};
     use shiftvox::graph::{Graph, Silent};
@@ -145,60 +145,62 @@ mod tests {
     use shiftvox::rays::Rays as Oracle;
     use shiftvox_mesh::open::{OpenOptions, open};
 
+    fn camera(eye: DVec3, target: DVec3, fov_degrees: f64, side: u32) -> Camera {
+        Camera {
+            eye,
+            target,
+            up: DVec3::Z,
+            fov_degrees,
+            width: side,
+            height: side,
+        }
+    }
+
     fn graph(spec: &str) -> Graph {
         open(spec, &OpenOptions::default(), &Silent).unwrap().graph
     }
 
-    /// Draws both; eye and target in sides of the object's cube. Few samples differ.
-    fn check_against_oracle(spec: &str, eye: [f64; 3], target: [f64; 3]) {
-        let graph = graph(spec);
-        let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
-        let side = (1u64 << graph.depth) as f64;
-        let camera = Camera {
-            eye: low + DVec3::from_array(eye) * side,
-            target: low + DVec3::from_array(target) * side,
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: 256,
-            height: 256,
-        };
-        let options = SetupOptions::default();
-        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-        let mut exact = Frame::new(256, 256, false);
-        let mut float = exact.clone();
-        // It has no level of detail.
-        let whole = setup.without_detail();
-        Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
-        let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();
-        let error = CoverageError::between(&float.voxel, &exact.voxel);
-        assert!(error.covered > 0, "{spec} from {eye:?}");
-        assert!(error.differing() <= 12, "{spec} from {eye:?}: {error:?}");
-        for (voxel, node) in float.voxel.iter().zip(&float.node) {
-            assert_eq!(voxel[3] < 0, *node == NO_NODE);
-        }
-        let drawn = float.node.iter().filter(|&&node| node != NO_NODE).count();
-        assert_eq!(stats[1], ("samples_drawn", drawn as u64));
-        assert!(stats[2].1 < 256 * 256 * 200, "{stats:?}");
-    }
-
     #[test]
     fn it_sees_what_the_oracle_sees() {
-        // All octants of direction, and far away.
-        for (eye, target) in [
+        // Eye and target in sides of the object's cube: all octants of direction, and far away.
+        let outside = [
             ([1.6, -0.7, 1.25], [0.5, 0.5, 0.3]),
             ([0.47, -0.95, 0.53], [0.475, 0.5, 0.475]),
             ([-0.6, 1.4, -0.8], [0.5, 0.5, 0.5]),
             ([1.3, 1.9, 0.6], [0.4, 0.5, 0.5]),
             ([-1.3, -0.4, 1.6], [0.4, 0.5, 0.5]),
             ([6.0, -14.0, 8.0], [0.5, 0.5, 0.4]),
+        ];
+        let inside = [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]].map(|eye| (eye, [0.9, 0.8, 0.3]));
+        for (spec, views) in [
+            ("terrain,depth=8", &outside[..]),
+            ("menger,depth=4", &outside),
+            ("menger,depth=3", &inside),
+            ("sierpinski,depth=9", &inside),
+            ("sphere,depth=6", &inside),
         ] {
-            check_against_oracle("gen:terrain,depth=8", eye, target);
-            check_against_oracle("gen:menger,depth=4", eye, target);
-        }
-        // From inside, and through cycles.
-        for spec in ["menger,depth=3", "sierpinski,depth=9", "sphere,depth=6"] {
-            for eye in [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]] {
-                check_against_oracle(&format!("gen:{spec}"), eye, [0.9, 0.8, 0.3]);
+            let graph = graph(&format!("gen:{spec}"));
+            let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
+            let in_world =
+                |at: [f64; 3]| low + DVec3::from_array(at) * f64::from(1u32 << graph.depth);
+            for &(eye, target) in views {
+                let camera = camera(in_world(eye), in_world(target), 60.0, 256);
+                let options = SetupOptions::default();
+                let setup =
+                    FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+                let mut exact = Frame::new(256, 256, false);
+                let mut float = exact.clone();
+                // It has no level of detail.
+                let whole = setup.without_detail();
+                Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+                let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();
+                let error = CoverageError::between(&float.voxel, &exact.voxel);
+                let is_near = error.covered > 0 && error.differing() <= 12;
+                assert!(is_near, "{spec} from {eye:?}: {error:?}");
+                let mut samples = float.voxel.iter().zip(&float.node);
+                assert!(samples.all(|(voxel, node)| (voxel[3] < 0) == (*node == NO_NODE)));
+                assert_eq!(stats[1], ("samples_drawn", float.drawn() as u64));
+                assert!(stats[2].1 < 256 * 256 * 200, "{stats:?}");
             }
         }
     }
@@ -207,14 +209,12 @@ mod tests {
     fn one_voxel_and_rays_along_the_axes() {
         // Odd sizes have a ray through the middle with two components 0.
         let graph = graph("gen:sphere,depth=1");
-        let camera = Camera {
-            eye: DVec3::new(0.7, -4.0, 0.6),
-            target: DVec3::new(0.7, 0.0, 0.6),
-            up: DVec3::Z,
-            fov_degrees: 40.0,
-            width: 17,
-            height: 17,
-        };
+        let camera = camera(
+            DVec3::new(0.7, -4.0, 0.6),
+            DVec3::new(0.7, 0.0, 0.6),
+            40.0,
+            17,
+        );
         let draw = |graph: &GraphView<'_>, depth: u32| {
             let (options, placement) = (SetupOptions::default(), Default::default());
             let setup = FrameSetup::new(&camera, &placement, depth, &options).unwrap();

@@ -87,16 +87,16 @@ mod tests {
     fn a_coarser_voxel_in_its_place_is_not_elsewhere() {
         let fine = [5, 6, 7, 3];
         // Of a depth of 3: level 2 holds two voxels a side.
-        let reference = [fine, fine, fine, fine, NONE, fine, fine];
-        let test = [
-            fine,
-            [4, 6, 6, 2],
-            [0, 6, 6, 2],
-            [5, 6, 6, 3],
-            fine,
-            [0; 4],
-            NONE,
+        let tests = [
+            (fine, 0),
+            ([4, 6, 6, 2], 0),
+            ([0, 6, 6, 2], 1),
+            ([5, 6, 6, 3], 1),
+            ([0; 4], 0),
         ];
-        assert_eq!(count_elsewhere(&test, &reference, 3), 2);
+        for (test, expected) in tests {
+            assert_eq!(count_elsewhere(&[test], &[fine], 3), expected, "{test:?}");
+        }
+        assert_eq!(count_elsewhere(&[fine, NONE], &[NONE, fine], 3), 0);
     }
 }

@@ -92,9 +92,9 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>) -> Vec<ComparedLine> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use hwmodel::cost::Breakdown;
 
-    use super::*;
     use crate::model::cost::OuterTraffic;
 
     #[test]
@@ -133,33 +133,32 @@ mod tests {
             "power at its own speed, without leakage",
             "power at the slower one's speed, without leakage",
         );
-        for (what, light, rival, low, less) in [
-            (own, 0.05, 1.0, 0.5, Winner::Light),
-            (slower, 0.05, 0.5, 0.25, Winner::Light),
+        for (what, figures, less) in [
+            (own, [0.05, 1.0, 0.5], Winner::Light),
+            (slower, [0.05, 0.5, 0.25], Winner::Light),
             (
                 "bandwidth at its own speed",
-                0.05,
-                0.01,
-                0.01,
+                [0.05, 0.01, 0.01],
                 Winner::RayCaster,
             ),
-            ("bandwidth", 2.0, 0.4, 0.4, Winner::RayCaster),
+            ("bandwidth", [2.0, 0.4, 0.4], Winner::RayCaster),
             (
                 "energy of the frame",
-                1000.0,
-                10_000.0,
-                5000.0,
+                [1000.0, 10_000.0, 5000.0],
                 Winner::Light,
             ),
-            ("area", 5.0, 5.0, 5.0, Winner::Neither),
+            ("area", [5.0; 3], Winner::Neither),
         ] {
             let line = lines.iter().find(|line| line.what == what).unwrap();
             let found = [line.light.value, line.ray_caster.value, line.ray_caster.low];
-            for (found, expected) in found.into_iter().zip([light, rival, low]) {
+            for (found, expected) in found.into_iter().zip(figures) {
                 assert!((found - expected).abs() < 1e-9 * expected, "{line:?}");
             }
-            let is_neither = less == Winner::Neither;
-            assert_eq!((line.less, line.overlap), (less, is_neither), "{line:?}");
+            assert_eq!(
+                (line.less, line.overlap),
+                (less, less == Winner::Neither),
+                "{line:?}"
+            );
         }
     }
 }

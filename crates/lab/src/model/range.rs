@@ -97,20 +97,21 @@ mod tests {
 
     #[test]
     fn ranges_that_overlap_have_no_winner() {
-        let range = |low: f64, high: f64| Range::new((f64::midpoint(low, high), low, high));
-        let (a, b) = (range(1.0, 2.0), range(3.0, 4.0));
-        assert_eq!(Winner::by_ranges(a, b), Winner::Light);
-        assert_eq!(Winner::by_ranges(b, a), Winner::RayCaster);
-        let wide = range(1.5, 3.5);
-        assert_eq!(Winner::by_ranges(a, wide), Winner::Neither);
-        assert_eq!(Winner::at_equal_prices(a, wide), Winner::Light);
-        assert_eq!(Winner::at_equal_prices(b, wide), Winner::RayCaster);
-        // A range within another.
-        assert_eq!(
-            Winner::at_equal_prices(range(2.0, 3.0), wide),
-            Winner::Neither
-        );
-        // Touching is overlapping.
-        assert_eq!(Winner::by_ranges(a, range(2.0, 4.0)), Winner::Neither);
+        use Winner::{Light, Neither, RayCaster};
+        let range = |(low, high)| Range::new((f64::midpoint(low, high), low, high));
+        for (a, b, by_ranges, at_equal_prices) in [
+            ((1.0, 2.0), (3.0, 4.0), Light, Light),
+            ((3.0, 4.0), (1.0, 2.0), RayCaster, RayCaster),
+            ((1.0, 2.0), (1.5, 3.5), Neither, Light),
+            ((3.0, 4.0), (1.5, 3.5), Neither, RayCaster),
+            // A range within another.
+            ((2.0, 3.0), (1.5, 3.5), Neither, Neither),
+            // Touching is overlapping.
+            ((1.0, 2.0), (2.0, 4.0), Neither, Light),
+        ] {
+            let (a, b) = (range(a), range(b));
+            let found = (Winner::by_ranges(a, b), Winner::at_equal_prices(a, b));
+            assert_eq!(found, (by_ranges, at_equal_prices), "{a:?}, {b:?}");
+        }
     }
 }

@@ -190,33 +190,22 @@ pub fn stack_bits(rays: &RayHardware) -> u64 {
 mod tests {
     use super::*;
 
-    /// Counts of one ray's steps, all of them in a chain.
-    fn counts(steps: &[(FloatStep, u64)]) -> FloatRayCounts {
-        let mut counts = FloatRayCounts::default();
-        for &(step, times) in steps {
-            counts.add(step, times, times);
-        }
-        counts
-    }
-
-    fn bound(report: &RayCycles, name: &str) -> u64 {
-        let found = report.bounds.iter().find(|bound| bound.resource == name);
-        found.unwrap().cycles
-    }
-
     #[test]
     fn bounds_by_hand() {
         let rays = RayHardware::shipped();
         let mut hardware = Hardware::preset("paper").unwrap();
         hardware.outer_memory.bytes_per_cycle = 8;
-        let steps = [
+        // Of one ray, all in a chain.
+        let mut counts = FloatRayCounts::default();
+        for (step, times) in [
             (FloatStep::FloatAdd, 1000),
             (FloatStep::FloatMinMax, 500),
             (FloatStep::FloatCompare, 100),
             (FloatStep::FloatDivide, 9),
             (FloatStep::NodeRead, 70),
-        ];
-        let counts = counts(&steps);
+        ] {
+            counts.add(step, times, times);
+        }
         let misses = RayMisses {
             node: 10,
             attribute: 0,
@@ -225,23 +214,36 @@ mod tests {
             node_bits: 10 * 512,
             ..OuterTraffic::default()
         };
-        let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name| bound(&report, name);
-        assert_eq!(of("float add units"), 250);
-        assert_eq!(of("float compare units"), 100);
-        assert_eq!(of("float divide units"), 9 * 26 / 3);
-        assert_eq!(of("node cache port"), 70);
-        // 61 cycles each, four at once.
-        assert_eq!(of("node cache misses"), 10 * 61 / 4);
-        assert_eq!(of("outer memory port"), 10 * 8);
+        let bounds = |hardware: &Hardware| {
+            let report = cycles(&counts, misses, &traffic, &rays, hardware);
+            let bounds = report
+                .bounds
+                .into_iter()
+                .map(|bound| (bound.resource, bound.cycles));
+            (
+                report.cycles,
+                bounds.collect::<BTreeMap<_, _>>(),
+            )
+        };
         // 1000 x 3 + 600 x 1 + 9 x 27 + 70 x 1, and 10 misses of 60 more, on 16 contexts.
-        let chain: u64 = 3000 + 600 + 243 + 70 + 600;
-        assert_eq!(of("contexts"), chain.div_ceil(16));
-        assert_eq!(report.cycles, chain.div_ceil(16));
+        let chain = (3000 + 600 + 243 + 70 + 600u64).div_ceil(16);
+        let (all, of) = bounds(&hardware);
+        assert_eq!(all, chain);
+        for (name, cycles) in [
+            ("float add units", 250),
+            ("float compare units", 100),
+            ("float divide units", 9 * 26 / 3),
+            ("node cache port", 70),
+            // 61 cycles each, four at once.
+            ("node cache misses", 10 * 61 / 4),
+            ("outer memory port", 10 * 8),
+            ("contexts", chain),
+        ] {
+            assert_eq!(of[name], cycles, "{name}");
+        }
         // Twice the lanes: the units' share halves, the caches' does not.
         hardware.lanes = 2;
-        let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name| bound(&report, name);
-        assert_eq!((of("float add units"), of("node cache port")), (125, 70));
+        let (_, of) = bounds(&hardware);
+        assert_eq!((of["float add units"], of["node cache port"]), (125, 70));
     }
 }

@@ -14,7 +14,7 @@ use crate::report::plot::{Panel, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress, Silent};
-use shiftvox::picture::Background;
+use shiftvox::picture::{Background, Rows};
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupError, SetupOptions};
 use shiftvox::rays::Rays;
 use shiftvox_mesh::Surface;
@@ -115,11 +115,14 @@ struct Exact<'m> {
 }
 
 impl<'m> Exact<'m> {
-    fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, Refused> {
-        let setup = truth(graph, camera, aa_log2).map_err(Refused::because)?;
+    fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, BenchError> {
+        let setup = truth(graph, camera, aa_log2)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn = Rays.render(&graph.view(), &setup, &mut frame);
-        drawn.map_err(Refused::because)?;
+        drawn.map_err(|source| BenchError::Engine {
+            who: "exact rays".to_owned(),
+            source,
+        })?;
         Ok(Self {
             graph,
             aa_log2,
@@ -140,13 +143,23 @@ impl<'m> Exact<'m> {
     }
 }
 
+/// Why a method has no figures.
+#[derive(Debug, thiserror::Error)]
+enum Unmeasured {
+    #[error(transparent)]
+    Refused(#[from] Refused),
+    /// The experiment itself failed.
+    #[error(transparent)]
+    Failed(#[from] BenchError),
+}
+
 /// Measures methods on a scene from cameras: a row for each camera and method, and one of the noise
 /// floor. A method without a picture has a row with the reason.
 ///
 /// Every picture is judged. Then all methods draw in turn, on one thread, and are timed.
 ///
 /// # Errors
-/// When a camera cannot see, or there is no thread.
+/// When a camera cannot see, a reference cannot be drawn, pictures differ in size, or there is no thread.
 pub fn measure(
     scene: Scene<'_>,
     cameras: &[Camera],
@@ -192,7 +205,8 @@ fn at(
     let second = scene.reference(camera, SEEDS[1], plan, progress)?;
     let judge = Judge::new(&reference);
     let mut floor = head(scene, camera, plan, [NOISE_FLOOR, "reference", "reference"]);
-    let judged = judge.put(&mut floor, &second.rgba, &second.shares);
+    let picture = (second.width, second.height, &second.rgba[..]);
+    let judged = judge.put(&mut floor, picture, &second.shares);
     judged.map_err(failed)?;
 
     let mut films: Vec<(&Motion, Vec<Camera>, Vec<Light>)> = Vec::new();
@@ -205,7 +219,10 @@ fn at(
         let truth = scene.film(&cameras, SEEDS[0], plan)?;
         progress.advance(1);
         let second = scene.film(&cameras, SEEDS[1], plan)?;
-        floor.put(motion.columns()[0], thousandths(flicker(&second, &truth).0));
+        floor.put(
+            motion.columns()[0],
+            thousandths(flickers(&second, &truth)?.0),
+        );
         films.push((motion, cameras, truth));
         progress.end();
     }
@@ -225,8 +242,10 @@ fn at(
                 film(&mut row, method, motion, cameras, truth)
             })
         });
-        if let Err(Refused(reason)) = filmed {
-            row.put("refused", reason);
+        match filmed {
+            Ok(()) => {}
+            Err(Unmeasured::Refused(Refused(reason))) => row.put("refused", reason),
+            Err(Unmeasured::Failed(error)) => return Err(error),
         }
         rows.push(row);
         progress.advance(1);
@@ -247,19 +266,23 @@ fn thousandths(light: f64) -> Cell {
     Cell::Number(1e3 * light, 2)
 }
 
+fn flickers(film: &[Light], truth: &[Light]) -> Result<(f64, f64), BenchError> {
+    flicker(film, truth).ok_or_else(|| failed("the pictures of a film differ in size"))
+}
+
 fn film(
     row: &mut Row,
     method: &Method<'_>,
     motion: &Motion,
     cameras: &[Camera],
     truth: &[Light],
-) -> Result<(), Refused> {
+) -> Result<(), Unmeasured> {
     let mut drawing = (method.drawing)();
     let film: Vec<Light> = cameras
         .iter()
         .map(|camera| Ok(light_of(&drawn(drawing.as_mut(), camera)?.pixels.rgba())))
         .collect::<Result<_, Refused>>()?;
-    let (whole, worst) = flicker(&film, truth);
+    let (whole, worst) = flickers(&film, truth)?;
     let columns = motion.columns();
     row.put(columns[0], thousandths(whole));
     row.put(columns[1], thousandths(worst));
@@ -272,7 +295,7 @@ fn judged_row<'m>(
     camera: &Camera,
     judge: &Judge<'_>,
     exact: &mut Vec<Exact<'m>>,
-) -> Result<(), Refused> {
+) -> Result<(), Unmeasured> {
     let mut drawing = (method.drawing)();
     let shown = drawn(drawing.as_mut(), camera)?;
     let Examined {
@@ -281,8 +304,9 @@ fn judged_row<'m>(
         counters,
         remark,
     } = (method.examine)(&shown, camera)?;
-    let judged = judge.put(row, &shown.pixels.rgba(), &shares);
-    judged.map_err(Refused::because)?;
+    let (width, height) = shown.buffers.size();
+    let judged = judge.put(row, (width, height, &shown.pixels.rgba()), &shares);
+    judged.map_err(failed)?;
     if let (Some(graph), Some((aa_log2, voxels))) = (method.graph, samples) {
         let is_same =
             |exact: &Exact<'_>| std::ptr::eq(exact.graph, graph) && exact.aa_log2 == aa_log2;

@@ -155,45 +155,39 @@ impl Pixels<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
     use shiftvox::frame::Frame;
-    use shiftvox::graph::Silent;
+    use shiftvox::graph::{LinkedGraph, Silent};
     use shiftvox::picture::resolve;
     use shiftvox::project::{Engine, SetupOptions};
     use shiftvox::rays::Rays;
 
-    fn cube() -> Graph {
-        crate::test_graphs::one_node(0, 0, [200, 40, 90])
-    }
-
-    /// A camera that looks along y at the cube `[0, 1]^3`, whose near face is
-    /// `side` pixels a side and begins at pixel `(left, left)` of 8 x 8.
-    fn facing(left: f64, side: f64) -> Camera {
+    /// The cube `[0, 1]^3`, seen along y: its near face is `side` pixels a side and begins at pixel
+    /// `(left, left)` of 8 x 8.
+    fn facing(left: f64, side: f64) -> (Graph, FrameSetup) {
+        let mut graph = LinkedGraph::new(0);
+        graph.add_node([200, 40, 90], [None; 8]);
+        let graph = graph.build().unwrap();
         let fov = 2.0 * libm::atan(4.0 / (8.0 * side));
         let (x, z) = ((4.0 - left) / side, 1.0 - (4.0 - left) / side);
-        Camera {
+        let camera = Camera {
             eye: DVec3::new(x, -8.0, z),
             target: DVec3::new(x, 0.0, z),
             up: DVec3::Z,
             fov_degrees: fov.to_degrees(),
             width: 8,
             height: 8,
-        }
+        };
+        let setup = FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default());
+        (graph, setup.unwrap())
     }
 
-    fn set_up(camera: &Camera, graph: &Graph) -> FrameSetup {
-        let options = SetupOptions::default();
-        FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap()
-    }
-
-    fn cast_at(camera: &Camera, strata_log2: u32, seed: u64) -> Reference {
-        let graph = cube();
+    fn cast_at((graph, setup): &(Graph, FrameSetup), strata_log2: u32, seed: u64) -> Reference {
         let sampling = Sampling { strata_log2, seed };
         let black = Background::Color([0; 3]);
-        let setup = set_up(camera, &graph);
-        cast(&graph, &setup, Shading::Flat, black, sampling, &Silent)
+        cast(graph, setup, Shading::Flat, black, sampling, &Silent)
     }
 
     #[test]
@@ -201,13 +195,20 @@ mod tests {
         // From (2.25, 2.25) to (4.75, 4.75): a rim of 3/4 on both sides.
         let reference = cast_at(&facing(2.25, 2.5), 4, 1);
         let share = |x: usize, y: usize| f64::from(reference.shares[y * 8 + x]);
-        assert_eq!((share(0, 0), share(3, 3), share(5, 5)), (0.0, 1.0, 0.0));
         let area: f64 = reference.shares.iter().map(|&s| f64::from(s)).sum();
-        assert!((area - 6.25).abs() < 0.02, "{area}");
-        for rim in [share(2, 3), share(3, 2), share(4, 3), share(3, 4)] {
-            assert!((rim - 0.75).abs() < 0.02, "{rim}");
+        for (found, expected) in [
+            (area, 6.25),
+            (share(0, 0), 0.0),
+            (share(3, 3), 1.0),
+            (share(5, 5), 0.0),
+            (share(2, 3), 0.75),
+            (share(3, 2), 0.75),
+            (share(4, 3), 0.75),
+            (share(3, 4), 0.75),
+            (share(2, 2), 0.5625),
+        ] {
+            assert!((found - expected).abs() < 0.02, "{found}, {expected}");
         }
-        assert!((share(2, 2) - 0.5625).abs() < 0.02, "{}", share(2, 2));
         assert_eq!(reference.rgba[3 * 8 + 3], [200, 40, 90, 255]);
         assert_eq!(reference.rgba[0], [0, 0, 0, 255]);
         // Light is averaged, not bytes: half of black and white is 188.
@@ -217,17 +218,17 @@ mod tests {
 
     #[test]
     fn seeds_differ_a_little_and_runs_do_not() {
-        let [a, again, b] = [7, 7, 8].map(|seed| cast_at(&facing(2.3, 3.1), 3, seed));
+        let scene = facing(2.3, 3.1);
+        let [a, again, b] = [7, 7, 8].map(|seed| cast_at(&scene, 3, seed));
         assert_eq!(a, again);
         assert_ne!(a, b);
-        let apart = a.shares.iter().zip(&b.shares).map(|(a, b)| (a - b).abs());
-        assert!(apart.fold(0.0, f32::max) < 0.2);
+        let mut shares = a.shares.iter().zip(&b.shares);
+        assert!(shares.all(|(a, b)| (a - b).abs() < 0.2));
     }
 
     #[test]
     fn one_stratum_without_jitter_is_the_oracles_picture() {
-        let graph = cube();
-        let setup = set_up(&facing(2.3, 3.1), &graph);
+        let (graph, setup) = facing(2.3, 3.1);
         let mut frame = Frame::new(8, 8, false);
         Rays.render(&graph.view(), &setup, &mut frame).unwrap();
         let background = Background::default();

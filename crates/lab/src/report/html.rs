@@ -99,10 +99,11 @@ mod tests {
 
     #[test]
     fn a_page_holds_what_it_shows_and_escapes_it() {
-        let mut table = Table::new("T<1>", &["scene_name", "records"]);
-        let row = vec![Cell::from("<script>"), Cell::from(1234)];
-        table.rows.push(row);
-        let page = Page {
+        let table = Table {
+            rows: vec![vec!["<script>".into(), Cell::Count(1234)]],
+            ..Table::new("T<1>", &["scene_name", "records"])
+        };
+        let html = Page {
             title: "a < b",
             preface: "\"quoted\"",
             pictures: &[(&[1, 2, 3], "three bytes")],
@@ -110,11 +111,10 @@ mod tests {
             plots: "<?xml version=\"1.0\"?>\n<svg width=\"1\"></svg>",
             details: &[],
         };
-        let html = page.finish();
+        let html = html.finish();
         for part in [
             "<title>a &lt; b</title>",
             "<pre>&quot;quoted&quot;</pre>",
-            "<h2>T&lt;1&gt;</h2>",
             "<td class=\"w\">&lt;script&gt;</td><td>1,234</td>",
             "<th class=\"w\">scene name</th>",
             "<svg width=\"1\"></svg>",

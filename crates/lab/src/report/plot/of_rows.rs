@@ -88,10 +88,8 @@ impl RowPlot<'_> {
             value: row.number(self.y.0),
             deviation: self.deviation.map_or(0.0, |name| row.number(name)),
         };
-        Panel::Bars {
-            title: format!("{}, {}", self.title, self.y.1),
-            bars: rows.into_iter().map(bar).collect(),
-        }
+        let title = format!("{}, {}", self.title, self.y.1);
+        Panel::Bars(title, rows.into_iter().map(bar).collect())
     }
 }
 
@@ -111,22 +109,21 @@ mod tests {
         ];
         let is_dominated = points.map(|p| points.iter().any(|q| dominates(q, &p)));
         assert_eq!(is_dominated, [false, false, true, false, true, false]);
-        assert!(!dominates(&points[1], &points[1]));
     }
 
     #[test]
     fn rows_become_series_with_error_bars_and_a_front() {
-        let row = |(name, x, y): &(&'static str, u64, u64)| {
+        // The point at 0 has no place on a logarithmic axis.
+        let points = [("a", 1, 8), ("b", 2, 4), ("a", 4, 8), ("b", 8, 0)];
+        let rows = points.map(|(name, x, y)| {
             let mut row = Row::default();
-            row.put("name", *name);
-            row.put("x", *x);
-            row.put("y", *y);
+            row.put("name", name);
+            row.put("x", x);
+            row.put("y", y);
             row.put("d", 1);
             row
-        };
-        let points = [("a", 1, 8), ("b", 2, 4), ("a", 4, 8), ("b", 8, 0)];
-        let rows: Vec<Row> = points.iter().map(row).collect();
-        let mut plot = RowPlot {
+        });
+        let plot = RowPlot {
             title: "T",
             x: ("x", "across"),
             y: ("y", "up"),
@@ -134,21 +131,19 @@ mod tests {
             deviation: Some("d"),
             ..RowPlot::default()
         };
-        let chart = |plot: &RowPlot<'_>| match plot.chart(&rows) {
-            Some(Panel::Chart(chart)) => chart,
+        let series = |plot: RowPlot<'_>| match plot.chart(&rows) {
+            Some(Panel::Chart(chart)) => chart.series,
             other => panic!("{other:?}"),
         };
-        let curves = chart(&plot).series;
-        // The point at 0 has no place on a logarithmic axis.
-        assert_eq!(curves.len(), 2);
-        assert_eq!((curves[0].points.len(), curves[1].points.len()), (2, 1));
+        let lengths =
+            |series: &[Series]| series.iter().map(|of| of.points.len()).collect::<Vec<_>>();
+        let curves = series(plot);
+        assert_eq!(lengths(&curves), [2, 1]);
         assert_eq!(curves[0].deviations, [1.0, 1.0]);
-        plot.front = Some("name");
-        let [grey, line, ..] = &chart(&plot).series[..] else {
-            panic!("a front");
-        };
-        assert_eq!((grey.points.len(), line.points.len()), (1, 2));
-        plot.x.0 = "nothing";
-        assert_eq!(plot.chart(&rows), None);
+        let front = Some("name");
+        // What is dominated, the line, and the series.
+        assert_eq!(lengths(&series(RowPlot { front, ..plot })), [1, 2, 1, 1]);
+        let x = ("nothing", "");
+        assert_eq!(RowPlot { x, ..plot }.chart(&rows), None);
     }
 }
