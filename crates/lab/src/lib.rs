@@ -1,5 +1,6 @@
 //! Experiments: what the renderer's rules cost and what they do to a picture.
 //! Each gives plain data and a table. What was found: `spec/lab.md`.
+#![allow(missing_docs, reason = "the names of figures end with their units")]
 
 pub mod bench;
 pub mod bounds;

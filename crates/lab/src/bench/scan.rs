@@ -13,14 +13,11 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// The parameter's name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// The values, in increasing order. There is at least one.
-    #[must_use]
     pub fn values(&self) -> Vec<u32> {
         self.values.clone()
     }

@@ -22,7 +22,6 @@ impl RayOrder {
     pub const ALL: [Self; 3] = [Self::Rows, Self::Tiles, Self::Morton];
 
     /// The order in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rows => "rows",

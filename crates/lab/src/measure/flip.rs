@@ -1,13 +1,9 @@
 //! FLIP for pictures of low dynamic range: how different two pictures look that are shown in turn at
 //! one place (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020).
 //!
-//! There are two pipelines. *Colour*: each channel of both pictures in the opponent space `Y Cx Cz`
-//! is blurred by the eye's contrast sensitivity. The pictures are then compared in CIE L*a*b* with
-//! Hunt's adjustment, by a distance for large differences (HyAB) that is scaled to 0 to 1.
-//! *Features*: edges and points of `Y`. The error of a pixel is `colour^(1 - feature)`.
-//!
-//! All filters are separable. Beyond the border a picture has the values of its outermost pixels.
-//! On the pictures of the tests, `f64` differs from the authors' `f32` by less than 0.0001.
+//! The error of a pixel is `colour^(1 - feature)`. *Colour*: each channel in the opponent space
+//! `Y Cx Cz` is blurred by the eye's contrast sensitivity, then compared in CIE L*a*b* (HyAB).
+//! *Feature*: edges and points of `Y`. All filters are separable.
 
 use rayon::prelude::*;
 
@@ -99,7 +95,6 @@ impl Flip {
     }
 }
 
-/// Distance of the two colours that are farthest apart, green and blue, as it is spread.
 fn greatest_distance() -> f64 {
     let of = |rgb: [f64; 3]| hunt(lab_of_xyz(xyz_of_rgb(rgb)));
     libm::pow(
@@ -108,7 +103,6 @@ fn greatest_distance() -> f64 {
     )
 }
 
-/// Lightness and chroma apart: sum of the distances in each.
 fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).abs() + libm::hypot(a[1] - b[1], a[2] - b[2])
 }
@@ -181,7 +175,6 @@ fn hunt([l, a, b]: [f64; 3]) -> [f64; 3] {
     [l, 0.01 * l * a, 0.01 * l * b]
 }
 
-/// A filter along one axis: weights from `-radius` to `radius`.
 type Kernel = Vec<f64>;
 
 fn kernel(radius: i32, weight: impl Fn(f64) -> f64) -> Kernel {
@@ -196,7 +189,6 @@ fn normalised(kernel: Kernel) -> Kernel {
     kernel.into_iter().map(share).collect()
 }
 
-/// A channel seen through a contrast sensitivity.
 fn blur(size: (usize, usize), plane: &[f64], terms: &[(f64, f64)]) -> Vec<f64> {
     let pi_squared = std::f64::consts::PI * std::f64::consts::PI;
     let deviation = libm::sqrt(LARGEST_SCALE / (2.0 * pi_squared));

@@ -19,7 +19,6 @@ impl ShareError {
         self.of_area(self.signed)
     }
 
-    /// Excess plus lack, as a part of the area.
     pub(crate) fn relative(&self) -> f64 {
         self.of_area(self.absolute)
     }
@@ -61,10 +60,8 @@ impl CoverageBias {
 /// Whether a pixel shows a thing that is thinner than a pixel: it is covered in part, and none of its
 /// eight neighbours is covered in full.
 ///
-/// A pixel on a straight outline has a fully covered neighbour on the inner side. So has a pixel at a
-/// corner of a right angle or more. A wire thinner than a pixel has none, wherever it lies. (Empty
-/// neighbours on both sides would be too strict: a wire can touch two rows.) Structures that are
-/// porous below a pixel count as thin, too.
+/// A pixel on an outline or at a corner has a fully covered neighbour on the inner side. A wire thinner
+/// than a pixel has none.
 fn is_thin((width, shares): Shares<'_>, at: usize) -> bool {
     let here = shares[at];
     if here <= 0.0 || here >= 1.0 {

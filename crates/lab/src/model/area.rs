@@ -1,8 +1,7 @@
 //! Area of a whole design without wires: units, registers, memories and control.
 //!
 //! - *Units*: those of the hardware for every class of operation that the frame uses in a stage, but no more than any visit
-//!   of the stage can use. Shifts that are not wires have as many shifters as keep pace with the stage. That is its shifts
-//!   over its busy cycles, or over all its cycles on sequential hardware.
+//!   of the stage can use. Shifts that are not wires have as many shifters as keep pace with the stage.
 //! - *Registers*: a pipeline of latency `l` and interval `i` keeps `l / i` results, rounded up. A context keeps its record
 //!   or ray.
 //! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours designs with several.
@@ -37,7 +36,6 @@ pub struct DesignArea {
 }
 
 impl DesignArea {
-    #[must_use]
     pub fn range(&self) -> Range {
         Range::new((self.total, self.low, self.high))
     }
@@ -106,7 +104,6 @@ const BRICK_BITS: u64 = 64 + 32;
 
 /// Bits beside a cache's lines: the rest of the address, whether the line is
 /// there, and its turn among its set's.
-#[must_use]
 pub fn tag_bits(cache: &Cache) -> u64 {
     let lines = u64::from(cache.sets()) * u64::from(cache.ways);
     let found = cache.line_bytes.ilog2() + cache.sets().ilog2();

@@ -36,7 +36,6 @@ impl Prices {
     }
 }
 
-/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     pub operations: Breakdown,
@@ -46,7 +45,6 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    #[must_use]
     pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
         let parts = parts.into_iter().map(Range::from);
@@ -54,13 +52,11 @@ impl FrameCost {
     }
 }
 
-#[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
 }
 
 /// Bits of the accumulators of a frame: none where no voxel is blended.
-#[must_use]
 pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
     if !setup.options.coverage.blends() {
         return 0;
@@ -79,7 +75,6 @@ pub struct OuterTraffic {
 }
 
 impl OuterTraffic {
-    #[must_use]
     pub fn bits(&self) -> u64 {
         self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
     }

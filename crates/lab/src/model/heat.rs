@@ -13,13 +13,11 @@ const STOPS: [[f32; 3]; 5] = [
 
 /// Records by sample, as colours on a logarithmic scale, and the greatest
 /// number. A record counts 1, spread evenly over its quadtree node's samples.
-#[must_use]
 pub fn map(frame: &Frame) -> (Vec<[u8; 4]>, f32) {
     colors(frame.records.as_deref().unwrap_or_default())
 }
 
 /// [`map`], of the numbers themselves.
-#[must_use]
 pub fn colors(records: &[f32]) -> (Vec<[u8; 4]>, f32) {
     let most = records.iter().copied().fold(0.0f32, f32::max);
     let scale = libm::log1pf(most).max(f32::MIN_POSITIVE);

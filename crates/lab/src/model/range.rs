@@ -12,13 +12,11 @@ pub struct Range {
 }
 
 impl Range {
-    #[must_use]
     pub const fn new((value, low, high): (f64, f64, f64)) -> Self {
         Self { value, low, high }
     }
 
     /// The figure and its ends, times a number that is not negative.
-    #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
             value: self.value * factor,
@@ -57,7 +55,6 @@ pub enum Winner {
 
 impl Winner {
     /// The one whose high end is below the other's low end.
-    #[must_use]
     pub fn by_ranges(light: Range, ray_caster: Range) -> Self {
         if light.high < ray_caster.low {
             Self::Light
@@ -70,7 +67,6 @@ impl Winner {
 
     /// The one that needs less at the low end of all prices and at their high end. Both pay the same for a word of
     /// outer memory then.
-    #[must_use]
     pub fn at_equal_prices(light: Range, ray_caster: Range) -> Self {
         if light.low < ray_caster.low && light.high < ray_caster.high {
             Self::Light
@@ -81,7 +77,6 @@ impl Winner {
         }
     }
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Light => "light hardware",

@@ -44,7 +44,6 @@ fn cage_parts(setup: &FrameSetup) -> (u32, u32) {
 }
 
 /// The fields of a frame's records, as an organisation stores them. `nodes`: of the graph.
-#[must_use]
 pub fn record_fields(
     setup: &FrameSetup,
     nodes: usize,
@@ -222,14 +221,12 @@ pub fn number_widths(
 }
 
 /// Bits of a stack's entry, which holds records of any kind.
-#[must_use]
 pub fn record_bits(fields: &[RecordField]) -> u32 {
     bits_held(fields, None).widest()
 }
 
 /// Bits of a context's registers: the record that it works on, and, where parents lie on the stack, the parent
 /// with its children's vertices.
-#[must_use]
 pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisation) -> u64 {
     let record = u64::from(record_bits);
     let word = u64::from(setup.format.bits());
@@ -257,7 +254,6 @@ pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisa
 
 /// Bits of a frame's records by kind. Under the rules that draw outlines, a finest voxel has no parts. Its turn only needs
 /// to know whether all vertices are before the eye.
-#[must_use]
 pub fn bits_by_kind(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> RecordBits {
     // A parent is never a finest voxel.
     let has_finest =

@@ -29,7 +29,6 @@ pub struct Format {
 }
 
 impl Format {
-    #[must_use]
     pub fn new(graph: &Graph, camera: &Camera, own: &FrameSetup) -> Self {
         let is_safe = |camera: &Camera, placement: &Placement, depth: u32| {
             let setup = FrameSetup::new(camera, placement, depth, &own.options).ok();

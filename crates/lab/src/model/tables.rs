@@ -103,7 +103,6 @@ pub const LONG: [TableSpec; 9] = [
 ];
 
 impl TableSpec {
-    #[must_use]
     pub fn of(&self, document: &Value) -> Table {
         let columns: Vec<Column> = self.columns.split_whitespace().map(Column::new).collect();
         let heads: Vec<&'static str> = columns.iter().map(|column| column.head).collect();
@@ -188,7 +187,6 @@ fn rows<'v>(name: &'v str, value: &'v Value, path: &str) -> Vec<(&'v str, &'v Va
 }
 
 /// Every figure of a document as a row: its path and its value.
-#[must_use]
 pub fn figures(document: &Value) -> Table {
     let mut table = Table::new("Figures", &["name", "value"]);
     add_figures("", document, &mut table);

@@ -19,10 +19,8 @@ use shiftvox::project::{Camera, Engine, FrameSetup, SetupError, SetupOptions};
 use shiftvox::rays::Rays;
 use shiftvox_mesh::Surface;
 
-/// How methods are measured.
 #[derive(Debug, Clone)]
 pub struct QualityPlan {
-    /// How often each method draws.
     pub schedule: Schedule,
     /// Camera motions to film. Without any there is no flicker.
     pub motions: Vec<Motion>,
@@ -30,14 +28,11 @@ pub struct QualityPlan {
     pub frames: u32,
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
-    /// Shading and background.
     pub style: PixelStyle,
 }
 
-/// A scene and the truth about it.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
-    /// Its name in tables.
     pub name: &'s str,
     /// Its voxels, of which exact rays are the truth.
     pub graph: Option<&'s Graph>,
@@ -130,7 +125,6 @@ impl<'m> Exact<'m> {
         })
     }
 
-    /// The errors of samples: false positives and negatives, voxels elsewhere, coarser voxels.
     fn put(&self, row: &mut Row, samples: &[[i32; 4]]) {
         let error = CoverageError::between(samples, &self.voxel);
         let elsewhere = count_elsewhere(samples, &self.voxel, self.graph.depth);
@@ -143,7 +137,6 @@ impl<'m> Exact<'m> {
     }
 }
 
-/// Why a method has no figures.
 #[derive(Debug, thiserror::Error)]
 enum Unmeasured {
     #[error(transparent)]
@@ -157,9 +150,6 @@ enum Unmeasured {
 /// floor. A method without a picture has a row with the reason.
 ///
 /// Every picture is judged. Then all methods draw in turn, on one thread, and are timed.
-///
-/// # Errors
-/// When a camera cannot see, a reference cannot be drawn, pictures differ in size, or there is no thread.
 pub fn measure(
     scene: Scene<'_>,
     cameras: &[Camera],
@@ -362,8 +352,6 @@ fn race(
     Ok(())
 }
 
-/// The most important columns of the rows of one scene and camera, for people.
-#[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "method ms work psnr flip bias_percent flicker_turntable flicker_dolly flicker_pan extra \
         missing elsewhere read_bytes build_ms ahead beaten_by ssim remark refused";
@@ -372,7 +360,6 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
 
 /// Plots of the rows of one scene and camera: time and machine-independent work against errors and
 /// flicker.
-#[must_use]
 pub fn panels(rows: &[Row]) -> Vec<Panel> {
     let Some(first) = rows.first() else {
         return Vec::new();
@@ -412,4 +399,65 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
         }
     }
     panels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use shiftvox::machine::Machine;
+    use shiftvox_mesh::open::{OpenOptions, open};
+
+    use crate::bench::MakeEngine;
+    use crate::quality::voxel_method;
+
+    #[test]
+    fn methods_are_refused_and_experiments_fail() {
+        let opened = open("gen:sphere,depth=3", &OpenOptions::default(), &Silent);
+        let graph = opened.unwrap().graph;
+        let too_deep = Graph {
+            depth: 99,
+            ..graph.clone()
+        };
+        let camera = Camera {
+            eye: DVec3::new(20.0, -9.0, 12.0),
+            target: DVec3::splat(4.0),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 8,
+            height: 8,
+        };
+        let plan = QualityPlan {
+            schedule: Schedule { warmup: 0, runs: 1 },
+            motions: Vec::new(),
+            frames: 2,
+            strata_log2: 1,
+            style: PixelStyle::default(),
+        };
+        let run = |method: Method<'_>| {
+            let scene = Scene {
+                name: "sphere",
+                graph: Some(&graph),
+                mesh: None,
+            };
+            let rows = measure(scene, &[camera], &[method], &plan, &Silent);
+            rows.map(|rows| !rows[0].text("refused").is_empty()).ok()
+        };
+        let make: MakeEngine = |_| Box::new(Machine::default());
+        let method = |options| voxel_method(&graph, ("machine", make), options, plan.style);
+        let wide = SetupOptions::default();
+        assert_eq!(run(method(wide)), Some(false));
+        // The words do not hold the picture.
+        let narrow = SetupOptions {
+            bits: 16,
+            frac: Some(15),
+            ..wide
+        };
+        assert_eq!(run(method(narrow)), Some(true));
+        let unseen = Method {
+            graph: Some(&too_deep),
+            ..method(wide)
+        };
+        assert_eq!(run(unseen), None);
+    }
 }

@@ -15,12 +15,9 @@ use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
 
-/// Shading and background.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PixelStyle {
-    /// Shading.
     pub shading: Shading,
-    /// Colour behind the object.
     pub background: [u8; 3],
 }
 
@@ -47,7 +44,6 @@ const ACCUMULATOR_BYTES: u64 = (hwmodel::memory::ACCUMULATOR_BITS as u64).div_ce
 
 /// An engine with settings, on one thread. Times are the engine's. Counters are the machine's, which
 /// draws the same bits, so that methods can be compared by hardware work.
-#[must_use]
 pub fn voxel_method<'g>(
     graph: &'g Graph,
     (engine, make): (&'static str, MakeEngine),

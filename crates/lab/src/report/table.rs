@@ -4,16 +4,12 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-/// One entry.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// Words.
     Text(String),
-    /// A whole number.
     Count(u64),
     /// A number, and how many digits after the point people see.
     Number(f64, usize),
-    /// Empty.
     None,
 }
 
@@ -50,7 +46,6 @@ impl Cell {
         }
     }
 
-    /// The cell for programs: all digits, and an empty string for no value.
     fn for_programs(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -101,7 +96,6 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 pub struct Row(Vec<(&'static str, Cell)>);
 
 impl Row {
-    /// Sets a cell.
     pub fn put(&mut self, name: &'static str, cell: impl Into<Cell>) {
         let cell = cell.into();
         match self.0.iter_mut().find(|(found, _)| *found == name) {
@@ -110,21 +104,16 @@ impl Row {
         }
     }
 
-    /// A cell; [`Cell::None`] if it was never set.
-    #[must_use]
     pub fn get(&self, name: &str) -> &Cell {
         let found = self.0.iter().find(|(found, _)| *found == name);
         found.map_or(&Cell::None, |(_, cell)| cell)
     }
 
-    /// A cell as a number; not a number if it is none.
-    #[must_use]
     pub fn number(&self, name: &str) -> f64 {
         self.get(name).number().unwrap_or(f64::NAN)
     }
 
     /// A cell as text; empty if it was never set.
-    #[must_use]
     pub fn text(&self, name: &str) -> String {
         match self.get(name) {
             Cell::None => String::new(),
@@ -132,8 +121,6 @@ impl Row {
         }
     }
 
-    /// The cells that are set, as a JSON object.
-    #[must_use]
     pub fn json(&self) -> Value {
         let set = self.0.iter().filter(|(_, cell)| *cell != Cell::None);
         set.map(|(name, cell)| ((*name).to_owned(), cell.json()))
@@ -144,11 +131,8 @@ impl Row {
 /// A table. Every row is as long as `columns`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// Its title.
     pub title: String,
-    /// The columns' names.
     pub columns: Vec<&'static str>,
-    /// The rows.
     pub rows: Vec<Vec<Cell>>,
 }
 
@@ -157,8 +141,6 @@ const CELL_WIDTH: usize = 40;
 const MOST_KEY_WIDTH: usize = 60;
 
 impl Table {
-    /// A table without rows.
-    #[must_use]
     pub fn new(title: impl Into<String>, columns: &[&'static str]) -> Self {
         Self {
             title: title.into(),
@@ -167,8 +149,6 @@ impl Table {
         }
     }
 
-    /// A table of measurements, with every column that any of them has.
-    #[must_use]
     pub fn collect(title: impl Into<String>, rows: &[Row]) -> Self {
         let mut columns: Vec<&'static str> = Vec::new();
         for (name, _) in rows.iter().flat_map(|row| &row.0) {
@@ -229,7 +209,6 @@ impl Table {
 
     /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
     /// Columns without room go to a second block, which begins with the first columns of words again.
-    #[must_use]
     pub fn text(&self) -> String {
         let column = |(column, name): (usize, &&'static str)| {
             let head = name.split('_').map(str::to_owned).collect();
@@ -264,8 +243,6 @@ impl Table {
         text + &of_block(&block)
     }
 
-    /// The table in CSV (RFC 4180): a line of names, then the rows.
-    #[must_use]
     pub fn csv(&self) -> String {
         let mut text = self.columns.join(",") + "\r\n";
         for row in &self.rows {
@@ -276,8 +253,6 @@ impl Table {
         text
     }
 
-    /// The table in Markdown under its title.
-    #[must_use]
     pub fn markdown(&self) -> String {
         let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
         for column in 0..self.columns.len() {
@@ -352,8 +327,6 @@ fn quoted(field: &str) -> String {
     }
 }
 
-/// A number with its digits in groups of three.
-#[must_use]
 pub fn grouped(number: impl Into<u128>) -> String {
     let digits = number.into().to_string();
     let mut text = String::new();

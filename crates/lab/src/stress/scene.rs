@@ -9,36 +9,27 @@ use shiftvox::graph::{
 use shiftvox::scene::generate::Spec;
 use shiftvox::split_mix::SplitMix;
 
-/// A scene by its text.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StressScene {
-    /// A generator's scene: `gen:shell,depth=5`.
     Generated(Spec),
     /// A plane through the cube's middle: `plane:depth,a,b,c` with its normal, c not 0. No line passes through, not even at
     /// corners.
     Plane {
-        /// Levels.
         depth: u32,
-        /// Normal.
         normal: [i64; 3],
     },
     /// A full cube, one node that is all of its own children: `solid:depth`.
     Solid {
-        /// Levels.
         depth: u32,
     },
     /// A random graph whose nodes have any nodes as children: `cyclic:depth,seed`.
     Cyclic {
-        /// Levels.
         depth: u32,
-        /// Seed of the graph.
         seed: u64,
     },
     /// A few voxels: `voxels:depth,x.y.z+x.y.z`.
     Voxels {
-        /// Levels.
         depth: u32,
-        /// Where they are.
         at: Vec<[i32; 3]>,
     },
 }

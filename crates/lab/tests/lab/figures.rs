@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
+use hwmodel::cycles::{Hardware, NoObserver};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
@@ -43,9 +43,8 @@ fn logged(graph: &Graph, setup: &FrameSetup) -> Log {
     drawn.unwrap().1
 }
 
-/// One voxel, and a picture of `side` samples per side of the middle of its face, which no line
-/// through an edge crosses.
-fn one_voxel(side: u32) -> (Graph, FrameSetup) {
+/// One voxel, and a sample in the middle of its face, which no line through an edge crosses.
+fn one_voxel() -> (Graph, FrameSetup) {
     let mut builder = Builder::new(BuildOptions::default());
     builder.push(Voxel::default());
     let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
@@ -55,27 +54,25 @@ fn one_voxel(side: u32) -> (Graph, FrameSetup) {
         target: glam::DVec3::new(1.0, 0.5, 0.5),
         up: glam::DVec3::Z,
         fov_degrees: 1.0,
-        width: side,
-        height: side,
+        width: 1,
+        height: 1,
     };
     let options = SetupOptions {
         bits: 32,
         ..SetupOptions::default()
     };
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    assert_eq!(setup.levels, side.ilog2());
     (graph, setup)
 }
 
 /// Figure 1: additions and subtractions of a frame of one voxel and one sample, by hand.
 ///
-/// A span of four numbers takes six additions. Pushing: the span of W; against the picture's border, for x and y, four
-/// subtractions and two spans; against the bisector, for x and y, four subtractions and a span.
-/// Drawing, in wide words: nine of the twelve planes are their neighbour plus (six) or less (three) three coefficients;
-/// each plane has its least and greatest (two sums), and is compared with the sample (two sums).
+/// A span of four numbers takes six additions. A push has a span of W. For x and y it has eight subtractions and three
+/// spans, against the border and the bisector. A drawing has wide words. Nine of the twelve planes are their neighbour plus
+/// (six) or less (three) three coefficients. Each plane takes four sums.
 #[test]
 fn additions_of_a_frame_of_one_voxel() {
-    let (graph, setup) = one_voxel(1);
+    let (graph, setup) = one_voxel();
     let log = logged(&graph, &setup);
     let times = |class, bits| log.operations[&(class, bits)];
     assert_eq!(times(OpClass::Add, 32), 6 + 2 * 2 * 6 + 2 * 6);
@@ -83,53 +80,6 @@ fn additions_of_a_frame_of_one_voxel() {
     assert_eq!(times(OpClass::Add, 64), 6 * 3 + 12 * 2 + 12 * 2);
     assert_eq!(times(OpClass::Sub, 64), 3 * 3);
     assert_eq!((log.pixels, log.reads[&Memory::Node].len()), (1, 1));
-}
-
-/// Figure 2: its cycles on a design with a unit for every operation.
-#[test]
-fn cycles_of_a_frame_of_one_voxel() {
-    // The only fill vector is cleared, and the object is made in three visits of a cycle. The record is taken and compared
-    // with its fill vector. It reads its node (a miss), is drawn (a miss of its attribute) and marks its sample.
-    let stored = 1 + 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1;
-    // With parents or the path on the stack the object is not stored, and its node is not read. The turn that makes it draws
-    // it: three visits of a cycle, the attribute's miss, and the sample's vector cleared and marked.
-    let never_stored = 3 + (1 + 20) + 2;
-    // Four by four samples: the attribute is read for each, and all wait for the first one's line. Then the joined word is
-    // written seventeen times, once a cycle: it is cleared, and marked.
-    let joined = 3 + (1 + 20) + 17;
-    let of = |stack, bricks, hidden_unread, joined_fill| Organisation {
-        stack,
-        leaf_masks: true,
-        bricks,
-        hidden_unread,
-        joined_fill,
-        ..Organisation::default()
-    };
-    for (side, organisation, cycles) in [
-        (1, Organisation::default(), stored),
-        (1, of(StackHolds::Parents, true, true, false), never_stored),
-        (1, of(StackHolds::Path, true, true, false), never_stored),
-        (4, of(StackHolds::Path, false, false, true), joined),
-    ] {
-        let found = cycles_of_one_voxel(side, organisation);
-        assert_eq!(found, cycles, "{organisation:?}");
-    }
-}
-
-fn cycles_of_one_voxel(side: u32, organisation: Organisation) -> u64 {
-    let (graph, setup) = one_voxel(side);
-    let mut hardware = Hardware::preset("tiny").unwrap();
-    hardware.organisation = organisation;
-    (hardware.pixels.buffer, hardware.pixels.drain_interval) = (16, 1);
-    for unit in hardware.units.values_mut() {
-        (unit.count, unit.latency, unit.interval, unit.width) = (1000, 0, 1, 64);
-    }
-    let (nodes, attributes) = (&mut hardware.node_cache, &mut hardware.attribute_cache);
-    (nodes.hit_latency, nodes.miss_latency) = (2, 30);
-    (attributes.hit_latency, attributes.miss_latency) = (1, 20);
-    let (view, observer) = (graph.view(), &mut NoObserver);
-    let simulated = frame::simulate(&view, &setup, &hardware, Overflow::Trap, observer);
-    simulated.unwrap().1.cycles.cycles
 }
 
 /// A cache as in a textbook: sets of lines, the one that was used last at the end.
@@ -171,7 +121,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// Figures 3 to 8, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
+/// Figures 2 to 7, on a hardware with one context. Its units and memories have sizes of the tables.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");
@@ -197,7 +147,7 @@ fn figures_of_a_terrain() {
     let area = area::light(&counted, cycles, &setup, &hardware, &prices).unwrap();
     let log = logged(&graph, &setup);
 
-    // 3. Energy of the additions of 32 bits.
+    // 2. Energy of the additions of 32 bits.
     let mut lines = cost.operations.lines.iter();
     let line = lines.find(|line| (line.name.as_str(), line.width) == ("add", 32));
     let [low, high] = row("energy", "add", 32, "energy_pj");
@@ -205,7 +155,7 @@ fn figures_of_a_terrain() {
     let additions = log.operations[&(OpClass::Add, 32)] as f64;
     close(line.unwrap().total, additions * low);
 
-    // 4. Area of the three adders that find a child's span.
+    // 3. Area of the three adders that find a child's span.
     let mut lines = area.units.lines.iter();
     let line = lines.find(|line| line.name == "child box" && line.operation == "add");
     close(
@@ -213,7 +163,7 @@ fn figures_of_a_terrain() {
         3.0 * row("area", "add", 32, "nand2")[0],
     );
 
-    // 5. Misses of both caches.
+    // 4. Misses of both caches.
     let node_misses = naive_misses(&log.reads[&Memory::Node], 8, (1024, 2, 32));
     let of = hardware.attribute_cache;
     let line_bytes = u64::from(of.line_bytes);
@@ -223,21 +173,21 @@ fn figures_of_a_terrain() {
     assert_eq!(cycles.node_cache.misses, node_misses);
     assert_eq!(cycles.attribute_cache.misses, attribute_misses);
 
-    // 6. Bits of a record: node and level; solid, inside; two corners; quadtree level and place; four numbers of
-    // three coordinates and the least W; twelve plane coefficients.
+    // 5. Bits of a record: node, level, two flags, two corners, then the quadtree's level and place. Four numbers of three
+    // coordinates, the least W and twelve plane coefficients follow.
     let bits_of = |greatest: u64| 64 - greatest.leading_zeros();
     let always = bits_of(graph.len() as u64 - 1) + bits_of(6) + 2 + 2 * 3 * bits_of(64);
     let bits = always + bits_of(6) + 2 * 6 + 3 * 4 * 32 + 32 + 12 * 64;
     assert_eq!(counted.record_bits(), bits);
 
-    // 7. Bits to and from outer memory: lines, pixels of three bytes, spilled records both ways.
+    // 6. Bits to and from outer memory: lines, pixels of three bytes, spilled records both ways.
     assert!(cycles.stack.spilled > 0);
     let moved = 8 * (32 * node_misses + line_bytes * attribute_misses)
         + 24 * log.pixels
         + 2 * cycles.stack.spilled_bits;
     assert_eq!(cost.traffic.bits(), moved);
 
-    // 8. Their energy, in words of 64 bits.
+    // 7. Their energy, in words of 64 bits.
     let words = 4 * node_misses
         + line_bytes / 8 * attribute_misses
         + (24 * log.pixels).div_ceil(64)

@@ -95,52 +95,13 @@ pub(super) fn write<T>(
 mod tests {
     use super::*;
 
-    fn put(path: &Path, overwrite: bool, name: &str) -> Result<(), VectorsError> {
-        write(path, overwrite, |folder| {
-            fs::write(folder.join(MANIFEST), b"{}").map_err(|e| failed(folder, e))?;
-            fs::write(folder.join(name), b"").map_err(|e| failed(folder, e))
-        })
-    }
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name());
-        let mut names: Vec<String> = entries.map(|name| name.into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
     #[test]
-    fn a_folder_is_whole_and_replaces_only_vectors() {
-        let shelter = tempfile::tempdir().unwrap();
-        let path = shelter.path().join("new/vectors");
-        put(&path, false, "one.jsonl").unwrap();
-        let again = put(&path, false, "two.jsonl");
-        assert!(matches!(
-            again,
-            Err(VectorsError::Store(WholeError::Exists(_)))
-        ));
-        assert_eq!(names(&path), [MANIFEST, "one.jsonl"]);
-        put(&path, true, "two.jsonl").unwrap();
-        let power_cut = |folder: &Path| Err::<(), _>(failed(folder, io::Error::other("power cut")));
-        assert!(write(&path, true, power_cut).is_err());
-        assert_eq!(names(&path), [MANIFEST, "two.jsonl"]);
-        assert_eq!(names(&shelter.path().join("new")), ["vectors"]);
-        // Other files, other folders, and what is no folder.
-        fs::write(path.join("thesis.tex"), b"mine").unwrap();
-        let [other, file] = ["other", "file"].map(|name| shelter.path().join(name));
-        fs::create_dir(&other).unwrap();
-        fs::write(other.join("one.jsonl"), b"").unwrap();
-        fs::write(&file, b"mine").unwrap();
-        for path in [&path, &other, &file] {
-            let refused = put(path, true, "three.hex");
-            assert!(
-                matches!(refused, Err(VectorsError::Foreign { .. })),
-                "{path:?}"
-            );
-        }
-        assert_eq!(fs::read(path.join("thesis.tex")).unwrap(), b"mine");
-        assert_eq!(fs::read(&file).unwrap(), b"mine");
+    fn only_folders_with_a_manifest_are_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("centre.jsonl"), b"mine").unwrap();
+        let refused = check_free(folder.path(), true);
+        assert!(matches!(refused, Err(VectorsError::Foreign { .. })));
+        fs::write(folder.path().join(MANIFEST), b"{}").unwrap();
+        check_free(folder.path(), true).unwrap();
     }
 }

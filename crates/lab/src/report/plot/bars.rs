@@ -4,14 +4,11 @@ use super::canvas::{Anchor, Canvas};
 use super::{COLORS, TITLE_HEIGHT};
 use crate::report::table::Cell;
 
-/// A bar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// Its label.
     pub name: String,
     /// Its length, 0 or more.
     pub value: f64,
-    /// Half the length of its error bar, or 0.
     pub deviation: f64,
 }
 
@@ -19,7 +16,6 @@ const BAR_HEIGHT: f64 = 26.0;
 const BAR_LEFT: f64 = 300.0;
 const BAR_LENGTH: f64 = 500.0;
 
-/// Draws bars. Returns the height of the panel.
 pub(super) fn draw(canvas: &mut Canvas, title: &str, bars: &[Bar]) -> f64 {
     canvas.text(title, (14.0, 22.0), 20, Anchor::Start);
     let longest = bars.iter().map(|bar| bar.value).fold(0.0, f64::max);

@@ -48,7 +48,7 @@ fn replay_folder(folder: &Path) -> (BTreeMap<String, usize>, usize) {
             continue;
         }
         files.extend(text(&block["file"]));
-        let found = rows_of(folder, block).rows;
+        let found = rows_of(folder, block);
         assert_eq!(found.len(), rows, "{name}");
         proven += check_ranges(block, &found);
         for (at, [into, out]) in found.iter().enumerate() {
@@ -72,6 +72,7 @@ fn check_ranges(block: &Value, rows: &[[Row; 2]]) -> usize {
             (0..port["count"].as_u64().unwrap()).map(move |at| (port, at as usize))
         });
         for (number, (port, at)) in places.enumerate() {
+            assert_ne!(port["meaning"], "", "{}", port["name"]);
             let values = || rows.iter().map(|row| row[side].values[number]);
             let (Some(least), Some(greatest)) = (values().min(), values().max()) else {
                 continue;

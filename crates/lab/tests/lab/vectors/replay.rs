@@ -5,7 +5,6 @@ use serde_json::Value;
 use super::rows::Row;
 
 /// The constants of a frame, and the roundings and limits of the rules, which mutants replace.
-#[derive(Clone)]
 pub(super) struct Rules {
     fraction: i128,
     size_shifts: Vec<i128>,

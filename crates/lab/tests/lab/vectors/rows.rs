@@ -11,7 +11,6 @@ use serde_json::Value;
 type Names = Rc<BTreeMap<String, (usize, usize)>>;
 
 /// The numbers of the ports, in order.
-#[derive(Clone)]
 pub(super) struct Row {
     names: Names,
     pub(super) values: Vec<i128>,
@@ -42,13 +41,6 @@ impl Row {
 
     pub(super) fn cage(&self, name: &str) -> Cage {
         Cage(self.of(name).to_vec())
-    }
-
-    /// With another value of one number.
-    pub(super) fn with(&self, at: usize, value: i128) -> Self {
-        let mut changed = self.clone();
-        changed.values[at] = value;
-        changed
     }
 }
 
@@ -112,13 +104,11 @@ impl Cage {
     }
 }
 
-/// A number of a row: its port's name, bits, sign.
-pub(super) type Number = (String, u32, bool);
-
 /// Inputs or outputs as the manifest describes them.
 pub(super) struct Ports {
     names: Names,
-    pub(super) numbers: Vec<Number>,
+    /// Bits and sign.
+    numbers: Vec<(u32, bool)>,
 }
 
 impl Ports {
@@ -133,7 +123,7 @@ impl Ports {
             // Ports lie side by side.
             assert_eq!(number("lowest_bit") + count * bits, end, "{name}");
             end = number("lowest_bit");
-            let one = (name.clone(), bits as u32, port["signed"] == true);
+            let one = (bits as u32, port["signed"] == true);
             let place = (numbers.len(), count as usize);
             assert_eq!(names.insert(name, place), None);
             numbers.extend(vec![one; count as usize]);
@@ -148,10 +138,10 @@ impl Ports {
         let digits = text.chars().map(|digit| digit.to_digit(16).unwrap());
         let bits = digits.flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1));
         let bits: Vec<i128> = bits.map(i128::from).collect();
-        let width: u32 = self.numbers.iter().map(|(_, bits, _)| bits).sum();
+        let width: u32 = self.numbers.iter().map(|(bits, _)| bits).sum();
         let (padding, mut rest) = bits.split_at(bits.len() - width as usize);
         assert!(padding.len() < 4 && !padding.contains(&1), "{text}");
-        let number = |(_, bits, signed): &Number| {
+        let number = |(bits, signed): &(u32, bool)| {
             let (part, after) = rest.split_at(*bits as usize);
             rest = after;
             let value = part.iter().fold(0, |v, bit| v << 1 | bit);
@@ -162,12 +152,6 @@ impl Ports {
             values: self.numbers.iter().map(number).collect(),
         }
     }
-}
-
-pub(super) struct BlockRows {
-    pub(super) name: String,
-    pub(super) ports: [Ports; 2],
-    pub(super) rows: Vec<[Row; 2]>,
 }
 
 pub(super) fn manifest_of(folder: &Path) -> Value {
@@ -182,15 +166,13 @@ pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
         .collect()
 }
 
-pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
-    let ports = ["in", "out"].map(|side| Ports::new(&block[side]));
+/// The rows of a block: inputs and outputs.
+pub(super) fn rows_of(folder: &Path, block: &Value) -> Vec<[Row; 2]> {
+    let ports = ["in", "out"].map(|side| (side, Ports::new(&block[side])));
     let row = |line: Value| {
-        let of = |at: usize| ports[at].row(line[["in", "out"][at]].as_str().unwrap());
-        [of(0), of(1)]
+        ports
+            .each_ref()
+            .map(|(side, ports)| ports.row(line[side].as_str().unwrap()))
     };
-    BlockRows {
-        name: block["name"].as_str().unwrap().to_owned(),
-        rows: lines(folder, &block["file"]).into_iter().map(row).collect(),
-        ports,
-    }
+    lines(folder, &block["file"]).into_iter().map(row).collect()
 }

@@ -83,7 +83,7 @@ const FRAMES: [(Coverage, CageKind); 4] = [
 #[test]
 fn turns_follow_from_one_another_and_make_the_picture() {
     for (number, (graph, camera)) in scenes().into_iter().enumerate() {
-        // Each scene under one rule after another; at length under all.
+        // Each scene under another rule. In long runs all scenes under all rules.
         let rules = FRAMES.iter().cycle().skip(number);
         for &(coverage, cage) in rules.take(FRAMES.len().min(times() as usize)) {
             let setup = setup(&graph, &camera, &options(coverage, cage, 0.125, 32));
