@@ -121,7 +121,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// Figures 2 to 7, on a hardware with one context. Its units and memories have sizes of the tables.
+/// Figures 2 to 7, of a design with one context. Its units and memories have sizes of the tables.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");
