@@ -1,4 +1,5 @@
-// Events of `WALK, a machine, in one cycle: tile, port, address, data in hexadecimal digits. The stage adds those of its stack and fill vectors.
+// Events of `WALK, a machine, in one cycle: tile, port, address, data in hexadecimal digits. The stage adds those of its stack
+// and fill vectors.
 `include "events.vh"
 if (`WALK.asked_node) $fwrite(events, "%0d node_read %0d 0\n", `TILE, `WALK.node_place);
 if (`WALK.asked_attribute) $fwrite(events, "%0d attribute_read %0d 0\n", `TILE, `WALK.t_node);

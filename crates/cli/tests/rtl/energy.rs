@@ -2,8 +2,8 @@
 //! a frame. Every change of a pin takes the energy in the library of cells.
 //!
 //! A change of an input takes `C V^2 / 2`. A change of an output takes the cell's internal energy at a load of about 25 fF
-//! and the shortest transition: the mean of rise and fall, and of the inputs that may cause it. Wires and registers are left
-//! out. Only ratios compare, because the cells are of 0.18 um and the model's energies of 45 nm.
+//! and the shortest transition, the mean of rise and fall and of all inputs. Wires and registers are left out. Only ratios
+//! compare, because the cells are of 0.18 um and the model's energies of 45 nm.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -26,8 +26,8 @@ const LOAD: f64 = 0.025;
 /// Most rows of a block.
 const ROWS: u64 = 400;
 
-/// Blocks, the main operations of their logic, all of them as in `predictions.csv`, and the distance of successive rows of
-/// the same block in the machine: rows of some alternate between x and y. A divide takes 26 steps in this frame.
+/// Blocks, their main operations, all operations as in `predictions.csv`, and a step between rows, because rows of some
+/// alternate between x and y. A divide takes 26 steps in this frame.
 const BLOCKS: [(&str, &str, &str, u64); 9] = [
     ("centre", "add", "3 add (33)", 1),
     ("vertex_pool", "add", "19 add (33)", 2),
@@ -164,8 +164,7 @@ fn run_rows(folder: &Path, block: &Value, step: u64, random: bool) -> [f64; 2] {
     [figures[1] / figures[2] / taken, figures[0] / taken]
 }
 
-/// Prints the rows of `rtl/results/energy.csv`: changes per output and row, and energy per operation, with the frame's rows
-/// and with random ones; energy of random rows relative to an addition of the centre, beside that of the model's table.
+/// Prints the rows of `rtl/results/energy.csv`. Ratios are relative to an addition of the centre.
 #[test]
 #[ignore = "takes minutes, and needs qflow-tech-osu018"]
 fn energy_by_toggles_beside_the_table() {

@@ -62,6 +62,16 @@ fn yosys_takes_the_machines() {
 #[test]
 #[ignore = "takes minutes"]
 fn many_views() {
+    let shelter = tempfile::tempdir().unwrap();
+    let file = shelter.path().join("solids.vxg");
+    vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
+    let solids = format!("{} --size 64 --view iso", file.display());
+    // Without bricks: the first has less than two levels, the second the root alone.
+    let small = [
+        "gen:random,depth=1,seed=2 --size 20",
+        "gen:random,depth=2,seed=3 --size 20",
+    ];
+    let chosen = [&[TREE, INSIDE, &solids], &SCENES[..], &small].concat();
     // A lane draws more samples than a tile has.
     let lanes = LANES.iter().map(|machine| (machine, 25, 25, 9));
     let alone = [
@@ -71,16 +81,12 @@ fn many_views() {
         (&STAGE_C_BRICKS, 100, 100, 1),
     ];
     for (machine, outside, within, least) in alone.into_iter().chain(lanes) {
-        for view in SCENES.into_iter().chain([TREE, INSIDE]) {
-            agree(machine, view, None);
-        }
-        let mut dice = Dice(1);
-        for _ in 0..outside {
-            agree(machine, &view_from_outside(&mut dice, least), None);
-        }
-        let mut dice = Dice(1);
-        for _ in 0..within {
-            agree(machine, &view_from_within(&mut dice, least), None);
+        let (mut dice, mut inner) = (Dice(1), Dice(1));
+        let outside = (0..outside).map(|_| view_from_outside(&mut dice, least));
+        let within = (0..within).map(|_| view_from_within(&mut inner, least));
+        let chosen = chosen.iter().map(|view| (*view).to_owned());
+        for view in chosen.chain(outside).chain(within) {
+            agree(machine, &view, None);
         }
     }
 }
@@ -154,28 +160,4 @@ pub(crate) fn tree_with_larger_solids(depth: u32) -> Graph {
 fn bricks_of(graph: &Graph) -> std::ops::Range<u32> {
     let graph = graph.side_by_side().unwrap();
     NodeLayout::new(&graph.view(), true, true).bricks()
-}
-
-/// Bricks save cycles, where there are any.
-#[test]
-#[ignore = "takes minutes"]
-fn bricks_in_many_scenes() {
-    let shelter = tempfile::tempdir().unwrap();
-    let file = shelter.path().join("solids.vxg");
-    vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
-    let solids = format!("{} --size 64 --view iso", file.display());
-    // The first has less than two levels, the second the root alone.
-    let without_bricks = [
-        "gen:random,depth=1,seed=2 --size 20",
-        "gen:random,depth=2,seed=3 --size 20",
-    ];
-    let views = [TREE, INSIDE, &solids].into_iter().chain(SCENES);
-    for view in views.chain(without_bricks) {
-        let [with, without] = [&STAGE_C_BRICKS, &STAGE_C].map(|machine| agree(machine, view, None));
-        assert_eq!(with.samples, without.samples);
-        assert!(
-            with.cycles < without.cycles || without_bricks.contains(&view),
-            "{view}"
-        );
-    }
 }
