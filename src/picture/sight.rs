@@ -184,22 +184,3 @@ fn facing(offset: DVec3) -> DVec3 {
     face[axis] = if offset[axis] < 0.0 { -1.0 } else { 1.0 };
     face
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slabs_of_a_straight_ray() {
-        let eye = DVec3::new(0.5, -3.0, 0.5);
-        assert_eq!(slabs(eye, DVec3::Y, 2.0), (3.0, 5.0, 1));
-        let (enter, exit, _) = slabs(eye, DVec3::X, 2.0);
-        assert!(enter > exit, "a ray beside the cube misses it");
-    }
-
-    #[test]
-    fn the_face_that_looks_at_the_eye() {
-        assert_eq!(facing(DVec3::new(1.0, -5.0, 2.0)), DVec3::NEG_Y);
-        assert_eq!(facing(DVec3::new(1.0, 1.0, 1.0)), DVec3::X);
-    }
-}

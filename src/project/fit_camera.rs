@@ -302,56 +302,48 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn cube() -> Bounds {
-        Bounds::of_box(DVec3::splat(0.0), DVec3::splat(10.0))
-    }
-
-    fn eye(azimuth: f64, elevation: f64, up: Up) -> DVec3 {
+    fn camera(bounds: &Bounds, up: Up, [azimuth, elevation]: [f64; 2], size: (u32, u32)) -> Camera {
         let direction = Direction { azimuth, elevation };
-        let camera = fit_camera(&cube(), up, direction, 40.0, 1.0, (100, 100));
-        (camera.eye - camera.target).normalize()
+        fit_camera(bounds, up, direction, 40.0, 1.0, size)
     }
 
     #[test]
-    fn directions() {
-        assert_eq!(eye(0.0, 0.0, Up::Z), DVec3::NEG_Y);
-        assert_eq!(eye(90.0, 0.0, Up::Z), DVec3::X);
-        assert_eq!(eye(0.0, 90.0, Up::Z), DVec3::Z);
-        assert_eq!(eye(0.0, 0.0, Up::Y), DVec3::Z);
-        assert_eq!(eye(90.0, 0.0, Up::Y), DVec3::X);
+    fn all_corners_are_seen_and_one_is_near_the_edge() {
+        let cube = Bounds::of_box(DVec3::ZERO, DVec3::splat(10.0));
+        for (from, up, expected) in [
+            ([0.0, 0.0], Up::Z, DVec3::NEG_Y),
+            ([90.0, 0.0], Up::Z, DVec3::X),
+            ([0.0, 90.0], Up::Z, DVec3::Z),
+            ([0.0, 0.0], Up::Y, DVec3::Z),
+            ([90.0, 0.0], Up::Y, DVec3::X),
+        ] {
+            let camera = camera(&cube, up, from, (100, 100));
+            assert_eq!((camera.eye - camera.target).normalize(), expected);
+        }
+        for from in [[45.0, 35.0], [0.0, 0.0], [10.0, 90.0], [200.0, -60.0]] {
+            let camera = camera(&cube, Up::Z, from, (300, 200));
+            let axes = camera.axes().unwrap();
+            let edge = |corner: u32| {
+                let bit = |b: u32| f64::from(corner >> b & 1) * 10.0;
+                let offset = DVec3::new(bit(0), bit(1), bit(2)) - camera.eye;
+                let scale = axes.focal_px / offset.dot(axes.forward);
+                let across = (offset.dot(axes.right) * scale / 150.0).abs();
+                across.max((offset.dot(axes.up) * scale / 100.0).abs())
+            };
+            let most = (0..8).map(edge).fold(0.0, f64::max);
+            assert!((most - FILL).abs() < 1e-3, "{from:?}: {most}");
+        }
     }
 
     #[test]
     fn a_revolved_object_is_seen_from_the_same_distance_all_around() {
         let bounds = Bounds::of_box(DVec3::ZERO, DVec3::new(10.0, 4.0, 7.0)).revolved(Up::Z);
         let distance = |azimuth: f64| {
-            let direction = Direction {
-                azimuth,
-                elevation: 20.0,
-            };
-            let camera = fit_camera(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
-            (camera.eye - camera.target).length()
+            let camera = camera(&bounds, Up::Z, [azimuth, 20.0], (100, 100));
+            camera.eye.distance(camera.target)
         };
         for turn in [5.0, 45.0, 90.0, 210.0] {
             assert!((distance(turn) - distance(0.0)).abs() < 1e-3, "{turn}");
-        }
-    }
-
-    #[test]
-    fn all_corners_are_seen_and_one_is_near_the_edge() {
-        for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0), (10.0, 90.0), (200.0, -60.0)] {
-            let direction = Direction { azimuth, elevation };
-            let camera = fit_camera(&cube(), Up::Z, direction, 40.0, 1.0, (300, 200));
-            let axes = camera.axes().unwrap();
-            let mut most = 0.0f64;
-            for corner in 0..8u32 {
-                let bit = |b: u32| f64::from(corner >> b & 1) * 10.0;
-                let offset = DVec3::new(bit(0), bit(1), bit(2)) - camera.eye;
-                let scale = axes.focal_px / offset.dot(axes.forward);
-                most = most.max((offset.dot(axes.right) * scale / 150.0).abs());
-                most = most.max((offset.dot(axes.up) * scale / 100.0).abs());
-            }
-            assert!((most - FILL).abs() < 1e-3, "{azimuth} {elevation}: {most}");
         }
     }
 }

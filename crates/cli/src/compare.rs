@@ -248,19 +248,3 @@ fn judge(thresholds: &[Threshold], numbers: &[(&str, f64)]) -> Result<(), CliErr
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bounds_have_sides() {
-        let numbers = [("differing", 3.0), ("ssim", 0.9)];
-        let judged = |text: &str| judge(&[text.parse().unwrap()], &numbers).map_err(|e| e.kind);
-        assert_eq!(judged("3"), Ok(()));
-        assert_eq!(judged("2"), Err(Kind::Failed));
-        assert_eq!(judged("ssim=0.8"), Ok(()));
-        assert_eq!(judged("ssim=0.95"), Err(Kind::Failed));
-        assert_eq!(judged("flip=1"), Err(Kind::Usage));
-    }
-}

@@ -230,34 +230,3 @@ fn build_outside_memory(
     scene_files::report_written("convert", &args.input, &args.output, &written, console);
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use clap::{Command, ValueEnum};
-
-    use super::*;
-    use shiftvox_mesh::{far, textured};
-
-    #[test]
-    fn help_states_the_true_defaults() {
-        let command = ConvertArgs::augment_args(Command::new("convert"));
-        let states = |flag: &str, default: &str| {
-            let argument = command.get_arguments().find(|a| a.get_id() == flag);
-            let help = argument.unwrap().get_help().unwrap().to_string();
-            let stated = format!("[default: {default}]");
-            assert!(help.contains(&stated), "{flag}: {help}, not {stated}");
-        };
-        let (of_far, of_tvx) = (
-            far::BuildOptions::default(),
-            textured::BuildOptions::default(),
-        );
-        states("leaf_triangles", &of_far.leaf_triangles.to_string());
-        states("grid", &of_far.grid.to_string());
-        states("grid", &of_tvx.grids[0].to_string());
-        states("texels", &of_tvx.texels.to_string());
-        let element = of_tvx.element.to_possible_value().unwrap();
-        states("element", element.get_name());
-        let opacity = of_far.opacity.to_possible_value().unwrap();
-        states("far_opacity", opacity.get_name());
-    }
-}

@@ -120,17 +120,3 @@ fn prepare_buffer(
     }
     Ok(written?)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn buffers_stand_beside_the_picture() {
-        let found = paths(Path::new("a/b.c.png"), &[Buffer::Depth]);
-        assert_eq!(
-            found,
-            [Path::new("a/b.c.png"), Path::new("a/b.c.depth.npy")]
-        );
-    }
-}

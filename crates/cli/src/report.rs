@@ -152,23 +152,3 @@ fn tables_of(name: &str, rows: &[Value]) -> Vec<String> {
     }
     tables
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn descriptions_have_lines_and_tables() {
-        let levels = json!([{ "faces": 2, "level": 0, "voxels": 12345 }]);
-        let object = json!({
-            "scene": "a.vox",
-            "size": [4, 5],
-            "mesh": { "load_ms": 0.25 },
-            "palette": null,
-            "grids": [{ "cells": 8, "levels": levels }, { "cells": 16 }],
-        });
-        let expected = "scene          a.vox\nmesh: load ms  0.250000\nsize           4, 5\n\n\
-                        cells\n8\n16\n\ngrids 0, levels:\nlevel  faces  voxels\n0          2  12,345";
-        assert_eq!(description(&object), expected);
-    }
-}

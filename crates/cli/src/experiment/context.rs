@@ -86,15 +86,3 @@ fn processor_name(cpuinfo: &str) -> Option<String> {
     let line = lines.find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_processor_has_a_name() {
-        let text = "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: a b\n";
-        assert_eq!(processor_name(text).as_deref(), Some("Some CPU @ 2 GHz"));
-        assert_eq!(processor_name("Hardware : x"), None);
-    }
-}
