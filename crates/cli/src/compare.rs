@@ -33,7 +33,7 @@ pub(super) struct CompareArgs {
         default_value = "0"
     )]
     threshold: Vec<Threshold>,
-    /// Picture of the differences, four times as bright
+    /// Picture of the differences of two pictures, four times as bright
     #[arg(long, value_name = "FILE")]
     diff: Option<PathBuf>,
     /// Replace existing files
@@ -85,9 +85,10 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
         _ => return Err(CliError::input("a picture and a buffer cannot be compared")),
     };
     if let Some(path) = &args.diff {
-        let (width, height, rgba) = comparison.diff.as_ref().ok_or_else(|| {
-            CliError::usage("--diff draws pictures and buffers of the form H x W or H x W x N")
-        })?;
+        let (width, height, rgba) = comparison
+            .diff
+            .as_ref()
+            .ok_or_else(|| CliError::usage("--diff draws the difference of pictures only"))?;
         let bytes = png::encode(*width, *height, rgba)
             .map_err(|e| CliError::new(Kind::Run, e).at(path.display()))?;
         whole::write(path, &bytes, args.force)?;
@@ -159,14 +160,17 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     }
     let entries: usize = a.shape.iter().skip(2).product();
     let entries = entries.max(1);
-    let (differing, max_abs, pixels) = match (&a.values, &b.values) {
+    let (differing, max_abs) = match (&a.values, &b.values) {
         (Values::U8(a), Values::U8(b)) => spread(a, b, entries, |v| f64::from(*v)),
         (Values::I32(a), Values::I32(b)) => spread(a, b, entries, |v| f64::from(*v)),
         (Values::F32(a), Values::F32(b)) => spread(a, b, entries, |v| f64::from(*v)),
         _ => return Err(CliError::new(Kind::Failed, "the buffers differ in type")),
     };
     let mut numbers = vec![
-        ("pixels", pixels.len() as f64),
+        (
+            "pixels",
+            (a.shape.iter().product::<usize>() / entries) as f64,
+        ),
         ("differing", differing as f64),
         ("max_abs", max_abs),
     ];
@@ -179,33 +183,27 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
             ("wrong_voxel", error.wrong_voxel as f64),
         ]);
     }
-    let side = |at: usize| a.shape.get(at).and_then(|&n| u32::try_from(n).ok());
-    let diff = side(0).zip(side(1)).map(|(height, width)| {
-        let shade = |&apart: &bool| if apart { [255; 4] } else { [0, 0, 0, 255] };
-        (width, height, pixels.iter().map(shade).collect())
-    });
     Ok(Comparison {
         kind: "buffer",
         numbers,
-        diff,
+        diff: None,
     })
 }
 
-/// The number of differing pixels, the largest difference, and whether each pixel differs.
+/// The number of differing pixels, and the largest difference.
 fn spread<T: PartialEq>(
     a: &[T],
     b: &[T],
     entries: usize,
     number: impl Fn(&T) -> f64,
-) -> (u64, f64, Vec<bool>) {
+) -> (usize, f64) {
     let pixels = a.chunks(entries).zip(b.chunks(entries));
-    let apart: Vec<bool> = pixels.map(|(p, q)| count_differing(p, q) > 0).collect();
+    let apart = pixels.filter(|(p, q)| count_differing(p, q) > 0).count();
     let differing = a.iter().zip(b).filter(|(x, y)| x != y);
     let max_abs = differing
         .map(|(x, y)| (number(x) - number(y)).abs())
         .fold(0.0, f64::max);
-    let differing = apart.iter().filter(|&&differs| differs).count();
-    (differing as u64, max_abs, apart)
+    (apart, max_abs)
 }
 
 fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::args::SceneArgs;
 use super::console::Console;
@@ -20,23 +20,6 @@ const MAX_WRITTEN: u64 = 1 << 28;
 const NODE_BYTES: u64 = 5;
 const PLY_BYTES: u64 = 27;
 const VOX_BYTES: u64 = 4;
-
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Conversion<'a> {
-    pub(super) input: &'a str,
-    pub(super) output: &'a Path,
-    pub(super) force: bool,
-    pub(super) scene: &'a SceneArgs,
-}
-
-impl Conversion<'_> {
-    pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
-        described["input"] = json!(self.input);
-        described["output"] = json!(self.output.display().to_string());
-        described["build_ms"] = json!(build_ms);
-        console.report("convert", described);
-    }
-}
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Written {
