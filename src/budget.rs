@@ -37,11 +37,9 @@ pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     }
 }
 
-/// Too little space on a disk.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("{}: {needed} bytes of disk are needed, and {free} are free", folder.display())]
 pub struct DiskShortage {
-    /// A folder on the disk.
     pub folder: PathBuf,
     pub needed: u64,
     pub free: u64,
@@ -153,7 +151,6 @@ mod tests {
         assert_eq!(filled("a test", 7u8, 3), Ok(vec![7; 3]));
         assert!(check("a test", u64::MAX).is_err() || available().is_none());
         assert_eq!(check("a test", 1), Ok(()));
-        // Free disk is that of the nearest folder.
         let below = std::env::temp_dir().join("not/there");
         assert_eq!(check_disk(&below, 1), Ok(()));
         let short = check_disk(&below, u64::MAX);

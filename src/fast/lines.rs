@@ -39,7 +39,6 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
-    /// At the first sample, and slopes by column and by row.
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
     pub(super) tables: [usize; 3],
@@ -52,7 +51,6 @@ pub(super) struct Lines<I: Isa> {
     doubt: I::F32x4,
 }
 
-/// Values at the first sample, and their slopes by column and by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InUnits<I: Isa> {
     moment: [I::F32x4; 3],
@@ -74,7 +72,6 @@ impl<I: Isa> InUnits<I> {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line<I: Isa> {
-    /// The direction: `v_n` and `v_l`, by function.
     next: I::F32x4,
     last: I::F32x4,
     moment: I::F32x4,
@@ -85,7 +82,6 @@ pub(super) struct Line<I: Isa> {
 pub(super) enum Meeting {
     Misses,
     Meets,
-    /// Nearer to the outline than the error.
     Doubt,
 }
 
@@ -111,7 +107,6 @@ impl<I: Isa> Lines<I> {
         let rows = isa.four(&constants.direction_lanes[1]).flip(turn);
         let middle = directions.middle.flip(turn);
         let first = middle.sub(columns.fma(half_across, rows.mul(half_down)));
-        // Where lines run both ways, the middle may belong to the others.
         let middle = middle.max(zero);
         let (next, last) = (middle.next(), middle.last());
         let width = next.add(last);
@@ -259,7 +254,6 @@ impl<I: Isa> Line<I> {
         next.fms(self.last, last.mul(self.next))
     }
 
-    /// The line about a block's centre. A block is 4 parts wide.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
         let shift = self.shift(isa, block);

@@ -64,7 +64,6 @@ impl<I: Isa> Projection<I> {
         let scale = side * side / (4.0 * across) * constants.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
         let spread = isa.splat(share).div(isa.splat(1.0 - share));
-        // Left and top with turned sign: outward is upward.
         let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
         let [x, y] = self.centre.map(|c| c as f32);
         let centre = isa.four(&[x, y, x, y]).flip(outward);
@@ -81,7 +80,6 @@ impl<I: Isa> Projection<I> {
         let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
         let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
         let bounds = isa.four(&bounds).flip(outward);
-        // NaN leaves the window unchanged.
         let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
         Window::of(end.floor().flip(outward).whole())
     }

@@ -12,7 +12,6 @@ pub struct QuadNode {
 }
 
 impl QuadNode {
-    /// The root: the whole picture and the area right of and below it.
     pub const ROOT: Self = Self {
         level: 0,
         x: 0,
@@ -61,7 +60,6 @@ pub struct FillVectors {
     empty_picture: Vec<u8>,
 }
 
-/// One more than the levels of a picture, for the number of its nodes.
 const LEVELS: usize = 32;
 
 /// Place of each level's first node among all nodes: `(4^level - 1) / 3`.

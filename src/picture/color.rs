@@ -11,9 +11,7 @@ use glam::DVec3;
 pub enum Shading {
     /// The file's colours.
     Flat,
-    /// A key light that moves with the camera, over an ambient floor.
-    ///
-    /// By Lambert's law.
+    /// A key light that moves with the camera, over an ambient floor, by Lambert's law.
     #[default]
     Lambert,
 }

@@ -9,7 +9,6 @@ use super::rows::{Buffer, Rows};
 /// Beginning of every stream; changes with the stream's format.
 const STREAM: &[u8] = b"shiftvox picture 1\n";
 
-/// The buffers of the stream, in its order.
 const BUFFERS: [Buffer; 5] = [
     Buffer::Color,
     Buffer::Depth,

@@ -11,7 +11,6 @@ pub use png::{DecodingError, EncodingError};
 pub struct Image {
     pub width: u32,
     pub height: u32,
-    /// sRGB and alpha, row by row from the top left.
     pub rgba: Vec<[u8; 4]>,
 }
 
@@ -82,7 +81,6 @@ fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
             pixels.iter().map(|&[g, a]| [g, g, g, a]).collect()
         }
         ColorType::Rgba => bytes.as_chunks::<4>().0.to_vec(),
-        // A palette was expanded.
         ColorType::Rgb | ColorType::Indexed => {
             let (pixels, _) = bytes.as_chunks::<3>();
             pixels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect()
@@ -95,7 +93,6 @@ fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
     })
 }
 
-/// Rounds to the nearest: 65535 / 255 = 257.
 fn to_8_bits(channel: u16) -> u8 {
     ((u32::from(channel) + 128) / 257) as u8
 }

@@ -16,13 +16,9 @@ const MAX_VISITS: u32 = 4_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Up {
-    /// +Y.
-    ///
-    /// The custom of meshes; the front looks towards +Z.
+    /// +Y, the custom of meshes; the front looks towards +Z.
     Y,
-    /// +Z.
-    ///
-    /// The custom of voxel files; the front looks towards -Y.
+    /// +Z, the custom of voxel files; the front looks towards -Y.
     Z,
 }
 
@@ -52,12 +48,10 @@ impl Up {
     }
 }
 
-/// In world units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     pub low: DVec3,
     pub high: DVec3,
-    /// Points whose hull contains all voxels.
     pub hull: Vec<DVec3>,
 }
 
@@ -158,7 +152,6 @@ impl Bounds {
             })
             .collect();
         rings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
-        // Only the widest ring of each height matters.
         rings.dedup_by_key(|ring| ring.0);
         let turns =
             (0..RING_POINTS).map(|i| sin_cos(360.0 * f64::from(i) / f64::from(RING_POINTS)));
@@ -191,7 +184,6 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
     while let Some((node, at_level, at)) = open.pop() {
         let mask = view.mask(node);
         if at_level == level || mask == 0 {
-            // A leaf above the level has only its own corners.
             let span = 1usize << (level - at_level);
             for corner in 0..8usize {
                 let place = |k: usize| at[k] * span + span * (corner >> (2 - k) & 1);
@@ -220,7 +212,6 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
 pub struct Direction {
     /// Around the up axis: 0 from the front, 90 from the right.
     pub azimuth: f64,
-    /// Above the horizon.
     pub elevation: f64,
 }
 
@@ -283,7 +274,7 @@ fn tidy(point: DVec3, scale: f64) -> DVec3 {
             -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),
             _ => x,
         };
-        // Adding zero turns -0 into 0.
+        // Not -0.
         rounded + 0.0
     };
     DVec3::new(round(point.x), round(point.y), round(point.z))

@@ -1,7 +1,6 @@
 //! `compare`: the difference of two pictures or two buffers.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::Args;
 use serde_json::json;
@@ -30,9 +29,10 @@ pub(super) struct CompareArgs {
         long,
         value_name = "[NAME=]VALUE",
         value_delimiter = ',',
-        default_value = "0"
+        default_value = "0",
+        value_parser = threshold
     )]
-    threshold: Vec<Threshold>,
+    threshold: Vec<(String, f64)>,
     /// Picture of the differences of two pictures, four times as bright
     #[arg(long, value_name = "FILE")]
     diff: Option<PathBuf>,
@@ -41,26 +41,12 @@ pub(super) struct CompareArgs {
     force: bool,
 }
 
-#[derive(Debug, Clone, PartialEq)]
-struct Threshold {
-    name: String,
-    bound: f64,
-}
-
-impl FromStr for Threshold {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (name, bound) = text.split_once('=').unwrap_or(("differing", text));
-        let bound: f64 = bound.parse().map_err(|e| format!("{e}: `{bound}`"))?;
-        if bound.is_nan() {
-            return Err("a bound must be a number".to_owned());
-        }
-        Ok(Self {
-            name: name.to_owned(),
-            bound,
-        })
-    }
+/// Reads a bound and its name.
+fn threshold(text: &str) -> Result<(String, f64), String> {
+    let (name, bound) = text.split_once('=').unwrap_or(("differing", text));
+    let number = bound.parse().ok().filter(|bound: &f64| !bound.is_nan());
+    let number = number.ok_or_else(|| format!("`{bound}` is no number"))?;
+    Ok((name.to_owned(), number))
 }
 
 enum Content {
@@ -190,7 +176,6 @@ fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
     })
 }
 
-/// The number of differing pixels, and the largest difference.
 fn spread<T: PartialEq>(
     a: &[T],
     b: &[T],
@@ -226,8 +211,8 @@ fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Resu
     console.data(report::table(&[comparison.kind, "value"], rows))
 }
 
-fn judge(thresholds: &[Threshold], numbers: &[(&str, f64)]) -> Result<(), CliError> {
-    for Threshold { name, bound } in thresholds {
+fn judge(thresholds: &[(String, f64)], numbers: &[(&str, f64)]) -> Result<(), CliError> {
+    for (name, bound) in thresholds {
         let Some((_, value)) = numbers.iter().find(|(found, _)| found == name) else {
             let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
             let message = format!("--threshold: there is no `{name}` here");

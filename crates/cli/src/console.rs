@@ -164,7 +164,6 @@ fn harmless(text: &str) -> Cow<'_, str> {
     text.chars().map(shown).collect()
 }
 
-/// Whether stderr is a terminal that can rewrite its line.
 fn is_drawn_on() -> bool {
     let has_name = |name: std::ffi::OsString| !name.is_empty() && name != "dumb";
     io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)
@@ -223,7 +222,6 @@ impl Progress for Bar {
             started: Instant::now(),
             written: None,
         };
-        // Work of known length is written at its first step.
         if steps == 0 {
             work.write();
         }

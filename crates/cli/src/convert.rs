@@ -87,7 +87,6 @@ impl ConvertArgs {
             || self.hybrid
     }
 
-    /// Prints the document of a file that was built of a mesh.
     pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
         described["input"] = json!(self.input);
         described["output"] = json!(self.output.display().to_string());
@@ -165,7 +164,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     let verify = scenes::Verify::All;
     let scene = scenes::open_source(source, &args.input, &args.scene, verify, started, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    scene_files::report_written(
+        "convert",
+        &args.input,
+        &args.output,
+        ("voxels", &written),
+        console,
+    );
     Ok(())
 }
 
@@ -216,6 +221,12 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    scene_files::report_written(
+        "convert",
+        &args.input,
+        &args.output,
+        ("voxels", &written),
+        console,
+    );
     Ok(())
 }

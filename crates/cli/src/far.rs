@@ -30,7 +30,6 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     let beside = whole::folder_of(output);
     whole::make_folder(beside)?;
     let outside = Outside {
-        // The mesh and the program itself are resident.
         memory: args.memory.map(|memory| {
             let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
             (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
@@ -96,7 +95,6 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
 /// One of so many parts of a budget is left to the allocator.
 const ALLOCATORS_SHARE: u64 = 8;
 
-/// Fewer rays through a voxel are warned of.
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 
 /// Least bytes of memory per triangle of a build without a budget.
@@ -124,8 +122,7 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     }
 }
 
-/// Places of copies of an object in a box: in rows on the ground, a tenth of the longest side apart, each a quarter turn
-/// further than the one before.
+/// Places of copies in rows on the ground, a tenth of the longest side apart, each a quarter turn further.
 fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
     let axis = up.axis();
     // The next axes; turned about `axis`, the first becomes the second.
@@ -170,7 +167,6 @@ fn describe(file: &FarFile, name: &str) -> Value {
     };
     let opacity = |kind| share(&|_, opacity| opacity == kind);
     let surface = |n: &Node| if n.is_leaf() { 0 } else { u64::from(n.surface) };
-    // Not negative: the file was checked for it.
     let occluded = touched - kept;
     let last = nodes.iter().map(|n| n.level).max().unwrap_or(0);
     let levels = (0..=last).map(|level| {

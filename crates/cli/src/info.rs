@@ -158,7 +158,6 @@ fn opacities(graph: &Graph) -> String {
     )
 }
 
-/// Different colours of the nodes without children.
 fn distinct_leaf_colors(graph: &Graph) -> usize {
     let view = graph.view();
     let mut seen = vec![0u64; (1 << 24) / 64];
@@ -199,7 +198,6 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
     levels
 }
 
-/// Least bytes per node of merging.
 const MERGE_BYTES: u64 = 16;
 
 /// Nodes over those left when equal subtrees are merged, with attributes and by shape alone.

@@ -235,7 +235,6 @@ fn no_threads(error: rayon::ThreadPoolBuildError) -> CliError {
 }
 
 fn run_command(cli: Cli, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
-    // Only the page shows flags as the user wrote them.
     let _ = matches;
     match cli.command {
         None => demo::run(console),

@@ -43,7 +43,6 @@ pub(super) enum Choice {
 #[derive(Debug, Clone)]
 pub(super) struct Choices(Vec<Choice>);
 
-/// The methods of a list without repetitions.
 pub(super) fn of_list(list: &[Choices]) -> Vec<Choice> {
     let mut all: Vec<Choice> = Vec::new();
     for choice in list.iter().flat_map(|choices| &choices.0) {
@@ -178,7 +177,6 @@ impl std::str::FromStr for Choices {
                 .ok_or_else(|| format!("`{part}` is no setting; expected KEY=VALUE[+VALUE]"))?;
             alternatives.push((key, values.split('+').collect()));
         }
-        // `paper` is a setting of `any`.
         let name = match name {
             "paper" => {
                 alternatives.extend([("tolerance", vec!["inf"]), ("cage", vec!["corners"])]);

@@ -44,7 +44,6 @@ impl Context {
     pub(crate) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
         let mut options = json!(options);
         if options["tolerance_px"].is_null() {
-            // JSON has no infinity.
             options["tolerance_px"] = json!("inf");
         }
         json!({

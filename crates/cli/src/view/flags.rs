@@ -10,7 +10,6 @@ use shiftvox_view::{FLAGS, Flags, Request};
 use crate::args::{EngineArgs, PictureArgs};
 use crate::error::CliError;
 
-/// The flags of a page that `model` also has.
 pub(super) const MODEL_FLAGS: &str = "bits cage coverage frac lod overflow tolerance";
 
 #[derive(Debug, Parser)]
@@ -62,7 +61,6 @@ fn given<'m>(
     })
 }
 
-/// The flags of `shiftvox view` with which pages begin.
 pub(super) fn first(matches: &ArgMatches) -> Flags {
     let paper = [
         ("cage", "corners"),
