@@ -1,4 +1,4 @@
-//! The program: its command lines and what it writes.
+//! Tests of the program: command lines, and the files that it writes.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bench;
