@@ -94,16 +94,17 @@ impl Case {
         }
         let found = document.pointer(first).unwrap_or(&Value::Null);
         let expected = words.next().unwrap_or("");
+        let text = found.to_string();
         let number = || expected.parse::<f64>().unwrap_or(f64::NAN);
         match relation {
-            "=" => found.to_string() == expected,
-            "!=" => found.to_string() != expected,
+            "=" => text == expected,
+            "!=" => text != expected,
             "<" => found.as_f64().is_some_and(|found| found < number()),
             ">" => found.as_f64().is_some_and(|found| found > number()),
             "#" => found
                 .as_array()
                 .is_some_and(|list| list.len() as f64 == number()),
-            "~" => found.to_string().contains(expected),
+            "~" => text.contains(expected),
             _ => !found.is_null(),
         }
     }
