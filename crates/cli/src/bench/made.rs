@@ -82,7 +82,6 @@ impl Made {
                     };
                     let left = timed(|| decimate(&mesh, &how));
                     let (left, ms) = left.map_err(|e| CliError::new(Kind::Limit, e))?;
-                    // Nothing is left of a mesh with too few triangles.
                     if let Some(left) = left {
                         let (mesh, bytes) = compact(&left);
                         made.decimated.push(((one_of, mesh, bytes), ms));

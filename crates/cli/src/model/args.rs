@@ -112,7 +112,6 @@ pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliE
     Hardware::from_toml(&text).map_err(|error| CliError::input(error).at(name))
 }
 
-/// Default width of a word: that of the shipped hardware.
 const BITS: u32 = 32;
 
 impl ModelArgs {

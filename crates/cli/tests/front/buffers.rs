@@ -1,90 +1,52 @@
 //! Buffers written beside a picture: shapes, types, and that they agree.
 
-use std::fs;
-use std::path::Path;
-
-use shiftvox::picture::npy::{self, Array, Values};
+use shiftvox::picture::npy::{self, Values};
 use shiftvox::picture::png;
 
-use crate::common::Run;
-
-const SIZE: (usize, usize) = (24, 16);
-
-fn render(folder: &Path, aa: &str) {
-    let mut command = crate::common::command();
-    command.current_dir(folder).args([
-        "render",
-        "gen:sphere,depth=3",
-        "--size",
-        "24x16",
-        "--aa",
-        aa,
-        "-o",
-        "a.png",
-        "--force",
-        "--background",
-        "none",
-        "--aov",
-        "depth,normal,voxel,node,records,color",
-    ]);
-    command.assert().success();
-}
-
-fn read(folder: &Path, name: &str) -> Array {
-    npy::decode(&fs::read(folder.join(format!("a.{name}.npy"))).unwrap()).unwrap()
-}
-
-fn floats(array: &Array) -> &[f32] {
-    match &array.values {
-        Values::F32(values) => values,
-        other => panic!("expected f32, found {other:?}"),
-    }
-}
-
-fn integers(array: &Array) -> &[i32] {
-    match &array.values {
-        Values::I32(values) => values,
-        other => panic!("expected i32, found {other:?}"),
-    }
-}
+use crate::program::Folder;
 
 #[test]
 fn shapes_types_and_agreement() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    for aa in ["1", "2"] {
-        render(folder, aa);
-        let (width, height) = SIZE;
-        let [depth, normal, voxel, node, records, color] =
-            ["depth", "normal", "voxel", "node", "records", "color"].map(|n| read(folder, n));
-        assert_eq!(depth.shape, [height, width]);
-        assert_eq!(normal.shape, [height, width, 3]);
-        assert_eq!(voxel.shape, [height, width, 4]);
-        assert_eq!(node.shape, [height, width]);
-        assert_eq!(records.shape, [height, width]);
-        assert_eq!(color.shape, [height, width, 4]);
-        let Values::U8(color) = &color.values else {
-            panic!("colour is not u8");
+    for aa in [1, 2] {
+        let folder = Folder::new();
+        folder.run(
+            &format!(
+                "render gen:sphere,depth=3 --size 24x16 --aa {aa} -o a.png --background none \
+                 --aov depth,normal,voxel,node,records,color"
+            ),
+            0,
+        );
+        let read = |name: &str| npy::decode(&folder.get(&format!("a.{name}.npy"))).unwrap();
+        let all = ["depth", "records", "normal", "voxel", "node", "color"].map(read);
+        let shapes = all.each_ref().map(|array| &array.shape[..]);
+        let [flat, vector, four]: [&[usize]; 3] = [&[16, 24], &[16, 24, 3], &[16, 24, 4]];
+        assert_eq!(shapes, [flat, flat, vector, four, flat, four]);
+        let [
+            Values::F32(depth),
+            Values::F32(records),
+            Values::F32(normal),
+            Values::I32(voxel),
+            Values::I32(node),
+            Values::U8(color),
+        ] = all.map(|array| array.values)
+        else {
+            panic!("wrong types");
         };
-        let picture = png::decode(&fs::read(folder.join("a.png")).unwrap()).unwrap();
+        let picture = png::decode(&folder.get("a.png")).unwrap();
         assert_eq!(picture.rgba.as_flattened(), &color[..]);
-        assert!(floats(&records).iter().sum::<f32>() > 0.0);
-        let mut seen = 0;
-        for at in 0..width * height {
-            let drawn = integers(&node)[at] >= 0;
-            seen += u32::from(drawn);
-            assert_eq!(floats(&depth)[at].is_finite(), drawn);
-            assert_eq!(integers(&voxel)[4 * at + 3] >= 0, drawn);
-            let n = &floats(&normal)[3 * at..][..3];
-            let length = n.iter().map(|c| c * c).sum::<f32>();
-            assert!((length - f32::from(u8::from(drawn))).abs() < 1e-5);
-            if aa == "1" {
-                assert_eq!(color[4 * at + 3], if drawn { 255 } else { 0 });
-            }
+        assert!(records.iter().sum::<f32>() > 0.0);
+        for (at, node) in node.iter().enumerate() {
+            let is_drawn = *node >= 0;
+            assert_eq!(depth[at].is_finite(), is_drawn);
+            assert_eq!(voxel[4 * at + 3] >= 0, is_drawn);
+            let squares = normal[3 * at..][..3].iter().map(|c| c * c);
+            let length: f32 = squares.sum();
+            assert!((length - f32::from(u8::from(is_drawn))).abs() < 1e-5);
+            assert!(aa == 2 || color[4 * at + 3] == 255 * u8::from(is_drawn));
         }
-        assert!(seen > 20, "{seen} pixels drawn");
-        let alphas = color.iter().skip(3).step_by(4);
-        let partial = alphas.filter(|&&alpha| alpha != 0 && alpha != 255).count();
-        assert_eq!(partial > 0, aa == "2", "{partial} pixels partly covered");
+        assert!(node.iter().filter(|node| **node >= 0).count() > 20);
+        let mut alphas = color.iter().skip(3).step_by(4);
+        let has_partial = alphas.any(|&alpha| alpha != 0 && alpha != 255);
+        assert_eq!(has_partial, aa == 2);
     }
 }

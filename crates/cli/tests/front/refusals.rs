@@ -2,102 +2,76 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::common::{Assert, Run};
-use crate::program::{folder, run, shiftvox, stderr_of, stdout_of, words};
-
-fn sh(folder: &Path, script: &str) -> Assert {
-    let mut command = Command::new("sh");
-    command.current_dir(folder).args(["-c", script]);
-    command.arg(crate::common::program()).assert()
-}
+use crate::program::Folder;
 
 #[test]
 fn names_are_shown_escaped() {
-    let folder = folder();
-    let odd = "t\x1b[2J.vox";
-    run(
-        folder.path(),
-        &["generate", "gen:sphere,depth=3", "-o", odd],
-    )
-    .success();
-    let draw = ["render", odd, "--size", "16", "-o", "{stem}.png"];
-    let told = run(folder.path(), &draw).success();
-    assert!(!stderr_of(&told).contains('\x1b'), "{}", stderr_of(&told));
-    assert!(folder.path().join("t\x1b[2J.png").exists());
-    run(folder.path(), &draw).code(1);
-    let missing = run(folder.path(), &["info", "\x1b[31mred.vox"]).code(4);
-    assert!(
-        !stderr_of(&missing).contains('\x1b'),
-        "{}",
-        stderr_of(&missing)
-    );
+    let folder = Folder::new();
+    let odd = "t\x1b[2J";
+    folder.run(&format!("generate gen:sphere,depth=3 -o {odd}.vox"), 0);
+    let draw = format!("render {odd}.vox --size 16 -o {{stem}}.png");
+    for (line, code) in [(&*draw, 0), (&*draw, 1), ("info \x1b[31mred.vox", 4)] {
+        let [_, told] = folder.run(line, code);
+        assert!(!told.contains('\x1b'), "{told}");
+    }
+    assert_eq!(folder.names(), [format!("{odd}.png"), format!("{odd}.vox")]);
 }
 
 #[test]
 fn a_picture_and_its_buffers_are_all_written_or_none() {
-    let folder = folder();
-    let count = || fs::read_dir(folder.path()).unwrap().count();
+    let folder = Folder::new();
     // The picture fits, its depths do not; the signal of a file that is too large ends nothing.
     let draw = "ulimit -f 256; exec \"$0\" render gen:sphere,depth=3 --size 512 --aov depth -o a.png --force";
-    assert!(stderr_of(&sh(folder.path(), draw).code(1)).contains("a."));
-    assert_eq!(count(), 0);
-    let names = ["a.png", "a.depth.npy"].map(|name| folder.path().join(name));
-    for name in &names {
-        fs::write(name, b"old").unwrap();
+    let [_, told] = folder.sh(draw, 1);
+    assert!(told.contains("a."), "{told}");
+    assert_eq!(folder.names(), [""; 0]);
+    let names = ["a.depth.npy", "a.png"];
+    for name in names {
+        folder.put(name, b"old");
     }
-    sh(folder.path(), &format!("trap '' XFSZ; {draw}")).code(1);
-    assert!(names.iter().all(|name| fs::read(name).unwrap() == b"old"));
-    assert_eq!(count(), 2);
+    folder.sh(&format!("trap '' XFSZ; {draw}"), 1);
+    assert_eq!(names.map(|name| folder.text(name)), ["old"; 2]);
+    assert_eq!(folder.names(), names);
 }
 
 #[test]
 #[ignore = "needs the program `script`, which makes a terminal"]
 fn progress_is_for_terminals_that_can_draw_it() {
-    let folder = folder();
+    let folder = Folder::new();
     let drawn = |term: &str| {
         let line = "\"$PROGRAM\" convert gen:terrain,depth=8 a.vxg --force";
         let script = format!(
             "PROGRAM=\"$0\" TERM={term} SHELL=/bin/sh script -qec '{line}' /dev/null < /dev/null"
         );
-        stdout_of(&sh(folder.path(), &script).success())
+        let [stdout, _] = folder.sh(&script, 0);
+        stdout
     };
-    assert!(
-        ["", "dumb"]
-            .iter()
-            .all(|term| !drawn(term).contains(['\x1b', '%']))
-    );
+    for term in ["", "dumb"] {
+        assert!(!drawn(term).contains(['\x1b', '%']));
+    }
     assert!(drawn("xterm").contains('%'));
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_told_by_help_too() {
-    let folder = folder();
-    for line in [
-        "--help",
-        "render --help",
-        "--version",
-        "man",
-        "info gen:sphere,depth=2",
-    ] {
-        sh(folder.path(), &format!("exec \"$0\" {line} > /dev/full")).code(1);
+    let folder = Folder::new();
+    for line in ["--help", "--version", "man", "info gen:sphere,depth=2"] {
+        folder.sh(&format!("exec \"$0\" {line} > /dev/full"), 1);
     }
-    sh(folder.path(), "\"$0\" --help | true").success();
+    folder.sh("\"$0\" --help | true", 0);
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn a_mapped_file_that_is_cut_short_is_told() {
-    let folder = folder();
-    run(folder.path(), &words("convert gen:terrain,depth=7 a.vxg")).success();
-    let mut child = shiftvox(folder.path())
-        .args(words(
-            "render a.vxg --repeat 1000000 --size 128 -o a.png --json",
-        ))
+    let folder = Folder::new();
+    folder.run("convert gen:terrain,depth=7 a.vxg", 0);
+    let mut command = folder.command("render a.vxg --repeat 1000000 --size 128 -o a.png --json");
+    let mut child = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -112,9 +86,7 @@ fn a_mapped_file_that_is_cut_short_is_told() {
         assert!(child.try_wait().unwrap().is_none());
     }
     std::thread::sleep(Duration::from_millis(200));
-    let file = fs::File::options()
-        .write(true)
-        .open(folder.path().join("a.vxg"));
+    let file = fs::File::options().write(true).open(folder.at("a.vxg"));
     file.unwrap().set_len(512).unwrap();
     let output = child.wait_with_output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
@@ -125,5 +97,5 @@ fn a_mapped_file_that_is_cut_short_is_told() {
     );
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["exit_code"], 4);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(folder.names(), ["a.vxg"]);
 }
