@@ -18,7 +18,7 @@
 use hwmodel::OpClass;
 use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds};
 use shiftvox::frame::Frame;
-use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::machine::Machine;
 use shiftvox::project::SetupOptions;
 
 use crate::common::{camera, octree, setup};
@@ -99,23 +99,25 @@ const SEQUENTIAL: &str = "
 
 #[test]
 fn a_tiny_scene_in_each_organisation() {
-    let mut organisation = Organisation::default();
-    follow(hardware(), organisation, CHILDREN, 84);
-    organisation.stack = StackHolds::Parents;
-    follow(hardware(), organisation, PARENTS, 78);
-    organisation.leaf_masks = true;
-    follow(hardware(), organisation, LEAF_MASKS, 76);
-    organisation.stack = StackHolds::Path;
-    follow(hardware(), organisation, LEAF_MASKS, 76);
-    organisation.hidden_unread = true;
-    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
+    use StackHolds::{Parents, Path};
+    let mut all = Organisation::default();
+    let mut next = |change: fn(&mut Organisation), turns, cycles| {
+        change(&mut all);
+        follow(hardware(), all, turns, cycles);
+    };
+    next(|_| {}, CHILDREN, 84);
+    next(|all| all.stack = Parents, PARENTS, 78);
+    next(|all| all.leaf_masks = true, LEAF_MASKS, 76);
+    next(|all| all.stack = Path, LEAF_MASKS, 76);
+    next(|all| all.hidden_unread = true, HIDDEN_UNREAD, 79);
     // B's voxels are in its own mask: a brick of one level.
-    organisation.bricks = true;
-    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
-    organisation.tile_levels = 1;
-    follow(hardware(), organisation, TILES, 115);
-    (organisation.tile_levels, organisation.joined_fill) = (0, true);
-    follow(hardware(), organisation, JOINED_FILL, 53);
+    next(|all| all.bricks = true, HIDDEN_UNREAD, 79);
+    next(|all| all.tile_levels = 1, TILES, 115);
+    next(
+        |all| (all.tile_levels, all.joined_fill) = (0, true),
+        JOINED_FILL,
+        53,
+    );
 }
 
 #[test]
@@ -141,35 +143,30 @@ fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycle
     hardware.organisation = organisation;
     let mut frame = Frame::new(4, 4, false);
     let mut recorder = Recorder::new(u64::MAX);
-    let simulated = Machine::new(MachineOptions::default())
+    let simulated = Machine::default()
         .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-    // The expected visits.
-    let starts = organisation.tile_levels == 0;
-    let lines = turns.lines().skip(1).enumerate();
-    let listed = lines.flat_map(|(number, line)| {
-        let record = match starts {
-            true => (number as u64).checked_sub(1).unwrap_or(START),
-            false => number as u64,
-        };
-        line.split_whitespace().map(move |visit| (record, visit))
-    });
+    // Tiles have no first turn of the whole picture.
+    let first = if organisation.tile_levels == 0 {
+        START
+    } else {
+        0
+    };
+    let records = std::iter::successors(Some(first), |record| Some(record.wrapping_add(1)));
     let mut now = 0;
-    let mut visits = recorder.visits().iter();
-    for (record, visit) in listed {
-        let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
-        let found = visits.next().unwrap();
-        assert_eq!(
-            (found.record, format!("{:?}", found.stage)),
-            (record, stage.to_owned())
-        );
-        assert_eq!(found.begins, now, "{stage} of {record}, {organisation:?}");
-        now += takes.parse::<u64>().unwrap();
-        assert_eq!(found.ends, now, "{stage} of {record}, {organisation:?}");
+    let mut listed = Vec::new();
+    for (record, line) in records.zip(turns.lines().skip(1)) {
+        for visit in line.split_whitespace() {
+            let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
+            let begins = now;
+            now += takes.parse::<u64>().unwrap();
+            listed.push((record, stage.to_owned(), begins, now));
+        }
     }
-    assert!(visits.next().is_none());
-    assert_eq!(now, cycles);
-    assert_eq!(simulated.cycles.cycles, cycles, "{organisation:?}");
+    let visits = recorder.visits().iter();
+    let found = visits.map(|v| (v.record, format!("{:?}", v.stage), v.begins, v.ends));
+    assert_eq!(found.collect::<Vec<_>>(), listed, "{organisation:?}");
+    assert_eq!([now, simulated.cycles.cycles], [cycles; 2]);
 }
