@@ -6,27 +6,16 @@ use hwmodel::count::Counter;
 use hwmodel::cycles::Organisation;
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
-use shiftvox::frame::{Blend, Frame, NO_NODE};
+use shiftvox::frame::{Blend, Frame};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
-use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions};
+use shiftvox::project::{Camera, Coverage, Engine, SetupOptions};
 
-fn alpha(lod_px: f64) -> SetupOptions {
+fn all_voxels() -> SetupOptions {
     SetupOptions {
-        lod_px,
+        lod_px: 0.0,
         ..SetupOptions::of(Coverage::Alpha)
     }
-}
-
-fn draw_lit(graph: &Graph, light: &[[u16; 3]], setup: &FrameSetup) -> Frame {
-    let view = GraphView {
-        light,
-        ..graph.view()
-    };
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = Machine::default().render(&view, setup, &mut frame);
-    drawn.expect("no overflow");
-    frame
 }
 
 /// The blend of a ray, nearest voxel first: `SPEC.md`, section 11, in products and quotients. `None`: it grazes one.
@@ -103,37 +92,18 @@ proptest! {
         prop_assume!((camera.eye - camera.eye.round()).abs().min_element() > 1e-3);
         let graph = with_opacities(&graph, &opacities);
         let light = lights(&graph);
-        let setup = setup(&graph, &camera, &alpha(0.0));
-        let frame = draw_lit(&graph, &light, &setup);
-        let blend = frame.blend.as_ref().expect("blended");
-        for (sample, &drawn) in (0..).zip(blend) {
+        let setup = setup(&graph, &camera, &all_voxels());
+        let view = GraphView { light: &light, ..graph.view() };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let drawn = Machine::default().render(&view, &setup, &mut frame);
+        prop_assert!(drawn.is_ok());
+        for (sample, drawn) in (0..).zip(frame.blend.expect("blended")) {
             let (x, y) = (sample % camera.width, sample / camera.width);
             let at = [x, y].map(|c| f64::from(c) + 0.5);
             if let Some(right) = reference(&graph, &light, &camera, at) {
                 prop_assert_eq!(drawn, right, "at {}, {}", x, y);
             }
         }
-    }
-
-    #[test]
-    fn opaque_voxels_are_drawn_as_under_exact(
-        (graph, camera) in any_view(any_graph(1..5), 5..60),
-        lod_px in prop_oneof![Just(0.0), Just(1.0)],
-        stored in any::<bool>(),
-    ) {
-        let options = alpha(lod_px);
-        let exact = SetupOptions { coverage: Coverage::Exact, ..options };
-        let (right, _) = draw(&graph, &setup(&graph, &camera, &exact));
-        let graph = if stored { with_opacities(&graph, &[[255; 3]]) } else { graph };
-        let light = lights(&graph);
-        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &options));
-        prop_assert_eq!(&right.voxel, &frame.voxel);
-        let blend = right.node.iter().map(|&node| match node {
-            NO_NODE => Blend::default(),
-            node => Blend { left: 0, light: light[node as usize].map(|c| 256 * u32::from(c)) },
-        });
-        prop_assert_eq!(frame.blend, Some(blend.collect()));
-        prop_assert_eq!(right.node, frame.node);
     }
 }
 
@@ -143,7 +113,7 @@ fn blending_costs_what_its_steps_do() {
     for size in [1, 7, 41] {
         let graph = with_opacities(&octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
         let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
-        let setup = setup(&graph, &camera, &alpha(0.0));
+        let setup = setup(&graph, &camera, &all_voxels());
         let (stats, counter) = watch(&graph, &setup, Organisation::default(), Counter::new());
         let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
         assert!(solids == 1 && blended > 0, "{size}: {stats:?}");

@@ -70,7 +70,7 @@ fn fast_equals_the_oracle_at_every_sample() {
     let mut dice = Dice::new(16);
     let mut sums = [0; 3];
     while sums[0] < wanted {
-        let graph = SCENES[dice.below(SCENES.len() as u32) as usize].graph();
+        let (_, graph) = &SCENES[dice.below(SCENES.len() as u32) as usize];
         let camera = any_camera(graph, &mut dice);
         let options = SetupOptions {
             lod_px: dice.of(&[0.0, 1.0, 0.5, 3.0, 0.1]),

@@ -26,9 +26,8 @@ fn machine() -> Machine {
 
 /// Every test scene from random places, with either cage.
 fn frames() -> impl ParallelIterator<Item = (&'static shiftvox::graph::Graph, FrameSetup)> {
-    SCENES.par_iter().flat_map_iter(|scene| {
-        let graph = scene.graph();
-        let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(scene.name.as_bytes()) ^ 19);
+    SCENES.par_iter().flat_map_iter(|(name, graph)| {
+        let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(name.as_bytes()) ^ 19);
         (0..CAMERAS).filter_map(move |number| {
             let place = PLACES[number % PLACES.len()];
             let camera = camera_at(place, graph, (37, 29), &mut dice);

@@ -1,5 +1,4 @@
-//! Rules of the source: the machine computes with words alone, and files name the rules of `SPEC.md` that they
-//! implement.
+//! The machine computes with words alone.
 //!
 //! A `Word` has no operators. Its ways to a plain number are `to_host()` and, for a probe, `Wires::show()`. So a line
 //! of the machine that takes a number past the datapath holds `to_host`, a product, a quotient, or host arithmetic by
@@ -7,7 +6,7 @@
 //! shifts of plain numbers.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Lines with a reason. Another one is a decision: change the number.
 const MARKED: usize = 27;
@@ -18,15 +17,11 @@ const MEASURES: [&str; 3] = ["directed.rs", "positions.rs", "widths.rs"];
 const HOST: &str = "to_host,vector::,cross(,dot(,DVec3, * , / , % , *= , /= , %= ,_mul,_div,_rem,mul_,div_,rem_,\
                     .mul(,.div(,.rem(,.pow(,.product(";
 
-fn path_of(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
-}
-
 /// The machine's lines: file, code, and whether a comment gives a reason.
 fn lines() -> Vec<(String, String, bool)> {
     let mut lines = Vec::new();
     for folder in ["src/machine", "src/machine/instruments"] {
-        for entry in fs::read_dir(path_of(folder)).unwrap() {
+        for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
             let path = entry.unwrap().path();
             let text = fs::read_to_string(&path).unwrap_or_default();
             lines.extend(text.lines().map(|line| {
@@ -57,23 +52,4 @@ fn numbers_are_taken_from_words_only_for_a_reason() {
         marked += usize::from(has_reason);
     }
     assert_eq!(marked, MARKED);
-}
-
-#[test]
-fn each_file_names_the_rules_that_it_implements() {
-    let spec = fs::read_to_string(path_of("SPEC.md")).unwrap();
-    let rows: Vec<&str> = spec.lines().filter(|row| row.starts_with("| R")).collect();
-    assert!(rows.len() > 9);
-    for row in rows {
-        let mut cells = row.trim_matches('|').split('|').map(str::trim);
-        let rule = cells.next().and_then(|cell| cell.split(' ').next());
-        for (engine, files) in ["machine", "fast", "rays"].into_iter().zip(cells) {
-            for file in files.split('`').filter(|name| name.ends_with(".rs")) {
-                let text = fs::read_to_string(path_of(&format!("src/{engine}/{file}"))).unwrap();
-                let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.');
-                let is_named = words.any(|word| Some(word.trim_end_matches('.')) == rule);
-                assert!(is_named, "src/{engine}/{file}: {rule:?}");
-            }
-        }
-    }
 }
