@@ -16,7 +16,7 @@
 //! to which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
-use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds};
+use hwmodel::cycles::{Hardware, Organisation, Recorder, StackHolds};
 use shiftvox::frame::Frame;
 use shiftvox::machine::Machine;
 use shiftvox::project::SetupOptions;
@@ -24,8 +24,9 @@ use shiftvox::project::SetupOptions;
 use crate::common::{camera, octree, setup};
 
 /// One record at a time, operations that cost nothing, memories of one port.
-fn hardware() -> Hardware {
+fn hardware(organisation: Organisation) -> Hardware {
     let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.organisation = organisation;
     hardware.wires = OpClass::ALL.to_vec();
     hardware.units.clear();
     let caches = [&mut hardware.node_cache, &mut hardware.attribute_cache];
@@ -103,7 +104,7 @@ fn a_tiny_scene_in_each_organisation() {
     let mut all = Organisation::default();
     let mut next = |change: fn(&mut Organisation), turns, cycles| {
         change(&mut all);
-        follow(hardware(), all, turns, cycles);
+        follow(&hardware(all), turns, cycles);
     };
     next(|_| {}, CHILDREN, 84);
     next(|all| all.stack = Parents, PARENTS, 78);
@@ -113,60 +114,43 @@ fn a_tiny_scene_in_each_organisation() {
     // B's voxels are in its own mask: a brick of one level.
     next(|all| all.bricks = true, HIDDEN_UNREAD, 79);
     next(|all| all.tile_levels = 1, TILES, 115);
-    next(
-        |all| (all.tile_levels, all.joined_fill) = (0, true),
-        JOINED_FILL,
-        53,
-    );
-}
-
-#[test]
-fn a_tiny_scene_step_by_step() {
-    let mut hardware = hardware();
-    hardware.sequential = true;
-    let organisation = Organisation {
-        stack: StackHolds::Path,
-        leaf_masks: true,
-        hidden_unread: true,
-        joined_fill: true,
-        ..Organisation::default()
-    };
-    follow(hardware, organisation, SEQUENTIAL, 74);
+    next(|all| all.tile_levels = 0, HIDDEN_UNREAD, 79);
+    next(|all| all.joined_fill = true, JOINED_FILL, 53);
+    let mut sequential = hardware(all);
+    (sequential.sequential, sequential.organisation.bricks) = (true, false);
+    follow(&sequential, SEQUENTIAL, 74);
 }
 
 /// Draws the scene, whose visits must be those listed.
-fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycles: u64) {
+fn follow(hardware: &Hardware, turns: &str, cycles: u64) {
     let graph = octree(2, &|at| [[0, 0, 0], [0, 0, 1], [0, 1, 0]].contains(&at));
     let mut camera = camera([2.0, -8.0, 2.0], [2.0, 0.0, 2.0], 4);
     camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
     let setup = setup(&graph, &camera, &SetupOptions::default());
-    hardware.organisation = organisation;
     let mut frame = Frame::new(4, 4, false);
     let mut recorder = Recorder::new(u64::MAX);
     let simulated = Machine::default()
-        .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
+        .simulate(&graph.view(), &setup, &mut frame, hardware, &mut recorder)
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-    // Tiles have no first turn of the whole picture.
-    let first = if organisation.tile_levels == 0 {
-        START
-    } else {
-        0
-    };
-    let records = std::iter::successors(Some(first), |record| Some(record.wrapping_add(1)));
-    let mut now = 0;
-    let mut listed = Vec::new();
-    for (record, line) in records.zip(turns.lines().skip(1)) {
-        for visit in line.split_whitespace() {
-            let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
-            let begins = now;
-            now += takes.parse::<u64>().unwrap();
-            listed.push((record, stage.to_owned(), begins, now));
+    let (mut now, mut last, mut found) = (0, None, String::new());
+    for visit in recorder.visits() {
+        if last != Some(visit.record) {
+            found += "\n   ";
         }
+        found += &match visit.ends - visit.begins {
+            1 => format!(" {:?}", visit.stage),
+            takes => format!(" {:?}:{takes}", visit.stage),
+        };
+        assert_eq!(visit.begins, now, "{found}");
+        (now, last) = (visit.ends, Some(visit.record));
     }
-    let visits = recorder.visits().iter();
-    let found = visits.map(|v| (v.record, format!("{:?}", v.stage), v.begins, v.ends));
-    assert_eq!(found.collect::<Vec<_>>(), listed, "{organisation:?}");
-    assert_eq!([now, simulated.cycles.cycles], [cycles; 2]);
+    let organisation = &hardware.organisation;
+    assert_eq!(found, turns, "{organisation:?}");
+    assert_eq!(
+        [now, simulated.cycles.cycles],
+        [cycles; 2],
+        "{organisation:?}"
+    );
 }

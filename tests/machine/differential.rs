@@ -191,12 +191,9 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
             colors.words.fill(3);
             let drawn = fast.draw_colors(&view, &graph.color, &setup, &mut colors);
             drawn.expect("drawn before");
-            let color = |&node: &u32| {
-                graph
-                    .color
-                    .get(node as usize)
-                    .copied()
-                    .map_or(0, color_word)
+            let color = |&node: &u32| match node {
+                NO_NODE => 0,
+                node => color_word(graph.color[node as usize]),
             };
             assert!(frame.node.iter().map(color).eq(colors.words), "{options:?}");
         }

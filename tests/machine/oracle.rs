@@ -1,13 +1,12 @@
 //! The oracle against a second, slower way to the same truth: every cell cut with every ray in rational numbers, the
 //! tie rule as a tiny real offset.
 
-use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
 use proptest::prelude::*;
 use shiftvox::frame::{Frame, NO_NODE, NO_VOXEL};
 use shiftvox::graph::{Graph, GraphView};
-use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::project::{Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
 use crate::common::{any_graph, any_view, cases};
@@ -141,22 +140,6 @@ fn assert_exact(graph: &Graph, setup: &FrameSetup) {
     assert!(records.iter().all(|&tested| tested >= 1.0));
 }
 
-/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is
-/// met.
-fn ties(dice: &mut Dice, side: f64) -> Camera {
-    let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
-    let axis = dice.below(3) as usize;
-    let size = dice.of(&[7, 8, 16]);
-    Camera {
-        eye,
-        target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
-        up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
-        fov_degrees: 90.0,
-        width: size,
-        height: size,
-    }
-}
-
 proptest! {
     #![proptest_config(cases(360))]
 
@@ -167,10 +150,6 @@ proptest! {
         seed: u64,
     ) {
         let mut dice = Dice::new(seed);
-        let camera = match dice.below(3) {
-            0 => camera,
-            _ => ties(&mut dice, f64::from(1u32 << graph.depth)),
-        };
         let mut options = SetupOptions::default();
         if dice.below(6) == 0 {
             options.bits = 16 + dice.below(20);

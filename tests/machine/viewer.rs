@@ -1,6 +1,7 @@
 //! A viewer draws nothing where nothing changed, and never shows a stale picture.
 
 use crate::common::*;
+use crate::scenes::{CameraPlace, Dice, camera_at};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::machine::Machine;
@@ -28,19 +29,17 @@ proptest! {
     // Few cameras and settings, so that many pictures come twice.
     #[test]
     fn a_viewer_shows_what_a_new_engine_draws(
-        graph in any_octree(3, 0.3),
-        [first, second] in proptest::array::uniform2(any_camera(8.0, 1..60)),
-        steps in proptest::collection::vec((0..3usize, 0..4usize, 0..9), 1..16),
+        (graph, first) in any_view(any_octree(3, 0.3), 1..60),
+        seed: u64,
+        steps in proptest::collection::vec((0..4usize, 0..4usize, 0..9), 1..16),
         with_records: bool,
-        of_one_size: bool,
     ) {
-        let second = match of_one_size {
-            true => Camera { width: first.width, height: first.height, ..second },
-            false => second,
-        };
-        // The third differs little.
+        let size = (first.width, first.height);
+        let inside = camera_at(CameraPlace::Inside, &graph, size, &mut Dice::new(seed));
+        // These differ little.
         let moved = Camera { eye: first.eye + glam::DVec3::X * 1e-6, ..first };
-        let cameras = [first, second, moved];
+        let wider = Camera { width: first.width + 1, ..first };
+        let cameras = [first, inside, moved, wider];
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
         let mut viewer = Viewer::new(graph.view(), Machine::default(), contents);
         let mut last: Option<FrameSetup> = None;

@@ -11,7 +11,7 @@ use shiftvox::graph::{Graph, LinkedGraph, Opacity};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 
-pub use crate::scenes::up_of;
+use crate::scenes::{Dice, any_camera};
 
 /// A number that a variable may set.
 pub fn number_of(variable: &str, usual: u32) -> u32 {
@@ -96,45 +96,14 @@ pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
     })
 }
 
-/// Cameras outside, inside, on faces and on lattice points of a cube of side `side`. Many are aligned with an axis, so
-/// that ties abound.
-pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
-    let free = -2.0..3.0f64;
-    let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
-    let coordinate = prop_oneof![3 => free, 1 => lattice].boxed();
-    let eye = proptest::array::uniform3(coordinate);
-    let axis = (0..3usize, prop_oneof![Just(1.0), Just(-1.0)])
-        .prop_map(|(axis, sign)| DVec3::AXES[axis] * sign);
-    let towards = prop_oneof![
-        3 => proptest::array::uniform3(0.0..1.0f64).prop_map(Some),
-        1 => Just(None),
-    ];
-    (eye, towards, axis, 5.0..150.0f64, sizes.clone(), sizes).prop_filter_map(
-        "a camera that sees",
-        move |(eye, towards, axis, fov_degrees, width, height)| {
-            let eye = DVec3::from_array(eye) * side;
-            let target = towards.map_or(eye + axis, |target| DVec3::from_array(target) * side);
-            let camera = Camera {
-                eye,
-                target,
-                up: up_of(target - eye),
-                fov_degrees,
-                width,
-                height,
-            };
-            camera.axes().ok().map(|_| camera)
-        },
-    )
-}
-
 /// Graphs, each with a camera around it.
 pub fn any_view(
     graphs: impl Strategy<Value = Graph>,
     sizes: std::ops::Range<u32>,
 ) -> impl Strategy<Value = (Graph, Camera)> {
-    graphs.prop_flat_map(move |graph| {
-        let side = f64::from(1u32 << graph.depth);
-        (Just(graph), any_camera(side, sizes.clone()))
+    (graphs, any::<u64>()).prop_map(move |(graph, seed)| {
+        let camera = any_camera(&graph, sizes.clone(), &mut Dice::new(seed));
+        (graph, camera)
     })
 }
 

@@ -163,6 +163,32 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
     }
 }
 
+/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is
+/// met.
+fn camera_of_ties(side: f64, dice: &mut Dice) -> Camera {
+    let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
+    let axis = dice.below(3) as usize;
+    let size = dice.of(&[7, 8, 16]);
+    Camera {
+        eye,
+        target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
+        up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
+        fov_degrees: 90.0,
+        width: size,
+        height: size,
+    }
+}
+
+/// From any place, one time in three with many ties.
+pub fn any_camera(graph: &Graph, sizes: std::ops::Range<u32>, dice: &mut Dice) -> Camera {
+    let mut side = || sizes.start + dice.below(sizes.end - sizes.start);
+    let size = (side(), side());
+    match dice.below(3) {
+        0 => camera_of_ties(cube(graph).1, dice),
+        _ => camera_at(dice.of(&PLACES), graph, size, dice),
+    }
+}
+
 /// Z, or Y for a camera that looks along Z.
 pub fn up_of(forward: DVec3) -> DVec3 {
     match forward.normalize_or_zero().z.abs() > 0.9 {

@@ -7,7 +7,7 @@ use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_lab::bounds::{Bounds, Cube, Space, Widths, worst_host_px};
 use shiftvox_lab::stress::{Case, Check, Hold, StressScene, run_case};
 
-use crate::common::{any_camera, cases, tolerance_of};
+use crate::common::{any_view, cases, solid, tolerance_of};
 
 fn any_options() -> impl Strategy<Value = SetupOptions> {
     (
@@ -44,7 +44,7 @@ proptest! {
     #[test]
     fn no_vertex_is_beyond_its_bound(
         depth in 1..7u32,
-        camera in any_camera(8.0, 4..40),
+        (_, camera) in any_view(Just(solid(3)), 4..40),
         shift in prop_oneof![3 => Just(0), 1 => -1_000_000_000..1_000_000_000i64],
         options in any_options(),
     ) {
