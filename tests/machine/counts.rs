@@ -1,4 +1,4 @@
-//! Statistics, counters and the simulator count alike. Each setting of an organisation saves reads and writes.
+//! Statistics, counters and the simulator agree. Each setting of an organisation saves reads and writes.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, Independence, NoObserver, Organisation, StackHolds};
@@ -88,8 +88,8 @@ fn counts_agree() {
     }
 }
 
-/// The settings in turn, on the same picture: records, subdivided ones, and most on the stack; reads and writes of the
-/// stack, of nodes and of fill vectors.
+/// Per setting: records, subdivided ones, most entries of the stack. Then reads and writes of the stack, of nodes, of
+/// fill vectors.
 #[test]
 fn each_setting_saves_reads_and_writes() {
     let graph = graph_of_spec("gen:terrain,depth=7");
