@@ -1,23 +1,13 @@
-//! The rule that blends: against a plain reference, by property, and its cost.
+//! The rule that blends, against a plain reference.
 
 use crate::common::*;
 use crate::scenes::*;
 use glam::DVec3;
-use hwmodel::count::Counter;
-use hwmodel::cycles::Organisation;
-use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 use shiftvox::frame::{Blend, Frame};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, SetupOptions};
-
-fn all_voxels() -> SetupOptions {
-    SetupOptions {
-        lod_px: 0.0,
-        ..SetupOptions::of(Coverage::Alpha)
-    }
-}
 
 /// The blend of a ray, nearest voxel first: `SPEC.md`, section 11, in products and quotients. `None`: it grazes one.
 fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -> Option<Blend> {
@@ -94,7 +84,8 @@ proptest! {
         prop_assume!((camera.eye - camera.eye.round()).abs().min_element() > 1e-3);
         let graph = with_opacities(&graph, &opacities);
         let light = lights(&graph);
-        let setup = setup(&graph, &camera, &all_voxels());
+        let options = SetupOptions { lod_px: 0.0, ..SetupOptions::of(Coverage::Alpha) };
+        let setup = setup(&graph, &camera, &options);
         let view = GraphView { light: &light, ..graph.view() };
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn = Machine::default().render(&view, &setup, &mut frame);
@@ -106,38 +97,5 @@ proptest! {
                 prop_assert_eq!(drawn, right, "at {}, {}", x, y);
             }
         }
-    }
-}
-
-/// Operations of the stage `blend`: so many for a voxel, so many for a sample.
-#[test]
-fn blending_costs_what_its_steps_do() {
-    for size in [1, 7, 41] {
-        let graph = with_opacities(&octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
-        let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
-        let setup = setup(&graph, &camera, &all_voxels());
-        let (stats, counter) = watch(&graph, &setup, Organisation::default(), Counter::new());
-        let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
-        assert!(solids == 1 && blended > 0, "{size}: {stats:?}");
-        // The weights of the sides, once per voxel: the way, its shares, their squares, a root, three quotients.
-        // The voxel's weight: which sides, a product of five bits for each. A sample: four products of nine bits.
-        let [sides, product] = [3 * (1 + 5), 4 * 9];
-        for (class, of_voxel, of_sample) in [
-            (OpClass::Add, 30 + sides, product),
-            (OpClass::Sub, 8, 1),
-            (OpClass::Shift, 32 + sides, product + 1),
-            (OpClass::Select, 23 + sides, product + 2),
-            (OpClass::Compare, 11, 1),
-            (OpClass::MinMax, 5, 0),
-            (OpClass::DivideStep, 2 * 6 + 3 * 6, 0),
-            (OpClass::Logic, 0, 0),
-        ] {
-            let found = counter.ops_at(Stage::Blend, class);
-            assert_eq!(found, of_voxel + of_sample * blended, "{class:?}");
-        }
-        let writes = [Memory::Accumulator, Memory::Pixel].map(|memory| counter.writes(memory));
-        let reads = [Memory::Accumulator, Memory::Attribute].map(|memory| counter.reads(memory));
-        // Each sample shows its first voxel, and this is the only one.
-        assert_eq!((writes, reads), ([blended; 2], [blended, 1]));
     }
 }

@@ -9,7 +9,7 @@ use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-use crate::common::{number_of, octree, solid, stat};
+use crate::common::{number_of, stat};
 use crate::scene_table::SCENES;
 use crate::scenes::{Dice, PLACES, camera_at, cube, graph_of_spec, up_of};
 
@@ -89,23 +89,6 @@ fn fast_equals_the_oracle_at_every_sample() {
     println!("{compared} samples, {drawn} drawn, {exact} decisions by the exact rule");
     assert!(drawn > compared / 10, "frames that show nothing");
     assert!(exact > 0, "ties were never met");
-}
-
-/// One sample whose ray runs along an axis, between four parts: all of its numbers are 0.
-#[test]
-fn a_ray_along_the_line_between_four_parts() {
-    let checked = octree(4, &|[x, y, z]| (x ^ y ^ z) & 1 == 0);
-    for graph in [solid(2), solid(4), solid(5), checked] {
-        let side = f64::from(1u32 << graph.depth);
-        for (axis, at) in (0..3).flat_map(|axis| [0.25, 0.5, 0.75].map(|at| (axis, at))) {
-            let mut eye = DVec3::splat(side * at);
-            eye[axis] = -side;
-            let target = eye + DVec3::AXES[axis];
-            let camera = crate::common::camera(eye.to_array(), target.to_array(), 1);
-            let compared = compare(&graph, &camera, &leaves(), FastOptions::default());
-            assert!(compared.is_some());
-        }
-    }
 }
 
 /// An eye just before the nearest corner of a brick, in views of nearly 180 degrees: a window in

@@ -5,16 +5,26 @@ use hwmodel::cycles::{Hardware, Independence, NoObserver, Organisation, StackHol
 use hwmodel::{Memory, OpClass, Stage};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::Machine;
-use shiftvox::project::{CageKind, Camera, Coverage, SetupOptions};
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats};
 
 use crate::common::*;
 use crate::scenes::*;
 
+fn count(graph: &Graph, setup: &FrameSetup, organisation: Organisation) -> (Stats, Counter) {
+    let mut machine = Machine::new(MachineOptions {
+        organisation,
+        ..MachineOptions::default()
+    });
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn = machine.render_probed(&graph.view(), setup, &mut frame, Counter::new());
+    drawn.expect("no overflow")
+}
+
 /// Each record is pushed and popped once, and statistics and the simulator's counts are those of a counter.
 fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions) {
     let setup = setup(graph, camera, options);
-    let (stats, counter) = watch(graph, &setup, Organisation::default(), Counter::new());
+    let (stats, counter) = count(graph, &setup, Organisation::default());
     let divides = counter.ops_at(Stage::ToScreen, OpClass::DivideStep);
     assert_eq!(counter.ops_of(OpClass::DivideStep), divides);
     assert_eq!(divides > 0, options.tolerance_px > 0.0);
@@ -98,7 +108,7 @@ fn each_setting_saves_reads_and_writes() {
     let mut organisation = Organisation::default();
     let mut next = |change: fn(&mut Organisation)| {
         change(&mut organisation);
-        let (stats, counter) = watch(&graph, &setup, organisation, Counter::new());
+        let (stats, counter) = count(&graph, &setup, organisation);
         let counts = ["records", "subdivided", "deepest_stack"].map(|name| stat(&stats, name));
         let accesses = [Memory::Stack, Memory::Node, Memory::FillVector]
             .map(|memory| (counter.reads(memory), counter.writes(memory)));

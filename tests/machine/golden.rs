@@ -7,11 +7,12 @@
 //!
 //! Say in the commit why which rows changed. Random frames and their integers have one recorded hash each.
 
+use crate::common::{lights, with_opacities};
 use crate::scenes::*;
 use glam::DVec3;
 use hwmodel::count::Counter;
 use shiftvox::frame::Frame;
-use shiftvox::graph::Placement;
+use shiftvox::graph::{GraphView, Placement};
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
@@ -26,6 +27,7 @@ fn settings(text: &str) -> (Options, bool) {
     let mut options = match words.next() {
         Some("paper") => Options::paper(),
         Some("center") => Options::of(Coverage::Center),
+        Some("alpha") => Options::of(Coverage::Alpha),
         _ => Options::default(),
     };
     for word in words {
@@ -56,7 +58,16 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
         let numbers = cells[cell].split(' ').map(|n| n.parse().expect("a number"));
         numbers.collect()
     };
-    let graph = graph_of(cells[1]);
+    let mut graph = graph_of(cells[1]);
+    let (options, is_oracle) = settings(cells[6]);
+    if options.coverage.blends() {
+        graph = with_opacities(&graph, &[[0x37; 3], [0x5f, 0x80, 0x22]]);
+    }
+    let light = lights(&graph);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
     let (low, side) = cube(&graph);
     let [eye, target] = [2, 3].map(|cell| low + DVec3::from_slice(&numbers(cell)) * side);
     let size = numbers(5);
@@ -68,24 +79,23 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
         width: size[0] as u32,
         height: size[1] as u32,
     };
-    let (options, is_oracle) = settings(cells[6]);
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect(row);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut again = frame.clone();
     if is_oracle {
-        Rays.render(&graph.view(), &setup, &mut frame).expect(row);
+        Rays.render(&view, &setup, &mut frame).expect(row);
         return (frame, None);
     }
     let counter = Counter::new();
-    let drawn = Machine::default().render_probed(&graph.view(), &setup, &mut frame, counter);
+    let drawn = Machine::default().render_probed(&view, &setup, &mut frame, counter);
     for _ in 0..2 {
-        used.render(&graph.view(), &setup, &mut again).expect(row);
+        used.render(&view, &setup, &mut again).expect(row);
         assert!(again == frame, "a used machine: {row}");
     }
     (frame, Some(drawn.expect(row).1))
 }
 
-/// XXH3-128 of all voxels, then all nodes, little-endian.
+/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
 fn hash(frame: &Frame) -> u128 {
     let mut hash = Xxh3::new();
     for number in frame.voxel.iter().flatten() {
@@ -93,6 +103,9 @@ fn hash(frame: &Frame) -> u128 {
     }
     for node in &frame.node {
         hash.update(&node.to_le_bytes());
+    }
+    for blend in frame.blend.iter().flatten() {
+        hash.update(format!("{blend:?}").as_bytes());
     }
     hash.digest128()
 }

@@ -3,12 +3,10 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use glam::DVec3;
-use hwmodel::Probe;
-use hwmodel::cycles::Organisation;
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, LinkedGraph, Opacity};
-use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 
 use crate::scenes::{Dice, any_camera};
@@ -155,22 +153,6 @@ pub fn draw(graph: &Graph, setup: &FrameSetup) -> (Frame, Stats) {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let drawn = Machine::default().render(&graph.view(), setup, &mut frame);
     (frame, drawn.expect("no overflow"))
-}
-
-/// Draws in an organisation, watched by a probe.
-pub fn watch<P: Probe>(
-    graph: &Graph,
-    setup: &FrameSetup,
-    organisation: Organisation,
-    probe: P,
-) -> (Stats, P) {
-    let mut machine = Machine::new(MachineOptions {
-        organisation,
-        ..MachineOptions::default()
-    });
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = machine.render_probed(&graph.view(), setup, &mut frame, probe);
-    drawn.expect("no overflow")
 }
 
 pub fn stat(stats: &Stats, name: &str) -> u64 {
