@@ -1,6 +1,6 @@
 //! Allocations: a frame of the fast engine makes none after the first, and a picture takes few bytes per sample.
 //!
-//! A test crate of its own, of one test, for its allocator counts what the whole process does.
+//! The allocator counts the whole process, so this test has a crate of its own.
 
 #![cfg(feature = "png")]
 
@@ -36,7 +36,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         IN_USE.fetch_sub(layout.size(), SeqCst);
-        // SAFETY: as in `alloc`; the pointer came from there.
+        // SAFETY: as in `alloc`. The pointer came from there.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
