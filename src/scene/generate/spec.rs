@@ -14,6 +14,12 @@ pub struct Spec {
     settings: Settings,
 }
 
+impl PartialEq for Spec {
+    fn eq(&self, other: &Self) -> bool {
+        self.generator.name == other.generator.name && self.settings == other.settings
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct SpecError(String);

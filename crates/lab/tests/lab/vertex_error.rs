@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 use shiftvox::graph::Placement;
-use shiftvox::machine::visit_positions;
+use shiftvox::machine::{Coordinates, cages_along};
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
@@ -44,24 +44,39 @@ fn errors(camera: &Camera, depth: u32, exact_levels: usize) -> (f64, f64) {
     let mut setup = FrameSetup::new(camera, &placement, depth, &options).unwrap();
     setup.screen_depth[..exact_levels].fill(i64::MAX);
     let axes = camera.axes().unwrap();
-    let voxel = |i: i32| [i / side / side, i / side % side, i % side, depth as i32];
-    let voxels: Vec<_> = (0..side.pow(3)).map(voxel).collect();
+    let scale = f64::from(1u32 << setup.levels);
+    let unit = f64::from(1u32 << setup.format.frac());
     let mut off = Vec::new();
-    visit_positions(&setup, &voxels, &mut |found| {
-        for (vertex, sample) in found.samples.iter().enumerate() {
-            let step = [2, 1, 0].map(|bit| (vertex >> bit & 1) as i64);
+    for voxel in 0..side.pow(3) {
+        let corner = [voxel / side / side, voxel / side % side, voxel % side];
+        let octant = |level: u32| corner.map(|c| c >> (depth - level) & 1);
+        let path: Vec<u8> = (1..=depth)
+            .map(|level| {
+                octant(level)
+                    .into_iter()
+                    .fold(0, |o, bit| o << 1 | bit as u8)
+            })
+            .collect();
+        let cages = cages_along(&setup, &path).unwrap();
+        for vertex in 0..8 {
+            let step = [2, 1, 0].map(|bit| vertex >> bit & 1);
             // Inner vertices are those of the voxel above them alone.
-            let is_another_s = |k: usize| step[k] == 1 && found.corner[k] < i64::from(side) - 1;
-            if found.level < depth || (0..3).any(is_another_s) {
+            if (0..3).any(|k| step[k] == 1 && corner[k] < side - 1) {
                 continue;
             }
-            let point = [0, 1, 2].map(|k| (found.corner[k] + step[k]) as f64 / f64::from(side));
+            let sample = match cages[depth as usize] {
+                Coordinates::Clip([x, y, w]) => {
+                    [x, y].map(|c| c[vertex as usize] as f64 / w[vertex as usize] as f64 * scale)
+                }
+                Coordinates::Screen(at) => at.map(|c| c[vertex as usize] as f64 / unit),
+            };
+            let point = [0, 1, 2].map(|k| f64::from(corner[k] + step[k]) / f64::from(side));
             let offset = DVec3::from(point) - camera.eye;
             let position = DVec2::new(offset.dot(axes.right), -offset.dot(axes.up));
             let exact = DVec2::splat(512.0) + position * axes.focal_px / offset.dot(axes.forward);
-            off.push((DVec2::from(sample.unwrap()) - exact).length());
+            off.push((DVec2::from(sample) - exact).length());
         }
-    });
+    }
     assert_eq!(off.len(), (side as usize + 1).pow(3));
     let worst = off.iter().copied().fold(0.0, f64::max);
     (worst, off.iter().sum::<f64>() / off.len() as f64)

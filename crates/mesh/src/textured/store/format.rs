@@ -121,7 +121,9 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         primitives_checksum: xxh3_64(cast_slice(&data.primitives)),
         grids_checksum: xxh3_64(cast_slice(&entries)),
     };
-    let header = FORMAT.header(FORMAT.versions[0], layout.end(), |put| put(FIELDS, bytes_of(&fields)));
+    let header = FORMAT.header(FORMAT.versions[0], layout.end(), |put| {
+        put(FIELDS, bytes_of(&fields))
+    });
     file::write(&FORMAT, &header, layout.sections().zip(sections), out)
 }
 
