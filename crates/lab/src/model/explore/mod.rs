@@ -2,7 +2,7 @@
 //!
 //! [`space`] describes the designs, and [`mod@front`] finds the Pareto-optimal ones. [`lines`] is the format of results.
 //!
-//! Points share results that depend on a part of them only: see [`machine_key`] and [`ray_key`]. Where parents lie on the
+//! Points share results that depend on a part of them only: see `machine_key` and `ray_key`. Where parents lie on the
 //! stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only their cycles are
 //! simulated per point.
 
