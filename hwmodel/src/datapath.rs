@@ -392,6 +392,7 @@ impl<P: Probe> Datapath<P> {
             self.probe
                 .op_on(Operand::Carry, OpClass::DivideStep, bits, self.place);
         }
+        // 0 <= remainder < 2^63, so the doubled one fits 64 bits without sign.
         let doubled = ((remainder.0 as u64) << 1) | u64::from(bit);
         let divisor = divisor.0 as u64;
         if doubled >= divisor {

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Of the narrowest word.
+/// Bits of the narrowest word.
 pub const MIN_BITS: u32 = 16;
-/// Of the widest word.
+/// Bits of the widest word.
 pub const MAX_BITS: u32 = 64;
 
 /// A two's complement word format: `bits` bits, `frac` of them fraction.

@@ -49,8 +49,10 @@ use window::{TILE_LOG2, Window};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
+    /// The best that the processor has.
     #[default]
     Auto,
+    /// Plain Rust.
     Scalar,
     /// AVX2, or plain Rust where the processor has none.
     Avx2,

@@ -48,6 +48,7 @@ impl Sum {
         }
         if let Some(unit) = normal.decode() {
             for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
+                // Towards zero, for both signs.
                 *sum += (part * UNIT_NORMAL) as i64;
             }
         }

@@ -195,6 +195,7 @@ impl GraphView<'_> {
         }
         let before = mask & ((1u8 << octant) - 1);
         let first = *self.first.get(node as usize)?;
+        // Wraps only in a damaged file.
         let slot = first.wrapping_add(before.count_ones());
         if self.links.is_empty() {
             Some(slot)

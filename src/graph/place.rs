@@ -26,6 +26,23 @@ pub fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
 /// Whether a camera can show a box of the world and resolve its parts of length `finest`.
 pub fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
     let most = FARTHEST.min(finest * STEPS);
+    // NaN is not within.
     let is_near = |c: f64| (-most..=most).contains(&c);
     (SHORTEST..=FARTHEST).contains(&finest) && low.into_iter().chain(high).all(is_near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_apart_can_be_seen() {
+        let seen =
+            |origin: f64, finest| can_be_seen([0.0, origin, 0.0], [origin + finest; 3], finest);
+        assert!(seen(0.0, 1.0) && seen(-1e15, 1.0) && seen(1e80, 1e80) && seen(0.0, 1e-80));
+        assert!(!seen(1e16, 1.0) && !seen(0.0, 1e308) && !seen(0.0, 5e-324) && !seen(0.0, 0.0));
+        for odd in [f64::NAN, f64::INFINITY] {
+            assert!(!seen(odd, 1.0) && !seen(0.0, odd));
+        }
+    }
 }

@@ -28,6 +28,7 @@ impl Graph {
         }
         let view = self.view();
         let nodes = || [self.root].into_iter().chain(self.links.iter().copied());
+        // Wraps only in a damaged file.
         let first_of = |node| match view.mask(node) {
             0 => 0,
             _ => view.first(node).wrapping_add(1),

@@ -152,6 +152,7 @@ impl Bounds {
             })
             .collect();
         rings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        // Only the widest ring of each height matters.
         rings.dedup_by_key(|ring| ring.0);
         let turns =
             (0..RING_POINTS).map(|i| sin_cos(360.0 * f64::from(i) / f64::from(RING_POINTS)));

@@ -7,6 +7,7 @@ pub enum OutOfBounds {
     /// The coordinate modulo 256 that is nearest to the middle of SIZE.
     #[default]
     Wrap,
+    /// The byte as it stands.
     Keep,
     /// Left out, as MagicaVoxel does.
     Drop,

@@ -46,6 +46,51 @@ proptest! {
             Err(_) => prop_assert_eq!(overflow, Overflow::Trap),
         }
     }
+
+    /// Dense planes at all angles, and a sphere's shell that is thick enough to be closed, under `center`: a sample
+    /// whose neighbours are all covered is drawn.
+    #[test]
+    fn surfaces_have_no_holes(
+        which in 0..4usize,
+        from in proptest::array::uniform3(-1.0..1.0f64),
+        distance in 1.2..6.0f64,
+        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
+        cage in prop_oneof![Just(CageKind::Corners), Just(CageKind::Frame)],
+        lod_px in prop_oneof![Just(0.0), Just(1.0)],
+    ) {
+        let graph = octree(4, &|at| match which {
+            3 => {
+                let square: i32 = at.iter().map(|c| (2 * c - 15) * (2 * c - 15)).sum();
+                (11 * 11..15 * 15).contains(&square)
+            }
+            axis => at[axis] == 8,
+        });
+        let length = from.iter().map(|c| c * c).sum::<f64>().sqrt();
+        prop_assume!(length > 0.1);
+        let size = 96;
+        let camera = Camera {
+            fov_degrees: 50.0,
+            ..camera(from.map(|c| 8.0 + c / length * 16.0 * distance), [8.0; 3], size)
+        };
+        let options = SetupOptions { cage, tolerance_px, lod_px, ..SetupOptions::of(Coverage::Center) };
+        let setup = setup(&graph, &camera, &options);
+        let (drawn, _) = draw(&graph, &setup);
+        let mut exact = Frame::new(size, size, false);
+        let oracle = Rays.render(&graph.view(), &setup.without_detail(), &mut exact);
+        oracle.expect("the oracle never fails");
+        let size = size as usize;
+        let inner = (0..size * size).filter(|at| {
+            let (x, y) = (at % size, at / size);
+            let is_inside = (1..size - 1).contains(&x) && (1..size - 1).contains(&y);
+            let near = |i: usize| (y + i / 3 - 1) * size + x + i % 3 - 1;
+            is_inside && (0..9).all(|i| exact.voxel[near(i)][3] >= 0)
+        });
+        let inner: Vec<usize> = inner.collect();
+        for &at in &inner {
+            prop_assert!(drawn.voxel[at][3] >= 0, "a hole at {}", at);
+        }
+        prop_assume!(inner.len() > 20);
+    }
 }
 
 #[test]

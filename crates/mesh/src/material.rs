@@ -81,6 +81,7 @@ static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
 /// The sRGB byte whose linear light is nearest; of two the brighter.
 pub fn linear_to_srgb(light: f64) -> u8 {
     let table: &[f32; 256] = &LINEAR;
+    // NaN becomes 0, which is black.
     let slot = ((light * SLOTS as f64) as usize).min(SLOTS - 1);
     let mut above = usize::from(FIRST[slot]);
     while above < 256 && f64::from(table[above]) < light {

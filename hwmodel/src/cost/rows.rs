@@ -53,7 +53,7 @@ impl Goal {
     }
 }
 
-/// The problem of a table or of a request, and how to add a row.
+/// The problem of a table or of a request.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct CostError(pub(super) String);

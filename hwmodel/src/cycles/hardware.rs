@@ -230,7 +230,7 @@ impl Hardware {
     /// A shipped description, by its name in [`PRESETS`].
     pub fn preset(name: &str) -> Result<Self, HardwareError> {
         let preset = PRESETS.iter().find(|(of, _)| *of == name);
-        let unknown = || HardwareError(format!("none of the name `{name}` ships"));
+        let unknown = || HardwareError(format!("`{name}` is none of tiny, paper, light and wide"));
         Self::from_toml(preset.ok_or_else(unknown)?.1)
     }
 
@@ -293,7 +293,10 @@ impl Hardware {
                 (true, true) => "is among `wires`, which take no units, and has a [units]",
                 _ => continue,
             };
-            return Err(HardwareError(format!("`{}` {problem}", class.name())));
+            let key = toml::Value::try_from(class).ok();
+            let key = key.as_ref().and_then(toml::Value::as_str);
+            let key = key.unwrap_or(class.name());
+            return Err(HardwareError(format!("`{key}` {problem}")));
         }
         for (name, cache) in [
             ("node_cache", &self.node_cache),

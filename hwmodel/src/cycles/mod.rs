@@ -8,7 +8,7 @@
 //!
 //! All times are whole cycles. The same input gives the same output.
 //!
-//! 1. **Hardware.** There are [`Hardware::lanes`]. Each has a stack, one block per stage, and [`Hardware::contexts`] with
+//! 1. **Hardware.** A design has [`Hardware::lanes`]. Each lane has a stack, one block per stage, and [`Hardware::contexts`] with
 //!    one record each at a time. Caches, fill vectors and pixels are shared by all lanes.
 //! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in this order: pop, filled?,
 //!    to screen, one pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw, blend, fill update. Stages

@@ -1,4 +1,4 @@
-//! Every command that README and docs print does what it says, in a fresh folder, and may be given again.
+//! Every command that README and docs print does what it says in a fresh folder, and says how to replace files.
 //!
 //! Commands are the lines that begin with `shiftvox` (`sed`, `mkdir`) in blocks of code. A block after `<!-- takes 5 min -->`
 //! is long: it runs only where `SHIFTVOX_PRINTED` is `all`, and then with its large scenes. A block after `<!-- forms -->`

@@ -76,3 +76,16 @@ impl Edges {
             .all(|edge| edge.at + edge.right * x + edge.down * y >= 0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_triangles_fit() {
+        let most = 80_000 * SUBPIXELS;
+        let edges = Edges::new([[-most, -most], [most, -most], [most, most]]).unwrap();
+        assert!(edges.seen_from([32767, 0]).covers([0, 0]));
+        assert!(!edges.seen_from([0, 32767]).covers([0, 0]));
+    }
+}

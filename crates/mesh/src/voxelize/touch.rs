@@ -117,3 +117,18 @@ fn subtract(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     OTHERS.map(|[u, v]| a[u] * b[v] - a[v] * b[u])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_numbers_fit() {
+        let most = (1i64 << 30) - 1;
+        let triangle = Prepared::new([[0, most, 0], [most, 0, most], [most, most, 0]]);
+        assert!(triangle.touches([0, most - 1, 0], 1));
+        // The triangle has the points (x, most - z, z) with x from z to most. y and z are not both in the upper half.
+        // At z = 2^29 it meets the lower half of x in a point.
+        assert_eq!(triangle.children([0; 3], 1 << 29), 0b0111_0111);
+    }
+}

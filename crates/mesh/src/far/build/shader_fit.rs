@@ -20,7 +20,7 @@ const NOISE: f64 = 5.0;
 /// Added hits and passes, so that a few rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// Of a solid voxel, by weight and in number.
+/// A side is solid if at most this share of its rays passes, and at least so many are stopped.
 const MOST_PASSED: f64 = 0.05;
 const LEAST_STOPPED: u32 = 4;
 

@@ -140,9 +140,9 @@ impl<'d> Reader<'d> {
                 Some(&known) => known,
                 None => *of_mesh.entry(mesh).or_insert(self.size_of(mesh)?),
             };
-            sum = [sum[0] + size[0], sum[1] + size[1]];
+            sum = [0, 1].map(|k| size[k].saturating_add(sum[k]));
             // Positions count as triangles: they take memory too.
-            if (sum[0] + sum[1]) as u64 > self.most {
+            if sum[0].saturating_add(sum[1]) as u64 > self.most {
                 return Err(fault(
                     format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
                     "more: they show meshes very often".to_owned(),
@@ -157,7 +157,8 @@ impl<'d> Reader<'d> {
         let mut sum = [0; 2];
         for primitive in &self.mesh(mesh)?.primitives {
             if let Some(of) = self.sizes(primitive)? {
-                sum = [sum[0] + of.positions.count, sum[1] + of.triangles];
+                sum[0] = of.positions.count.saturating_add(sum[0]);
+                sum[1] = of.triangles.saturating_add(sum[1]);
             }
         }
         Ok(sum)
