@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bench;
-mod buffers;
 mod cases;
 mod compared;
 mod damaged;

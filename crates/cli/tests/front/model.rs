@@ -4,11 +4,6 @@ use serde_json::Value;
 
 use crate::program::{Folder, number};
 
-/// The report of a small sponge, with further flags.
-fn report(folder: &Folder, flags: &str) -> Value {
-    folder.json(&format!("model gen:menger,depth=3 --size 64 {flags}"))
-}
-
 /// The sum of a figure over the elements of an array.
 fn sum(array: &Value, key: &str) -> f64 {
     let items = array.as_array().unwrap().iter();
@@ -17,7 +12,8 @@ fn sum(array: &Value, key: &str) -> f64 {
 
 #[test]
 fn the_report_adds_up() {
-    let found = report(&Folder::new(), "--hw paper --ray-order rows");
+    let found =
+        Folder::new().json("model gen:menger,depth=3 --size 64 --hw paper --ray-order rows");
     let at = |pointer: &str| number(found.pointer(pointer).unwrap());
     let list = |pointer: &str| found.pointer(pointer).unwrap().as_array().unwrap();
     let of_order = |class: &str| {
@@ -89,19 +85,4 @@ fn the_report_adds_up() {
         }
         assert_eq!(line["overlap"], line["less"] == "neither");
     }
-}
-
-#[test]
-fn hardware_and_costs_of_one_s_own() {
-    let folder = Folder::new();
-    let tiny = folder.stdout("model --print-hw --hw tiny");
-    folder.put("mine.toml", tiny.replace("\"tiny\"", "\"mine\""));
-    let costs = "row = [{ operation = \"add\", width = 32, energy_pj = 1000.0, source = \"x\" }]\n";
-    folder.put("costs.toml", costs);
-    let energy = |flags: &str| {
-        let found = report(&folder, &format!("--hw mine.toml {flags}"));
-        assert_eq!(found["hardware"]["name"], "mine");
-        number(&found["cost"]["operations"]["total"])
-    };
-    assert!(energy("--costs costs.toml") > 100.0 * energy(""));
 }

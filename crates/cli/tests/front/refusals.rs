@@ -1,4 +1,4 @@
-//! Control characters, terminals, full disks, and mapped files that change, which rows of `cases` cannot express.
+//! Terminals, and mapped files that change.
 #![cfg(unix)]
 
 use std::fs;
@@ -6,36 +6,6 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use crate::program::Folder;
-
-#[test]
-fn names_are_shown_escaped() {
-    let folder = Folder::new();
-    let odd = "t\x1b[2J";
-    folder.run(&format!("generate gen:sphere,depth=3 -o {odd}.vox"), 0);
-    let draw = format!("render {odd}.vox --size 16 -o {{stem}}.png");
-    for (line, code) in [(&*draw, 0), (&*draw, 1), ("info \x1b[31mred.vox", 4)] {
-        let [_, told] = folder.run(line, code);
-        assert!(!told.contains('\x1b'), "{told}");
-    }
-    assert_eq!(folder.names(), [format!("{odd}.png"), format!("{odd}.vox")]);
-}
-
-#[test]
-fn a_picture_and_its_buffers_are_all_written_or_none() {
-    let folder = Folder::new();
-    // The picture fits, its depths do not; the signal of a file that is too large ends nothing.
-    let draw = "ulimit -f 256; exec \"$0\" render gen:sphere,depth=3 --size 512 --aov depth -o a.png --force";
-    let [_, told] = folder.sh(draw, 1);
-    assert!(told.contains("a."), "{told}");
-    assert_eq!(folder.names(), [""; 0]);
-    let names = ["a.depth.npy", "a.png"];
-    for name in names {
-        folder.put(name, b"old");
-    }
-    folder.sh(&format!("trap '' XFSZ; {draw}"), 1);
-    assert_eq!(names.map(|name| folder.text(name)), ["old"; 2]);
-    assert_eq!(folder.names(), names);
-}
 
 #[test]
 #[ignore = "needs the program `script`, which makes a terminal"]
@@ -53,16 +23,6 @@ fn progress_is_for_terminals_that_can_draw_it() {
         assert!(!drawn(term).contains(['\x1b', '%']));
     }
     assert!(drawn("xterm").contains('%'));
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn a_full_disk_is_told_by_help_too() {
-    let folder = Folder::new();
-    for line in ["--help", "--version", "man", "info gen:sphere,depth=2"] {
-        folder.sh(&format!("exec \"$0\" {line} > /dev/full"), 1);
-    }
-    folder.sh("\"$0\" --help | true", 0);
 }
 
 #[test]

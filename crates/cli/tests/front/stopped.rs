@@ -89,14 +89,6 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert_eq!(folder.names(), ["sheet.far", "sheet.stl"]);
 }
 
-#[test]
-fn a_signal_that_is_ignored_stays_ignored() {
-    let folder = folder();
-    // As `nohup` does it.
-    let script = format!("trap '' HUP; \"$0\" {BUILD} & sleep 0.1; kill -HUP $!; wait $!");
-    folder.sh(&script, 0);
-}
-
 /// The most memory that a process had, bytes; Linux reports it, and keeps it until it has ended.
 #[cfg(target_os = "linux")]
 fn most_memory(process: u32) -> Option<u64> {
