@@ -10,7 +10,6 @@ mod model;
 mod one_camera;
 mod printed;
 mod program;
-mod refusals;
 mod resolve;
 mod robust;
 mod stopped;
