@@ -1,5 +1,5 @@
 //! Runs of the program as rows of files: `crates/cli/tests/cases/README.md` says how to read them.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 use rayon::prelude::*;
 use serde_json::Value;
 
-use crate::program::{Folder, PROGRAM, ROOT, sheet};
+use crate::program::{Folder, PROGRAM, ROOT};
 
 /// A case while it runs.
 struct Case {
@@ -39,7 +39,20 @@ fn repeated(text: &str) -> String {
     all
 }
 
-/// What a pointer points at. `*` stands for all entries of an array, without those that lack the rest.
+/// A rough sheet of so many vertices along each side, as a Wavefront file.
+fn sheet(side: usize) -> String {
+    let mut text = String::new();
+    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
+        text += &format!("v {x} {} {z}\n", (x * z) % 3);
+    }
+    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
+        let a = z * side + x;
+        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
+    }
+    text
+}
+
+/// The value at a pointer. `*` means every entry of an array. Entries without a value there are left out.
 fn at(document: &Value, pointer: &str) -> Option<Value> {
     let Some((array, rest)) = pointer.split_once("/*") else {
         return document.pointer(pointer).cloned();

@@ -79,16 +79,3 @@ pub(crate) fn number(value: &Value) -> f64 {
     let number = value.as_f64();
     number.unwrap_or_else(|| panic!("{value} is not a number"))
 }
-
-/// A rough sheet of so many vertices along each side, as a Wavefront file.
-pub(crate) fn sheet(side: usize) -> String {
-    let mut text = String::new();
-    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
-        text += &format!("v {x} {} {z}\n", (x * z) % 3);
-    }
-    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
-        let a = z * side + x;
-        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
-    }
-    text
-}
