@@ -1,5 +1,5 @@
 //! Runs of the program as rows of files: `crates/cli/tests/cases/README.md` says how to read them.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,20 +9,22 @@ use std::process::{Command, Output};
 use rayon::prelude::*;
 use serde_json::Value;
 
-use crate::program::{Folder, PROGRAM, ROOT, sheet};
+use crate::program::{Folder, PROGRAM, ROOT};
 
 /// A case while it runs.
 struct Case {
     folder: Folder,
     /// Kept outputs, by name.
     kept: BTreeMap<String, String>,
-    /// Limit of address space, MB. 0: no limit.
-    memory: u32,
-    is_on_small_disk: bool,
+    /// The script of the shell that runs a command.
+    script: String,
     /// The last output.
     stdout: String,
     stderr: String,
 }
+
+const ON_SMALL_DISK: &str = "exec unshare -m sh -c 'mount -t tmpfs -o size=1m none \"$PWD\" && cd \"$PWD\" || exit 99; \
+                             \"$0\" \"$@\"; code=$?; ls -A >&2; exit $code' \"$0\" \"$@\"";
 
 /// The text with `N(part)` after a `%` written out N times.
 fn repeated(text: &str) -> String {
@@ -37,29 +39,40 @@ fn repeated(text: &str) -> String {
     all
 }
 
+/// A rough sheet of so many vertices along each side, as a Wavefront file.
+fn sheet(side: usize) -> String {
+    let mut text = String::new();
+    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
+        text += &format!("v {x} {} {z}\n", (x * z) % 3);
+    }
+    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
+        let a = z * side + x;
+        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
+    }
+    text
+}
+
+/// The value at a pointer. `*` means every entry of an array. Entries without a value there are left out.
+fn at(document: &Value, pointer: &str) -> Option<Value> {
+    let Some((array, rest)) = pointer.split_once("/*") else {
+        return document.pointer(pointer).cloned();
+    };
+    let entries = document.pointer(array)?.as_array()?.iter();
+    let entries = entries.filter_map(|entry| at(entry, rest));
+    Some(entries.filter(|entry| !entry.is_null()).collect())
+}
+
 impl Case {
     fn run(&self, words: &str) -> Output {
-        let script = match (self.memory, self.is_on_small_disk) {
-            (0, false) => "exec \"$0\" \"$@\"",
-            (0, true) => {
-                "mount -t tmpfs -o size=1m none \"$PWD\" && cd \"$PWD\" || exit 99; \"$0\" \"$@\"; code=$?; ls -A >&2; \
-                 exit $code"
-            }
-            (megabytes, _) => &format!(
-                "ulimit -v {}; exec \"$0\" \"$@\" --threads 2",
-                megabytes << 10
-            ),
+        let (script, words) = match words.strip_prefix("$ ") {
+            Some(script) => (script, ""),
+            None => (&*self.script, words),
         };
-        let shell: &[&str] = match self.is_on_small_disk {
-            false => &["sh", "-c"],
-            true => &["unshare", "-m", "sh", "-c"],
-        };
-        let mut command = Command::new(shell[0]);
-        command.args(&shell[1..]).args([script, PROGRAM]);
+        let mut command = Command::new("sh");
         command
-            .args(words.split_whitespace())
-            .current_dir(self.folder.path());
-        command.output().unwrap()
+            .args(["-c", script, PROGRAM])
+            .args(words.split(' ').filter(|word| !word.is_empty()));
+        command.current_dir(self.folder.path()).output().unwrap()
     }
 
     /// Whether `CODE command | fragment | out: fragment | not: fragment` does what it says.
@@ -84,27 +97,40 @@ impl Case {
         is_so
     }
 
-    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries).
+    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries), `rises`, `falls`.
     fn json(&self, line: &str) -> bool {
-        let document: Value = serde_json::from_str(&self.stdout).unwrap_or_default();
+        let documents = serde_json::Deserializer::from_str(&self.stdout).into_iter();
+        let mut documents: Vec<Value> = documents.map_while(Result::ok).collect();
+        let document = match documents.len() {
+            1 => documents.remove(0),
+            _ => Value::Array(documents),
+        };
         let mut words = line.splitn(3, ' ');
         let (first, relation) = (words.next().unwrap_or(""), words.next().unwrap_or("exists"));
         if first == "!" {
-            return document.is_object() && document.pointer(relation).is_none();
+            return document.is_object() && at(&document, relation).is_none();
         }
-        let found = document.pointer(first).unwrap_or(&Value::Null);
-        let expected = words.next().unwrap_or("");
+        let found = at(&document, first).unwrap_or(Value::Null);
+        let mut expected = words.next().unwrap_or("").to_owned();
+        if expected.starts_with('/') {
+            expected = at(&document, &expected).map_or(expected, |other| other.to_string());
+        }
+        let list = match &found {
+            Value::Array(list) => list,
+            _ => &vec![found.clone()],
+        };
+        let numbers: Vec<f64> = list.iter().filter_map(Value::as_f64).collect();
+        let limit = || expected.parse::<f64>().unwrap();
         let text = found.to_string();
-        let number = || expected.parse::<f64>().unwrap_or(f64::NAN);
         match relation {
             "=" => text == expected,
             "!=" => text != expected,
-            "<" => found.as_f64().is_some_and(|found| found < number()),
-            ">" => found.as_f64().is_some_and(|found| found > number()),
-            "#" => found
-                .as_array()
-                .is_some_and(|list| list.len() as f64 == number()),
-            "~" => text.contains(expected),
+            "~" => text.contains(&expected),
+            "#" => found.is_array() && list.len() as f64 == limit(),
+            "<" => !numbers.is_empty() && numbers.iter().all(|of| *of < limit()),
+            ">" => !numbers.is_empty() && numbers.iter().all(|of| *of > limit()),
+            "rises" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a < b),
+            "falls" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a >= b),
             _ => !found.is_null(),
         }
     }
@@ -129,12 +155,6 @@ impl Case {
                 folder.put(name, fs::read(Path::new(ROOT).join(rest)).unwrap());
             }
             "sheet" => folder.put(name, sheet(text.parse().unwrap())),
-            "fifo" => drop(
-                Command::new("mkfifo")
-                    .arg(folder.at(rest))
-                    .status()
-                    .unwrap(),
-            ),
             "cut" | "flip" => {
                 // A new file of the first bytes, or of all with one changed, counted from the end.
                 let (from, at) = text.split_once(' ').unwrap();
@@ -152,8 +172,11 @@ impl Case {
                 folder.put(name, text.replacen(old, new, 1));
                 return text.contains(old);
             }
-            "memory" => self.memory = rest.parse().unwrap(),
-            "disk" => self.is_on_small_disk = true,
+            "memory" => {
+                let kibibytes = rest.parse::<u32>().unwrap() << 10;
+                self.script = format!("ulimit -v {kibibytes}; exec \"$0\" \"$@\" --threads 2");
+            }
+            "disk" => self.script = ON_SMALL_DISK.to_owned(),
             // After a command.
             "keep" => drop(self.kept.insert(rest.to_owned(), self.stdout.clone())),
             "prints" => return self.stdout == rest,
@@ -187,8 +210,7 @@ fn check(files: &[&str]) {
         let mut case = Case {
             folder: Folder::new(),
             kept: BTreeMap::new(),
-            memory: 0,
-            is_on_small_disk: false,
+            script: "exec \"$0\" \"$@\"".to_owned(),
             stdout: String::new(),
             stderr: String::new(),
         };
@@ -219,7 +241,7 @@ fn lines_do_what_they_say() {
 }
 
 #[test]
-#[ignore = "needs the right to mount, for a small disk"]
-fn small_disks_are_told_before_the_work() {
+#[ignore = "needs the right to mount, for a small disk, and the program `script`"]
+fn small_disks_and_terminals() {
     check(&["disk.txt"]);
 }

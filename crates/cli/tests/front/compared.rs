@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::program::{Folder, number, sheet};
+use crate::program::{Folder, number};
 
 /// A fan of thin blades, as a Wavefront file.
 fn blades() -> String {
@@ -65,42 +65,4 @@ fn all_methods_at_all_distances() {
     let svg = folder.text("m.svg");
     let shown = ["noise floor", "textured", "64x64"].map(|text| svg.contains(text));
     assert_eq!(shown, [true; 3]);
-}
-
-#[test]
-fn bytes_and_rivals_of_a_generated_mesh() {
-    let folder = Folder::new();
-    let made = folder.json("generate mesh:wheel,seed=3 -o wheel.ply");
-    let line = "bench quality wheel.ply --heights 40,22 --runs 1 --warmup 0 --methods \
-        triangles,decimated,hybrid";
-    let document = folder.json(line);
-    for height in [40, 22] {
-        let row = |method: &str| row(&document, method, height);
-        assert_eq!(row("triangles 4")["scene_triangles"], made["triangles"]);
-        let bytes = |method: &str| number(&row(method)["read_bytes"]);
-        assert!(bytes("decimated 1/4, 4") * 2.0 < bytes("triangles 4"));
-        assert!(bytes("hybrid 16") < bytes("triangles 16"));
-        // At 22 pixels nothing else is so small.
-        let ahead = row("hybrid 16")["ahead"].as_f64();
-        assert_eq!(ahead.is_some(), height == 40);
-        assert!(ahead.is_none_or(|ahead| ahead > -0.5), "{ahead:?}");
-    }
-}
-
-#[test]
-fn a_dolly_shows_where_levels_change() {
-    let folder = Folder::new();
-    folder.put("sheet.obj", sheet(48));
-    // From one percent nearer to the next, to half the distance.
-    let line = "bench quality sheet.obj --methods far --motions dolly --depth 3 --frames 40 --size 64 \
-        --zoom 0.6 --far-rays 30000 --runs 1 --warmup 0";
-    let document = folder.json(line);
-    let rows = document["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 3 + 1);
-    for row in &rows[..3] {
-        // Nodes change one after the other, each in one frame.
-        let [worst, mean] = ["flicker_dolly_worst", "flicker_dolly"].map(|of| number(&row[of]));
-        assert!(worst > 1.5 * mean, "{row}");
-        assert_eq!(row["reference_samples"], 256);
-    }
 }

@@ -170,65 +170,6 @@ fn threads_interruptions_and_parts_give_one_result() {
     );
 }
 
-/// The spaces that ship, on a small scene: names, points, and figures that only they vary.
-#[test]
-fn spaces_that_ship() {
-    let folder = Folder::new();
-    let explored = |space: &str| {
-        let line = format!("model gen:menger,depth=2 --size 32 --json --explore {space}");
-        lines(&folder.stdout(&line), "point")
-    };
-    let of = |points: &[Value], path: &str| -> Vec<f64> {
-        let drawn = points.iter().filter(|of| of["outcome"] == "drawn");
-        drawn.map(|of| number(of.pointer(path).unwrap())).collect()
-    };
-    let rules = explored("rules");
-    let exact = rules
-        .iter()
-        .filter(|of| of["values"]["coverage"] == "exact");
-    let (drawn, refused): (Vec<_>, Vec<_>) = exact.partition(|of| of["outcome"] == "drawn");
-    assert_eq!([rules.len(), refused.len(), drawn.len()], [18, 4, 2]);
-    for point in drawn {
-        assert_eq!(point["counts"]["divide_steps"], 0);
-        assert!(number(&point["wrong_samples"]) <= 6.0, "{point}");
-    }
-    let words = explored("words --points 0..4");
-    assert_eq!(of(&words, "/values/bits"), [16.0, 20.0, 24.0, 28.0, 32.0]);
-    for path in ["/area_nand2/value", "/format/safe_depth"] {
-        assert!(of(&words, path).is_sorted_by(|a, b| a < b), "{path}");
-    }
-    let lanes = explored("lanes --hw tiny");
-    assert_eq!(lanes.len(), 7);
-    assert!(lanes.iter().all(|of| of["values"]["hardware"] == "tiny"));
-    let caches = explored("caches");
-    // A larger cache misses no more, for rays that were cast once for all sizes.
-    assert!(of(&caches, "/ray_caster/node_misses").is_sorted_by(|a, b| a >= b));
-    for point in &caches {
-        let [light, rays] = [&point["energy_pj"], &point["ray_caster"]["energy_pj"]];
-        let less = |a: &Value, b: &Value| number(&a["high"]) < number(&b["low"]);
-        let wanted = match (less(light, rays), less(rays, light)) {
-            (true, _) => "light",
-            (_, true) => "ray_caster",
-            _ => "neither",
-        };
-        assert_eq!(point["less_energy"], wanted);
-        let orders = point["ray_caster"]["orders"].as_array().unwrap();
-        let least = orders.iter().map(|of| number(&of["energy_pj"]));
-        assert_eq!(least.reduce(f64::min), rays["value"].as_f64());
-    }
-    let steps = explored("steps");
-    assert_eq!(steps.len(), 1 + 8 + 7);
-    // All settings together are `light`.
-    let light = &caches[1];
-    for key in ["cycles", "energy_pj", "area_nand2", "counts"] {
-        assert_eq!(steps[15][key], light[key], "{key}");
-    }
-    let sizes = explored("sizes --points 0..1");
-    assert_eq!(of(&sizes, "/values/size"), [64.0, 128.0]);
-    let bundled = explored("bundled --points 0");
-    assert_eq!(bundled[0]["values"]["hardware"], "paper");
-}
-
 #[test]
 fn a_front_by_hand() {
     let drawn = lines(

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bench;
-mod buffers;
 mod cases;
 mod compared;
 mod damaged;
@@ -11,7 +10,6 @@ mod model;
 mod one_camera;
 mod printed;
 mod program;
-mod refusals;
 mod resolve;
 mod robust;
 mod stopped;

@@ -1,13 +1,8 @@
-//! The report of `model`.
+//! The sums in the report of `model`. Other rules are rows of `cases/models.txt`.
 
 use serde_json::Value;
 
 use crate::program::{Folder, number};
-
-/// The report of a small sponge, with further flags.
-fn report(folder: &Folder, flags: &str) -> Value {
-    folder.json(&format!("model gen:menger,depth=3 --size 64 {flags}"))
-}
 
 /// The sum of a figure over the elements of an array.
 fn sum(array: &Value, key: &str) -> f64 {
@@ -17,7 +12,8 @@ fn sum(array: &Value, key: &str) -> f64 {
 
 #[test]
 fn the_report_adds_up() {
-    let found = report(&Folder::new(), "--hw paper --ray-order rows");
+    let found =
+        Folder::new().json("model gen:menger,depth=3 --size 64 --hw paper --ray-order rows");
     let at = |pointer: &str| number(found.pointer(pointer).unwrap());
     let list = |pointer: &str| found.pointer(pointer).unwrap().as_array().unwrap();
     let of_order = |class: &str| {
@@ -47,22 +43,8 @@ fn the_report_adds_up() {
     ] {
         assert_eq!(sum(&found[list], key), expected, "{list}: {key}");
     }
-    let order = ["span", "cycles", "serial"].map(|key| at(&format!("/simulated/cycles/{key}")));
-    assert!(order.is_sorted(), "{order:?}");
-    // Fill vectors: four bits per node of a quadtree of six levels below its root.
-    assert_eq!(found["fill_vector_bits"], 4 * (4u64.pow(7) - 1) / 3);
-    // Every figure names its rows and their source.
-    for part in ["operations", "on_chip", "outer"] {
-        let lines = list(&format!("/cost/{part}/lines"));
-        assert!(!lines.is_empty(), "{part}");
-        for line in lines {
-            let is_empty = ["rows", "source"].map(|key| line["each"][key] == "");
-            assert_eq!(is_empty, [false; 2], "{line}");
-        }
-    }
     let parts = ["units", "registers", "memories", "control"];
     let parts = parts.map(|part| at(&format!("/area/{part}/total")));
-    assert!(parts.iter().all(|part| *part > 0.0));
     assert!((parts.iter().sum::<f64>() - at("/area/total")).abs() < 1e-6 * parts[2]);
     // 200 MHz is slow enough for all units.
     for unit in list("/clock/units") {
@@ -71,9 +53,7 @@ fn the_report_adds_up() {
             "{unit}"
         );
     }
-    assert!(at("/ray_caster/counts/cells") > 1000.0);
     // Power follows from energy and speed, and the ends of the ranges decide which design has less.
-    assert_eq!(found["ray_caster"]["order"], "rows");
     let of = |what: &str| {
         let mut lines = list("/comparison").iter();
         number(&lines.find(|line| line["what"] == what).unwrap()["light"]["value"])
@@ -89,19 +69,4 @@ fn the_report_adds_up() {
         }
         assert_eq!(line["overlap"], line["less"] == "neither");
     }
-}
-
-#[test]
-fn hardware_and_costs_of_one_s_own() {
-    let folder = Folder::new();
-    let tiny = folder.stdout("model --print-hw --hw tiny");
-    folder.put("mine.toml", tiny.replace("\"tiny\"", "\"mine\""));
-    let costs = "row = [{ operation = \"add\", width = 32, energy_pj = 1000.0, source = \"x\" }]\n";
-    folder.put("costs.toml", costs);
-    let energy = |flags: &str| {
-        let found = report(&folder, &format!("--hw mine.toml {flags}"));
-        assert_eq!(found["hardware"]["name"], "mine");
-        number(&found["cost"]["operations"]["total"])
-    };
-    assert!(energy("--costs costs.toml") > 100.0 * energy(""));
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use serde_json::Value;
 
@@ -56,15 +56,11 @@ impl Folder {
     /// The command's stdout and stderr. It must exit with this code.
     #[track_caller]
     pub(crate) fn run(&self, line: &str, code: i32) -> [String; 2] {
-        told(&self.command(line).output().unwrap(), line, code)
-    }
-
-    /// Runs a script of the shell, in which `$0` is the program.
-    #[track_caller]
-    pub(crate) fn sh(&self, script: &str, code: i32) -> [String; 2] {
-        let mut shell = Command::new("sh");
-        shell.args(["-c", script, PROGRAM]).current_dir(self.path());
-        told(&shell.output().unwrap(), script, code)
+        let output = self.command(line).output().unwrap();
+        let told = [output.stdout, output.stderr];
+        let told = told.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        assert_eq!(output.status.code(), Some(code), "{line}: {told:?}");
+        told
     }
 
     #[track_caller]
@@ -79,28 +75,7 @@ impl Folder {
     }
 }
 
-#[track_caller]
-fn told(output: &Output, line: &str, code: i32) -> [String; 2] {
-    let told = [&output.stdout, &output.stderr];
-    let told = told.map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    assert_eq!(output.status.code(), Some(code), "{line}: {told:?}");
-    told
-}
-
 pub(crate) fn number(value: &Value) -> f64 {
     let number = value.as_f64();
     number.unwrap_or_else(|| panic!("{value} is not a number"))
-}
-
-/// A rough sheet of so many vertices along each side, as a Wavefront file.
-pub(crate) fn sheet(side: usize) -> String {
-    let mut text = String::new();
-    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
-        text += &format!("v {x} {} {z}\n", (x * z) % 3);
-    }
-    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
-        let a = z * side + x;
-        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
-    }
-    text
 }

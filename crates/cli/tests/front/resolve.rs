@@ -30,24 +30,46 @@ fn graph(placement: Placement) -> Graph {
 }
 
 /// A square picture of a cube of 4 voxels, with eye and target in voxels.
-fn setup(placement: &Placement, side: u32, aa_log2: u32, [eye, target]: [DVec3; 2]) -> FrameSetup {
+fn small(
+    placement: Placement,
+    side: u32,
+    aa_log2: u32,
+    [eye, target]: [DVec3; 2],
+) -> (FrameSetup, Graph) {
+    let origin = DVec3::from_array(placement.origin_index.map(|i| i as f64));
     let world = |voxel: DVec3| {
-        let index = voxel + DVec3::from_array(placement.origin_index.map(|i| i as f64));
-        DVec3::from_array(placement.world_origin) + index * placement.voxel_size
+        DVec3::from_array(placement.world_origin) + (voxel + origin) * placement.voxel_size
     };
+    let setup = setup(
+        &placement,
+        2,
+        [world(eye), world(target)],
+        40.0,
+        (side, side),
+        [aa_log2, 0],
+    );
+    (setup, graph(placement))
+}
+
+fn setup(
+    placement: &Placement,
+    depth: u32,
+    [eye, target]: [DVec3; 2],
+    fov_degrees: f64,
+    (width, height): (u32, u32),
+    [aa_log2, lod_px]: [u32; 2],
+) -> FrameSetup {
     let camera = Camera {
-        eye: world(eye),
-        target: world(target),
+        eye,
+        target,
         up: DVec3::Z,
-        fov_degrees: 40.0,
-        width: side,
-        height: side,
+        fov_degrees,
+        width,
+        height,
     };
-    let options = SetupOptions {
-        aa_log2,
-        ..SetupOptions::default()
-    };
-    FrameSetup::new(&camera, placement, 2, &options).unwrap()
+    let mut options = SetupOptions::default();
+    (options.aa_log2, options.lod_px) = (aa_log2, f64::from(lod_px));
+    FrameSetup::new(&camera, placement, depth, &options).unwrap()
 }
 
 /// Along +Y at the middle of the cube, from 6 voxels before its front face.
@@ -67,7 +89,7 @@ fn depth_is_where_the_ray_enters() {
         voxel_size: 0.25,
         mesh: None,
     };
-    let (setup, graph) = (setup(&placement, 3, 0, FRONT), graph(placement));
+    let (setup, graph) = small(placement, 3, 0, FRONT);
     let mut frame = Frame::new(3, 3, false);
     // The middle ray runs along +Y through (2, y, 2), on the edge of four voxels. It enters or touches the whole object
     // and one of its octants.
@@ -89,14 +111,10 @@ fn depth_is_where_the_ray_enters() {
     );
     frame.height = 2;
     assert!(resolve(&frame, &graph, &setup, Shading::Flat, Background::None).is_err());
-}
-
-#[test]
-fn inside_a_voxel_the_depth_is_zero() {
-    let placement = Placement::default();
-    let graph = graph(placement);
+    // From within a voxel it is zero, also of a voxel behind the eye.
     for target in [DVec3::splat(2.0), DVec3::new(-2.0, 0.0, 0.0)] {
-        let setup = setup(&placement, 2, 0, [DVec3::new(1.3, 1.2, 1.1), target]);
+        let within = [DVec3::new(1.3, 1.2, 1.1), target];
+        let (setup, graph) = small(Placement::default(), 2, 0, within);
         let mut frame = Frame::new(2, 2, false);
         see(&mut frame, 0, 0, 0, [0, 0, 0, 1]);
         let picture = resolve(&frame, &graph, &setup, Shading::Lambert, Background::None);
@@ -106,8 +124,7 @@ fn inside_a_voxel_the_depth_is_zero() {
 
 #[test]
 fn samples_are_averaged_in_linear_light() {
-    let placement = Placement::default();
-    let (setup, graph) = (setup(&placement, 1, 1, FRONT), graph(placement));
+    let (setup, graph) = small(Placement::default(), 1, 1, FRONT);
     let mut frame = Frame::new(2, 2, true);
     see(&mut frame, 0, 0, 0, [0, 0, 3, 2]);
     see(&mut frame, 1, 1, 1, [3, 0, 0, 2]);
@@ -165,37 +182,28 @@ fn plain_colors(frame: &Frame, shader: &Shader<'_>, side: u32) -> Vec<[u8; 4]> {
 #[test]
 fn colours_are_those_of_the_plain_rule() {
     let mut compared = 0;
-    for spec in [
-        "terrain,depth=6",
-        "menger,depth=3",
-        "random,depth=4",
-        "wires,depth=5",
-    ] {
+    for spec in "terrain,depth=6 menger,depth=3 random,depth=4 wires,depth=5".split(' ') {
         let scene = Scene::generate(spec).unwrap();
         let mut without = scene.graph().clone();
         without.normal = vec![PackedNormal::NONE; without.len()].into();
         for (graph, eye, aa_log2, lod_px) in [
-            (scene.graph(), [1.6, -0.7, 1.25], 0, 0.0),
-            (scene.graph(), [1.6, -0.7, 1.25], 1, 1.0),
-            (scene.graph(), [0.47, 0.52, 0.61], 0, 3.0),
-            (&without, [-0.9, 1.3, 0.8], 0, 0.0),
-            (&without, [-0.9, 1.3, 0.8], 2, 1.0),
+            (scene.graph(), [1.6, -0.7, 1.25], 0, 0),
+            (scene.graph(), [1.6, -0.7, 1.25], 1, 1),
+            (scene.graph(), [0.47, 0.52, 0.61], 0, 3),
+            (&without, [-0.9, 1.3, 0.8], 0, 0),
+            (&without, [-0.9, 1.3, 0.8], 2, 1),
         ] {
             let side = f64::from(1u32 << graph.depth);
-            let camera = Camera {
-                eye: DVec3::from_array(eye) * side,
-                target: DVec3::splat(0.45) * side,
-                up: DVec3::Z,
-                fov_degrees: 75.0,
-                width: 53,
-                height: 38,
-            };
-            let options = SetupOptions {
-                aa_log2,
-                lod_px,
-                ..SetupOptions::default()
-            };
-            let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+            let eye_and_target = [DVec3::from_array(eye), DVec3::splat(0.45)].map(|at| at * side);
+            let fine = [aa_log2, lod_px];
+            let setup = setup(
+                &graph.placement,
+                graph.depth,
+                eye_and_target,
+                75.0,
+                (53, 38),
+                fine,
+            );
             let mut fast = Fast::new(FastOptions::default(), Box::new(Machine::default()));
             let mut frame = Frame::new(setup.width, setup.height, false);
             fast.draw(&graph.view(), &setup, &mut frame).unwrap();
@@ -211,6 +219,15 @@ fn colours_are_those_of_the_plain_rule() {
                 let picture = resolve(&frame, graph, &setup, shading, background).unwrap();
                 assert_eq!(picture.rgba, plain, "{spec} {eye:?} {aa_log2} {lod_px}");
                 compared += picture.drawn();
+                for (at, node) in picture.node.iter().enumerate() {
+                    let is_drawn = [picture.depth[at].is_finite(), picture.voxel[at][3] >= 0];
+                    assert_eq!(is_drawn, [*node >= 0; 2], "{spec}");
+                    let length = glam::Vec3::from_array(picture.normal[at]).length();
+                    assert!(
+                        (length - f32::from(u8::from(*node >= 0))).abs() < 1e-5,
+                        "{length}"
+                    );
+                }
                 // Nodes alone suffice where each is in one place.
                 let of_nodes = resolve(&nodes, graph, &setup, shading, background);
                 match graph.links.is_empty() {

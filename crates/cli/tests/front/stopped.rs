@@ -37,11 +37,6 @@ fn start(folder: &Folder, line: &str) -> Child {
     command.stderr(Stdio::piped()).spawn().unwrap()
 }
 
-fn send(child: &Child, signal: Signal) {
-    // It fails where the process has ended by then, which the caller sees.
-    let _ = kill_process(Pid::from_child(child), signal);
-}
-
 fn unfinished(folder: &Folder) -> Vec<String> {
     let mut names = folder.names();
     names.retain(|name| name.ends_with(".tmp"));
@@ -58,7 +53,8 @@ fn stop_while_writing(folder: &Folder, signal: Signal) {
             assert!(started.elapsed().as_secs() < 120, "nothing is written");
             std::thread::sleep(Duration::from_millis(1));
         }
-        send(&child, signal);
+        // It fails where the process has ended by then.
+        let _ = kill_process(Pid::from_child(&child), signal);
         let status = child.wait().unwrap();
         if folder.get("sheet.far") == b"old" {
             assert_eq!(status.signal(), Some(signal.as_raw()));
@@ -89,22 +85,12 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert_eq!(folder.names(), ["sheet.far", "sheet.stl"]);
 }
 
-#[test]
-fn a_signal_that_is_ignored_stays_ignored() {
-    let folder = folder();
-    // As `nohup` does it.
-    let script = format!("trap '' HUP; \"$0\" {BUILD} & sleep 0.1; kill -HUP $!; wait $!");
-    folder.sh(&script, 0);
-}
-
-/// The most memory that a process had, bytes; Linux reports it, and keeps it until it has ended.
+/// The most memory that a process had, bytes; Linux reports it until the process has ended.
 #[cfg(target_os = "linux")]
 fn most_memory(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    let (_, most) = status.split_once("VmHWM:")?;
+    let kibibytes: u64 = most.split_whitespace().next()?.parse().ok()?;
     Some(kibibytes * 1024)
 }
 

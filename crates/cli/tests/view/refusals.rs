@@ -10,7 +10,7 @@ use serde_json::json;
 use tungstenite::Message;
 use tungstenite::protocol::frame::coding::CloseCode;
 
-use crate::program::{Page, Program, question, shiftvox};
+use crate::program::{Page, Program, question};
 
 fn scene() -> Program {
     Program::start("tests/data/axes.vox")
@@ -274,33 +274,6 @@ fn a_page_that_leaves_or_does_not_read_loses_its_place() {
     pages[0].send(question(json!({ "size": [2048, 2048] })));
     page_in_time(&program, 25);
     assert_serves(&mut pages[7]);
-}
-
-#[test]
-fn a_port_in_use_and_wrong_flags_are_refused() {
-    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
-    let taken = format!("--port {}", taken.local_addr().unwrap().port());
-    for (flags, expected, reason) in [
-        (taken.as_str(), 1, "cannot listen on 127.0.0.1:"),
-        ("--bind 192.0.2.1", 1, ""),
-        ("--port 70000", 2, ""),
-        ("--bind localhost", 2, ""),
-        ("--aov depth", 2, ""),
-        ("--far-opacity six", 2, ""),
-        ("no-such-file.vox", 4, ""),
-        ("--size 2049x2048", 5, ""),
-        ("--size 2048 --aa 4", 5, ""),
-    ] {
-        let output = shiftvox(&format!("view tests/data/axes.vox {flags}"));
-        let text = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(expected), "{flags}: {text}");
-        assert!(
-            text.contains(reason) && !text.contains("panicked"),
-            "{text}"
-        );
-        assert!(output.stdout.is_empty());
-    }
-    assert_eq!(shiftvox("view --quiet").status.code(), Some(2));
 }
 
 #[test]
