@@ -1,27 +1,29 @@
-//! Threads, ray budgets, refused options.
+//! Splits, ray budgets, refused options.
 
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
-use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, ViewError, ViewOptions};
-use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build};
-use shiftvox_mesh::generate::{Kind, generate};
+use shiftvox_mesh::far::{BuildError, BuildOptions, build};
 use shiftvox_mesh::raster::RasterCamera;
 
-use super::city::{city, draw, far, file_of, options, view};
-use super::shared::on_any_threads;
-use super::solid::hybrid;
+use super::city::{city, far, file_of, options, view};
+use super::shared::indexed;
 
 #[test]
-fn threads_never_change_files_and_pictures() {
-    let view = view(35.0, 0.4, 90.0, 200);
-    on_any_threads(|| {
-        let bytes = encode(&far(false)).unwrap();
-        let file = FarFile::from_bytes(&bytes).unwrap();
-        (bytes, draw(&file, &view, &ViewOptions::default()))
-    });
-    on_any_threads(|| encode(&hybrid(&generate(Kind::Wheel, 3), 300)).unwrap());
+fn equal_triangles_are_split_by_number() {
+    let mesh = indexed(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        &[[0, 1, 2]; 100],
+    );
+    let options = BuildOptions {
+        leaf_triangles: 2,
+        ..options()
+    };
+    let data = build(&mesh, &options, &Silent).unwrap();
+    let leaves = data.nodes.iter().filter(|node| node.is_leaf());
+    let triangles: Vec<u32> = leaves.map(|leaf| leaf.triangles).collect();
+    assert!(triangles.iter().all(|&count| count <= 2) && triangles.iter().sum::<u32>() == 100);
 }
 
 #[test]

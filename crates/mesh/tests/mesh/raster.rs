@@ -3,13 +3,11 @@
 use glam::{DVec2, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox::split_mix::SplitMix;
-use shiftvox_mesh::raster::{
-    self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
-};
+use shiftvox_mesh::raster::{self, Light, RasterCamera, RasterOptions, RasterPicture};
 use shiftvox_mesh::{Mesh, Surface};
 
 use super::shared::{
-    area, ball, looking, on_any_threads, one_box, plain, quad, shape, triangle, triangles,
+    ball, looking, mesh_of, on_any_threads, one_box, plain, quad, shape, triangles,
 };
 
 fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> RasterCamera {
@@ -90,13 +88,10 @@ fn pictures_agree_with_ray_casting() {
     // Random triangles cross each other.
     let mut dice = SplitMix::new(3);
     let mut random = || dice.unit() as f32 * 2.0 - 1.0;
-    let mesh = shape(|builder| {
-        for _ in 0..400 {
-            let at = [random(), random(), random()];
-            let corners = [0; 3].map(|_| at.map(|c| c + 0.3 * random()));
-            triangle(builder, corners, 0);
-        }
-    });
+    let mesh = mesh_of((0..400).map(|_| {
+        let at = [random(), random(), random()];
+        [0; 3].map(|_| at.map(|c| c + 0.3 * random()))
+    }));
     check_depths(&mesh, &view([0.5, 1.0, 4.0], DVec3::ZERO, [200, 200]));
     // A room has no gap. Corners are behind the eye, at the near plane and far outside the guard band.
     let room = one_box([-3.0, -1.0, -2.0], [4.0, 2.5, 5.0]);
@@ -112,24 +107,6 @@ fn pictures_agree_with_ray_casting() {
         assert!(picture.coverage.iter().all(|&c| c == 1.0), "{eye:?}");
         check_depths(&room, &view);
     }
-}
-
-#[test]
-fn random_samples_have_the_true_coverage_and_follow_their_seed() {
-    let mesh = ball(20);
-    let view = view([1.0, 0.7, 3.0], DVec3::ZERO, [120, 120]);
-    let finest = area(&draw(&mesh, &view, &plain(256)).coverage);
-    let [a, b, again] = [1, 2, 1].map(|seed| {
-        let mut options = plain(1);
-        options.samples = Samples::new(16, Pattern::Stratified { seed }).unwrap();
-        draw(&mesh, &view, &options)
-    });
-    assert!(a == again && a.coverage != b.coverage);
-    assert!(
-        [a, b]
-            .iter()
-            .all(|picture| (area(&picture.coverage) / finest - 1.0).abs() < 0.001)
-    );
 }
 
 #[test]

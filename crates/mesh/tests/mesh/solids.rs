@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3, EulerRot};
 use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading, View};
 use shiftvox_mesh::{Mesh, SceneOptions, Surface};
 
-use super::shared::{ball, one_box, shape, turned};
+use super::shared::{ball, one_box};
 
 /// A white shell around the same shape in red, smaller.
 fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> Scene {
@@ -41,15 +41,11 @@ fn redness(scene: &Scene, camera: &impl View, coverage: Coverage) -> (i32, f64) 
 #[test]
 fn a_closed_surface_hides_everything_inside() {
     let tilted = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.2);
-    let profile = [(1.0, 0.0), (1.0, 0.4), (-1.0, 0.4), (-1.0, 0.0)];
-    let can = shape(|builder| turned(builder, DVec3::ZERO, &profile, 48, 0));
     let cube = one_box([-1.0; 3], [1.0; 3]);
-    let upright = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
     for (name, scene) in [
         ("ball", nested(&ball(48), 0.9, DQuat::IDENTITY)),
         ("cube", nested(&cube, 0.9, DQuat::IDENTITY)),
         ("tilted cube", nested(&cube, 0.9, tilted)),
-        ("tilted can", nested(&can, 0.85, tilted * upright)),
     ] {
         assert!(scene.warnings()[0].contains("missing.mtl"));
         // From more than a pixel per voxel to the whole scene in a few pixels.
@@ -59,7 +55,6 @@ fn a_closed_surface_hides_everything_inside() {
             (0.8, 2.0, 3.0),
             (0.8, 140.0, -50.0),
             (0.4, 200.0, 85.0),
-            (0.4, 2.0, 3.0),
             (0.2, 45.0, 35.26),
             (0.2, 310.0, 60.0),
         ] {

@@ -11,7 +11,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::{Mesh, Surface};
 
-use super::shapes::{data_uri, gltf_json, square_buffer};
+use super::shapes::{data_uri, square_json};
 use super::shared::has;
 
 /// A picture with halves of two colours. The lower quarter is transparent, where the format has opacity.
@@ -91,7 +91,7 @@ fn textures_of_gltf_files_are_averaged_over_triangles() {
     // Corners on the right half of the picture.
     let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.7], [0.6, 0.7]];
     let corners = corners.map(|corner| corner.map(f32::to_le_bytes).concat());
-    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let mut json = square_json();
     for (number, content) in [(2, &corners.concat()), (3, &png)] {
         let length = content.len();
         let mut push = |list: &str, value| json[list].as_array_mut().unwrap().push(value);

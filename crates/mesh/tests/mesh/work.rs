@@ -8,7 +8,7 @@ use shiftvox_mesh::voxelize::{
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::opacities::graph_of;
-use super::shared::{ball, has, one_box, shape, soup, triangle};
+use super::shared::{ball, has, mesh_of, one_box, soup, triangle};
 use super::voxels::random;
 
 /// Voxels and work, of which the estimate is at most all.
@@ -62,11 +62,7 @@ fn fan(corners: u32) -> Mesh {
         let angle = f64::from(k) / f64::from(corners) * std::f64::consts::TAU;
         [angle.cos() as f32, angle.sin() as f32, 0.0]
     };
-    shape(|builder| {
-        for k in 1..corners - 1 {
-            triangle(builder, [point(0), point(k), point(k + 1)], 0);
-        }
-    })
+    mesh_of((1..corners - 1).map(|k| [point(0), point(k), point(k + 1)]))
 }
 
 #[test]

@@ -3,15 +3,10 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use shiftvox::graph::Silent;
-use shiftvox_mesh::LoadOptions;
-use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::textured::levels::surfels;
 use shiftvox_mesh::textured::record::CLEAR;
-use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
+use shiftvox_mesh::textured::{Element, TexturedFile};
 
-use super::scenes::{balls, built, file_of, mesh_of, random_triangles, rectangle, small_grids};
-use super::shared::model;
+use super::scenes::{balls, built, file_of, mesh_of, random_triangles, small_grids};
 
 type Cells = BTreeSet<[i32; 3]>;
 
@@ -90,39 +85,8 @@ proptest! {
 }
 
 #[test]
-fn blocks_and_clouds_have_levels() {
-    assert_eq!(BuildOptions::default().element, Element::Sides);
+fn clouds_have_levels() {
     for element in [Element::Cube, Element::Sides] {
         assert!(check(&file_of(&built(&balls(), 16, 2, element))) >= 2);
-    }
-    // Sheets through 6 x 6 x 6 cells: a solid block that loses one layer per level.
-    let sheet = |i: u8| rectangle(f32::from(i) * 0.5, [0.0; 2], [6.0; 2]);
-    let sheets: Vec<_> = (0..=12).flat_map(sheet).collect();
-    let data = built(&mesh_of(&sheets).unwrap(), 6, 1, Element::Cube);
-    assert_eq!(check(&file_of(&data)), 3);
-    let all = surfels(&data.grids[0].voxels, 6).len();
-    assert_eq!(all, 6 * (36 + 16 + 4));
-}
-
-/// Faces, voxels and surfels of each level of a leafy tree, as in the image-order paper's table, and of a kitchen.
-#[test]
-#[ignore = "needs the shared data"]
-fn the_tree_and_the_kitchen_have_known_levels() {
-    const TREE: [[u64; 3]; 6] = [
-        [791, 1099, 791],
-        [6715, 468, 467],
-        [16820, 152, 195],
-        [21286, 32, 52],
-        [22493, 3, 7],
-        [22566, 0, 0],
-    ];
-    const KITCHEN: [[u64; 3]; 3] = [[1473, 1958, 1473], [50952, 110, 184], [56913, 0, 0]];
-    for (name, expected) in [("tree_Oak_Large.obj", &TREE[..]), ("kitchen.obj", &KITCHEN)] {
-        let (mesh, _) = read_mesh(&model(name), &LoadOptions::default(), &Silent).unwrap();
-        let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
-        file.verify().unwrap();
-        let rows = file.grid(0).levels().rows().iter();
-        let table: Vec<_> = rows.map(|r| [r.faces, r.voxels, r.surfels]).collect();
-        assert_eq!(table, expected, "{name}");
     }
 }
