@@ -8,14 +8,11 @@ use shiftvox_mesh::far::{BuildError, BuildOptions, build};
 use shiftvox_mesh::raster::RasterCamera;
 
 use super::city::{city, far, file_of, options, view};
-use super::shared::indexed;
+use super::shared::mesh_of;
 
 #[test]
 fn equal_triangles_are_split_by_number() {
-    let mesh = indexed(
-        &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        &[[0, 1, 2]; 100],
-    );
+    let mesh = mesh_of([[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 100]);
     let options = BuildOptions {
         leaf_triangles: 2,
         ..options()

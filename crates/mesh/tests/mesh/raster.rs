@@ -1,14 +1,12 @@
-//! Triangles to pixels: light, ray casting, more samples.
+//! Triangles to pixels, against ray casting.
 
 use glam::{DVec2, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox::split_mix::SplitMix;
-use shiftvox_mesh::raster::{self, Light, RasterCamera, RasterOptions, RasterPicture};
+use shiftvox_mesh::raster::{self, RasterCamera, RasterOptions, RasterPicture};
 use shiftvox_mesh::{Mesh, Surface};
 
-use super::shared::{
-    ball, looking, mesh_of, on_any_threads, one_box, plain, quad, shape, triangles,
-};
+use super::shared::{ball, looking, mesh_of, on_any_threads, one_box, plain};
 
 fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> RasterCamera {
     looking(eye.into(), target.into(), size, f64::from(size[1]))
@@ -16,31 +14,6 @@ fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> Rast
 
 fn draw(mesh: &Mesh, view: &RasterCamera, options: &RasterOptions) -> RasterPicture {
     raster::draw(mesh, view, options, &Silent).unwrap()
-}
-
-#[test]
-fn triangles_are_lit_like_voxels_on_both_sides() {
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let square = shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, 0.0]), 0));
-    for (eye, towards, color) in [
-        (DVec3::Z, DVec3::Z, [90, 120, 150, 255]),
-        (DVec3::NEG_Z, DVec3::NEG_Z, [90, 120, 150, 255]),
-        // At a right angle only the ambient quarter is left; 150 is 0.305 of the light.
-        (DVec3::Z, DVec3::X, [44, 61, 78, 255]),
-        (
-            DVec3::Z,
-            DVec3::new(12.0, 0.0, 5.0) / 13.0,
-            [66, 90, 113, 255],
-        ),
-    ] {
-        let light = Light {
-            towards,
-            ambient: 64,
-        };
-        let view = view(eye, DVec3::ZERO, [8, 8]);
-        let picture = triangles(&square, &view, 1, Some(light), None);
-        assert_eq!(picture.rgba[0], color, "{eye} {light:?}");
-    }
 }
 
 /// Compares depths with those of a ray caster. Where they differ, a ray nearby has that of the picture.

@@ -13,7 +13,7 @@ use shiftvox_mesh::{ColorSpace, Instances, Material, Mesh, MeshBuilder, MeshForm
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::shapes::load;
-use super::shared::{ball, mesh_of, on_any_threads, quad, shape, soup};
+use super::shared::{ball, mesh_of, on_any_threads, soup};
 
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
@@ -66,30 +66,10 @@ fn colours_and_normals_are_as_recorded() {
 }
 
 #[test]
-fn colours_are_by_area_in_linear_light() {
-    let normal = |voxel: &Voxel| voxel.normal.unwrap().decode().unwrap();
-    // Three quarters of a wall are white, the rest is black. It has two sides, of which one is kept.
-    let mesh = shape(|builder| {
-        for (byte, left, right) in [(255, 0.0, 0.75), (0, 0.75, 1.0)] {
-            let material = builder.material(Material::of_srgb("m", [byte; 3]));
-            let corners = [[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]];
-            let [a, b, c, d] = corners.map(|[x, y]| [x, y, 5.0]);
-            quad(builder, [a, b, c, d], material);
-            quad(builder, [d, c, b, a], material);
-        }
-    });
-    // It lies in the middle of its layer.
-    let (origin, voxel_size) = Grid::around(&mesh, 4).unwrap().placement();
+fn flat_meshes_lie_in_the_middle_of_a_layer_and_invalid_grids_are_refused() {
+    let flat = mesh_of([[[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]]]);
+    let (origin, voxel_size) = Grid::around(&flat, 4).unwrap().placement();
     assert!(((5.0 - origin[2]) / voxel_size - 0.5).abs() < 1e-9);
-    for voxel in voxels(&mesh, 1) {
-        // Voxel 0 holds x from 0 to 0.5, which is white. Voxel 1 holds half of each.
-        assert_eq!(voxel.color, [[255; 3], [188; 3]][voxel.index[0] as usize]);
-        assert!(normal(&voxel).z > 1.0 - 1e-9);
-    }
-}
-
-#[test]
-fn invalid_grids_are_refused() {
     let mesh = ball(4);
     for depth in [0, 21, 1000] {
         assert_eq!(Grid::around(&mesh, depth), Err(GridError::Depth(depth)));

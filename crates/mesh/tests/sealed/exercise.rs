@@ -167,11 +167,6 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             assert_eq!(vxg::verify(path).is_ok(), read.is_ok());
             assert!(opened.is_ok() || read.is_err());
             if let Ok(graph) = &read {
-                let mut again = Vec::new();
-                vxg::write_to(graph, &mut again).unwrap();
-                // Reserved parts of the header may differ.
-                assert!(again[512..] == bytes[512..]);
-                assert_eq!(vxg::from_bytes(&again).unwrap().placement, graph.placement);
                 assert!(merge(graph, MergeBy::Shape, &Silent).0.validate().is_ok());
             }
             if let Ok(graph) = &opened {

@@ -104,15 +104,6 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     builder.finish("a shape").unwrap()
 }
 
-pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
-    shape(|builder| {
-        positions.iter().for_each(|&p| _ = builder.position(p));
-        for &triangle in triangles {
-            builder.triangle(triangle, None, 0).unwrap();
-        }
-    })
-}
-
 pub fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
     shape(|builder| {
         for corners in triangles {

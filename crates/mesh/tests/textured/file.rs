@@ -77,14 +77,10 @@ fn invalid_options_are_refused() {
     let grid = |cells, texels| BuildError::Grid { cells, texels };
     for (grids, texels, error) in [
         (&[0][..], 16, grid(0, 16)),
-        (&[15], 16, grid(15, 16)),
         (&[130], 16, grid(130, 16)),
-        (&[u32::MAX], 16, grid(u32::MAX, 16)),
         (&[4], 0, grid(4, 0)),
         (&[4], 65, grid(4, 65)),
-        (&[128], 64, grid(128, 64)),
         (&[], 4, BuildError::Grids),
-        (&[4, 4], 4, BuildError::Grids),
     ] {
         let refused = build(&mesh, &options(grids, texels, Element::Cube), &Silent);
         assert_eq!(refused.err(), Some(error));

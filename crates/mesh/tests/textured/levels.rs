@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use proptest::prelude::*;
 use shiftvox_mesh::textured::record::CLEAR;
 use shiftvox_mesh::textured::{Element, TexturedFile};
 
-use super::scenes::{balls, built, file_of, mesh_of, random_triangles, small_grids};
+use super::scenes::{balls, built, file_of};
 
 type Cells = BTreeSet<[i32; 3]>;
 
@@ -24,7 +23,7 @@ fn eroded(cells: &Cells, element: Element) -> Cells {
 }
 
 /// Checks all levels against definitions. Returns the last.
-fn check(file: &TexturedFile) -> u32 {
+pub(super) fn check(file: &TexturedFile) -> u32 {
     let grid = file.grid(0);
     let (levels, voxels) = (grid.levels(), grid.voxels());
     let cell = |number: usize| voxels[number].cell.map(i32::from);
@@ -68,20 +67,6 @@ fn check(file: &TexturedFile) -> u32 {
     assert_eq!(last.primitives as usize, file.primitives().len());
     assert_eq!((last.voxels, last.surfels), (0, 0));
     levels.last()
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
-
-    #[test]
-    fn levels_are_the_rest_after_erosions(
-        triangles in random_triangles(),
-        (cells, texels, element) in small_grids(),
-    ) {
-        if let Some(mesh) = mesh_of(&triangles) {
-            check(&file_of(&built(&mesh, cells, texels, element)));
-        }
-    }
 }
 
 #[test]

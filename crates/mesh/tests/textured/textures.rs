@@ -5,7 +5,8 @@ use shiftvox::graph::PackedNormal;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER, Texel};
 use shiftvox_mesh::textured::{CellGrid, TexturedData};
 
-use super::scenes::{built, color_of, mesh_of, random_triangles, small_grids};
+use super::levels::check;
+use super::scenes::{built, color_of, file_of, mesh_of, random_triangles, small_grids};
 
 type Point = [i128; 2];
 
@@ -98,7 +99,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
-    fn slice_by_slice_is_the_same_as_projected_afresh(
+    fn textures_are_the_same_as_projected_afresh_and_levels_the_rest_after_erosions(
         triangles in random_triangles(),
         (cells, texels, element) in small_grids(),
     ) {
@@ -106,6 +107,7 @@ proptest! {
             let data = built(&mesh, cells, texels, element);
             assert_eq!(data.primitives.len(), mesh.triangles().len());
             compare(&data);
+            check(&file_of(&data));
         }
     }
 }
