@@ -33,7 +33,7 @@ const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
 
 #[test]
 fn files_and_pictures_have_their_hashes_on_any_number_of_threads() {
-    let meshes = [city(), generate(Kind::Village, 3)];
+    let meshes = [city(false), generate(Kind::Village, 3)];
     let mut counts = [0; LISTS.len()];
     let mut files = Vec::new();
     for (number, row) in FILES.into_iter().enumerate() {

@@ -111,7 +111,7 @@ fn thin_tubes_keep_their_area() {
                 for (sum, opacity) in drawn.iter_mut().zip([Opacity::Scalar, Opacity::Six]) {
                     *sum += area(&draw(&file, &view, &options(opacity)).0.coverage);
                 }
-                expected += area(&triangles(&mesh, &view, 16, None, None).coverage);
+                expected += area(&triangles(&mesh, &view, 16, None).coverage);
             }
             for drawn in drawn {
                 let bias: f64 = drawn / expected - 1.0;

@@ -49,13 +49,11 @@ fn culling_saves_work_and_never_changes_the_picture() {
             }
         }
     }
-    let [hidden, visited, triangles, bytes] = culled_work;
-    let [_, all_visited, all_triangles, all_bytes] = all_work;
-    let is_less = hidden > 40
-        && visited < all_visited
-        && 20 * triangles < 19 * all_triangles
-        && 8 * bytes < 7 * all_bytes;
-    assert!(is_less, "{culled_work:?} {all_work:?}");
+    let is_less = (1..4).all(|k| 40 * culled_work[k] < 39 * all_work[k]);
+    assert!(
+        culled_work[0] > 40 && is_less,
+        "{culled_work:?} {all_work:?}"
+    );
 }
 
 #[test]
@@ -94,7 +92,7 @@ fn tiny_voxels_are_replaced_by_the_triangles() {
     };
     let (picture, counts) = draw(&file_of(&far(false)), &view, &options);
     assert_eq!((counts.voxel_nodes, counts.opaque_voxels), (0, 0));
-    let expected = triangles(&city(), &view, 1, None, options.background);
+    let expected = triangles(&city(false), &view, 1, options.background);
     // Colours are stored as bytes, and where two faces meet the order decides.
     let pairs = picture.rgba.iter().zip(&expected.rgba);
     assert!(pairs.filter(|(a, b)| a != b).count() < 40);

@@ -6,7 +6,7 @@ use shiftvox::split_mix::SplitMix;
 use shiftvox_mesh::raster::{self, RasterCamera, RasterOptions, RasterPicture};
 use shiftvox_mesh::{Mesh, Surface};
 
-use super::shared::{ball, looking, mesh_of, on_any_threads, one_box, plain};
+use super::shared::{ball, looking, mesh_of, on_threads, one_box, plain};
 
 fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> RasterCamera {
     looking(eye.into(), target.into(), size, f64::from(size[1]))
@@ -86,7 +86,8 @@ fn pictures_agree_with_ray_casting() {
 fn threads_change_nothing_and_invalid_views_are_refused() {
     let mesh = ball(16);
     let view = view([1.0, 0.7, 2.0], DVec3::ZERO, [100, 75]);
-    on_any_threads(|| draw(&mesh, &view, &plain(4)));
+    let [one, three] = [1, 3].map(|n| on_threads(n, || draw(&mesh, &view, &plain(4))));
+    assert!(one == three);
     let faults: [fn(&mut RasterCamera); 5] = [
         |view| view.width = 0,
         |view| view.height = 32769,

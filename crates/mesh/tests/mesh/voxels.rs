@@ -13,7 +13,7 @@ use shiftvox_mesh::{ColorSpace, Instances, Material, Mesh, MeshBuilder, MeshForm
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::shapes::load;
-use super::shared::{ball, mesh_of, on_any_threads, soup};
+use super::shared::{ball, mesh_of, on_threads, soup};
 
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
@@ -62,7 +62,8 @@ fn colours_and_normals_are_as_recorded() {
         0x4725_1bc9_47c9_848d,
     ];
     assert_eq!(recorded, expected, "{recorded:#x?}");
-    on_any_threads(|| voxels(&ball(12), 7));
+    let [one, three] = [1, 3].map(|threads| on_threads(threads, || voxels(&ball(12), 7)));
+    assert!(one == three);
 }
 
 #[test]

@@ -51,7 +51,7 @@ fn covered(part: &[[Point; 3]], per_pixel: u32) -> Vec<u32> {
     };
     let mesh = mesh_of(part.iter().map(|corners| corners.map(place)));
     let view = looking(DVec3::Z, DVec3::ZERO, [SIDE as u32; 2], f64::from(SIDE));
-    let picture = drawn(&mesh, &view, per_pixel, None, None);
+    let picture = drawn(&mesh, &view, per_pixel, None);
     let samples = |&share: &f32| (share * per_pixel as f32).round() as u32;
     picture.coverage.iter().map(samples).collect()
 }

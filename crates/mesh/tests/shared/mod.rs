@@ -9,9 +9,7 @@ use std::fmt::Debug;
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::raster::{
-    self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
-};
+use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -69,11 +67,9 @@ pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,
     samples: u32,
-    light: Option<Light>,
     background: Option<[u8; 3]>,
 ) -> RasterPicture {
     let options = RasterOptions {
-        light,
         background,
         ..plain(samples)
     };
@@ -185,13 +181,6 @@ pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build().unwrap().install(work)
-}
-
-/// The result of work that gives the same on one and three threads.
-pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
-    let [one, three] = [1, 3].map(|threads| on_threads(threads, &work));
-    assert!(one == three, "threads change the result");
-    one
 }
 
 #[track_caller]

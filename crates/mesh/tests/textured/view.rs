@@ -50,7 +50,7 @@ fn levels_cover_the_same_as_the_mesh_along_an_axis_and_at_most_a_cell_around_it_
     let (centre, last) = (middle(&file), file.grid(0).levels().last());
     for away in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
         let view = view(centre + away * 4000.0, centre, 300, 0.16);
-        let full = covered(&triangles(&mesh, &view, 1, None, None));
+        let full = covered(&triangles(&mesh, &view, 1, None));
         assert!(count(&full) > 10_000);
         for level in 0..=last {
             let found = covered(&drawn(&file, &view, level).0);
@@ -64,7 +64,7 @@ fn levels_cover_the_same_as_the_mesh_along_an_axis_and_at_most_a_cell_around_it_
     let mut sums = [0; 3];
     for direction in directions(12) {
         let view = view(centre + direction * 22.0, centre, 256, 32.0);
-        let mesh = triangles(&mesh, &view, 1, None, None);
+        let mesh = triangles(&mesh, &view, 1, None);
         let full = covered(&mesh);
         let radius = (cell * view.focal_px / 14.0).ceil() as usize + 1;
         let found = (0..last).map(|level| covered(&drawn(&file, &view, level).0));
@@ -141,7 +141,7 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
         ] {
             let mut view = around(&mesh, towards.into(), distance, 128);
             view.focal_px = 176.0;
-            let drawn = |samples| triangles(&mesh, &view, samples, None, background).rgba;
+            let drawn = |samples| triangles(&mesh, &view, samples, background).rgba;
             let reference = drawn(256);
             let mut auto = shown(Detail::Auto { texel_px: 1.0 });
             auto.raster.background = background;

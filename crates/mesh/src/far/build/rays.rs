@@ -242,10 +242,8 @@ mod tests {
             let nearest = |query: &Query| nearest_of_all(&triangles, query, size as f32);
             let expected: Vec<Meeting> = queries.iter().map(nearest).collect();
             met += expected.iter().filter(|&m| *m != Meeting::NONE).count();
-            let [around, here] = [1.0, 2.0].map(|times| {
-                let half = DVec3::splat(times * size + 1.0);
-                Around::of(-half, half)
-            });
+            let half = DVec3::splat(2.0 * size);
+            let around = Around::of(-half, half);
             for (parts, within) in [(1, None), (4, None), (5, Some(1)), (9, Some(9000))] {
                 let part = |part: usize| Part {
                     triangles: triangles.len() * part / parts..triangles.len() * (part + 1) / parts,
@@ -256,7 +254,7 @@ mod tests {
                 let parts = (0..parts).map(part).collect();
                 let occluders = Occluders::new(parts, corners, within).unwrap();
                 let mut found = Vec::new();
-                occluders.nearest(&here, &queries, &mut found).unwrap();
+                occluders.nearest(&around, &queries, &mut found).unwrap();
                 for (found, expected) in found.iter().zip(&expected) {
                     // Of a ray that begins in a triangle's plane the test is too coarse.
                     let begins_there = found.distance.min(expected.distance) == 0.0;
