@@ -14,8 +14,10 @@ use shiftvox_mesh::textured::{Element, TexturedFile, build};
 use super::scenes::{balls, middle, options};
 use super::shared::{bytes_of, hash, on_threads, plain};
 
+type Row = (&'static [u32], u32, Element, [[u32; 2]; 2]);
+
 /// Grids, texels, element; hashes of files of balls and a village, and of their pictures.
-const ROWS: [(&[u32], u32, Element, [[u32; 2]; 2]); 3] = [
+const ROWS: [Row; 3] = [
     (
         &[4, 10, 16],
         5,
