@@ -40,28 +40,3 @@ pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
         Shading::Flat => None,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_key_light_is_above_and_behind_the_camera() {
-        // It looks along +y, with x to the right and z up. The farthest corner is at y = 1.
-        let camera = Camera {
-            eye: DVec3::NEG_Y * 10.0,
-            target: DVec3::ZERO,
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: 64,
-            height: 64,
-        };
-        let view = view_of(&camera, (DVec3::splat(-1.0), DVec3::ONE)).unwrap();
-        let farthest = DVec3::new(1.0, 11.0, 1.0).length();
-        assert!((view.near - 1e-6 * farthest).abs() < 1e-12);
-        let light = light_of(&view, Shading::Lambert).unwrap();
-        let [right, up, behind] = KEY_LIGHT.normalize().to_array();
-        let expected = DVec3::new(right, -behind, up);
-        assert!((light.towards - expected).length() < 1e-12);
-    }
-}

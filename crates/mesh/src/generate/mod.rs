@@ -107,11 +107,9 @@ mod tests {
     #[test]
     fn every_kind_is_small_follows_its_seed_and_survives_its_file() {
         for (name, kind) in Kind::ALL {
-            assert_eq!(parse(&format!("mesh:{name}")), Ok((kind, 1)));
             assert_eq!(parse(&format!("mesh:{name},seed=7")), Ok((kind, 7)));
             let mesh = generate(kind, 1);
             assert!((1_000..60_000).contains(&mesh.len()), "{name}");
-            assert!(mesh.warnings().is_empty(), "{name}: {:?}", mesh.warnings());
             assert_ne!(mesh.positions(), generate(kind, 2).positions(), "{name}");
             let options = LoadOptions::default();
             let bytes = ply(&mesh);

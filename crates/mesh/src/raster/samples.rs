@@ -120,6 +120,14 @@ mod tests {
                 }
             }
         }
+        let [a, b] = [1, 2].map(|seed| {
+            let samples = Samples::new(16, Pattern::Stratified { seed }).unwrap();
+            [[3, 900], [4, 900], [3, 901]].map(|pixel| [0, 1].map(|n| samples.place(pixel, n)))
+        });
+        let mut places = [a, b].as_flattened().to_vec();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 6, "seeds and pixels differ");
         let regular = |per_pixel| Samples::new(per_pixel, Pattern::Regular);
         assert!(regular(2).is_err());
         assert_eq!([1, 4, 16].map(|n| regular(n).unwrap().middle()), [0, 3, 10]);

@@ -116,26 +116,3 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
     }
     masks
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn opacities_and_joined_points_are_shares_without_bias() {
-        for points in 0..=64u32 {
-            let opacity =
-                |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
-            let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
-            let error = mean - f64::from(points) / 4.0;
-            assert!(error.abs() < 0.13, "{points}: {mean}");
-        }
-        for covered in 0..=4u32 {
-            let points = (1u64 << covered) - 1;
-            let block = points & 3 | (points >> 2) << 8;
-            let all = (0..16).fold(0u64, |all, at| all | block << (at / 4 * 16 + at % 4 * 2));
-            let joined = joined(&[[all; 3]; 8]);
-            assert_eq!(joined[0].count_ones(), 16 * covered, "{covered}");
-        }
-    }
-}

@@ -1,34 +1,32 @@
-//! Threads, ray budgets, refused options.
+//! Splits, ray budgets, refused options.
 
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
-use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::{FarViewer, ViewError, ViewOptions};
-use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build};
-use shiftvox_mesh::generate::{Kind, generate};
-use shiftvox_mesh::raster::RasterCamera;
+use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
+use shiftvox_mesh::far::{BuildError, BuildOptions, build};
 
-use super::city::{city, draw, far, file_of, options, view};
-use super::shared::on_any_threads;
-use super::solid::hybrid;
+use super::city::{city, far, file_of, options, view};
+use super::shared::mesh_of;
 
 #[test]
-fn threads_never_change_files_and_pictures() {
-    let view = view(35.0, 0.4, 90.0, 200);
-    on_any_threads(|| {
-        let bytes = encode(&far(false)).unwrap();
-        let file = FarFile::from_bytes(&bytes).unwrap();
-        (bytes, draw(&file, &view, &ViewOptions::default()))
-    });
-    on_any_threads(|| encode(&hybrid(&generate(Kind::Wheel, 3), 300)).unwrap());
+fn equal_triangles_are_split_by_number() {
+    let mesh = mesh_of([[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 100]);
+    let options = BuildOptions {
+        leaf_triangles: 2,
+        ..options()
+    };
+    let data = build(&mesh, &options, &Silent).unwrap();
+    let leaves = data.nodes.iter().filter(|node| node.is_leaf());
+    let triangles: Vec<u32> = leaves.map(|leaf| leaf.triangles).collect();
+    assert_eq!(triangles, [1; 100]);
 }
 
 #[test]
 fn a_ray_budget_is_kept() {
     let [few, more, enough] = [20_000, 40_000, 4_000_000].map(|rays| {
         let rays = Some(rays);
-        let data = build(&city(), &BuildOptions { rays, ..options() }, &Silent).unwrap();
+        let data = build(&city(false), &BuildOptions { rays, ..options() }, &Silent).unwrap();
         let sum = |of: fn(&Node) -> u64| -> u64 { data.nodes.iter().map(of).sum() };
         (
             sum(|n| n.rays.into()),
@@ -58,30 +56,30 @@ fn invalid_options_are_refused() {
             distance_voxels,
             ..options()
         };
-        let refused = build(&city(), &options, &Silent);
+        let refused = build(&city(false), &options, &Silent);
         assert!(matches!(refused, Err(BuildError::Option(_))), "{options:?}");
     }
-    let nothing = Instances::new(city(), Vec::new());
+    let nothing = Instances::new(city(false), Vec::new());
     let refused = build(&nothing, &options(), &Silent);
     assert_eq!(refused.err(), Some(BuildError::Empty));
     let file = file_of(&far(false));
-    let drawn = |voxel_px: f64, samples_across: u32, width: u32| {
+    for (voxel_px, samples_across, width) in [
+        (1.0, 0, 8),
+        (1.0, 17, 8),
+        (0.0, 1, 8),
+        (-1.0, 1, 8),
+        (f64::NAN, 1, 8),
+        (f64::INFINITY, 1, 8),
+        (1.0, 1, 0),
+    ] {
+        let mut view = view(0.0, 0.5, 60.0, 8);
+        view.width = width;
         let options = ViewOptions {
             voxel_px,
             samples_across,
             ..ViewOptions::default()
         };
-        let view = RasterCamera {
-            width,
-            ..view(0.0, 0.5, 60.0, 8)
-        };
-        FarViewer::new(&file).draw(&view, &options).unwrap_err()
-    };
-    for samples in [0, 17] {
-        assert!(matches!(drawn(1.0, samples, 8), ViewError::Samples(_)));
+        let drawn = FarViewer::new(&file).draw(&view, &options);
+        assert!(drawn.is_err(), "{options:?}");
     }
-    for voxel_px in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(drawn(voxel_px, 1, 8), ViewError::VoxelSize(_)));
-    }
-    assert!(matches!(drawn(1.0, 1, 0), ViewError::Raster(_)));
 }

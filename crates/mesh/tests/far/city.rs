@@ -10,13 +10,8 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::shared::{cuboid, looking, sheet};
 
-/// About 4000 triangles, 40 units wide.
-pub(crate) fn city() -> Mesh {
-    blocks(false)
-}
-
-/// The city alone, or on a ground behind a high wall.
-fn blocks(is_walled: bool) -> Mesh {
+/// About 4000 triangles, 40 units wide: alone, or on a ground behind a high wall.
+pub(crate) fn city(is_walled: bool) -> Mesh {
     let mut builder = MeshBuilder::new();
     for color in [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]] {
         builder.material(Material::of_srgb("a colour", color));
@@ -62,7 +57,7 @@ pub(crate) fn options() -> BuildOptions {
 }
 
 pub(crate) fn far(is_walled: bool) -> FarData {
-    build(&blocks(is_walled), &options(), &Silent).unwrap()
+    build(&city(is_walled), &options(), &Silent).unwrap()
 }
 
 pub(crate) fn file_of(data: &FarData) -> FarFile {

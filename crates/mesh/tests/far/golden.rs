@@ -7,9 +7,9 @@ use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::generate::{Kind, generate};
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::city::{city, draw, lit, options, view};
+use super::shared::{hash, on_threads};
 
 type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 
@@ -31,16 +31,13 @@ const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
     (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0xcf1c_a60c),
 ];
 
-fn hash(bytes: &[u8]) -> u32 {
-    (xxh3_64(bytes) >> 32) as u32
-}
-
 #[test]
-fn files_and_pictures_have_their_hashes() {
-    let meshes = [city(), generate(Kind::Village, 3)];
+fn files_and_pictures_have_their_hashes_on_any_number_of_threads() {
+    let meshes = [city(false), generate(Kind::Village, 3)];
     let mut counts = [0; LISTS.len()];
     let mut files = Vec::new();
-    for (hybrid, rays, grid, leaf_triangles, expected) in FILES {
+    for (number, row) in FILES.into_iter().enumerate() {
+        let (hybrid, rays, grid, leaf_triangles, expected) = row;
         let options = BuildOptions {
             hybrid,
             rays,
@@ -49,7 +46,9 @@ fn files_and_pictures_have_their_hashes() {
             ..options()
         };
         let built = meshes.each_ref().map(|mesh| {
-            let data = build(mesh, &options, &Silent).unwrap();
+            let data = on_threads(1 + 2 * (number % 2), || {
+                build(mesh, &options, &Silent).unwrap()
+            });
             for node in &data.nodes {
                 for (sum, count) in counts.iter_mut().zip(node.counts) {
                     *sum += count;
@@ -75,13 +74,8 @@ fn files_and_pictures_have_their_hashes() {
             for file in &files {
                 let (picture, counts) = draw(file, &view, &options);
                 bytes.extend(picture.rgba.as_flattened());
-                bytes.extend(picture.depth.iter().flat_map(|depth| depth.to_le_bytes()));
-                bytes.extend(
-                    picture
-                        .coverage
-                        .iter()
-                        .flat_map(|share| share.to_le_bytes()),
-                );
+                let reals = picture.depth.iter().chain(&picture.coverage);
+                bytes.extend(reals.flat_map(|real| real.to_le_bytes()));
                 bytes.extend(picture.node.iter().flat_map(|node| node.to_le_bytes()));
                 bytes.extend(format!("{counts:?}").bytes());
             }

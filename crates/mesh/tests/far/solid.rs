@@ -15,6 +15,7 @@ use super::shared::{area, around, directions, shape, sheet, sphere, triangles};
 pub(crate) fn hybrid(mesh: &Mesh, leaf_triangles: u32) -> FarData {
     let options = BuildOptions {
         hybrid: true,
+        rays: Some(60_000),
         leaf_triangles,
         ..BuildOptions::default()
     };
@@ -35,65 +36,48 @@ fn nested_spheres(rows: u32, inner: f64) -> Mesh {
     let white = builder.material(Material::of_srgb("white", [255; 3]));
     let red = builder.material(Material::of_srgb("red", [255, 0, 0]));
     sphere(&mut builder, DVec3::ZERO, 10.0, [rows, rows], white);
-    sphere(&mut builder, DVec3::ZERO, inner, [40, 40], red);
+    sphere(&mut builder, DVec3::ZERO, inner, [24, 24], red);
     builder.finish("spheres").unwrap()
 }
 
-/// Draws white around red from all sides, in four sizes; red must not show. Distances: first and step. Returns pixels of
-/// inner nodes, and pictures with nodes of three levels or more.
-fn draw_hiding(
-    mesh: &Mesh,
-    data: &FarData,
-    opacity: Opacity,
-    [distance, step]: [f64; 2],
-) -> [usize; 2] {
-    let file = file_of(data);
-    let is_surface = data.nodes.iter().all(|node| node.voxels() == 0);
-    let mut found = [0; 2];
-    for size in [12, 40, 120, 400] {
-        for (number, towards) in directions(12).enumerate() {
-            let view = around(mesh, towards, distance + step * number as f64, size);
+/// White around red from all sides: red must not show. Surfaces of hybrid nodes of several levels join without a gap,
+/// also where they are close together.
+#[test]
+fn closed_spheres_hide_everything_inside() {
+    for (rows, inner, is_hybrid) in [(64, 9.0, false), (32, 9.6, true)] {
+        let mesh = nested_spheres(rows, inner);
+        let data = match is_hybrid {
+            true => hybrid(&mesh, 60),
+            false => build(&mesh, &BuildOptions::default(), &Silent).unwrap(),
+        };
+        assert!(!is_hybrid || data.nodes.iter().all(|node| node.voxels() == 0));
+        let file = file_of(&data);
+        let (mut inner_nodes, mut mixed) = (0, 0);
+        for (number, towards) in directions(24).enumerate() {
+            let opacity = [Opacity::Scalar, Opacity::Six][number / 12];
+            let size = [12, 40, 120, 300][number % 4];
+            let distance = 0.6 + 0.4 * (number % 12) as f64;
+            let view = around(&mesh, towards, distance, size);
             let (picture, _) = draw(&file, &view, &options(opacity));
             let is_red = |p: &[u8; 4]| p[0].abs_diff(p[1]) > 2;
             assert!(!picture.rgba.iter().any(is_red), "{opacity:?} {size}");
             let nodes = picture.node.iter().filter_map(|&n| usize::try_from(n).ok());
-            let nodes: Vec<&Node> = nodes.map(|n| &file.nodes()[n]).collect();
-            found[0] += nodes.iter().filter(|node| !node.is_leaf()).count();
+            let nodes: BTreeSet<usize> = nodes.collect();
+            let nodes: Vec<&Node> = nodes.into_iter().map(|n| &data.nodes[n]).collect();
+            inner_nodes += nodes.iter().filter(|node| !node.is_leaf()).count();
             let levels: BTreeSet<u32> = nodes.iter().map(|node| node.level).collect();
-            found[1] += usize::from(levels.len() > 2);
+            mixed += usize::from(levels.len() > 1);
             // The outline of a ball is convex: between two pixels of a row surfaces cover all.
             for row in picture.coverage.chunks_exact(size as usize) {
                 let mut covered = (0..row.len()).filter(|&x| row[x] > 0.0);
                 if let (Some(first), Some(last)) = (covered.next(), covered.next_back()) {
                     let has_gap = row[first..=last].iter().any(|&cover| cover < 1.0);
-                    assert!(!(is_surface && has_gap), "{size} pixels: {row:?}");
+                    assert!(!(is_hybrid && has_gap), "{size} pixels: {row:?}");
                 }
             }
         }
-    }
-    found
-}
-
-#[test]
-fn a_closed_sphere_hides_everything_inside() {
-    let mesh = nested_spheres(64, 9.0);
-    let data = build(&mesh, &BuildOptions::default(), &Silent).unwrap();
-    for opacity in [Opacity::Scalar, Opacity::Six] {
-        let [voxels, _] = draw_hiding(&mesh, &data, opacity, [1.5, 1.0]);
-        assert!(voxels > 500, "{voxels}");
-    }
-}
-
-/// Nodes of several levels join without a gap, also where the surfaces are close together.
-#[test]
-#[ignore = "takes long"]
-fn no_background_shows_between_nodes() {
-    for inner in [8.0, 9.9] {
-        let mesh = nested_spheres(96, inner);
-        let data = hybrid(&mesh, 300);
-        assert!(data.nodes.iter().all(|node| node.voxels() == 0));
-        let [_, mixed] = draw_hiding(&mesh, &data, Opacity::Six, [0.6, 0.3]);
-        assert!(mixed >= 3, "{mixed} pictures of three levels or more");
+        let is_mixed = inner_nodes >= 10 && (mixed >= 8 || !is_hybrid);
+        assert!(is_mixed, "{inner_nodes} {mixed}");
     }
 }
 
@@ -127,7 +111,7 @@ fn thin_tubes_keep_their_area() {
                 for (sum, opacity) in drawn.iter_mut().zip([Opacity::Scalar, Opacity::Six]) {
                     *sum += area(&draw(&file, &view, &options(opacity)).0.coverage);
                 }
-                expected += area(&triangles(&mesh, &view, 256, None, None).coverage);
+                expected += area(&triangles(&mesh, &view, 16, None).coverage);
             }
             for drawn in drawn {
                 let bias: f64 = drawn / expected - 1.0;

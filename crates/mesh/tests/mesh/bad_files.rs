@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use serde_json::json;
 use shiftvox_mesh::MeshFormat::{self, Glb, Gltf, Obj, Ply, Stl};
 
-use super::shapes::{data_uri, glb, gltf_json, load, ply_header, square_buffer, squares};
+use super::shapes::{glb, gltf_json, load, ply_header, square_buffer, square_json, squares};
 
 /// Rows: kind, content, part of the error. `.obj` files begin with three vertices, and `.ply` files with a header of as
 /// many vertices as stated and a face. Of a sound glTF document, one place gets another value. Kinds in capitals are
@@ -61,7 +61,7 @@ fn file(kind: &str, content: &str) -> (MeshFormat, Vec<u8>) {
             (Ply, (header + body).into())
         }
         "gltf" => {
-            let mut json = gltf_json(&data_uri(&square_buffer()));
+            let mut json = square_json();
             json["extensionsRequired"] = json!([]);
             let (place, value) = content.split_once(": ").unwrap();
             *json.pointer_mut(place).unwrap() = value.parse().unwrap();
@@ -97,7 +97,7 @@ fn errors_name_the_fault_and_its_place() {
 #[test]
 fn a_small_gltf_file_cannot_fill_the_memory() {
     // A thousand nodes show a thousand squares each.
-    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let mut json = square_json();
     json["nodes"] = json!(vec![json!({"mesh": 0}); 1000]);
     json["scenes"] = json!([{"nodes": (0..1000).collect::<Vec<u32>>()}]);
     let primitives = &mut json["meshes"][0]["primitives"];

@@ -7,7 +7,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::{LoadOptions, Mesh, MeshFormat, read};
 
 use super::files::Files;
-use super::shapes::{CORNERS, data_uri, gltf_json, load, square_buffer};
+use super::shapes::{CORNERS, data_uri, gltf_json, load, square_buffer, square_json};
 use super::shared::soup;
 
 /// Parts of the square's document with other values, and the corners of all triangles.
@@ -31,21 +31,25 @@ const SCENES: &str = r#"
 fn scenes_have_their_triangles_in_order() {
     for row in SCENES.lines().skip(1) {
         let (parts, expected) = row.split_once(" | ").unwrap();
-        let mut json = gltf_json(&data_uri(&square_buffer()));
+        let mut json = square_json();
         let parts: Value = parts.parse().unwrap();
         for (key, value) in parts.as_object().unwrap() {
             json[key] = value.clone();
         }
-        let mesh = load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap();
+        let mesh = mesh_of(&json);
         let corner = |corner: [f32; 3]| corner.map(|c| c.to_string()).concat();
         let triangles = soup(&mesh).into_iter().map(|t| t.map(corner).join(" "));
         assert_eq!(triangles.collect::<Vec<_>>().join(", "), expected, "{row}");
     }
 }
 
+fn mesh_of(json: &Value) -> Mesh {
+    load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap()
+}
+
 /// The square with other elements for an accessor, which has gaps.
 fn with(number: usize, accessor: Value, elements: &[Vec<u8>]) -> Mesh {
-    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let mut json = square_json();
     let gap = [0xee; 4];
     let bytes = elements
         .iter()
@@ -62,20 +66,12 @@ fn with(number: usize, accessor: Value, elements: &[Vec<u8>]) -> Mesh {
     all["bufferView"] = number.into();
     all["byteOffset"] = 4.into();
     all["count"] = elements.len().into();
-    load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap()
+    mesh_of(&json)
 }
 
 #[test]
 fn numbers_of_all_types_are_read() {
-    let square = soup(
-        &load(
-            gltf_json(&data_uri(&square_buffer()))
-                .to_string()
-                .as_bytes(),
-            MeshFormat::Gltf,
-        )
-        .unwrap(),
-    );
+    let square = soup(&mesh_of(&square_json()));
     let real = 1f32.to_le_bytes();
     let types: [(u32, bool, &[u8]); 9] = [
         (5126, false, &real),
@@ -110,11 +106,11 @@ fn numbers_of_all_types_are_read() {
 
 #[test]
 fn normals_turn_and_colours_become_srgb() {
-    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let mut json = square_json();
     json["nodes"][0]["scale"] = json!([2, 1, 1]);
     json["meshes"][0]["primitives"][0]["attributes"] =
         json!({"POSITION": 0, "NORMAL": 0, "COLOR_0": 0});
-    let mesh = load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap();
+    let mesh = mesh_of(&json);
     let colors = CORNERS.map(|corner| corner.map(|c| (255.0 * c) as u8));
     assert_eq!(mesh.vertex_colors(), colors);
     // A normal without length is that of the plane; (1, 1, 0) becomes (1/2, 1, 0).
@@ -130,7 +126,7 @@ fn normals_turn_and_colours_become_srgb() {
 
 #[test]
 fn alpha_counts_by_its_mode() {
-    let mut json = gltf_json(&data_uri(&square_buffer()));
+    let mut json = square_json();
     let material = |mode: &str, alpha: f64, cutoff: Value| {
         let color = json!({"baseColorFactor": [1, 1, 1, alpha]});
         json!({"alphaMode": mode, "alphaCutoff": cutoff, "pbrMetallicRoughness": color})
@@ -142,7 +138,7 @@ fn alpha_counts_by_its_mode() {
         material("MASK", 0.4, Value::Null),
         material("MASK", 0.4, json!(0.3)),
     ]);
-    let mesh = load(json.to_string().as_bytes(), MeshFormat::Gltf).unwrap();
+    let mesh = mesh_of(&json);
     let alphas = mesh.materials().iter().map(|material| material.alpha);
     assert!(alphas.eq([1.0, 1.0, 0.25, 1.0, 0.0, 1.0]));
 }

@@ -1,16 +1,12 @@
-//! Triangles to pixels: light, ray casting, more samples.
+//! Triangles to pixels, against ray casting.
 
 use glam::{DVec2, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox::split_mix::SplitMix;
-use shiftvox_mesh::raster::{
-    self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
-};
+use shiftvox_mesh::raster::{self, RasterCamera, RasterOptions, RasterPicture};
 use shiftvox_mesh::{Mesh, Surface};
 
-use super::shared::{
-    area, ball, looking, on_any_threads, one_box, plain, quad, shape, triangle, triangles,
-};
+use super::shared::{ball, looking, mesh_of, on_threads, one_box, plain};
 
 fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> RasterCamera {
     looking(eye.into(), target.into(), size, f64::from(size[1]))
@@ -18,31 +14,6 @@ fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> Rast
 
 fn draw(mesh: &Mesh, view: &RasterCamera, options: &RasterOptions) -> RasterPicture {
     raster::draw(mesh, view, options, &Silent).unwrap()
-}
-
-#[test]
-fn triangles_are_lit_like_voxels_on_both_sides() {
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let square = shape(|builder| quad(builder, corners.map(|[x, y]| [x, y, 0.0]), 0));
-    for (eye, towards, color) in [
-        (DVec3::Z, DVec3::Z, [90, 120, 150, 255]),
-        (DVec3::NEG_Z, DVec3::NEG_Z, [90, 120, 150, 255]),
-        // At a right angle only the ambient quarter is left; 150 is 0.305 of the light.
-        (DVec3::Z, DVec3::X, [44, 61, 78, 255]),
-        (
-            DVec3::Z,
-            DVec3::new(12.0, 0.0, 5.0) / 13.0,
-            [66, 90, 113, 255],
-        ),
-    ] {
-        let light = Light {
-            towards,
-            ambient: 64,
-        };
-        let view = view(eye, DVec3::ZERO, [8, 8]);
-        let picture = triangles(&square, &view, 1, Some(light), None);
-        assert_eq!(picture.rgba[0], color, "{eye} {light:?}");
-    }
 }
 
 /// Compares depths with those of a ray caster. Where they differ, a ray nearby has that of the picture.
@@ -90,13 +61,10 @@ fn pictures_agree_with_ray_casting() {
     // Random triangles cross each other.
     let mut dice = SplitMix::new(3);
     let mut random = || dice.unit() as f32 * 2.0 - 1.0;
-    let mesh = shape(|builder| {
-        for _ in 0..400 {
-            let at = [random(), random(), random()];
-            let corners = [0; 3].map(|_| at.map(|c| c + 0.3 * random()));
-            triangle(builder, corners, 0);
-        }
-    });
+    let mesh = mesh_of((0..400).map(|_| {
+        let at = [random(), random(), random()];
+        [0; 3].map(|_| at.map(|c| c + 0.3 * random()))
+    }));
     check_depths(&mesh, &view([0.5, 1.0, 4.0], DVec3::ZERO, [200, 200]));
     // A room has no gap. Corners are behind the eye, at the near plane and far outside the guard band.
     let room = one_box([-3.0, -1.0, -2.0], [4.0, 2.5, 5.0]);
@@ -115,28 +83,11 @@ fn pictures_agree_with_ray_casting() {
 }
 
 #[test]
-fn random_samples_have_the_true_coverage_and_follow_their_seed() {
-    let mesh = ball(20);
-    let view = view([1.0, 0.7, 3.0], DVec3::ZERO, [120, 120]);
-    let finest = area(&draw(&mesh, &view, &plain(256)).coverage);
-    let [a, b, again] = [1, 2, 1].map(|seed| {
-        let mut options = plain(1);
-        options.samples = Samples::new(16, Pattern::Stratified { seed }).unwrap();
-        draw(&mesh, &view, &options)
-    });
-    assert!(a == again && a.coverage != b.coverage);
-    assert!(
-        [a, b]
-            .iter()
-            .all(|picture| (area(&picture.coverage) / finest - 1.0).abs() < 0.001)
-    );
-}
-
-#[test]
 fn threads_change_nothing_and_invalid_views_are_refused() {
     let mesh = ball(16);
     let view = view([1.0, 0.7, 2.0], DVec3::ZERO, [100, 75]);
-    on_any_threads(|| draw(&mesh, &view, &plain(4)));
+    let [one, three] = [1, 3].map(|n| on_threads(n, || draw(&mesh, &view, &plain(4))));
+    assert!(one == three);
     let faults: [fn(&mut RasterCamera); 5] = [
         |view| view.width = 0,
         |view| view.height = 32769,

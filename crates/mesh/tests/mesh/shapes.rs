@@ -31,7 +31,7 @@ pub fn squares() -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
         VERTEX 0 1 0\n  ENDLOOP\n ENDFACET\nendsolid s\n";
     let ply = ply_header("ascii", 4, "", "int vertex_indices")
         + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
-    let gltf = gltf_json(&data_uri(&square_buffer())).to_string();
+    let gltf = square_json().to_string();
     let in_glb = glb(&gltf_json("").to_string(), &square_buffer());
     vec![
         ("obj", MeshFormat::Obj, obj.into()),
@@ -117,6 +117,10 @@ pub fn gltf_json(uri: &str) -> Value {
         json["buffers"][0]["uri"] = uri.into();
     }
     json
+}
+
+pub fn square_json() -> Value {
+    gltf_json(&data_uri(&square_buffer()))
 }
 
 /// Bytes as an address.

@@ -90,19 +90,15 @@ fn textures_of_gltf_files_are_averaged_over_triangles() {
     fs::write(folder.path().join("a picture.png"), &png).unwrap();
     // Corners on the right half of the picture.
     let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.7], [0.6, 0.7]];
-    let corners = corners.map(|corner| corner.map(f32::to_le_bytes).concat());
-    let mut json = gltf_json(&data_uri(&square_buffer()));
-    for (number, content) in [(2, &corners.concat()), (3, &png)] {
-        let length = content.len();
-        let mut push = |list: &str, value| json[list].as_array_mut().unwrap().push(value);
-        let uri = data_uri(content);
-        push("buffers", json!({"uri": uri, "byteLength": length}));
-        let buffer = number - 1;
-        push(
-            "bufferViews",
-            json!({"buffer": buffer, "byteLength": length}),
-        );
-    }
+    let corners = corners
+        .map(|corner| corner.map(f32::to_le_bytes).concat())
+        .concat();
+    let bytes = [square_buffer(), corners, png.clone()].concat();
+    let mut json = gltf_json(&data_uri(&bytes));
+    json["buffers"][0]["byteLength"] = bytes.len().into();
+    let views = json["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": 60, "byteLength": 32}));
+    views.push(json!({"buffer": 0, "byteOffset": 92, "byteLength": png.len()}));
     let uvs = json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"});
     json["accessors"].as_array_mut().unwrap().push(uvs);
     json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(2);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3};
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
 use shiftvox::split_mix::SplitMix;
@@ -13,7 +13,7 @@ use shiftvox_mesh::{ColorSpace, Instances, Material, Mesh, MeshBuilder, MeshForm
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::shapes::load;
-use super::shared::{Corners, ball, on_any_threads, quad, shape, soup, triangle};
+use super::shared::{ball, mesh_of, on_threads, soup};
 
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
@@ -62,39 +62,15 @@ fn colours_and_normals_are_as_recorded() {
         0x4725_1bc9_47c9_848d,
     ];
     assert_eq!(recorded, expected, "{recorded:#x?}");
-    on_any_threads(|| voxels(&ball(12), 7));
+    let [one, three] = [1, 3].map(|threads| on_threads(threads, || voxels(&ball(12), 7)));
+    assert!(one == three);
 }
 
 #[test]
-fn normals_are_of_the_surface_and_colours_by_area_in_linear_light() {
-    let normal = |voxel: &Voxel| voxel.normal.unwrap().decode().unwrap();
-    for voxel in voxels(&ball(24), 6) {
-        let outwards = DVec3::from_array(voxel.index.map(f64::from)) - DVec3::splat(31.5);
-        let cosine = normal(&voxel).dot(outwards.normalize());
-        assert!(cosine > 0.97, "{voxel:?}");
-    }
-    // Three quarters of a wall are white, the rest is black. It has two sides, of which one is kept.
-    let mesh = shape(|builder| {
-        for (byte, left, right) in [(255, 0.0, 0.75), (0, 0.75, 1.0)] {
-            let material = builder.material(Material::of_srgb("m", [byte; 3]));
-            let corners = [[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]];
-            let [a, b, c, d] = corners.map(|[x, y]| [x, y, 5.0]);
-            quad(builder, [a, b, c, d], material);
-            quad(builder, [d, c, b, a], material);
-        }
-    });
-    // It lies in the middle of its layer.
-    let (origin, voxel_size) = Grid::around(&mesh, 4).unwrap().placement();
+fn flat_meshes_lie_in_the_middle_of_a_layer_and_invalid_grids_are_refused() {
+    let flat = mesh_of([[[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]]]);
+    let (origin, voxel_size) = Grid::around(&flat, 4).unwrap().placement();
     assert!(((5.0 - origin[2]) / voxel_size - 0.5).abs() < 1e-9);
-    for voxel in voxels(&mesh, 1) {
-        // Voxel 0 holds x from 0 to 0.5, which is white. Voxel 1 holds half of each.
-        assert_eq!(voxel.color, [[255; 3], [188; 3]][voxel.index[0] as usize]);
-        assert!(normal(&voxel).z > 1.0 - 1e-9);
-    }
-}
-
-#[test]
-fn invalid_grids_are_refused() {
     let mesh = ball(4);
     for depth in [0, 21, 1000] {
         assert_eq!(Grid::around(&mesh, depth), Err(GridError::Depth(depth)));
@@ -219,14 +195,6 @@ fn corners() -> impl Strategy<Value = Vec<[f32; 3]>> {
         prop::collection::vec(prop::array::uniform3(coordinate), 3..9)
     };
     prop_oneof![list(quarters.boxed()), list((0f32..=7.0).boxed())]
-}
-
-fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
-    shape(|builder| {
-        for corners in triangles {
-            triangle(builder, corners, 0);
-        }
-    })
 }
 
 proptest! {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 
-use super::shared::{looking, shape, triangle, triangles as drawn};
+use super::shared::{looking, mesh_of, triangles as drawn};
 
 /// Pixels along a side of the picture.
 const SIDE: i32 = 40;
@@ -49,13 +49,9 @@ fn covered(part: &[[Point; 3]], per_pixel: u32) -> Vec<u32> {
         let [x, y] = point.map(|c| (c - SIDE * STEPS / 2) as f32 / (SIDE * STEPS) as f32);
         [x, -y, 0.0]
     };
-    let mesh = shape(|builder| {
-        for corners in part {
-            triangle(builder, corners.map(place), 0);
-        }
-    });
+    let mesh = mesh_of(part.iter().map(|corners| corners.map(place)));
     let view = looking(DVec3::Z, DVec3::ZERO, [SIDE as u32; 2], f64::from(SIDE));
-    let picture = drawn(&mesh, &view, per_pixel, None, None);
+    let picture = drawn(&mesh, &view, per_pixel, None);
     let samples = |&share: &f32| (share * per_pixel as f32).round() as u32;
     picture.coverage.iter().map(samples).collect()
 }

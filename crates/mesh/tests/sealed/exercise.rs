@@ -86,16 +86,7 @@ fn graphs() -> [Graph; 4] {
 }
 
 /// Values that fields of numbers rarely expect, as `f64` and as `f32`.
-const ODD: [f64; 8] = [
-    f64::NAN,
-    f64::INFINITY,
-    f64::NEG_INFINITY,
-    1e308,
-    -1e30,
-    1e-38,
-    0.0,
-    -1.0,
-];
+const ODD: [f64; 6] = [f64::NAN, f64::INFINITY, 1e308, -1e30, 1e-38, -1.0];
 
 /// Does one edit, of 64 random bits. Three of four are among the first `fields` bytes.
 fn edit(bytes: &mut [u8], fields: usize, choice: u64) {
@@ -167,11 +158,6 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             assert_eq!(vxg::verify(path).is_ok(), read.is_ok());
             assert!(opened.is_ok() || read.is_err());
             if let Ok(graph) = &read {
-                let mut again = Vec::new();
-                vxg::write_to(graph, &mut again).unwrap();
-                // Reserved parts of the header may differ.
-                assert!(again[512..] == bytes[512..]);
-                assert_eq!(vxg::from_bytes(&again).unwrap().placement, graph.placement);
                 assert!(merge(graph, MergeBy::Shape, &Silent).0.validate().is_ok());
             }
             if let Ok(graph) = &opened {
@@ -207,19 +193,13 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             let Ok(file) = TexturedFile::from_bytes(bytes) else {
                 return false;
             };
-            let (level, cells) = (1, None);
-            for erosion in [
-                Erosion::Auto { texel_px: 1.0 },
-                Erosion::Level { level, cells },
-            ] {
-                let style = TexturedStyle {
-                    erosion,
-                    aa_log2: 0,
-                    shading,
-                    background,
-                };
-                draw(&mut TexturedDrawing::new(&file, style));
-            }
+            let style = TexturedStyle {
+                erosion: Erosion::Auto { texel_px: 1.0 },
+                aa_log2: 0,
+                shading,
+                background,
+            };
+            draw(&mut TexturedDrawing::new(&file, style));
         }
     }
     is_sound(format, bytes)

@@ -6,14 +6,12 @@
 )]
 
 use std::fmt::Debug;
-use std::path::PathBuf;
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::raster::{
-    self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
-};
+use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
+use xxhash_rust::xxh3::xxh3_64;
 
 pub type Corners = [[f32; 3]; 3];
 
@@ -69,11 +67,9 @@ pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,
     samples: u32,
-    light: Option<Light>,
     background: Option<[u8; 3]>,
 ) -> RasterPicture {
     let options = RasterOptions {
-        light,
         background,
         ..plain(samples)
     };
@@ -84,13 +80,17 @@ pub fn area(coverage: &[f32]) -> f64 {
     coverage.iter().map(|&share| f64::from(share)).sum()
 }
 
-/// Root mean square of differences of converted bytes of colours.
-pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f64 {
-    let square = |(a, b): (&[u8; 4], &[u8; 4])| -> f64 {
-        (0..3).map(|k| (value(a[k]) - value(b[k])).powi(2)).sum()
-    };
-    let sum: f64 = a.iter().zip(b).map(square).sum();
-    (sum / (3 * a.len()) as f64).sqrt()
+/// The first half of a checksum.
+pub fn hash(bytes: &[u8]) -> u32 {
+    (xxh3_64(bytes) >> 32) as u32
+}
+
+/// Colours, depths and coverage.
+pub fn bytes_of(picture: &RasterPicture) -> Vec<u8> {
+    let reals = picture.depth.iter().chain(&picture.coverage);
+    let mut bytes: Vec<u8> = reals.flat_map(|real| real.to_le_bytes()).collect();
+    bytes.extend(picture.rgba.as_flattened());
+    bytes
 }
 
 pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
@@ -100,11 +100,10 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     builder.finish("a shape").unwrap()
 }
 
-pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
+pub fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
     shape(|builder| {
-        positions.iter().for_each(|&p| _ = builder.position(p));
-        for &triangle in triangles {
-            builder.triangle(triangle, None, 0).unwrap();
+        for corners in triangles {
+            triangle(builder, corners, 0);
         }
     })
 }
@@ -154,24 +153,7 @@ pub fn sheet(
     }
 }
 
-/// A surface of revolution around y, through heights and radii.
-pub fn turned(
-    builder: &mut MeshBuilder,
-    middle: DVec3,
-    profile: &[(f64, f64)],
-    columns: u32,
-    material: u32,
-) {
-    let rows = profile.len() as u32 - 1;
-    sheet(builder, [rows, columns], material, |i, j| {
-        let (height, radius) = profile[i as usize];
-        // The last column is the first, so that the surface is closed to the last bit.
-        let turn = f64::from(j % columns) / f64::from(columns);
-        let (sin, cos) = libm::sincos(turn * std::f64::consts::TAU);
-        middle + DVec3::new(radius * cos, height, radius * sin)
-    });
-}
-
+/// Closed to the last bit.
 pub fn sphere(
     builder: &mut MeshBuilder,
     middle: DVec3,
@@ -179,13 +161,13 @@ pub fn sphere(
     [rows, columns]: [u32; 2],
     material: u32,
 ) {
-    let ring = |i: u32| {
+    sheet(builder, [rows, columns], material, |i, j| {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(rows));
-        let is_pole = i == 0 || i == rows;
-        (radius * cos, if is_pole { 0.0 } else { radius * sin })
-    };
-    let profile: Vec<(f64, f64)> = (0..=rows).map(ring).collect();
-    turned(builder, middle, &profile, columns, material);
+        let ring = if i == rows { 0.0 } else { radius * sin };
+        let turn = f64::from(j % columns) / f64::from(columns);
+        let (east, north) = libm::sincos(turn * std::f64::consts::TAU);
+        middle + DVec3::new(ring * north, radius * cos, ring * east)
+    });
 }
 
 pub fn ball(rows: u32) -> Mesh {
@@ -196,14 +178,9 @@ pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
 
-/// The result of work that gives the same on one and three threads.
-pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
-    let [one, three] = [1, 3].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().unwrap().install(&work)
-    });
-    assert!(one == three, "threads change the result");
-    one
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap().install(work)
 }
 
 #[track_caller]
@@ -212,10 +189,4 @@ pub fn has(text: impl Debug, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "expected {part}\n   found {text}");
     }
-}
-
-/// A model of the shared data, which `SHIFTVOX_DATA` names.
-pub fn model(name: &str) -> PathBuf {
-    let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names the shared data");
-    PathBuf::from(folder).join("mesh").join(name)
 }

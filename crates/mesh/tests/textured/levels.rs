@@ -2,16 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use proptest::prelude::*;
-use shiftvox::graph::Silent;
-use shiftvox_mesh::LoadOptions;
-use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::textured::levels::surfels;
 use shiftvox_mesh::textured::record::CLEAR;
-use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
+use shiftvox_mesh::textured::{Element, TexturedFile};
 
-use super::scenes::{balls, built, file_of, mesh_of, random_triangles, rectangle, small_grids};
-use super::shared::model;
+use super::scenes::{balls, built, file_of};
 
 type Cells = BTreeSet<[i32; 3]>;
 
@@ -29,7 +23,7 @@ fn eroded(cells: &Cells, element: Element) -> Cells {
 }
 
 /// Checks all levels against definitions. Returns the last.
-fn check(file: &TexturedFile) -> u32 {
+pub(super) fn check(file: &TexturedFile) -> u32 {
     let grid = file.grid(0);
     let (levels, voxels) = (grid.levels(), grid.voxels());
     let cell = |number: usize| voxels[number].cell.map(i32::from);
@@ -75,54 +69,9 @@ fn check(file: &TexturedFile) -> u32 {
     levels.last()
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
-
-    #[test]
-    fn levels_are_the_rest_after_erosions(
-        triangles in random_triangles(),
-        (cells, texels, element) in small_grids(),
-    ) {
-        if let Some(mesh) = mesh_of(&triangles) {
-            check(&file_of(&built(&mesh, cells, texels, element)));
-        }
-    }
-}
-
 #[test]
-fn blocks_and_clouds_have_levels() {
-    assert_eq!(BuildOptions::default().element, Element::Sides);
+fn clouds_have_levels() {
     for element in [Element::Cube, Element::Sides] {
         assert!(check(&file_of(&built(&balls(), 16, 2, element))) >= 2);
-    }
-    // Sheets through 6 x 6 x 6 cells: a solid block that loses one layer per level.
-    let sheet = |i: u8| rectangle(f32::from(i) * 0.5, [0.0; 2], [6.0; 2]);
-    let sheets: Vec<_> = (0..=12).flat_map(sheet).collect();
-    let data = built(&mesh_of(&sheets).unwrap(), 6, 1, Element::Cube);
-    assert_eq!(check(&file_of(&data)), 3);
-    let all = surfels(&data.grids[0].voxels, 6).len();
-    assert_eq!(all, 6 * (36 + 16 + 4));
-}
-
-/// Faces, voxels and surfels of each level of a leafy tree, as in the image-order paper's table, and of a kitchen.
-#[test]
-#[ignore = "needs the shared data"]
-fn the_tree_and_the_kitchen_have_known_levels() {
-    const TREE: [[u64; 3]; 6] = [
-        [791, 1099, 791],
-        [6715, 468, 467],
-        [16820, 152, 195],
-        [21286, 32, 52],
-        [22493, 3, 7],
-        [22566, 0, 0],
-    ];
-    const KITCHEN: [[u64; 3]; 3] = [[1473, 1958, 1473], [50952, 110, 184], [56913, 0, 0]];
-    for (name, expected) in [("tree_Oak_Large.obj", &TREE[..]), ("kitchen.obj", &KITCHEN)] {
-        let (mesh, _) = read_mesh(&model(name), &LoadOptions::default(), &Silent).unwrap();
-        let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
-        file.verify().unwrap();
-        let rows = file.grid(0).levels().rows().iter();
-        let table: Vec<_> = rows.map(|r| [r.faces, r.voxels, r.surfels]).collect();
-        assert_eq!(table, expected, "{name}");
     }
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod file;
+mod golden;
 mod levels;
 mod scenes;
 #[path = "../shared/mod.rs"]

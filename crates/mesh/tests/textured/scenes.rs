@@ -4,11 +4,12 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
+use shiftvox_mesh::raster::RasterCamera;
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedData, TexturedFile, build};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
-use super::shared::{self, Corners, shape, soup};
+use super::shared::{self, Corners, looking, shape, soup};
 
 /// Without triangles that have no area.
 pub fn mesh_of(triangles: &[Corners]) -> Option<Mesh> {
@@ -82,4 +83,17 @@ pub fn balls() -> Mesh {
         }
     });
     mesh_of(&soup(&balls)).unwrap()
+}
+
+pub fn middle(file: &TexturedFile) -> DVec3 {
+    let (low, high) = file.bounds();
+    (low + high) * 0.5
+}
+
+pub fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
+    let focal_px = f64::from(side) / 2.0 / libm::tan(fov_degrees.to_radians() / 2.0);
+    RasterCamera {
+        near: 1e-4,
+        ..looking(eye, target, [side; 2], focal_px)
+    }
 }

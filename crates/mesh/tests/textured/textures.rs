@@ -3,9 +3,10 @@
 use proptest::prelude::*;
 use shiftvox::graph::PackedNormal;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER, Texel};
-use shiftvox_mesh::textured::{CellGrid, Element, TexturedData};
+use shiftvox_mesh::textured::{CellGrid, TexturedData};
 
-use super::scenes::{balls, built, color_of, mesh_of, random_triangles, rectangle, small_grids};
+use super::levels::check;
+use super::scenes::{built, color_of, file_of, mesh_of, random_triangles, small_grids};
 
 type Point = [i128; 2];
 
@@ -59,15 +60,14 @@ fn seen(
     best.map(|(_, number)| number)
 }
 
-/// Compares all sub-textures of a grid with volumes projected afresh. Returns the number of texels, and of covered ones.
-fn compare(data: &TexturedData) -> [u64; 2] {
+/// Compares all sub-textures of a grid with volumes projected afresh.
+fn compare(data: &TexturedData) {
     let grid = &data.grids[0];
     let lattice = CellGrid::around(data.low, data.high, grid.cells, grid.texels);
     let primitives = data.primitives.iter();
     let corners = primitives.map(|p| p.positions().map(|p| lattice.point(p)));
     let corners: Vec<[[i64; 3]; 3]> = corners.collect();
     let side = grid.texels;
-    let mut compared = [0; 2];
     let voxels = grid.voxels.iter();
     let faces = voxels.flat_map(|v| [0, 1, 2].map(|axis| (v, axis)));
     for (voxel, axis) in faces.filter(|(voxel, axis)| voxel.textures[*axis] != NEVER) {
@@ -80,13 +80,11 @@ fn compare(data: &TexturedData) -> [u64; 2] {
                 CLEAR => Texel::default(),
                 _ => grid.textures[(number * side * side + texel) as usize],
             };
-            compared[0] += 1;
             let primitive = seen(&corners, &lattice, axis, slice, place);
             let expected = primitive.map_or(([0; 3], 0), |p| (color_of(p as u32), 255));
             let values = (found.color, found.opacity);
             assert_eq!(values, expected, "{voxel:?} axis {axis} texel {texel}");
             let Some(primitive) = primitive else { continue };
-            compared[1] += 1;
             let normal = PackedNormal(found.normal).decode().unwrap();
             let outwards = if slice >= grid.cells / 2 { 1.0 } else { -1.0 };
             assert!(normal[axis] * outwards > -0.02, "{normal} on axis {axis}");
@@ -95,14 +93,13 @@ fn compare(data: &TexturedData) -> [u64; 2] {
             assert!(normal.dot(plane).abs() > 0.999, "{normal} {plane}");
         }
     }
-    compared
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
-    fn slice_by_slice_is_the_same_as_projected_afresh(
+    fn textures_are_the_same_as_projected_afresh_and_levels_the_rest_after_erosions(
         triangles in random_triangles(),
         (cells, texels, element) in small_grids(),
     ) {
@@ -110,22 +107,7 @@ proptest! {
             let data = built(&mesh, cells, texels, element);
             assert_eq!(data.primitives.len(), mesh.triangles().len());
             compare(&data);
+            check(&file_of(&data));
         }
     }
-}
-
-#[test]
-fn slices_save_projections_and_equal_sub_textures_are_stored_once() {
-    let data = built(&balls(), 8, 3, Element::Cube);
-    let [compared, seeing] = compare(&data);
-    assert!(compared > 2000 && 3 * seeing > compared, "{seeing}");
-    let grid = &data.grids[0];
-    assert!(grid.projected_afresh > 2 * grid.projected);
-    // Most faces of a wall of two triangles are equal, except those along the line between them.
-    let wall = mesh_of(&rectangle(0.0, [0.0; 2], [8.0; 2])).unwrap();
-    let grid = &built(&wall, 16, 4, Element::Cube).grids[0];
-    let shown = grid.voxels.iter().flat_map(|v| v.textures);
-    let shown = shown.filter(|&t| t < CLEAR).count();
-    let stored = grid.textures.len() / 16;
-    assert!(shown >= 256 && stored <= 4, "{shown} {stored}");
 }

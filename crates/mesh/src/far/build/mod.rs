@@ -521,6 +521,3 @@ fn assemble<F: Read + Write + Seek>(
     }
     Ok(data)
 }
-
-#[cfg(test)]
-mod tests;

@@ -73,27 +73,29 @@ impl Budget {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     #[test]
     fn what_was_not_used_goes_first_and_the_budget_is_kept() {
         let budget = Budget::new(100, 20);
-        let gone = Mutex::new(Vec::new());
-        let touch = |node: usize| {
-            budget.touch(node, 30, |other| gone.lock().unwrap().push(other));
-        };
-        (0..3).for_each(touch);
-        // All were used: the hand spares each once, then takes the first.
-        touch(3);
-        assert_eq!(*gone.lock().unwrap(), [0]);
-        touch(2);
-        touch(4);
-        assert_eq!(*gone.lock().unwrap(), [0, 1]);
-        // All were used again: the first goes.
-        touch(5);
-        touch(3);
-        touch(6);
-        assert_eq!(*gone.lock().unwrap(), [0, 1, 2, 4], "3 was used");
+        // All were used at 3 and 5: the hand spares each once, then takes the first.
+        for (node, expected) in [
+            (0, None),
+            (1, None),
+            (2, None),
+            (3, Some(0)),
+            (2, None),
+            (4, Some(1)),
+            (5, Some(2)),
+            (3, None),
+            (6, Some(4)),
+        ] {
+            let gone = Cell::new(None);
+            budget.touch(node, 30, |other| gone.set(Some(other)));
+            assert_eq!(gone.get(), expected, "{node}");
+        }
         let resident = budget.resident();
         assert_eq!(
             (resident.bytes, resident.most_bytes, resident.released),
