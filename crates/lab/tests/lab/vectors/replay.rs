@@ -1,5 +1,5 @@
-//! The outputs of some blocks for a row, by SPEC.md and the manifest: blocks whose roundings and ties mutants replace, and
-//! those that `rtl/` has for one kind of cage or of limit.
+//! The outputs of some blocks for a row, by SPEC.md and the manifest. Mutants replace the roundings and ties of most of
+//! them; `rtl/` has the others for one kind of cage or of limit only.
 
 use serde_json::Value;
 
