@@ -43,7 +43,6 @@ fn digest(voxels: &[Plain]) -> u64 {
     hash.digest()
 }
 
-/// A file below the repository.
 fn shipped(path: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
 }

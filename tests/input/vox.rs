@@ -1,17 +1,15 @@
 //! `.vox` files: composed ones are read as they were written, real ones as recorded.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use proptest::prelude::*;
-use shiftvox::graph::{Silent, Voxel};
-use shiftvox::scene::{OutOfBounds, ReadOptions, VoxWriter, VoxWritten, read_voxels};
+use shiftvox::graph::Voxel;
+use shiftvox::scene::{OutOfBounds, ReadOptions, VoxWriter, VoxWritten};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::vox_file::{Attributes, VoxFile};
 use crate::{Plain, digest, read, read_plain, read_with, shipped};
 
-/// Colours 1, 2, 3.
 pub(crate) const THREE: [[u8; 4]; 3] = [[10, 20, 30, 255], [40, 50, 60, 0], [70, 80, 90, 255]];
 
 fn places(file: &VoxFile) -> Vec<[i32; 3]> {
@@ -134,8 +132,8 @@ fn voxels_outside_the_size_by_every_rule() {
         let found = (info.voxels, info.outside_size, info.bounds);
         assert_eq!(found, (voxels, 2, Some((low, high))), "{oob:?}");
     }
-    let refused = read_with(&file, &by(OutOfBounds::Error)).unwrap_err();
-    let told = refused.to_string();
+    let refused = read_with(&file, &by(OutOfBounds::Error));
+    let told = refused.unwrap_err().to_string();
     assert!(told.contains("SIZE [20, 20, 90]") && told.contains("wrap, keep or drop"));
     // 250 in a size of 4 is -6; centre -6 - 2 + 1/2 = -7.5 along x.
     for (rotation, oob, index) in [
@@ -154,16 +152,6 @@ fn voxels_outside_the_size_by_every_rule() {
 
 /// Stored voxels, voxels that are passed on, different indices, models, nodes; then a digest of the voxels in order
 /// and of the palette.
-fn summary(bytes: &[u8]) -> ([u64; 5], u64, u64) {
-    let (_, info) = read(bytes).unwrap();
-    let voxels = read_plain(bytes);
-    let distinct = voxels.iter().map(|v| v.0).collect::<BTreeSet<_>>().len() as u64;
-    let [models, nodes] = [info.models, info.nodes].map(u64::from);
-    let counts = [info.stored_voxels, info.voxels, distinct, models, nodes];
-    let palette = xxh3_64(info.palette.as_flattened());
-    (counts, digest(&voxels), palette)
-}
-
 #[rustfmt::skip]
 const REAL: [(&str, [u64; 5], u64, u64); 4] = [
     ("tests/data/sphere.vox", [2_103, 2_103, 2_103, 1, 0], 0x01ce2d9ddff7bea7, 0xc1406b60c2dd174b),
@@ -175,34 +163,17 @@ const REAL: [(&str, [u64; 5], u64, u64); 4] = [
 #[test]
 fn real_files_are_as_recorded() {
     for (path, counts, voxels, palette) in REAL {
-        let bytes = shipped(path);
-        assert_eq!(summary(&bytes), (counts, voxels, palette), "{path}");
-        let mut from_disk = Vec::new();
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-        let mut sink = |v: Voxel| from_disk.push((v.index, v.color));
-        read_voxels(&file, &ReadOptions::default(), &mut sink, &Silent).unwrap();
-        assert_eq!(digest(&from_disk), voxels);
-    }
-}
-
-/// Voxels outside `SIZE` are where the twin, which fits its `SIZE`, has them.
-#[test]
-#[ignore = "needs the files of SHIFTVOX_DATA"]
-fn voxelshop_files_equal_their_twins() {
-    let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder");
-    for name in ["black", "castle", "church", "clock", "dragon"] {
-        let [wrapped, twin] = ["bb", "size"].map(|fit| {
-            let path = format!("vox/voxelshop/fit_to_{fit}/{name}.vox");
-            let bytes = std::fs::read(Path::new(&folder).join(path)).unwrap();
-            let mut voxels = read_plain(&bytes);
-            for axis in 0..3 {
-                let low = voxels.iter().map(|(index, _)| index[axis]).min().unwrap();
-                voxels.iter_mut().for_each(|(index, _)| index[axis] -= low);
-            }
-            voxels.sort_unstable();
-            voxels
-        });
-        assert!(wrapped == twin && twin.len() > 1000, "{name}");
+        let (found, info) = read(&shipped(path)).unwrap();
+        let found: Vec<Plain> = found.into_iter().map(|v| (v.index, v.color)).collect();
+        let distinct = found.iter().map(|v| v.0).collect::<BTreeSet<_>>().len() as u64;
+        let [models, nodes] = [info.models, info.nodes].map(u64::from);
+        let found_counts = [info.stored_voxels, info.voxels, distinct, models, nodes];
+        let digests = (digest(&found), xxh3_64(info.palette.as_flattened()));
+        assert_eq!(
+            (found_counts, digests),
+            (counts, (voxels, palette)),
+            "{path}"
+        );
     }
 }
 

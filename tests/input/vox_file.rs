@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 
-/// Attributes of a node.
 pub(crate) type Attributes<'a> = &'a [(&'a str, &'a str)];
 
 #[derive(Clone, Default)]
@@ -19,7 +18,6 @@ impl VoxFile {
         self.chunks(content)
     }
 
-    /// Appends bytes as they are.
     pub(crate) fn chunks(mut self, chunks: &[u8]) -> Self {
         self.children.extend(chunks);
         self
@@ -152,13 +150,12 @@ impl Scene {
     }
 
     pub(crate) fn file(&self) -> VoxFile {
-        let models = self.models.iter();
-        let file = models.fold(VoxFile::default(), |file, (size, voxels)| {
-            file.model(*size, voxels)
-        });
-        (0..)
-            .zip(&self.nodes)
-            .fold(file, |file, (id, node)| match node {
+        let mut file = VoxFile::default();
+        for (size, voxels) in &self.models {
+            file = file.model(*size, voxels);
+        }
+        for (id, node) in (0..).zip(&self.nodes) {
+            file = match node {
                 Node::Moves(by, rotation, child) => {
                     let by = by.map(|c| c.to_string()).join(" ");
                     file.moved([id, *child], &[("_r", &rotation.to_string()), ("_t", &by)])
@@ -168,7 +165,9 @@ impl Scene {
                     let models: Vec<_> = models.iter().map(|&model| (model, &[][..])).collect();
                     file.shape(id, &models)
                 }
-            })
+            };
+        }
+        file
     }
 
     /// The colour of each voxel of a scene that is not wild: goes down every path, and keeps the last at an index.

@@ -318,9 +318,9 @@ fn agree_in_organisations(
 }
 
 /// Shows what failed.
-struct OnPanic((&'static str, Camera, SetupOptions));
+struct OnPanic<'a>((&'a str, Camera, SetupOptions));
 
-impl Drop for OnPanic {
+impl Drop for OnPanic<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             eprintln!("{:?}", self.0);
@@ -329,7 +329,7 @@ impl Drop for OnPanic {
 }
 
 /// Draws a scene from every place: all leaves, and in turn other settings.
-fn agree_on_scene((name, graph): &(&'static str, Graph)) {
+fn agree_on_scene(name: &str, graph: &Graph) {
     let rounds = number_of("SHIFTVOX_ROUNDS", ROUNDS);
     let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(name.as_bytes()));
     let (mut samples, mut drawn) = (0, 0);
@@ -364,7 +364,26 @@ fn agree_on_scene((name, graph): &(&'static str, Graph)) {
 
 #[test]
 fn every_scene_is_drawn_alike() {
-    SCENES.par_iter().for_each(agree_on_scene);
+    SCENES
+        .par_iter()
+        .for_each(|(name, graph)| agree_on_scene(name, graph));
+}
+
+#[test]
+#[ignore = "needs the folder SHIFTVOX_DATA"]
+fn every_file_is_drawn_alike() {
+    let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder");
+    let mut drawn = 0;
+    for below in ["vox", "vox/voxelshop"] {
+        for file in std::fs::read_dir(std::path::Path::new(&folder).join(below)).unwrap() {
+            let path = file.unwrap().path();
+            if let Ok(scene) = shiftvox::Scene::open(&path) {
+                agree_on_scene(&path.display().to_string(), scene.graph());
+                drawn += 1;
+            }
+        }
+    }
+    assert!(drawn > 9, "{drawn} files");
 }
 
 /// Random graphs, and octrees with voxels of about a sample, dense and sparse ones.

@@ -284,18 +284,12 @@ mod tests {
     #[test]
     fn the_authors_program_says_the_same() {
         let redder = picture(|x, y| {
-            [
-                base(x, y)[0].saturating_add(20),
-                base(x, y)[1],
-                base(x, y)[2],
-            ]
+            let [r, g, b] = base(x, y);
+            [r.saturating_add(20), g, b]
         });
-        let striped = picture(|x, y| {
-            if (20..23).contains(&x) {
-                [255; 3]
-            } else {
-                base(x, y)
-            }
+        let striped = picture(|x, y| match x {
+            20..23 => [255; 3],
+            _ => base(x, y),
         });
         let inverse = picture(|x, y| base(x, y).map(|c| 255 - c));
         let edge = picture(|x, _| if x < 24 { [200; 3] } else { [60; 3] });

@@ -383,6 +383,8 @@ mod tests {
         let json = r#"{"frame_ms":0.5,"scene":"a \"b\" | c","size":64}"#;
         assert_eq!(rows[1].json().to_string(), json);
         assert_eq!(Cell::Number(f64::INFINITY, 1).json(), "inf");
+        let texts = [0u64, 999, 1000, 1_234_567].map(grouped);
+        assert_eq!(texts, ["0", "999", "1,000", "1,234,567"]);
     }
 
     #[test]
@@ -400,11 +402,5 @@ mod tests {
         assert_eq!(wide.matches("first").count(), 3, "{wide}");
         let keyed = text("key", ["k".into(), long(), Cell::None, long()]);
         assert_eq!(keyed.matches("key").count(), 1, "{keyed}");
-    }
-
-    #[test]
-    fn groups_of_digits() {
-        let texts = [0u64, 999, 1000, 1_234_567].map(grouped);
-        assert_eq!(texts, ["0", "999", "1,000", "1,234,567"]);
     }
 }

@@ -6,9 +6,8 @@ use std::collections::BTreeMap;
 use hwmodel::cycles::{Hardware, NoObserver};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
 use shiftvox::machine::Machine;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
+use shiftvox::project::{FrameSetup, SetupOptions};
 use shiftvox_lab::model::cost::{self, Prices};
 use shiftvox_lab::model::{area, frame};
 
@@ -35,51 +34,6 @@ impl Probe for Log {
     fn write(&mut self, memory: Memory, _: u64, _: StageLevel) {
         self.pixels += u64::from(memory == Memory::Pixel);
     }
-}
-
-fn logged(graph: &Graph, setup: &FrameSetup) -> Log {
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Log::default());
-    drawn.unwrap().1
-}
-
-/// One voxel, and a sample in the middle of its face, which no line through an edge crosses.
-fn one_voxel() -> (Graph, FrameSetup) {
-    let mut builder = Builder::new(BuildOptions::default());
-    builder.push(Voxel::default());
-    let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
-    assert_eq!((graph.depth, graph.len()), (0, 1));
-    let camera = Camera {
-        eye: glam::DVec3::new(3.0, 1.7, 2.3),
-        target: glam::DVec3::new(1.0, 0.5, 0.5),
-        up: glam::DVec3::Z,
-        fov_degrees: 1.0,
-        width: 1,
-        height: 1,
-    };
-    let options = SetupOptions {
-        bits: 32,
-        ..SetupOptions::default()
-    };
-    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    (graph, setup)
-}
-
-/// Figure 1: additions and subtractions of a frame of one voxel and one sample, by hand.
-///
-/// A span of four numbers takes six additions. A push has a span of W. For x and y it has eight subtractions and three
-/// spans, against the border and the bisector. A drawing has wide words. Nine of the twelve planes are their neighbour plus
-/// (six) or less (three) three coefficients. Each plane takes four sums.
-#[test]
-fn additions_of_a_frame_of_one_voxel() {
-    let (graph, setup) = one_voxel();
-    let log = logged(&graph, &setup);
-    let times = |class, bits| log.operations[&(class, bits)];
-    assert_eq!(times(OpClass::Add, 32), 6 + 2 * 2 * 6 + 2 * 6);
-    assert_eq!(times(OpClass::Sub, 32), 2 * 4 + 2 * 4);
-    assert_eq!(times(OpClass::Add, 64), 6 * 3 + 12 * 2 + 12 * 2);
-    assert_eq!(times(OpClass::Sub, 64), 3 * 3);
-    assert_eq!((log.pixels, log.reads[&Memory::Node].len()), (1, 1));
 }
 
 /// A cache as in a textbook: sets of lines, the one that was used last at the end.
@@ -121,7 +75,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// Figures 2 to 7, of a design with one context. Its units and memories have sizes of the tables.
+/// Of a design with one context. Its units and memories have sizes of the tables.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");
@@ -145,9 +99,11 @@ fn figures_of_a_terrain() {
     let widths = frame::widths(&setup, &graph, &hardware);
     let cost = cost::frame_cost(&counted, cycles, &widths, &setup, &hardware, &prices).unwrap();
     let area = area::light(&counted, cycles, &setup, &hardware, &prices).unwrap();
-    let log = logged(&graph, &setup);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn = Machine::default().render_probed(&view, &setup, &mut frame, Log::default());
+    let log = drawn.unwrap().1;
 
-    // 2. Energy of the additions of 32 bits.
+    // 1. Energy of the additions of 32 bits.
     let mut lines = cost.operations.lines.iter();
     let line = lines.find(|line| (line.name.as_str(), line.width) == ("add", 32));
     let [low, high] = row("energy", "add", 32, "energy_pj");
@@ -155,7 +111,7 @@ fn figures_of_a_terrain() {
     let additions = log.operations[&(OpClass::Add, 32)] as f64;
     close(line.unwrap().total, additions * low);
 
-    // 3. Area of the three adders that find a child's span.
+    // 2. Area of the three adders that find a child's span.
     let mut lines = area.units.lines.iter();
     let line = lines.find(|line| line.name == "child box" && line.operation == "add");
     close(
@@ -163,7 +119,7 @@ fn figures_of_a_terrain() {
         3.0 * row("area", "add", 32, "nand2")[0],
     );
 
-    // 4. Misses of both caches.
+    // 3. Misses of both caches.
     let node_misses = naive_misses(&log.reads[&Memory::Node], 8, (1024, 2, 32));
     let of = hardware.attribute_cache;
     let line_bytes = u64::from(of.line_bytes);
@@ -173,21 +129,21 @@ fn figures_of_a_terrain() {
     assert_eq!(cycles.node_cache.misses, node_misses);
     assert_eq!(cycles.attribute_cache.misses, attribute_misses);
 
-    // 5. Bits of a record: node, level, two flags, two corners, then the quadtree's level and place. Four numbers of three
+    // 4. Bits of a record: node, level, two flags, two corners, then the quadtree's level and place. Four numbers of three
     // coordinates, the least W and twelve plane coefficients follow.
     let bits_of = |greatest: u64| 64 - greatest.leading_zeros();
     let always = bits_of(graph.len() as u64 - 1) + bits_of(6) + 2 + 2 * 3 * bits_of(64);
     let bits = always + bits_of(6) + 2 * 6 + 3 * 4 * 32 + 32 + 12 * 64;
     assert_eq!(counted.record_bits(), bits);
 
-    // 6. Bits to and from outer memory: lines, pixels of three bytes, spilled records both ways.
+    // 5. Bits to and from outer memory: lines, pixels of three bytes, spilled records both ways.
     assert!(cycles.stack.spilled > 0);
     let moved = 8 * (32 * node_misses + line_bytes * attribute_misses)
         + 24 * log.pixels
         + 2 * cycles.stack.spilled_bits;
     assert_eq!(cost.traffic.bits(), moved);
 
-    // 7. Their energy, in words of 64 bits.
+    // 6. Their energy, in words of 64 bits.
     let words = 4 * node_misses
         + line_bytes / 8 * attribute_misses
         + (24 * log.pixels).div_ceil(64)

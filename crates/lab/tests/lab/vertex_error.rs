@@ -49,14 +49,11 @@ fn errors(camera: &Camera, depth: u32, exact_levels: usize) -> (f64, f64) {
     let mut off = Vec::new();
     for voxel in 0..side.pow(3) {
         let corner = [voxel / side / side, voxel / side % side, voxel % side];
-        let octant = |level: u32| corner.map(|c| c >> (depth - level) & 1);
-        let path: Vec<u8> = (1..=depth)
-            .map(|level| {
-                octant(level)
-                    .into_iter()
-                    .fold(0, |o, bit| o << 1 | bit as u8)
-            })
-            .collect();
+        let octant = |level: u32| {
+            let [x, y, z] = corner.map(|c| c >> (depth - level) & 1);
+            (x << 2 | y << 1 | z) as u8
+        };
+        let path: Vec<u8> = (1..=depth).map(octant).collect();
         let cages = cages_along(&setup, &path).unwrap();
         for vertex in 0..8 {
             let step = [2, 1, 0].map(|bit| vertex >> bit & 1);

@@ -39,68 +39,13 @@ impl Row {
         self.of(name).try_into().unwrap()
     }
 
-    pub(super) fn cage(&self, name: &str) -> Cage {
-        Cage(self.of(name).to_vec())
-    }
-}
-
-/// One coordinate of eight vertices: themselves, or a corner and three edges.
-#[derive(Clone)]
-pub(super) struct Cage(pub(super) Vec<i128>);
-
-impl Cage {
-    fn vertices(&self) -> Vec<i128> {
-        match self.0[..] {
-            [corner, x, y, z] => (0..8)
-                .map(|i| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z)
-                .collect(),
-            _ => self.0.clone(),
-        }
-    }
-
-    pub(super) fn least(&self) -> i128 {
-        self.vertices().into_iter().min().unwrap()
-    }
-
-    pub(super) fn greatest(&self) -> i128 {
-        self.vertices().into_iter().max().unwrap()
-    }
-
-    pub(super) fn each(&self, f: impl Fn(i128) -> i128) -> Self {
-        Self(self.0.iter().map(|&v| f(v)).collect())
-    }
-
-    /// `self * a + other * b`.
-    pub(super) fn with(&self, a: i128, other: &Self, b: i128) -> Self {
-        let numbers = self.0.iter().zip(&other.0);
-        Self(numbers.map(|(&v, &w)| a * v + b * w).collect())
-    }
-
-    /// The cages of the eight children, one after another.
-    pub(super) fn children(&self) -> Vec<i128> {
-        if let [corner, x, y, z] = self.0[..] {
-            // Towards zero, as `/` does.
-            let [x, y, z] = [x / 2, y / 2, z / 2];
-            let child = |c: i128| {
-                let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
-                [moved, x, y, z]
-            };
-            return (0..8).flat_map(child).collect();
-        }
-        // Of 27 points. A coordinate of 1 is the midpoint of 0 and 2; z is the outermost midpoint.
-        fn point(corners: &[i128], at: [usize; 3]) -> i128 {
-            let Some(k) = (0..3).rfind(|&k| at[k] == 1) else {
-                return corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2];
-            };
-            let (mut low, mut high) = (at, at);
-            (low[k], high[k]) = (0, 2);
-            (point(corners, low) + point(corners, high)).div_euclid(2)
-        }
-        let corner = |c: usize, v: usize| {
-            let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
-            point(&self.0, at)
+    /// One coordinate of eight vertices, which are given themselves or as a corner and three edges.
+    pub(super) fn vertices(&self, name: &str) -> Vec<i128> {
+        let [corner, x, y, z] = *self.of(name) else {
+            return self.of(name).to_vec();
         };
-        (0..64).map(|i| corner(i / 8, i % 8)).collect()
+        let vertex = |i: i128| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z;
+        (0..8).map(vertex).collect()
     }
 }
 
@@ -158,14 +103,6 @@ pub(super) fn manifest_of(folder: &Path) -> Value {
     serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap()
 }
 
-/// The lines of a file, each an object of JSON.
-pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
-    let text = fs::read_to_string(folder.join(file.as_str().unwrap())).unwrap();
-    text.lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect()
-}
-
 /// The rows of a block: inputs and outputs.
 pub(super) fn rows_of(folder: &Path, block: &Value) -> Vec<[Row; 2]> {
     let ports = ["in", "out"].map(|side| (side, Ports::new(&block[side])));
@@ -174,5 +111,7 @@ pub(super) fn rows_of(folder: &Path, block: &Value) -> Vec<[Row; 2]> {
             .each_ref()
             .map(|(side, ports)| ports.row(line[side].as_str().unwrap()))
     };
-    lines(folder, &block["file"]).into_iter().map(row).collect()
+    let text = fs::read_to_string(folder.join(block["file"].as_str().unwrap())).unwrap();
+    let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    lines.map(row).collect()
 }
