@@ -374,8 +374,10 @@ fn every_scene_is_drawn_alike() {
 fn every_file_is_drawn_alike() {
     let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names a folder");
     let mut drawn = 0;
-    for below in ["vox", "vox/voxelshop"] {
-        for file in std::fs::read_dir(std::path::Path::new(&folder).join(below)).unwrap() {
+    for below in ["", "voxelshop/fit_to_bb", "voxelshop/fit_to_size"] {
+        for file in
+            std::fs::read_dir(std::path::Path::new(&folder).join("vox").join(below)).unwrap()
+        {
             let path = file.unwrap().path();
             if let Ok(scene) = shiftvox::Scene::open(&path) {
                 agree_on_scene(&path.display().to_string(), scene.graph());

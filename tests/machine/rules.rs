@@ -9,7 +9,10 @@ use hwmodel::cycles::{Child, Hardware, ImageNode, Independence, NoObserver};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::machine::{Machine, MachineOptions, OCCLUSION_ORDER};
-use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupOptions};
+use shiftvox::project::{
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions,
+};
+use shiftvox::rays::Rays;
 
 fn machine(overflow: Overflow) -> Machine {
     Machine::new(MachineOptions {
