@@ -100,7 +100,7 @@ impl Condition {
                 }
             },
             _ => {
-                signal = Some((signals[dice.below(4) as usize], dice.below(16).pow(2)));
+                signal = Some((signals[dice.below(4) as usize], dice.below(8).pow(2)));
                 RUN.to_owned()
             }
         };
