@@ -1,4 +1,4 @@
-"""Writes small seed files for the targets vox, voxels, gltf and mesh into corpus/; run in fuzz/."""
+"""Writes small seed files for the targets voxels, gltf and mesh into corpus/; run in fuzz/."""
 
 import base64
 import json
@@ -59,6 +59,7 @@ NPY = {
 BINVOX = b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"
 VOXELS = {"binvox": b"\4" + BINVOX}
 VOXELS |= {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}
+VOXELS |= {f"vox_{name}_{oob}": bytes([5 * oob]) + seed for name, seed in VOX.items() for oob in range(4)}
 VOXELS |= {f"npy_{name}": b"\3" + seed for name, seed in NPY.items()}
 
 # A triangle and a square of two: positions, normals, indices.
@@ -126,11 +127,8 @@ MESH = {
     "stl_binary": b"\3" + bytes(80) + numbers(1) + struct.pack("<3f", 0, 0, 1) + SQUARE + bytes(2),
 }
 
-for target, seeds in {"vox": VOX, "voxels": VOXELS, "gltf": GLTF, "mesh": MESH}.items():
+for target, seeds in {"voxels": VOXELS, "gltf": GLTF, "mesh": MESH}.items():
     folder = pathlib.Path("corpus") / target
     folder.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():
-        # The target for .vox takes a byte of options first.
-        for option in ([0, 4, 0x91] if target == "vox" else [None]):
-            prefix = b"" if option is None else bytes([option])
-            (folder / f"{name}_{option}").write_bytes(prefix + seed)
+        (folder / name).write_bytes(seed)

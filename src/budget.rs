@@ -37,11 +37,9 @@ pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     }
 }
 
-/// Too little space on a disk.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
 #[error("{}: {needed} bytes of disk are needed, and {free} are free", folder.display())]
 pub struct DiskShortage {
-    /// A folder on the disk.
     pub folder: PathBuf,
     pub needed: u64,
     pub free: u64,
@@ -141,44 +139,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn available_memory_is_read() {
-        let info = "MemTotal:       24689932 kB\nMemAvailable:   24055212 kB\n";
-        let free = |text| kibibytes_of(text, "MemAvailable:");
-        assert_eq!(free(info), Some(24_055_212 * 1024));
-        for broken in ["", "MemAvailable:", "MemAvailable: x kB"] {
-            assert_eq!(free(broken), None, "{broken}");
-        }
-        let limits =
-            |soft: &str| format!("Limit  Soft\nMax address space         {soft} 9 bytes\n");
-        assert_eq!(address_space(&limits("1024")), Some(1024));
-        assert_eq!(address_space(&limits("unlimited")), None);
-        assert_eq!(address_space(""), None);
-    }
-
-    #[test]
     fn what_cannot_be_had_is_reported_with_figures() {
+        let info = "MemTotal:       24689932 kB\nMemAvailable:   24055212 kB\n";
+        assert_eq!(kibibytes_of(info, "MemAvailable:"), Some(24_055_212 * 1024));
+        assert_eq!(kibibytes_of("MemAvailable: x kB", "MemAvailable:"), None);
+        let limits = "Limit  Soft\nMax address space         1024 9 bytes\n";
+        assert_eq!(address_space(limits), Some(1024));
+        assert_eq!(address_space(&limits.replace("1024", "unlimited")), None);
         let error = filled("a test", 7u64, usize::MAX / 16).expect_err("too large");
         assert_eq!(error.needed, usize::MAX as u64 / 16 * 8);
-        let message = error.to_string();
-        assert!(
-            message.starts_with(&format!("a test: at least {} bytes", error.needed)),
-            "{message}"
-        );
         assert_eq!(filled("a test", 7u8, 3), Ok(vec![7; 3]));
-        if available().is_some() {
-            assert!(check("a test", u64::MAX).is_err());
-        }
+        assert!(check("a test", u64::MAX).is_err() || available().is_none());
         assert_eq!(check("a test", 1), Ok(()));
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn free_disk_is_that_of_the_nearest_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let below = folder.path().join("not/there");
+        let below = std::env::temp_dir().join("not/there");
         assert_eq!(check_disk(&below, 1), Ok(()));
-        let short = check_disk(&below, u64::MAX).unwrap_err();
-        assert_eq!((short.needed, &short.folder), (u64::MAX, &below));
-        assert!(short.free > 0 && check_disk(Path::new("a"), u64::MAX).is_err());
+        let short = check_disk(&below, u64::MAX);
+        assert!(
+            cfg!(not(unix)) || short.is_err_and(|short| short.free > 0 && short.folder == below)
+        );
     }
 }

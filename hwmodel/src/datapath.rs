@@ -11,7 +11,6 @@ use crate::{
 /// A datapath of one word format and its wide format.
 #[derive(Debug)]
 pub struct Datapath<P: Probe> {
-    format: Format,
     policy: Overflow,
     /// 64 less the widths of words and wide words.
     spare: [u32; 2],
@@ -23,11 +22,10 @@ pub struct Datapath<P: Probe> {
 }
 
 impl<P: Probe> Datapath<P> {
-    /// A datapath for words of `format`; wide words have twice its bits.
+    /// A datapath for words of `format` and its wide words.
     pub fn new(format: Format, policy: Overflow, mut probe: P) -> Self {
         probe.begin(format);
         Self {
-            format,
             policy,
             spare: [64 - format.bits(), 64 - format.wide().bits()],
             place: StageLevel {
@@ -41,23 +39,18 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// The format of its words.
-    pub fn format(&self) -> Format {
-        self.format
-    }
-
     /// The first overflow so far, if the policy is to trap.
     #[inline]
     pub fn trap(&self) -> Option<Trap> {
         self.trap
     }
 
-    /// Number of results that did not fit, under any policy.
+    /// Results that did not fit, under any policy.
     pub fn overflows(&self) -> u64 {
         self.overflows
     }
 
-    /// The probe.
+    /// Borrows the probe.
     #[inline]
     pub fn probe_mut(&mut self) -> &mut P {
         &mut self.probe
@@ -98,7 +91,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Does work of another stage in the same cycles ([`Probe::beside`]).
+    /// Does work of another stage ([`Probe::beside`]).
     #[inline(always)]
     pub fn beside<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.place.stage, stage);
@@ -113,7 +106,7 @@ impl<P: Probe> Datapath<P> {
         done
     }
 
-    /// Reports the read of a memory.
+    /// Reports a read.
     #[inline(always)]
     pub fn read(&mut self, memory: Memory, address: u64) {
         if P::ENABLED {
@@ -121,7 +114,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// Reports the write of a memory.
+    /// Reports a write.
     #[inline(always)]
     pub fn write(&mut self, memory: Memory, address: u64) {
         if P::ENABLED {
@@ -204,13 +197,13 @@ impl<P: Probe> Datapath<P> {
         T::from_raw(wrapped)
     }
 
-    /// Loads a constant of the frame.
+    /// A constant of the frame.
     #[inline]
     pub fn load(&mut self, value: i64) -> Word {
         self.fit(TrapOp::Load, value, false)
     }
 
-    /// Loads a wide constant of the frame.
+    /// A wide constant of the frame.
     #[inline]
     pub fn load_wide(&mut self, value: i64) -> WideWord {
         self.fit(TrapOp::Load, value, false)
@@ -240,7 +233,7 @@ impl<P: Probe> Datapath<P> {
         self.fit(TrapOp::Sub, raw, carried)
     }
 
-    /// `(a + b) >> 1` without overflow: the sum has one bit more than the word. One add, one shift.
+    /// `(a + b) >> 1` without overflow: an add and a shift of one bit more than the word.
     #[inline(always)]
     pub fn midpoint<T: Number>(&mut self, a: T, b: T) -> T {
         if P::ENABLED {
@@ -257,7 +250,7 @@ impl<P: Probe> Datapath<P> {
         T::from_raw((a & b) + ((a ^ b) >> 1))
     }
 
-    /// `a >> places`, rounded towards minus infinity; `places` may exceed the width.
+    /// `a >> places`, rounded down; `places` may exceed the width.
     #[inline(always)]
     #[track_caller]
     pub fn shr<T: Number>(&mut self, a: T, places: u32) -> T {
@@ -266,7 +259,7 @@ impl<P: Probe> Datapath<P> {
         T::from_raw(a.raw() >> places.min(63))
     }
 
-    /// `a << places`; overflows where significant bits would be lost.
+    /// `a << places`; overflows where significant bits are lost.
     #[inline(always)]
     #[track_caller]
     pub fn shl<T: Number>(&mut self, a: T, places: u32) -> T {
@@ -296,13 +289,6 @@ impl<P: Probe> Datapath<P> {
     pub fn le<T: Number>(&mut self, a: T, b: T) -> bool {
         self.note::<T>(OpClass::Compare);
         a.raw() <= b.raw()
-    }
-
-    /// `a == b`.
-    #[inline(always)]
-    pub fn equal<T: Number>(&mut self, a: T, b: T) -> bool {
-        self.note::<T>(OpClass::Compare);
-        a.raw() == b.raw()
     }
 
     /// `a < 0`: the sign bit.
@@ -387,7 +373,7 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// A word shifted left by one with `bit` as its last: a quotient register. Wires.
+    /// `2 a + bit`, as in a quotient register: wires.
     #[inline(always)]
     pub fn shift_in(&mut self, a: Word, bit: bool) -> Word {
         let raw = a.0;
@@ -395,8 +381,8 @@ impl<P: Probe> Datapath<P> {
         self.fit(TrapOp::ShiftLeft, raw << 1 | i64::from(bit), carried)
     }
 
-    /// One step of a restoring divide: the remainder is doubled, `bit` comes in from the right, and the divisor is
-    /// subtracted if it fits. Returns the new remainder and the quotient's next bit.
+    /// One step of a restoring divide: the divisor is subtracted from `2 remainder + bit` if it fits. Returns the new
+    /// remainder and the quotient's next bit.
     ///
     /// `0 <= remainder < divisor` must hold before and holds after.
     #[inline(always)]
@@ -416,10 +402,8 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
-    /// One step of a restoring divide for a quotient bit of weight `2^place`: `divisor << place` is subtracted if it
-    /// fits. Returns the new remainder and the quotient's bit.
-    ///
-    /// `0 <= remainder` and `0 < divisor` must hold. A divisor shifted by 63 or more is larger than any remainder.
+    /// As [`divide_step`](Self::divide_step), for a quotient bit of weight `2^place`: `divisor << place` is subtracted if
+    /// it fits. `0 <= remainder` and `0 < divisor` must hold. A shift by 63 or more exceeds any remainder.
     #[inline(always)]
     pub fn divide_integer_step(
         &mut self,

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Narrowest word, in bits.
+/// Bits of the narrowest word.
 pub const MIN_BITS: u32 = 16;
-/// Widest word, in bits.
+/// Bits of the widest word.
 pub const MAX_BITS: u32 = 64;
 
 /// A two's complement word format: `bits` bits, `frac` of them fraction.
@@ -36,24 +36,17 @@ impl TryFrom<Fields> for Format {
 /// Why a pair of numbers is no word format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    /// The width is outside 16..=64.
+    /// Outside 16..=64.
     #[error("a word has {MIN_BITS} to {MAX_BITS} bits, not {0}")]
     Bits(u32),
     /// The fraction leaves no integer bit beside the sign.
     #[error("a word of {bits} bits holds at most {max} fraction bits, not {frac}", max = bits - 2)]
-    Frac {
-        /// Requested width, bits.
-        bits: u32,
-        /// Requested fraction bits.
-        frac: u32,
-    },
+    #[expect(missing_docs, reason = "as in `Format::new`")]
+    Frac { bits: u32, frac: u32 },
 }
 
 impl Format {
     /// A format of `bits` (16..=64) with `frac` (0..=bits-2) fraction bits.
-    ///
-    /// # Errors
-    /// When either number is out of its range.
     pub const fn new(bits: u32, frac: u32) -> Result<Self, FormatError> {
         if bits < MIN_BITS || bits > MAX_BITS {
             return Err(FormatError::Bits(bits));
@@ -89,7 +82,7 @@ impl Format {
         }
     }
 
-    /// Sets the bits of wide words, clamped between a word's bits and twice as many (or 64).
+    /// Sets the bits of wide words, clamped between a word's bits and the default.
     #[must_use]
     pub const fn with_wide_bits(self, bits: u32) -> Self {
         let most = widest(self.bits);
@@ -104,17 +97,6 @@ impl Format {
     /// Largest value, in units of the last place.
     pub const fn max(self) -> i64 {
         i64::MAX >> (64 - self.bits)
-    }
-
-    /// Smallest value, in units of the last place.
-    pub const fn min(self) -> i64 {
-        i64::MIN >> (64 - self.bits)
-    }
-
-    /// Whether `value` (units of the last place) fits.
-    pub const fn holds(self, value: i64) -> bool {
-        let spare = 64 - self.bits;
-        (value << spare) >> spare == value
     }
 }
 

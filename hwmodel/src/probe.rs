@@ -36,9 +36,7 @@ named! {
     pub enum Stage {
         #[default]
         Pop = "pop",
-        /// Is the record's quadtree node full?
         Filled = "filled?",
-        /// Does the voxel map to one pixel?
         OnePixel = "one pixel?",
         Centre = "centre",
         Order = "octant and order",
@@ -49,10 +47,8 @@ named! {
         QuadtreeFit = "quadtree fit",
         Push = "push",
         Draw = "draw",
-        /// Fill vectors are updated towards the root.
         FillUpdate = "fill update",
         ToScreen = "to screen",
-        /// A translucent voxel is added to a pixel's accumulator.
         Blend = "blend",
     }
 }
@@ -78,41 +74,38 @@ named! {
     }
 }
 
-/// The stage and the octree level of an operation's record.
+/// The stage and the octree level (0 = root) of an operation's record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "names of the fields say what they are")]
 pub struct StageLevel {
-    /// Stage of the record loop.
     pub stage: Stage,
-    /// Octree level of the record, 0 = root.
     pub level: u32,
 }
 
 /// The kind of an operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "names of the other kinds say what they are")]
 pub enum Operand {
-    /// A word.
     Word,
     /// A word and a carry bit.
     Carry,
-    /// A wide word.
     Wide,
     /// A wide word and a carry bit.
     WideCarry,
     /// A constant number of bits.
     Short,
-    /// Anything else.
     Other,
 }
 
 /// Defines [`Probe`] and its forwarding implementations from one list of events.
 macro_rules! probe {
     ($($(#[$doc:meta])* fn $event:ident($self:ident $(, $argument:ident: $type:ty)*) $default:block)+) => {
-        /// Receives the machine's events. Methods do nothing by default.
+        /// Receives the machine's events; does nothing by default.
         pub trait Probe {
-            /// Whether the probe does anything; otherwise the datapath leaves the calls out.
+            /// Whether the datapath calls it.
             const ENABLED: bool = true;
 
-            /// Whether the probe takes the borders of blocks.
+            /// Whether it takes the borders of blocks.
             const TAPS: bool = false;
 
             /// Whether [`Probe::tap`] should be called now; used only where `TAPS` is set.
@@ -148,7 +141,7 @@ macro_rules! probe {
             )+
         }
 
-        /// Two probes that receive the same events; tuples nest for more.
+        /// Both receive all events.
         impl<A: Probe, B: Probe> Probe for (A, B) {
             const ENABLED: bool = A::ENABLED || B::ENABLED;
             const TAPS: bool = A::TAPS || B::TAPS;
@@ -177,22 +170,21 @@ probe! {
     /// A datapath of this format is built around the probe.
     fn begin(self, format: Format) {}
 
-    /// `times` operations of one class on words of `bits` bits were executed.
+    /// `times` operations on words of `bits` bits.
     fn op(self, class: OpClass, bits: u32, place: StageLevel, times: u32) {}
 
-    /// One operation on an operand whose kind is known at compile time. `bits` follows from the kind and the format, or
-    /// is a constant. By default one [`Probe::op`].
+    /// One operation on an operand whose kind is known at compile time. By default one [`Probe::op`].
     fn op_on(self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         self.op(class, bits, place, 1);
     }
 
-    /// A word of `bits` bits was shifted by `places` on a line of the machine, beside the event of the operation.
+    /// A line of the machine shifts a word of `bits` bits by `places`; the operation is another event.
     fn shift(self, bits: u32, places: u32, place: StageLevel, site: &'static Location<'static>) {}
 
-    /// A memory was read.
+    /// A read.
     fn read(self, memory: Memory, address: u64, place: StageLevel) {}
 
-    /// A memory was written.
+    /// A write.
     fn write(self, memory: Memory, address: u64, place: StageLevel) {}
 
     /// The following operations need the results so far, after `idle` cycles without operations.

@@ -1,5 +1,4 @@
-//! Shifts by how far their places vary, from the places of every line that shifts. A shift that is always by one place
-//! is wires; others need a shifter.
+//! How far the places of each shift vary. A shift that is always by one place is wires; others need a shifter.
 
 use std::collections::BTreeMap;
 use std::panic::Location;
@@ -27,22 +26,20 @@ named! {
 
 /// A line of the machine that shifts, in one stage and width.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct ShiftSite {
     /// File and line, or `midpoint` for the halving of a sum.
     pub site: String,
-    /// Stage of the record loop.
     pub stage: Stage,
-    /// Width of the operand, bits.
+    /// Width of the operand.
     pub bits: u32,
-    /// Number of shifts.
     pub times: u64,
     /// Fewest places.
     pub least: u32,
     /// Most places.
     pub most: u32,
-    /// How far they vary.
     pub kind: ShiftKind,
-    /// Number of shifts by the stage in whose steps they are done.
+    /// `times` by the stage in whose steps they are done.
     #[serde(skip)]
     pub in_steps: BTreeMap<Stage, u64>,
 }
@@ -62,7 +59,7 @@ impl Seen {
     }
 }
 
-/// A probe that records by how many places every line shifts.
+/// A probe of the places by which every line shifts.
 ///
 /// ```
 /// use hwmodel::shifts::{ShiftKind, ShiftProbe};
@@ -167,7 +164,7 @@ impl ShiftProbe {
         self.sums(|site| BTreeMap::from([(site.stage, site.times)]))
     }
 
-    /// As [`variable`](Self::variable), by the stage in whose steps hardware does it.
+    /// As [`variable`](Self::variable), by the stage in whose steps they are done.
     pub fn variable_in_steps(&self) -> BTreeMap<(Stage, u32), u64> {
         self.sums(|site| site.in_steps.clone())
     }

@@ -5,9 +5,9 @@ use crate::{Format, Narrow, WideWord, Word};
 /// Width and sign of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SignalKind {
-    /// A word: two's complement, the format's bits.
+    /// A word.
     Word,
-    /// A wide word: two's complement, the wide format's bits.
+    /// A wide word.
     Wide,
     /// A number of 1 to 64 bits that is never negative.
     Unsigned(u32),
@@ -16,7 +16,7 @@ pub enum SignalKind {
 }
 
 impl SignalKind {
-    /// Width in bits.
+    /// Width.
     pub const fn bits(self, format: Format) -> u32 {
         match self {
             Self::Word => format.bits(),
@@ -31,12 +31,11 @@ impl SignalKind {
     }
 }
 
-/// A value on the wires of a block.
+/// A value on the wires of a block, in units of the last place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "names of the fields say what they are")]
 pub struct Signal {
-    /// Width and sign.
     pub kind: SignalKind,
-    /// Value, in units of the last place.
     pub value: i64,
 }
 

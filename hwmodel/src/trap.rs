@@ -1,4 +1,4 @@
-//! Overflow of a word, which ends a frame under [`Overflow::Trap`](crate::Overflow::Trap).
+//! The first overflow of a frame.
 
 use crate::StageLevel;
 
@@ -19,13 +19,12 @@ named! {
     "a word of {bits} bits overflowed in {} (stage {}, octree level {}, record {record})",
     op.name(), place.stage.name(), place.level
 )]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Trap {
-    /// The operation.
     pub op: TrapOp,
-    /// Stage and octree level.
     pub place: StageLevel,
     /// Number of the record within the frame, from 0.
     pub record: u64,
-    /// Width of the word, in bits.
+    /// Width of the word.
     pub bits: u32,
 }

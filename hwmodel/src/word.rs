@@ -1,9 +1,8 @@
-//! The machine word: a number that can be added, shifted and compared, but not multiplied or divided.
+//! Words.
 
 /// One machine word, in units of the last place of its [`Format`](crate::Format).
 ///
-/// It has no operators: every operation is a call on a [`Datapath`](crate::Datapath), which checks the width and
-/// reports to a probe.
+/// It has no operators: [`Datapath`](crate::Datapath) does, checks and reports every operation.
 ///
 /// ```compile_fail,E0369
 /// let a = hwmodel::Word::from_host(6);
@@ -47,8 +46,7 @@ mod sealed {
 }
 pub(crate) use sealed::Raw;
 
-/// A number of few bits, 0 or more: a weight or a colour. Operations are calls on a [`Datapath`](crate::Datapath) that
-/// give the number of bits.
+/// A number of few bits, 0 or more: a weight or a colour. Its operations give the number of bits.
 ///
 /// ```compile_fail,E0369
 /// let a = hwmodel::Narrow::from_host(6);
@@ -64,12 +62,12 @@ macro_rules! of_host {
             /// Zero.
             pub const ZERO: Self = Self(0);
 
-            /// A number that the host prepared before the frame, or that comes from a memory.
+            /// From the host's set-up or from a memory.
             pub const fn from_host(value: $number) -> Self {
                 Self(value)
             }
 
-            /// The value, for the host or for a memory.
+            /// For the host or for a memory.
             pub const fn to_host(self) -> $number {
                 self.0
             }

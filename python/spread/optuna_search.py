@@ -15,7 +15,7 @@ import optuna
 
 import shiftvox
 
-# Axes: keys of descriptions of hardware, and `bits`, the width of a word.
+# Keys of hardware descriptions, and the width of a word.
 SPACE = {
     "bits": [24, 28, 32, 36],
     "contexts": [2, 4, 6, 8],

@@ -8,13 +8,14 @@ use shiftvox::{CageKind, Coverage, EngineKind, Up};
 
 use crate::{Error, refused};
 
-const ENGINES: [(&str, EngineKind); 3] = [
+pub(crate) const ENGINES: [(&str, EngineKind); 3] = [
     ("fast", EngineKind::Fast),
     ("machine", EngineKind::Machine),
     ("rays", EngineKind::Rays),
 ];
-const CAGES: [(&str, CageKind); 2] = [("frame", CageKind::Frame), ("corners", CageKind::Corners)];
-const AXES: [(&str, Up); 2] = [("y", Up::Y), ("z", Up::Z)];
+pub(crate) const CAGES: [(&str, CageKind); 2] =
+    [("frame", CageKind::Frame), ("corners", CageKind::Corners)];
+pub(crate) const AXES: [(&str, Up); 2] = [("y", Up::Y), ("z", Up::Z)];
 
 pub(crate) fn one_of<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
     let found = known.iter().find(|(name, _)| *name == word);
@@ -24,21 +25,9 @@ pub(crate) fn one_of<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> Py
     })
 }
 
-pub(crate) fn engine(word: &str) -> PyResult<EngineKind> {
-    one_of("engine", word, &ENGINES)
-}
-
 pub(crate) fn coverage(word: &str) -> PyResult<Coverage> {
     let rules = Coverage::ALL.map(|rule| (rule.name(), rule));
     one_of("coverage", word, &rules)
-}
-
-pub(crate) fn cage(word: &str) -> PyResult<CageKind> {
-    one_of("cage", word, &CAGES)
-}
-
-pub(crate) fn up(word: &str) -> PyResult<Up> {
-    one_of("up", word, &AXES)
 }
 
 /// A whole number. One beyond 64 bits becomes the largest, which is out of every range, too.
@@ -70,34 +59,23 @@ pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
 }
 
 pub(crate) trait Entry: Element + Copy {
-    const NAME: &'static str;
-    /// Kinds of NumPy types that are converted.
-    const KINDS: &'static str;
-    /// Lowest and highest whole number, or `None` for any.
+    /// Lowest and highest whole number. `None`: any number, also of floating-point types.
     const RANGE: Option<[i128; 2]>;
 }
 
 impl Entry for f64 {
-    const NAME: &'static str = "float64";
-    const KINDS: &'static str = "fiu";
     const RANGE: Option<[i128; 2]> = None;
 }
 
 impl Entry for i64 {
-    const NAME: &'static str = "int64";
-    const KINDS: &'static str = "iu";
     const RANGE: Option<[i128; 2]> = Some([i64::MIN as i128, i64::MAX as i128]);
 }
 
 impl Entry for i32 {
-    const NAME: &'static str = "int32";
-    const KINDS: &'static str = "iu";
     const RANGE: Option<[i128; 2]> = Some([i32::MIN as i128, i32::MAX as i128]);
 }
 
 impl Entry for u8 {
-    const NAME: &'static str = "uint8";
-    const KINDS: &'static str = "iu";
     const RANGE: Option<[i128; 2]> = Some([0, 255]);
 }
 
@@ -117,9 +95,10 @@ pub(crate) fn rows_of_three<T: Entry>(
     if rows == 0 {
         return Ok(Vec::new());
     }
-    let dtype = array.getattr("dtype")?;
-    if !T::KINDS.contains(&dtype.getattr("kind")?.extract::<String>()?) {
-        return Err(refuse(format!("{dtype} is not converted to {}", T::NAME)));
+    let [from, to] = [array.getattr("dtype")?, T::get_dtype(array.py()).into_any()];
+    let kinds = T::RANGE.map_or("fiu", |_| "iu");
+    if !kinds.contains(&from.getattr("kind")?.extract::<String>()?) {
+        return Err(refuse(format!("{from} is not converted to {to}")));
     }
     if let Some([lowest, highest]) = T::RANGE {
         let least: i128 = array.call_method0("min")?.extract()?;
@@ -129,13 +108,10 @@ pub(crate) fn rows_of_three<T: Entry>(
             return Err(refuse(told));
         }
     }
-    let array = array.call_method1("astype", (T::NAME,))?;
+    let array = array.call_method1("astype", (to,))?;
     let array = array.cast_into::<PyArray2<T>>().map_err(refused)?;
     let array = array.try_readonly().map_err(refused)?;
-    let rows = array.as_array();
-    Ok(rows
-        .rows()
-        .into_iter()
-        .map(|row| [row[0], row[1], row[2]])
-        .collect())
+    let array = array.as_array();
+    let rows = array.rows().into_iter();
+    Ok(rows.map(|row| [row[0], row[1], row[2]]).collect())
 }

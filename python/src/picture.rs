@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray};
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 use shiftvox::picture::npy::Values;
 use shiftvox::{Background, Buffer, Renderer, Shading};
 
-use crate::arguments::{self, color, count, whole};
+use crate::arguments::{self, CAGES, ENGINES, color, count, one_of, whole};
 use crate::camera::{Camera, Kind};
 use crate::pool::on_all_threads;
 use crate::scene::Scene;
@@ -47,25 +47,12 @@ const BUFFERS: [(&str, Buffer); 4] = [
     ("nodes", Buffer::Node),
 ];
 
-/// A buffer as an array that owns it, with `entries` numbers per pixel.
-fn array(
-    py: Python<'_>,
-    values: Values,
-    [height, width]: [usize; 2],
-    entries: usize,
-) -> PyResult<Py<PyAny>> {
-    fn shaped<T: Element>(
-        py: Python<'_>,
-        flat: Vec<T>,
-        [height, width, entries]: [usize; 3],
-    ) -> PyResult<Py<PyAny>> {
-        let flat = flat.into_pyarray(py);
-        Ok(match entries {
-            1 => flat.reshape([height, width])?.into_any().unbind(),
-            _ => flat.reshape([height, width, entries])?.into_any().unbind(),
-        })
+/// A buffer as an array that owns it.
+fn array(py: Python<'_>, values: Values, shape: &[usize]) -> PyResult<Py<PyAny>> {
+    fn shaped<T: Element>(py: Python<'_>, flat: Vec<T>, shape: &[usize]) -> PyResult<Py<PyAny>> {
+        let array = flat.into_pyarray(py).reshape(shape)?;
+        Ok(array.into_any().unbind())
     }
-    let shape = [height, width, entries];
     match values {
         Values::U8(values) => shaped(py, values, shape),
         Values::I32(values) => shaped(py, values, shape),
@@ -77,12 +64,8 @@ fn array(
 impl Picture {
     /// Write the colours as a PNG, replacing an existing file. Raises `Error` if the system refuses.
     fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let rgba: PyReadonlyArray<'_, u8, _> = self
-            .rgba
-            .bind(py)
-            .cast::<PyArrayDyn<u8>>()?
-            .try_readonly()
-            .map_err(refused)?;
+        let rgba = self.rgba.bind(py).cast::<PyArrayDyn<u8>>()?;
+        let rgba = rgba.try_readonly().map_err(refused)?;
         let pixels = rgba.as_slice().map_err(refused)?;
         let pixels = pixels.as_chunks::<4>().0.to_vec();
         if pixels.len() != self.width as usize * self.height as usize {
@@ -148,7 +131,7 @@ pub(crate) fn render(
     let frac = frac.map(whole).transpose()?;
     let frac = frac.map(|frac| count("frac", frac)).transpose()?;
     let mut renderer = Renderer::new()
-        .engine(arguments::engine(engine)?)
+        .engine(one_of("engine", engine, &ENGINES)?)
         .samples(count("samples", samples)?)
         .word(count("bits", bits)?, frac)
         .threads(count("threads", threads)? as usize);
@@ -168,7 +151,7 @@ pub(crate) fn render(
         renderer = renderer.coverage(arguments::coverage(word)?);
     }
     if let Some(word) = cage {
-        renderer = renderer.cage(arguments::cage(word)?);
+        renderer = renderer.cage(one_of("cage", word, &CAGES)?);
     }
     if let Some(pixels) = lod {
         renderer = renderer.level_of_detail(pixels);
@@ -193,9 +176,8 @@ pub(crate) fn render(
             .buffers(BUFFERS.map(|(_, buffer)| buffer))
             .hashed(true),
         Some(names) => {
-            let wanted = names
-                .iter()
-                .map(|name| arguments::one_of("buffers", name, &BUFFERS));
+            let names = names.iter();
+            let wanted = names.map(|name| one_of("buffers", name, &BUFFERS));
             renderer.buffers(wanted.collect::<PyResult<Vec<_>>>()?)
         }
     };
@@ -209,7 +191,7 @@ pub(crate) fn render(
         Kind::Placed(camera) => renderer.render(scene, camera, width, height),
     })?
     .map_err(refused)?;
-    let shape = [height as usize, width as usize];
+    let [rows, columns] = [height, width].map(|side| side as usize);
     let mut made = Picture {
         rgba: py.None(),
         depth: py.None(),
@@ -222,9 +204,11 @@ pub(crate) fn render(
         height,
     };
     let (rgba, buffers) = picture.into_buffers();
-    made.rgba = array(py, Values::U8(rgba.into_flattened()), shape, 4)?;
+    made.rgba = array(py, Values::U8(rgba.into_flattened()), &[rows, columns, 4])?;
     for (buffer, values) in buffers {
-        let array = array(py, values, shape, buffer.entries())?;
+        let entries = buffer.entries();
+        let shape = [rows, columns, entries];
+        let array = array(py, values, if entries == 1 { &shape[..2] } else { &shape })?;
         match buffer {
             Buffer::Depth => made.depth = array,
             Buffer::Normal => made.normals = array,

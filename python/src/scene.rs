@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
-use shiftvox::{Up, Voxel};
+use shiftvox::Voxel;
 use shiftvox_mesh::SceneOptions;
 
-use crate::arguments::{count, rows_of_three, up, whole};
+use crate::arguments::{AXES, count, one_of, rows_of_three, whole};
 use crate::ply::ply;
 use crate::pool::on_all_threads;
 use crate::{Error, refused};
@@ -24,7 +24,7 @@ fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOpt
     let options = SceneOptions::new().mesh_depth(depth).opacities(opacities);
     Ok(match axis {
         None => options,
-        Some(axis) => options.up(up(axis)?),
+        Some(axis) => options.up(one_of("up", axis, &AXES)?),
     })
 }
 
@@ -33,13 +33,11 @@ fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8
         return Ok(vec![[200; 3]; rows]);
     };
     let colors = rows_of_three("colors", colors)?;
-    match colors.len() == rows {
-        true => Ok(colors),
-        false => {
-            let told = format!("colors: {} rows for {rows}", colors.len());
-            Err(Error::new_err(told))
-        }
+    if colors.len() != rows {
+        let told = format!("colors: {} rows for {rows}", colors.len());
+        return Err(Error::new_err(told));
     }
+    Ok(colors)
 }
 
 fn made(
@@ -92,7 +90,7 @@ impl Scene {
     ) -> PyResult<Self> {
         let indices = rows_of_three("indices", indices)?;
         let colors = colors_of(colors, indices.len())?;
-        let up: Up = self::up(up)?;
+        let up = one_of("up", up, &AXES)?;
         let voxels = indices.into_iter().zip(colors);
         let voxels = voxels.map(|(index, color)| Voxel {
             index,

@@ -1,5 +1,4 @@
 `include "widths.vh"
-// As in blocks/.
 module bisector_clip #(parameter W = `WORD_BITS) (
   input [4*W-1:0]  x, w, margin,
   input            closed, sample,

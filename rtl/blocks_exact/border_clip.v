@@ -1,5 +1,4 @@
 `include "widths.vh"
-// As in blocks/.
 module border_clip #(parameter W = `WORD_BITS) (
   input [4*W-1:0] x, w, margin,
   input           wider,

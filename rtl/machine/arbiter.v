@@ -1,5 +1,5 @@
-// Grants requests in order of arrival; within a cycle, the lowest number first. A request stays until its grant, which
-// needs `enable`. `first` is next, granted or not.
+// Grants requests in order of arrival, of equals the lowest number first. A request stays until its grant, which needs
+// `enable`.
 module arbiter #(parameter N = 4) (
   input               clk, reset, enable,
   input  [N-1:0]      request,

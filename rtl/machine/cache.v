@@ -1,9 +1,8 @@
 `include "widths.vh"
 // A set-associative LRU cache of 64-bit words in lines of eight.
 //
-// A hit is `ready` with `word` in the next cycle, until the next request. A miss raises `fetch` for one cycle. Its line
-// arrives as eight words in order (`fill`) and is looked up again in the cycle after the last; `ready` follows. Requests
-// are at least two cycles apart.
+// A hit is `ready` with `word` in the next cycle, until the next request. A miss raises `fetch` for one cycle. Its eight
+// words arrive in order (`fill`), and the request is looked up again. Requests are at least two cycles apart.
 module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                       clk, reset,
   input                       request,

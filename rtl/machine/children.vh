@@ -5,7 +5,6 @@ assign asked_level = r_quad_level, asked_x = r_quad_x, asked_y = r_quad_y;
 assign lod_look_up = state == FILLED, lod_level = r_level;
 assign node_place = r_node;
 
-// ---------------------------------------------------------------- the stack
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
 localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
 localparam REST = `REST_BITS;
@@ -39,7 +38,6 @@ memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.cl
   .read(state == POP), .write(state == PUSH & ~stack_full),
   .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
-// ---------------------------------------------------------------- verdict
 localparam LOOK = VERDICT;                      // takes the node's word
 wire solid;
 wire [7:0]   mask_read = node_word[39:32];

@@ -1,5 +1,5 @@
-// While context `running` waits for a cache or a tile, the one whose answer or tile came first takes over in the next
-// cycle. Ties go to the lowest number. Registers of the others are saved: `KEPT`, and by parts of the stage.
+// While context `running` waits for a cache or a tile, the one whose answer or tile came first takes over, of equals the
+// lowest. Registers of the others are saved: `KEPT`, and by parts of the stage.
 wire [CONTEXTS-1:0] runs = 1 << running;
 reg  [CONTEXTS-1:0] idle, begun;                // others: without a tile; with a tile not begun
 reg  [CONTEXTS-1:0] asks_node, asks_attribute;  // others: not taken yet

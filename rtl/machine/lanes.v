@@ -1,10 +1,8 @@
 `include "widths.vh"
 `include "stage.vh"
-// Machines side by side, with several contexts each in stage C, draw tiles of the picture. They share two caches, the
-// memory port and the pixel port. The context that has waited longest for a tile begins the next one, row by row. Ties go
-// to the lowest lane and context, and to nodes before attributes.
-//
-// Only stages B and C, whose picture does not depend on the order of records.
+// Machines of stages B and C side by side draw tiles of the picture. They share two caches, the memory port and the pixel
+// port. The context that has waited longest begins the next tile, row by row. Ties go to the lowest lane and context, and to
+// nodes before attributes.
 module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10,
                STACK_LOG2 = `STACK_LOG2, NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2,
                DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
@@ -70,7 +68,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
       end
       if (running & ~busy) {running, done} <= 2'b01;
     end
-  // A lane's flag stays until its next tile, so only its rise counts.
+  // The flag stays until the next tile, so its rise counts.
   reg [LANES-1:0] failed_before;
   always @(posedge clk) begin
     failed_before <= lane_failed;
@@ -162,7 +160,6 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
     .word(attribute_word), .fetch(attribute_fetch), .fetch_taken(fetched[1]), .fetch_line(attribute_line),
     .fill(fill & kinds[0]), .fill_word(fill_word));
 
-  // ---------------------------------------------------------------- pixels
   wire [LANES-1:0] shown;
   arbiter #(LANES) pixels (.clk(clk), .reset(reset), .enable(pixel_ready), .request(pixel_request), .first(shown),
     .grant(pixel_taken));

@@ -1,11 +1,7 @@
 `include "widths.vh"
 `include "stage.vh"
-// One lane, one record at a time. docs/rtl.md has its ports, states and cycles.
-//
-//     push the object
-//     pop a record; drop it if its picture node is full
-//     read its octree node; draw it, drop it, or
-//     make its children, the farthest first; fit each; push the visible ones
+// One lane, one record at a time. It is popped, and dropped if its picture node is full. Its octree node is read. Then it is
+// drawn or dropped, or its children are fitted and the visible ones pushed. docs/rtl.md has ports, states and cycles.
 //
 // A stage adds `stage.vh` (widths), `parts.vh` (registers and blocks) and `steps.vh` (states). The stack holds children in
 // A and B (`children.vh`), parents in C. 2^PICTURE_LEVELS samples per side, DEPTH levels of the object, LEVEL_BOUND of
@@ -49,7 +45,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   // Bits of one coordinate of a cage, and of the stage's own fields of a record.
   localparam CAGE = `CAGE_WORDS*W, MORE = `MORE_BITS;
 
-  // ---------------------------------------------------------------- constants of the frame
   wire [N-1:0] root;
   wire [L-1:0] levels, depth, level_bound, sub_levels;
   wire [P-1:0] width, height;
@@ -58,7 +53,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [9*W-1:0] edges;
   wire signed [W-1:0] near, near_crossing, size_limit, lod_limit, least_size, lod_depth;
 
-  // ---------------------------------------------------------------- states
   localparam IDLE = 0, CLEAR = 1, OBJECT = 2, OBJECT_BOX = 3, FIT = 4, CHOOSE = 5, PUSH = 6, POP = 7,
     POPPED = 8, FILLED = 9, OPEN = 10, NODE = 11, VERDICT = 12, WALK = 13, WALKED = 14, BACK = 15, CENTRE = 16,
     ORDER = 17, POOL = 18, CHILD = 19, DRAWN = 20, ATTRIBUTE = 21, SHOW = 22, PIXEL = 23, MARK = 24, ABOVE = 25,
@@ -209,7 +203,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .lod_limit(lod_limit), .least_size(least_size), .look_up(lod_look_up), .of_level(lod_level),
     .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 
-  // ---------------------------------------------------------------- the object
   wire [CAGE-1:0] object_x, object_y, object_w;
   object_cage #(W) cage_x (.corner(origin[2*W +: W]), .edges(edges[6*W +: 3*W]), .cage(object_x));
   object_cage #(W) cage_y (.corner(origin[W +: W]), .edges(edges[3*W +: 3*W]), .cage(object_y));
@@ -218,7 +211,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire full;
   filled is_filled (.vector(vector), .full(full));
 
-  // ---------------------------------------------------------------- children
   reg [7:0]   mask;
   reg [N-1:0] first;
   wire [3*W-1:0] centre_now;
@@ -300,7 +292,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   assign pixel_level = t_voxel_level;
   assign pixel_attribute = attribute_word;
 
-  // ---------------------------------------------------------------- next state
   wire [5:0] next_record = stacked == 0 ? DONE : POP;
   wire [5:0] next_child = any_left ? CHILD : next_record;
 
@@ -339,7 +330,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       accept;
   endtask
 
-  // ---------------------------------------------------------------- stage and contexts
   `include "parts.vh"
   `include "contexts.vh"
   localparam KEPT = 6 + `KEPT_BITS, WAITING = 4*(PICTURE_LEVELS + 1);

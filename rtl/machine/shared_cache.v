@@ -1,9 +1,9 @@
 `include "widths.vh"
-// As cache.v, for several users (contexts of lanes). Requests are `taken` in order of arrival. During a miss others are
-// served, and a request to a line in flight merges with that miss.
+// As cache.v, for several users (contexts of lanes). Requests are `taken` in order of arrival. A request to a line in flight
+// merges with that miss.
 //
-// An access takes two cycles, so that single-port memories suffice: one reads, the other writes the order of use or sends
-// the miss, until `fetch_taken`. No access begins while a line arrives.
+// An access takes two cycles, for single-port memories: one reads, the other writes the order of use or sends the miss,
+// until `fetch_taken`. No access begins while a line arrives.
 module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                     clk, reset,
   input  [USERS-1:0]        request,
@@ -80,7 +80,6 @@ module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
     .write(looking & (hit | fetch_taken)), .address(look ? address_now[3 +: SETS_LOG2] : set), .data_in(used),
     .data_out(stored));
 
-  // ---------------------------------------------------------------- answers
   // Is the hit line in flight? Its last entry counts.
   reg         on_its_way;
   reg [E-1:0] entry;

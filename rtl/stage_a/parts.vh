@@ -41,12 +41,10 @@ child_span #(W) span_x (.child(state == MOVE ? screen_x : child_x), .low(x_low),
 child_span #(W) span_y (.child(state == MOVE ? screen_y : child_y), .low(y_low), .high(y_high));
 wire behind = ~(state == CHILD & r_screen) & w_high < near;
 
-// ---------------------------------------------------------------- fit
 image_step #(W, F) box (.screen(c_screen), .x(c_x), .y(c_y), .w(c_w), .spans(c_spans), .node_x(c_quad_x),
   .node_y(c_quad_y), .below(levels - c_quad_level), .quadrant(quadrant), .outside(box_outside_now),
   .enclosed(box_enclosed), .overlapped(overlapped), .inner_x(inner_x), .inner_y(inner_y), .near(box_near));
 
-// ---------------------------------------------------------------- verdict
 // A solid in screen space at the bound is drawn untested.
 wire untested = r_level >= level_bound;
 wire draw_box, draw_centre, subdivide, look_hidden;
@@ -71,7 +69,6 @@ wire signed [W-1:0] half_x, half_y;
 centre_half #(W) half_of_x (.value(m_x), .w(m_w), .right(right), .inner(half_x));
 centre_half #(W) half_of_y (.value(m_y), .w(m_w), .right(lower), .inner(half_y));
 
-// ---------------------------------------------------------------- drawing
 reg to_draw;                                    // else the sample shows that the record is visible
 wire [5:0] found_sample = to_draw ? DRAW : CENTRE;
 wire draw_read = state == DRAW | state == WALK;

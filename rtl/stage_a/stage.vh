@@ -2,6 +2,8 @@
 `define CAGE_WORDS 8
 `define POOL_WORDS 27
 `define MORE_BITS (1 + 4*W)
+// As the model writes it: the box, and no planes.
+`define FORM(more) more[4*W-1:0], {12*`WIDE_BITS{1'b0}}
 // Rest of a stack entry: voxel level, screen-space flag, fields of one of the spaces.
 `define REST_BITS ($clog2(DEPTH + 1) + 1 + 9*W)
 `define JOINED_LEVELS 0

@@ -7,7 +7,6 @@ assign pushed_rest = {c_w, c_w_min, c_more};
 assign {p_w, p_w_min, p_more} = popped_rest;
 assign p_voxel_level = p_level;
 
-// ---------------------------------------------------------------- verdict
 verdict #(W) rule (.leaf(leaf), .w_min(r_w_min), .has_lod_depth(has_lod_depth), .lod_depth(lod_depth), .solid(solid));
 // No search for occluded records: one that is small enough is a voxel (docs/rtl.md, Cycles).
 assign quadrant = only;

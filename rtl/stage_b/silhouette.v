@@ -2,9 +2,8 @@
 // A cube's silhouette down the image quadtree: planes of its twelve edges, and one through the eye unless the cube is
 // wholly in front of the eye. SPEC.md, 8.
 //
-// Constants `of_divided` are those of the node divided last, from which its quadrants derive. A plane whose side is known
-// keeps its constant, so that it fits the word; therefore sides are kept per level. On `switch` all this is saved, and that
-// of context `next` restored.
+// Quadrants derive from the constants `of_divided` of the node divided last. A plane whose side is known keeps its constant,
+// which then fits the word, so sides are kept per level. `switch` saves all this, and restores that of context `next`.
 module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10, CONTEXTS = 1, CONTEXT = 1) (
   input                        clk,
   input                        switch,

@@ -28,13 +28,11 @@ generate
   end
 endgenerate
 
-// ---------------------------------------------------------------- fit
 wire behind = w_high <= 0;
 image_step #(W) box (.x(c_x), .y(c_y), .w(c_w), .below(levels - c_quad_level), .quadrant(quadrant),
   .outside(box_outside_now), .enclosed(box_enclosed), .overlapped(overlapped), .inner_x(inner_x),
   .inner_y(inner_y), .near(box_near));
 
-// ---------------------------------------------------------------- covered samples
 reg [L-1:0] s_level;                            // the current node
 reg [P-1:0] s_x, s_y;
 reg         whole;                              // all samples of an ancestor are covered,

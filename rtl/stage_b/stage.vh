@@ -2,6 +2,8 @@
 `define CAGE_WORDS 4
 `define POOL_WORDS 11
 `define MORE_BITS (12*V)
+// As the model writes it: no box in screen space, and the planes.
+`define FORM(more) {4*W{1'b0}}, more
 // Rest of a stack entry: depths, the least depth, planes.
 `define REST_BITS (5*W + MORE)
 `define JOINED_LEVELS 0

@@ -1,5 +1,4 @@
-// A brick's child: its mask, and the number of the brick's voxels before it. A brick has a byte per child. A leaf's byte is
-// all ones, and it has no voxels of its own.
+// A brick's child: its mask, and the number of the brick's voxels before it. A leaf's byte is all ones, without voxels.
 module brick_child (
   input  [63:0]    voxels,
   input  [7:0]     leaves,

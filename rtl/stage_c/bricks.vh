@@ -1,5 +1,5 @@
-// Bricks: a node two levels above the finest voxels has two words, a byte of voxels per child, then its first child and
-// voxel. Its children are not read: the bytes are their masks, and counting earlier voxels gives their first one.
+// Bricks: a node two levels above the finest voxels has two words, a byte of voxels per child (their masks), then its first
+// child and voxel. Counting earlier voxels gives a child's first one.
 reg         laid_out;
 reg [N-1:0] first_brick;
 always @(posedge clk)
@@ -38,7 +38,6 @@ always @(posedge clk)
     if (state == CHILD) c_octant <= octant;
   end
 
-// ---------------------------------------------------------------- children
 function [7:0] children_in(input [63:0] bits);
   children_in = {|bits[63:56], |bits[55:48], |bits[47:40], |bits[39:32], |bits[31:24], |bits[23:16], |bits[15:8],
     |bits[7:0]};

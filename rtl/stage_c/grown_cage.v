@@ -1,6 +1,6 @@
 `include "widths.vh"
-// One coordinate of a child's cage: halved edges, and the corner, moved by up to three of them. No record is below the
-// finest voxels, so halves are exact. SPEC.md, 4. Cage: the corner, highest, then edges along x, y, z.
+// One coordinate of a child's cage: halved edges, and the corner, moved by up to three of them. Halves are exact.
+// SPEC.md, 4.
 module grown_cage #(parameter W = `WORD_BITS) (
   input  [4*W-1:0] parent,
   input  [2:0]     octant,

@@ -1,5 +1,4 @@
-// Fill vectors of stage C: the lowest three levels are words of 16 bits, one per sample. The last word stays in a register
-// during a record's turn.
+// Fill vectors of stage C: the lowest three levels are words with a bit per sample, the last of them in a register.
 wire         joined = levels >= TILE_LEVELS + 2;  // the tile has these levels
 wire [L-1:0] word_level = levels - 2'd2;
 assign last_level = joined ? word_level : levels;

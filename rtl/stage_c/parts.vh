@@ -1,6 +1,5 @@
-// Stage C: exact coverage as in stage B. The subdivided record stays in registers. Its children are made one at a time, the
-// nearest first. A child with an undrawn sample replaces its parent, which goes to the stack if it has children left. A
-// pop computes the parent back from the last record.
+// Stage C. The subdivided record stays in registers. Its children are made one at a time, the nearest first. A child with an
+// undrawn sample replaces its parent, which goes to the stack if it has children left. A pop computes the parent back.
 `include "silhouettes.vh"
 `include "joined_fill.vh"
 
@@ -21,7 +20,6 @@ wire [5:0] turn_over = |(left & there) ? CHILD : next_record;
 
 localparam READ = 37, OUT = 38, UP = 39, LOOK = READ;
 
-// ---------------------------------------------------------------- the stack
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1);
 wire [NODE_WIDTH-1:0] p_first;
 wire [LEVEL-1:0]      p_level;
@@ -95,7 +93,6 @@ generate
   end
 endgenerate
 
-// ---------------------------------------------------------------- for testbenches
 wire accepted = (state == CHOOSE | state == FIT & known & ~box_outside) & ~rejected & ~goes_down;
 reg  worked_back;
 always @(posedge clk) worked_back <= state == UP & r_level - 1'b1 == p_level;

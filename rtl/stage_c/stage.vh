@@ -1,6 +1,8 @@
 // Widths of stage C's records: a corner and three edges, silhouette planes.
 `define CAGE_WORDS 4
 `define MORE_BITS (12*V)
+// As the model writes it: no box in screen space, and the planes.
+`define FORM(more) {4*W{1'b0}}, more
 // Lowest levels whose fill vectors are joined to words.
 `define JOINED_LEVELS 3
 `define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS + of.fill_words.BITS*of.fill_words.WORDS)

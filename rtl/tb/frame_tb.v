@@ -1,8 +1,7 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame of `shiftvox model --vectors`. Reads frame.constants.hex and frame.nodes.hex, writes pixels.txt and, with
-// +events, events.txt, and prints the cycles. +most=N limits them, +states prints cycles per state, +wave (Icarus Verilog)
-// writes frame.vcd.
+// Draws a frame of `shiftvox model --vectors`. Writes pixels.txt and, with +events, events.txt, and prints the cycles.
+// +most=N limits them, +states prints them per state, +wave (Icarus Verilog) writes frame.vcd.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
                   NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;
@@ -61,7 +60,6 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     end
   end
 
-  // ------------------------------------------------ events
   `define WALK dut
   `define TILE 0
   `define WATCHED 1

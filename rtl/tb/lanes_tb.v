@@ -60,7 +60,6 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
     end
   end
 
-  // ------------------------------------------------ events
   `define WALK dut.lane[lane].walk
   `define TILE (`WALK.tile_y_now << TILE_LEVELS | `WALK.tile_x_now)
   `define WATCHED 2

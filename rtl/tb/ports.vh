@@ -1,6 +1,7 @@
-// Events of `WALK, a machine, in one cycle. The stage adds those of its stack and fill vectors.
+// Events of `WALK, a machine, in one cycle: tile, port, address, data in hexadecimal digits. The stage adds those of its stack
+// and fill vectors.
 `include "events.vh"
-if (`WALK.asked_node) $fwrite(events, "%0d 4 %0d\n", `TILE, `WALK.node_place);
-if (`WALK.asked_attribute) $fwrite(events, "%0d 5 %0d\n", `TILE, `WALK.t_node);
-if (`WALK.pixel & `WALK.pixel_taken) $fwrite(events, "%0d 6 %0d %0d\n", `TILE,
+if (`WALK.asked_node) $fwrite(events, "%0d node_read %0d 0\n", `TILE, `WALK.node_place);
+if (`WALK.asked_attribute) $fwrite(events, "%0d attribute_read %0d 0\n", `TILE, `WALK.t_node);
+if (`WALK.pixel & `WALK.pixel_taken) $fwrite(events, "%0d pixel_write %0d %0h\n", `TILE,
   `WALK.pixel_y * constants[5] + `WALK.pixel_x, `WALK.pixel_node);

@@ -1,6 +1,6 @@
-// A module `BENCH runs `BLOCK through the rows of the file `ROWS, lines of {"in":"..","out":".."} with digits of `INTO and
-// `OUT bits, and prints how many were wrong. A `CLOCKED block takes cycles from `start` to `last`. At most `MOST rows are
-// read, of `STEP rows one, with the inputs `STIMULUS; after each, `EACH is done, and at the end `SHOW.
+// A module `BENCH runs `BLOCK through the rows of `ROWS, a file of model --vectors with `INTO and `OUT bits, and prints how
+// many were wrong. A `CLOCKED block takes cycles from `start` to `last`. At most `MOST rows are read, of `STEP one, with the
+// inputs `STIMULUS. `EACH follows each, and `SHOW the last.
 `ifndef MOST
 `define MOST 2147483647
 `endif

@@ -23,7 +23,6 @@ pub(super) struct Key {
 pub(super) struct Job {
     key: Key,
     pub(super) pool: Option<ThreadPool>,
-    /// `None` while a picture is drawn.
     pub(super) canvas: Option<Canvas>,
 }
 
@@ -64,7 +63,6 @@ impl Kept {
     }
 }
 
-/// A copy starts empty.
 impl Clone for Kept {
     fn clone(&self) -> Self {
         Self::default()

@@ -450,54 +450,44 @@ mod tests {
     use super::super::{Camera, kept::MOST_THREADS};
     use super::*;
 
-    fn sponge() -> Scene {
-        Scene::generate("menger,depth=2").expect("a scene")
-    }
-
-    fn refusal(renderer: &Renderer, camera: &impl View) -> String {
-        match renderer.render(&sponge(), camera, 8, 8) {
-            Err(Error::Setting(reason)) => reason,
-            other => panic!("{other:?}"),
-        }
-    }
-
     #[test]
     fn settings_that_an_engine_does_not_have_are_rejected() {
-        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
-        let rays = Renderer::new().engine(EngineKind::Rays);
-        assert!(rays.render(&scene, &camera, 8, 8).is_ok());
-        for (renderer, word) in [
-            (rays.clone().coverage(Coverage::Alpha), "exact"),
-            (rays.clone().coverage(Coverage::Any), "exact"),
-            (rays.clone().cage(CageKind::Corners), "cage"),
-            (rays.clone().overflow(Overflow::Wrap), "overflow"),
-            (rays.clone().tolerance(1.0), "tolerance"),
-            (Renderer::new().samples(3), "1, 2 or 4"),
-            (Renderer::new().threads(MOST_THREADS + 1), "0 to 1024"),
-            (Renderer::new().threads(usize::MAX), "0 to 1024"),
-        ] {
-            let reason = refusal(&renderer, &camera);
-            assert!(reason.contains(word), "{reason}");
+        let scene = Scene::generate("menger,depth=2").expect("a scene");
+        let (camera, new) = (Camera::fit(&scene), Renderer::new());
+        let rays = new.clone().engine(EngineKind::Rays);
+        let counting = new.clone().count_operations();
+        let (zoomed, size) = ([0.0, -1.0, f64::NAN, f64::INFINITY], (8, 8));
+        let zoomed = zoomed.map(|zoom| (new.clone(), camera.clone().zoom(zoom), size, "zoom"));
+        let of = |renderer: Renderer, word| (renderer, camera.clone(), size, word);
+        let too_large = |size| (new.clone(), camera.clone(), size, "too large");
+        let others = [
+            of(rays.clone().coverage(Coverage::Alpha), "exact"),
+            of(rays.clone().coverage(Coverage::Any), "exact"),
+            of(rays.clone().cage(CageKind::Corners), "cage"),
+            of(rays.clone().overflow(Overflow::Wrap), "overflow"),
+            of(rays.clone().tolerance(1.0), "tolerance"),
+            of(new.clone().samples(3), "1, 2 or 4"),
+            of(new.clone().threads(MOST_THREADS + 1), "0 to 1024"),
+            of(counting.clone().engine(EngineKind::Fast), "operations"),
+            of(counting.clone().engine(EngineKind::Rays), "operations"),
+            too_large((1 << 15, (1 << 12) + 1)),
+            too_large((u32::MAX, u32::MAX)),
+        ];
+        for (renderer, camera, (width, height), word) in zoomed.into_iter().chain(others) {
+            match renderer.render(&scene, &camera, width, height) {
+                Err(Error::Setting(reason)) => assert!(reason.contains(word), "{reason}"),
+                other => panic!("{word}: {other:?}"),
+            }
         }
-        let counting = Renderer::new().count_operations();
-        for engine in [EngineKind::Fast, EngineKind::Rays] {
-            let reason = refusal(&counting.clone().engine(engine), &camera);
-            assert!(reason.contains("operations"), "{reason}");
+        for able in [&rays, &counting.engine(EngineKind::Machine)] {
+            assert!(able.render(&scene, &camera, 8, 8).is_ok());
         }
-        let counted = counting.engine(EngineKind::Machine);
-        assert!(counted.render(&scene, &camera, 8, 8).is_ok());
+        let drawn = new.render_into(&scene, &camera, 2, 2, &mut [[0; 4]; 5]);
+        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
         let hardware = Hardware::preset("light").expect("a preset");
-        let simulated = |renderer: Renderer| renderer.simulate(&scene, &camera, 8, 8, &hardware);
-        assert!(matches!(simulated(rays), Err(Error::Setting(_))));
-        assert!(simulated(Renderer::new()).is_ok());
-    }
-
-    #[test]
-    fn a_zoom_is_above_zero() {
-        let fitted = Camera::fit(&sponge());
-        for zoom in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(refusal(&Renderer::new(), &fitted.clone().zoom(zoom)).contains("zoom"));
-        }
+        let simulated = |renderer: &Renderer| renderer.simulate(&scene, &camera, 8, 8, &hardware);
+        assert!(matches!(simulated(&rays), Err(Error::Setting(_))));
+        assert!(simulated(&new).is_ok());
     }
 
     /// Memory of earlier pictures, of other scenes, sizes, rules and buffers, changes no later one.
@@ -507,68 +497,48 @@ mod tests {
         let scenes = scenes.map(|scene| Scene::generate(scene).expect("a scene"));
         let all = [Buffer::Depth, Buffer::Normal, Buffer::Voxel, Buffer::Node];
         let mut used = Renderer::new();
-        for (round, coverage) in [Coverage::Exact, Coverage::Center, Coverage::Alpha]
-            .into_iter()
-            .cycle()
-            .take(7)
-            .enumerate()
-        {
-            let buffers = all.iter().copied().take(round % 5);
+        for round in 0..7 {
             used = used
-                .coverage(coverage)
-                .buffers(buffers)
-                .hashed(round % 3 == 1);
-            used = used.samples([1, 2, 4][round % 3]).threads(round / 3);
-            for scene in &scenes {
-                for (width, height) in [(40, 30), (30, 40), (30, 40), (1, 1)] {
-                    let camera = Camera::fit(scene).azimuth(f64::from(width));
-                    let again = used
-                        .render(scene, &camera, width, height)
-                        .expect("a picture");
-                    let new = used.clone().render(scene, &camera, width, height);
-                    let new = new.expect("a picture");
-                    assert_eq!(again.rgba(), new.rgba());
-                    assert_eq!(again.counters(), new.counters());
-                    assert_eq!(again.hash().ok(), new.hash().ok());
-                    for buffer in all {
-                        let (again, new) = (again.values(buffer), new.values(buffer));
-                        assert_eq!(again.ok(), new.ok(), "{buffer:?}");
-                    }
-                    if round % 5 == 0 && round % 3 != 1 {
-                        let mut pixels = vec![[0; 4]; (width * height) as usize];
-                        let counted = used.render_into(scene, &camera, width, height, &mut pixels);
-                        assert_eq!(counted.expect("a picture"), again.counters());
-                        assert_eq!(pixels, again.rgba());
-                    }
+                .coverage([Coverage::Exact, Coverage::Center, Coverage::Alpha][round % 3])
+                .buffers(all.into_iter().take(round % 5))
+                .hashed(round % 3 == 1)
+                .samples([1, 2, 4][round % 3])
+                .threads(round / 3);
+            for (scene, (width, height)) in scenes.iter().flat_map(|scene| {
+                let sizes = [(40, 30), (30, 40), (30, 40), (1, 1)];
+                sizes.map(|size| (scene, size))
+            }) {
+                let camera = Camera::fit(scene).azimuth(f64::from(width));
+                let [again, new] = [&used, &used.clone()].map(|renderer| {
+                    let drawn = renderer.render(scene, &camera, width, height);
+                    drawn.expect("a picture")
+                });
+                assert_eq!(again.rgba(), new.rgba());
+                assert_eq!(again.counters(), new.counters());
+                assert_eq!(again.hash().ok(), new.hash().ok());
+                for buffer in all {
+                    let [again, new] = [&again, &new].map(|of| of.values(buffer).ok());
+                    assert_eq!(again, new, "{buffer:?}");
+                }
+                if round % 5 == 0 && round % 3 != 1 {
+                    let mut pixels = vec![[0; 4]; (width * height) as usize];
+                    let counted = used.render_into(scene, &camera, width, height, &mut pixels);
+                    assert_eq!(counted.expect("a picture"), again.counters());
+                    assert_eq!(pixels, again.rgba());
                 }
             }
         }
     }
 
     #[test]
-    fn a_picture_that_is_too_large_is_an_error() {
-        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
-        let renderer = Renderer::new();
-        let drawn = renderer.render(&scene, &camera, 1 << 15, (1 << 12) + 1);
-        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
-        let drawn = renderer.render(&scene, &camera, u32::MAX, u32::MAX);
-        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
-        let mut pixels = [[0; 4]; 5];
-        let drawn = renderer.render_into(&scene, &camera, 2, 2, &mut pixels);
-        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
-    }
-
-    #[test]
     fn threads_may_share_a_renderer() {
-        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
-        let renderer = Renderer::new().threads(2);
-        let alone = renderer.render(&scene, &camera, 64, 64).expect("a picture");
+        let scene = Scene::generate("menger,depth=2").expect("a scene");
+        let (camera, renderer) = (Camera::fit(&scene), Renderer::new().threads(2));
+        let draw = || renderer.render(&scene, &camera, 64, 64).expect("a picture");
+        let alone = draw();
         std::thread::scope(|scope| {
             for _ in 0..4 {
-                scope.spawn(|| {
-                    let drawn = renderer.render(&scene, &camera, 64, 64).expect("a picture");
-                    assert_eq!(drawn.rgba(), alone.rgba());
-                });
+                scope.spawn(|| assert_eq!(draw().rgba(), alone.rgba()));
             }
         });
     }

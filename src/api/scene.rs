@@ -175,26 +175,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_graph_file_of_which_only_the_header_was_checked_says_so() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("menger.vxg");
-        let scene = Scene::generate("menger,depth=2").expect("a scene");
-        scene.save_vxg(&path).expect("a file");
-        for (verify_up_to, is_verified) in [(u64::MAX, true), (0, false)] {
-            let options = OpenOptions {
-                verify_up_to,
-                ..OpenOptions::default()
-            };
-            let source = Source::find(&path).expect("a file");
-            let opened = open_source(source, &options, &NoMeshes, &Silent).expect("a graph");
-            assert_eq!(Scene::from(opened).is_verified(), is_verified);
-        }
-    }
-
-    #[test]
     fn files_of_any_name_are_opened_as_files() {
         let folder = tempfile::tempdir().expect("a folder");
-        let bytes = std::fs::read("assets/tree.vox").expect("the bundled scene");
+        let bytes = std::fs::read("tests/data/axes.vox").expect("a scene");
         let mut names = vec![std::ffi::OsString::from("gen:menger")];
         #[cfg(target_os = "linux")]
         names.push(std::os::unix::ffi::OsStringExt::from_vec(

@@ -21,7 +21,6 @@ pub struct GraphStyle {
     pub options: SetupOptions,
     pub shading: Shading,
     pub background: Background,
-    /// Buffers in addition to the colours.
     pub buffers: Vec<Buffer>,
     /// Whether the picture's hash is needed, which is over all buffers.
     pub is_hashed: bool,
@@ -57,9 +56,7 @@ impl Canvas {
 pub struct DrawnFrame {
     pub setup: FrameSetup,
     pub stats: Stats,
-    /// Time to draw it, milliseconds.
     pub draw_ms: f64,
-    /// Whether the viewer showed it already.
     was_shown: bool,
 }
 
@@ -69,7 +66,6 @@ struct Drawn {
     setup: FrameSetup,
     stats: Stats,
     times_ms: Vec<f64>,
-    /// Time to make the colours, milliseconds.
     resolve_ms: f64,
 }
 
@@ -168,7 +164,6 @@ impl<'g> GraphDrawing<'g> {
         })
     }
 
-    /// Returns the counters, and the time in milliseconds.
     fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<(Stats, f64), DrawError> {
         let started = Instant::now();
         let light = lights(self.graph, setup, self.style.shading);
@@ -197,7 +192,6 @@ impl<'g> GraphDrawing<'g> {
     }
 
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
-        // Without a frame there are no samples.
         let frame = self.viewer.frame();
         let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
         let GraphStyle {
@@ -281,7 +275,6 @@ impl Drawable for GraphDrawing<'_> {
         let (graph, setup) = (self.graph, self.setup(camera)?);
         let mut engine = (self.engine)();
         let mut colors = Colors::new(setup.width, setup.height);
-        // Touches the pages before the first frame.
         colors.words.fill(1);
         let light = lights(graph, &setup, Shading::Flat);
         Ok(Box::new(move || {

@@ -17,7 +17,6 @@ use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
 pub use graph::{Canvas, DrawnFrame, GraphDrawing, GraphStyle};
 
-/// Something that can be drawn from any camera.
 pub trait Drawable {
     /// The box, and points that enclose the contents, for a fitted camera.
     fn bounds(&self) -> Bounds;
@@ -41,13 +40,11 @@ pub type Figures = Vec<(&'static str, Value)>;
 
 pub struct Shown<'d> {
     pub pixels: Cow<'d, Pixels>,
-    /// All buffers, made on demand.
     pub buffers: Buffers<'d>,
     /// Pixels that show something at their middle sample.
     pub pixels_drawn: usize,
     /// The covered share of each pixel; empty if the method does not know it.
     pub coverage: &'d [f32],
-    /// Time of each run, milliseconds.
     pub times_ms: &'d [f64],
     pub counters: Figures,
     pub details: Figures,
@@ -56,7 +53,6 @@ pub struct Shown<'d> {
 /// The buffers of a picture in memory, or of an engine's frame.
 pub enum Buffers<'d> {
     Whole(&'d Picture),
-    /// Made row by row.
     Resolved(Box<Resolver<'d>>),
 }
 
@@ -92,7 +88,6 @@ pub enum DrawError {
     Engine(#[from] EngineError),
     #[error(transparent)]
     Resolve(#[from] ResolveError),
-    /// A failure of another crate's method.
     #[error(transparent)]
     Method(Box<dyn std::error::Error + Send + Sync>),
 }
@@ -118,7 +113,6 @@ pub fn check_samples(
 
 /// Less memory is not checked, because the check takes longer than drawing a small picture.
 const UNCHECKED_BYTES: u64 = 1 << 24;
-/// Bytes per colour of a pixel in a file.
 pub const COLOR_BYTES: u64 = 3;
 pub fn timed<T>(
     runs: u32,

@@ -19,7 +19,6 @@ fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
     let y = share(along[1]).min(SHARES - x);
     let shares = [x, y, SHARES - x - y];
     let squared = shares.iter().map(|share| share * share).sum::<i64>();
-    // The root, to the nearest: 9 to 16.
     let length = (9..16).find(|n| squared <= n * (n + 1)).unwrap_or(16);
     shares.map(|share| ((2 * share * share / length + 1) >> 1) as u32)
 }

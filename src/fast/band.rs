@@ -39,9 +39,7 @@ pub(super) struct BrickBlocks {
 pub(super) struct Record {
     pub(super) node: u32,
     pub(super) level: u32,
-    /// Lowest corner, finest voxels.
     pub(super) min: [i32; 3],
-    /// Clip vector (X, Y, W) of the centre.
     pub(super) centre: [f64; 3],
 }
 

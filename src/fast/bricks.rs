@@ -81,7 +81,6 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         'sample: while wanted != 0 {
             let number = wanted.trailing_zeros() as usize & 63;
             wanted &= wanted - 1;
-            // The number of a block with parts of its own, or of a part.
             let (line, mut parts) = if DEEP {
                 if ready >> number & 1 == 0 {
                     ready |= 1 << number;
@@ -112,7 +111,6 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                 if band.blends {
                     let (is_full, levels) = blend::<I, DEEP>(band, brick, square, hit, pair);
                     if !is_full {
-                        // A voxel of several parts is taken once.
                         let same = match levels {
                             0 => u64::MAX,
                             1 => 0xff << (part & 0x38),

@@ -34,7 +34,6 @@ pub(super) struct FillMemory {
 
 impl FillMemory {
     pub(super) fn resize(&mut self, grid: &TileGrid) {
-        // So that squares at the last tile are read like others.
         let beyond = grid.tiles_across + 2;
         self.tiles
             .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
@@ -151,7 +150,6 @@ impl<'p> Fill<'p> {
         self.part.tiles.get(at).copied().unwrap_or(0)
     }
 
-    /// The open samples of a square, eight bits per row.
     #[inline(always)]
     pub(super) fn open_in_square(&self, window: &Window) -> u64 {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
@@ -259,7 +257,6 @@ impl<'p> Fill<'p> {
 pub(super) struct Pixels<'f> {
     pub(super) width: usize,
     pub(super) top: i32,
-    /// Nodes, or their colours.
     pub(super) shown: &'f mut [u32],
     /// Colours by node; empty where nodes are wanted.
     pub(super) color: &'f [[u8; 3]],

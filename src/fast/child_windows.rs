@@ -14,10 +14,8 @@ const TINY_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C, align(32))]
 pub(super) struct ChildWindows {
-    /// Left, top, right and bottom.
     sides: [[i32; 8]; 4],
     pub(super) held: u8,
-    /// Children that reach the eye's plane or lie behind it, as a mask.
     pub(super) near: u8,
 }
 
@@ -49,7 +47,6 @@ impl ChildWindows {
         let nearest = narrow(isa, [w[0].sub(depth), w[1].sub(depth)]);
         let zero = I::F32x8::splat(isa, 0.0);
         self.near = nearest.at_most(zero);
-        // Half a child's side over its least depth.
         let half = I::F32x8::splat(isa, own.side as f32 * (0.25 * SCALE));
         let share = nearest.reciprocal().mul(half);
         let rounding = I::F32x8::splat(isa, ROUNDING);

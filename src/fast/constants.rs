@@ -46,12 +46,9 @@ pub(super) struct Constants {
     pub(super) edge: [[f64; 3]; 3],
     /// Direction of a ray, by axis: `[per column, per row, at sample 0]`. Scaled to about 1.
     pub(super) direction: [[f64; 3]; 3],
-    /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
-    /// [`Constants::edge`] by coordinate, then by axis.
     pub(super) edge_columns: [[f64; 4]; 3],
     pub(super) edge_lanes: [[f32; 3]; 3],
-    /// Scale of a product of two edges in [`Constants::direction`].
     pub(super) scale: f64,
     pub(super) inverse_scale: f64,
     pub(super) eye_floor: [i64; 3],
@@ -120,7 +117,6 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object covers, about, to divide the work.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];

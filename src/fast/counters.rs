@@ -23,7 +23,6 @@ macro_rules! counters {
 
 counters! {
     nodes = "nodes";
-    /// Nodes of which two or four levels were drawn in one step.
     bricks = "bricks";
     squares = "squares";
     samples_tested = "samples_tested";

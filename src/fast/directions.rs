@@ -51,7 +51,6 @@ impl<I: Isa> Directions<I> {
     }
 }
 
-/// Octants by signs, which have the x axis in their lowest bit.
 static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
 
 #[derive(Debug, Clone, Copy)]

@@ -41,7 +41,6 @@ fn side_of(plane: [i128; 3], sample: [i64; 3]) -> i8 {
     0
 }
 
-/// A product, and the sizes of its terms.
 #[inline(always)]
 fn dot(a: &[f64; 3], b: &[f64; 3], size: &[f64; 3]) -> (f64, f64) {
     (
@@ -111,7 +110,6 @@ impl Exact {
         is_certain || self.covers_exactly(corner, side, q)
     }
 
-    /// [`Exact::covers`] in integers.
     #[cold]
     fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
         (0..3).all(|j| {
@@ -152,7 +150,6 @@ impl Exact {
         Outline { edges, front }
     }
 
-    /// The half of the rays that reach a cube which does not hold the eye.
     fn front(&self, min: [i32; 3], side: i32) -> Option<(Plane, i8)> {
         (0..3).find_map(|axis| {
             let upwards = self.eye_ceil[axis] <= i64::from(min[axis]);

@@ -39,7 +39,6 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
-    /// At the first sample, and slopes by column and by row.
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
     pub(super) tables: [usize; 3],
@@ -52,7 +51,6 @@ pub(super) struct Lines<I: Isa> {
     doubt: I::F32x4,
 }
 
-/// Values at the first sample, and their slopes by column and by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InUnits<I: Isa> {
     moment: [I::F32x4; 3],
@@ -74,7 +72,6 @@ impl<I: Isa> InUnits<I> {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line<I: Isa> {
-    /// The direction: `v_n` and `v_l`, by function.
     next: I::F32x4,
     last: I::F32x4,
     moment: I::F32x4,
@@ -85,7 +82,6 @@ pub(super) struct Line<I: Isa> {
 pub(super) enum Meeting {
     Misses,
     Meets,
-    /// Nearer to the outline than the error.
     Doubt,
 }
 
@@ -111,7 +107,6 @@ impl<I: Isa> Lines<I> {
         let rows = isa.four(&constants.direction_lanes[1]).flip(turn);
         let middle = directions.middle.flip(turn);
         let first = middle.sub(columns.fma(half_across, rows.mul(half_down)));
-        // Where lines run both ways, the middle may belong to the others.
         let middle = middle.max(zero);
         let (next, last) = (middle.next(), middle.last());
         let width = next.add(last);
@@ -259,7 +254,6 @@ impl<I: Isa> Line<I> {
         next.fms(self.last, last.mul(self.next))
     }
 
-    /// The line about a block's centre. A block is 4 parts wide.
     #[inline(always)]
     pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
         let shift = self.shift(isa, block);
@@ -301,21 +295,14 @@ pub(super) const NO_OFFSET: Offset = Offset {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::fast::constants::Constants;
     use crate::fast::directions::{Directions, STEPS};
     use crate::fast::lanes::Scalar;
     use crate::fast::window::Window;
     use crate::graph::Placement;
     use crate::project::{Camera, FrameSetup, SetupOptions};
-
-    pub(in crate::fast) fn numbers() -> impl FnMut() -> f64 {
-        let mut state = 7u64;
-        move || {
-            state = state
-                .wrapping_mul(0x5851_f42d_4c95_7f2d)
-                .wrapping_add(0x1405_7b7e_f767_814f);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        }
-    }
+    use crate::split_mix::SplitMix;
+    use glam::DVec3;
 
     /// A node of a random view, before the eye, of an object of 64 voxels a side.
     pub(in crate::fast) struct Node {
@@ -327,39 +314,36 @@ pub(super) mod tests {
     }
 
     impl Node {
-        pub(in crate::fast) fn random(next: &mut impl FnMut() -> f64, least_level: usize) -> Self {
-            loop {
-                if let Some(node) = Self::before_the_eye(next, least_level) {
-                    return node;
-                }
-            }
+        pub(in crate::fast) fn random(dice: &mut SplitMix, least_level: usize) -> Self {
+            let mut nodes = std::iter::repeat_with(|| Self::before_the_eye(dice, least_level));
+            nodes.find_map(|node| node).unwrap()
         }
 
-        fn before_the_eye(next: &mut impl FnMut() -> f64, least_level: usize) -> Option<Self> {
+        fn before_the_eye(dice: &mut SplitMix, least_level: usize) -> Option<Self> {
             let mut point =
-                |size: f64| glam::DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * size;
+                |size: f64| DVec3::from([(); 3].map(|()| dice.unit() - 0.5)) * size + 32.0;
             let (eye, target) = (point(300.0), point(80.0));
             let camera = Camera {
-                eye: eye + 32.0,
-                target: target + 32.0,
-                up: glam::DVec3::Z,
-                fov_degrees: 0.5 + 150.0 * next() * next(),
+                eye,
+                target,
+                up: DVec3::Z,
+                fov_degrees: 0.5 + 150.0 * dice.unit() * dice.unit(),
                 width: 400,
                 height: 300,
             };
             let placement = Placement::default();
             let setup = FrameSetup::new(&camera, &placement, 6, &SetupOptions::default()).ok()?;
             let constants = Constants::new(&setup).ok()?;
-            let level = least_level + (next() * (4 - least_level) as f64) as usize;
-            let side = f64::from(constants.levels[level].side);
+            let level = least_level + dice.below(4 - least_level as u64) as usize;
+            let side = constants.levels[level].side as u64;
             let mut node = Self {
-                min: [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side),
+                min: [(); 3].map(|()| (dice.below(64) / side * side) as f64),
                 centre: [0.0; 3],
                 setup,
                 constants,
                 level,
             };
-            node.centre = node.clip(node.min.map(|c| c + side / 2.0));
+            node.centre = node.clip(node.min.map(|c| c + side as f64 / 2.0));
             let half_depth = node.constants.levels[level].half_depth;
             (node.centre[2] > half_depth).then_some(node)
         }
@@ -376,28 +360,22 @@ pub(super) mod tests {
     /// The worst of `|f - truth| / doubt`; the truth is computed in `f64`.
     #[test]
     fn values_are_within_a_bound_that_is_of_use() {
-        let mut next = numbers();
-        let isa = Scalar;
-        let mut worst = 0f64;
-        let mut checked = 0;
+        let mut dice = SplitMix::new(7);
+        let (mut worst, mut checked) = (0f64, 0);
         while checked < 200_000 {
-            let node = Node::random(&mut next, 1);
+            let node = Node::random(&mut dice, 1);
             let (constants, centre) = (&node.constants, node.centre);
             let level = &constants.levels[node.level];
             let side = f64::from(level.side) / 4.0;
-            let projection = Projection::new(isa, constants, level, centre, 4.0);
+            let projection = Projection::new(Scalar, constants, level, centre, 4.0);
             let [left, top] = [0, 1].map(|i| {
-                let spread = (next() - 0.5) * 16.0;
+                let spread = (dice.unit() - 0.5) * 16.0;
                 (projection.centre[i] + spread).clamp(0.0, 280.0) as i32
             });
-            if (f64::from(left) - projection.centre[0]).abs() > 40.0
-                || (f64::from(top) - projection.centre[1]).abs() > 40.0
-            {
-                continue;
-            }
             let square = Window::of([left, top, left + 7, top + 7]);
-            let directions = Directions::of(isa, constants, &square);
-            if directions.is_mixed {
+            let directions = Directions::of(Scalar, constants, &square);
+            let is_far = |i: usize| (f64::from([left, top][i]) - projection.centre[i]).abs() > 40.0;
+            if is_far(0) || is_far(1) || directions.is_mixed {
                 continue;
             }
             let samples = Samples {
@@ -406,47 +384,36 @@ pub(super) mod tests {
                 directions,
                 octant: directions.octant,
             };
-            let lines = Lines::new(isa, constants, &projection, &samples);
+            let lines = Lines::new(Scalar, constants, &projection, &samples);
+            let middle = centre[2] / 2.0;
+            let p = DVec3::new(
+                centre[0] * constants.root_samples - middle,
+                centre[1] * constants.root_samples - middle,
+                centre[2],
+            );
+            let turned = |k: usize| directions.octant >> (2 - k) & 1 == 1;
             for sample in [0, 7, 20, 63] {
                 let [x, y] = [sample & 7, sample >> 3];
-                let line = lines.line(isa, [x as f32, y as f32]);
-                let q = [f64::from(left + x), f64::from(top + y), 1.0];
-                let v = constants
-                    .direction
-                    .map(|d| d[0] * q[0] + d[1] * q[1] + d[2]);
-                let p = [
-                    centre[0] * constants.root_samples - centre[2] / 2.0,
-                    centre[1] * constants.root_samples - centre[2] / 2.0,
-                    centre[2],
-                ];
-                let turned = |k: usize| directions.octant >> (2 - k) & 1 == 1;
-                for part in [0, 21, 42, 63] {
-                    let shift = line.shift(isa, &OFFSETS[part]);
-                    let value = line.moment.sub(shift);
+                let line = lines.line(Scalar, [x as f32, y as f32]);
+                let q = DVec3::new(f64::from(left + x), f64::from(top + y), 1.0);
+                let v = constants.direction.map(|d| DVec3::from(d).dot(q).abs());
+                for offset in [0, 21, 42, 63].map(|part: usize| &OFFSETS[part]) {
+                    let value = line.moment.sub(line.shift(Scalar, offset));
                     for j in 0..3 {
                         let (n, l) = ((j + 1) % 3, (j + 2) % 3);
-                        let e = constants.edge[j];
-                        let plane = [
-                            p[1] * e[2] - p[2] * e[1],
-                            p[2] * e[0] - p[0] * e[2],
-                            p[0] * e[1] - p[1] * e[0],
-                        ];
-                        let dot: f64 = (0..3).map(|c| plane[c] * q[c]).sum();
                         let turn = if turned(n) == turned(l) { 1.0 } else { -1.0 };
-                        let moment = dot * constants.scale / side * turn;
-                        let offset = &OFFSETS[part];
-                        let truth = moment
-                            - (f64::from(offset.next[j]) * v[l].abs()
-                                - f64::from(offset.last[j]) * v[n].abs());
-                        let ratio = (f64::from(value[j]) - truth).abs() / f64::from(lines.doubt[j]);
-                        worst = worst.max(ratio);
+                        let dot = p.cross(DVec3::from(constants.edge[j])).dot(q);
+                        let shift =
+                            f64::from(offset.next[j]) * v[l] - f64::from(offset.last[j]) * v[n];
+                        let truth = dot * constants.scale / side * turn - shift;
+                        let error = (f64::from(value[j]) - truth).abs();
+                        worst = worst.max(error / f64::from(lines.doubt[j]));
                         checked += 1;
                     }
                 }
             }
         }
-        assert!(worst < 1.0, "{worst}");
-        assert!(worst > 0.01, "{worst}");
+        assert!(worst < 1.0 && worst > 0.01, "{worst}");
     }
 
     /// The steps that `spec/fast.md` adds up. Much room would hide faults.

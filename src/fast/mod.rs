@@ -46,7 +46,6 @@ use exact::Exact;
 use lanes::Scalar;
 use window::{TILE_LOG2, Window};
 
-/// The instructions used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
@@ -74,7 +73,6 @@ pub struct Fast {
     fill: FillMemory,
     prepared: Option<Prepared>,
     counters: Counters,
-    /// Name of a counter.
     declined: Option<&'static str>,
 }
 
@@ -183,7 +181,6 @@ impl Engine for Fast {
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
         if setup.options.coverage.blends() {
-            // A blended sample has no colour before its last voxel.
             self.draw(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
             return Ok(());
@@ -234,7 +231,6 @@ impl Instructions {
         InstructionSet::Scalar(Scalar)
     }
 
-    /// Whether the processor has these.
     pub fn are_available(self) -> bool {
         self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
     }
@@ -243,11 +239,8 @@ impl Instructions {
 /// Techniques on or off, for measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Switches {
-    /// Skip nodes whose windows are full.
     pub hidden: bool,
-    /// Stop when the picture is full.
     pub full: bool,
-    /// Skip nodes beside the picture or without a sample.
     pub off_screen: bool,
     /// Draw two levels, or one, in one step of 64 lanes.
     pub bricks: bool,

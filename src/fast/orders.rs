@@ -21,13 +21,11 @@ static TURNED: [[u8; 256]; 8] = {
     table
 };
 
-/// A child mask in order of occlusion.
 #[inline(always)]
 pub(super) fn turned(mask: u8, octant: u8) -> u8 {
     TURNED[usize::from(octant & 7)][usize::from(mask)]
 }
 
-/// The same for 64 parts, by both octants.
 #[inline(always)]
 pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
     let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
@@ -60,7 +58,6 @@ pub(super) const fn along(part: usize, axis: usize) -> usize {
     (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1
 }
 
-/// By axis, the parts of the four slabs of a node.
 pub(super) static SLABS: [[u64; 4]; 3] = {
     let mut table = [[0; 4]; 3];
     let mut part = 0;

@@ -15,7 +15,6 @@ pub(super) struct Parts {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Kind {
-    /// Parts are nodes; children lie one after the other.
     #[default]
     Plain,
     /// Parts are named by the graph's links, or a child is solid.
@@ -81,7 +80,6 @@ impl Parts {
                 .and_then(|m| m.first_chunk())
         {
             let [exist, bytes] = isa.expand(u64::from_le_bytes(*eight), mask);
-            // A byte of zeros is a child without children.
             let filled = exist | !bytes;
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
                 self.exist = exist;

@@ -64,7 +64,6 @@ impl<I: Isa> Projection<I> {
         let scale = side * side / (4.0 * across) * constants.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
         let spread = isa.splat(share).div(isa.splat(1.0 - share));
-        // Left and top with turned sign: outward is upward.
         let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
         let [x, y] = self.centre.map(|c| c as f32);
         let centre = isa.four(&[x, y, x, y]).flip(outward);
@@ -81,7 +80,6 @@ impl<I: Isa> Projection<I> {
         let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
         let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
         let bounds = isa.four(&bounds).flip(outward);
-        // NaN leaves the window unchanged.
         let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
         Window::of(end.floor().flip(outward).whole())
     }
@@ -122,63 +120,50 @@ fn extent<I: Isa>(isa: I, parts: u64) -> [I::F32x4; 2] {
 mod tests {
     use super::*;
     use crate::fast::lanes::Scalar;
-    use crate::fast::lines::tests::{Node, numbers};
+    use crate::fast::lines::tests::Node;
     use crate::fast::orders::along;
+    use crate::split_mix::SplitMix;
 
     #[test]
     fn windows_hold_the_parts_and_little_more() {
-        let mut next = numbers();
+        let mut dice = SplitMix::new(7);
         let (mut checked, mut far, mut tight) = (0, 0, 0);
         while checked < 20_000 {
-            let node = Node::random(&mut next, 0);
+            let node = Node::random(&mut dice, 0);
             let (constants, centre, min) = (&node.constants, node.centre, node.min);
             let level = &constants.levels[node.level];
-            let side = f64::from(level.side);
-            let parts = (0..1 + (next() * 3.0) as u32)
-                .fold(0, |all, _| all | 1u64 << (next() * 64.0) as u32);
-            let mut ends = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
-            for part in (0..64).filter(|part| parts >> part & 1 != 0) {
-                for corner in 0..8 {
+            let parts = (0..1 + dice.below(3)).fold(0, |all, _| all | 1u64 << dice.below(64));
+            // Least x, least y, and the greatest of both, negated.
+            let mut least = [f64::MAX; 4];
+            for corner in 0..8 * 64 {
+                let (part, corner) = (corner / 8, corner % 8);
+                if parts >> part & 1 == 1 {
                     let at = [0, 1, 2].map(|k| {
                         let steps = along(part, k) + (corner >> (2 - k) & 1);
-                        min[k] + steps as f64 * side / 4.0
+                        min[k] + steps as f64 * f64::from(level.side) / 4.0
                     });
                     let [x, y, w] = node.clip(at);
                     let [x, y] = [x, y].map(|c| c * constants.root_samples / w - 0.5);
-                    ends = [
-                        ends[0].min(x),
-                        ends[1].min(y),
-                        ends[2].max(x),
-                        ends[3].max(y),
-                    ];
+                    let ends = [x, y, -x, -y];
+                    least = [0, 1, 2, 3].map(|i| least[i].min(ends[i]));
                 }
             }
             let bounds = Window::of([0, 0, 399, 299]);
             let across = [4.0, 16.0][checked % 2];
             let projection = Projection::new(Scalar, constants, level, centre, across);
             let window = projection.window(Scalar, constants, level, across, parts, &bounds);
-            let [left, top, right, bottom] = [
-                ends[0].ceil().max(0.0),
-                ends[1].ceil().max(0.0),
-                ends[2].floor().min(399.0),
-                ends[3].floor().min(299.0),
-            ];
-            if left > right || top > bottom {
+            let edges = [0.0, 0.0, -399.0, -299.0];
+            let least = [0, 1, 2, 3].map(|i| least[i].ceil().max(edges[i]));
+            let [width, height] = [0, 1].map(|i| -least[i + 2] - least[i]);
+            if width < 0.0 || height < 0.0 {
                 continue;
             }
             let found = [window.left, window.top, -window.right, -window.bottom].map(f64::from);
-            let least = [left, top, -right, -bottom];
-            assert!(
-                found
-                    .iter()
-                    .zip(least)
-                    .all(|(&found, least)| found <= least),
-                "{window:?} {ends:?}"
-            );
+            assert!((0..4).all(|i| found[i] <= least[i]), "{window:?} {least:?}");
             // Near the eye parts of a box are at very different depths.
             if level.half_depth * 16.0 < centre[2] {
                 far += 1;
-                let room = 2.0 + 0.25 * (right - left).max(bottom - top);
+                let room = 2.0 + 0.25 * width.max(height);
                 tight += u32::from((0..4).all(|i| least[i] - found[i] <= room));
             }
             checked += 1;

@@ -18,13 +18,11 @@ use std::sync::LazyLock;
 use super::lanes::{Floats, Isa, Lanes, U64x4};
 use super::orders::SLABS;
 
-/// Shares with tables: from 0 to 1, both included.
 pub(super) const SHARES: usize = 128;
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
 pub(super) const CELLS_PER_WIDTH: f32 = 30.0;
 /// They reach 2.13 widths to either side of the node's centre.
 pub(super) const CELLS: usize = 128;
-/// The cell of a line through the node's centre.
 pub(super) const MIDDLE: f32 = 64.0;
 
 const CLASSES: usize = 3;
@@ -89,7 +87,6 @@ impl Candidates {
                 let (halves, _) = row.as_chunks_mut();
                 halves[0] = low.values();
                 halves[1] = high.values();
-                // The last row ends up lowest.
                 any |= u64::from(low.zeros() | high.zeros() << 4) ^ 0xff;
             }
             left >>= 8;
@@ -163,7 +160,6 @@ impl Strips {
         class * PER_MARGIN + axis * SHARES + share
     }
 
-    /// The table that excludes no part.
     pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
     #[inline(always)]
@@ -201,7 +197,6 @@ mod tests {
     fn leave_a_part_out(class: usize, error: f64) -> bool {
         let strips = &*STRIPS;
         let mut left_out = false;
-        // Shares at the steps' ends, where they are rounded most.
         let steps = 2 * SHARES - 2;
         for (axis, step) in (0..3).flat_map(|axis| (0..=steps).map(move |step| (axis, step))) {
             let share = (step as f64 - 0.02 * (step & 1) as f64) / steps as f64;
@@ -227,7 +222,6 @@ mod tests {
         for (class, margin) in MARGINS.into_iter().enumerate() {
             let most = f64::from(MOST_ERROR[class]);
             assert!(!leave_a_part_out(class, most));
-            // With a tenth of the margin less they would.
             assert!(leave_a_part_out(class, most + f64::from(margin) / 10.0));
         }
     }

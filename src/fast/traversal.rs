@@ -118,12 +118,10 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
         return false;
     }
     let greatest_depth = record.centre[2] + constants.levels[record.level as usize].half_depth;
-    // The depths fall from level to level.
     greatest_depth < constants.levels[ends - 1].lod_depth
         && (ends == constants.depth as usize || least_depth >= constants.levels[ends].lod_depth)
 }
 
-/// Children that level of detail draws as solids, as a mask.
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
     let (own, below) = (
@@ -181,7 +179,6 @@ impl<'b> Children<'b> {
             wanted &= windows.held | windows.near;
             band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
         } else {
-            // Children without a sample are tested against the whole band.
             windows.near |= !windows.held;
         }
         self.record = *record;

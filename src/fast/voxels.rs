@@ -11,11 +11,9 @@ use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::window::{Window, bits};
 
-/// Per width.
 const UNIT: f32 = 2048.0;
 /// Rounding in units: of the first value and of seven steps of a column and of a row, half each, and a unit.
 const ROUNDING: f32 = 8.5;
-/// In units, of 16 bits.
 const LARGEST: f32 = 30_000.0;
 
 #[inline(always)]

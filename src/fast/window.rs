@@ -5,9 +5,7 @@ pub(super) const BLOCK_LOG2: u32 = 6;
 pub(super) const ALL: u64 = u64::MAX;
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
-/// Margin beyond rounding, samples.
 pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
-/// Columns and rows beyond all pictures.
 pub(super) const BEYOND: f64 = 40_000.0;
 
 #[inline(always)]
@@ -62,7 +60,6 @@ impl Window {
         let right = (self.right - x).min(7) as u32;
         let top = (self.top - y).max(0) as u32;
         let bottom = (self.bottom - y).min(7) as u32;
-        // Each is in 0..8, since word and window overlap.
         let row = ((0xffu64 << left) & 0xff) & (0xff >> (7 - right));
         let rows = (ALL << (8 * top)) & (ALL >> (8 * (7 - bottom)));
         row.wrapping_mul(LEFT_COLUMN) & rows

@@ -16,11 +16,9 @@ pub struct Colors {
     pub height: u32,
     /// [`color_word`] of each sample, row by row; 0 without a voxel.
     pub words: Vec<u32>,
-    /// For engines that draw nodes first. Made on demand.
     nodes: Option<Frame>,
 }
 
-/// A colour as `0xffRRGGBB`.
 #[inline(always)]
 pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0xff, r, g, b])
@@ -63,11 +61,9 @@ impl Colors {
             .for_each(|(nodes, words)| look_up(of_node, nodes, words));
     }
 
-    /// Blended samples over black: linear light by a table to sRGB.
     fn take_blended(&mut self, blend: &[Blend]) {
         let encoded = &*ENCODED;
         for (word, sample) in self.words.iter_mut().zip(blend) {
-            // 24 bits per channel, of which the table uses the highest.
             let byte = |c: u32| encoded[(c >> (24 - ENCODED_BITS)) as usize & (ENCODED_SIZE - 1)];
             *word = match sample.left {
                 256 => 0,
@@ -98,7 +94,6 @@ fn look_up(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32]) {
             continue;
         }
         for (&node, word) in nodes.iter().zip(words) {
-            // `NO_NODE` is beyond every graph's nodes.
             *word = of_node
                 .get(node as usize)
                 .map_or(0, |&color| color_word(color));

@@ -22,9 +22,7 @@ pub fn count_samples(width: u32, height: u32, aa_log2: u32) -> Result<u64, TooMa
     }
 }
 
-/// `node` where nothing is seen.
 pub const NO_NODE: u32 = u32::MAX;
-/// `voxel` where nothing is seen.
 pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 
 /// The samples of one frame, row by row from the top left.
@@ -32,7 +30,6 @@ pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
 pub struct Frame {
     pub width: u32,
     pub height: u32,
-    /// Visible graph node, or [`NO_NODE`].
     pub node: Vec<u32>,
     /// Object coordinates of the visible voxel's lowest corner, in finest voxels, and its octree level (0 = root); or
     /// [`NO_VOXEL`]. May be empty.
@@ -93,7 +90,6 @@ impl Frame {
         }
     }
 
-    /// Adds empty samples for blending, or removes them.
     pub fn set_blending(&mut self, blends: bool) {
         let samples = self.node.len();
         match &mut self.blend {

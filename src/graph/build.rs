@@ -16,7 +16,6 @@ pub enum Normals {
     /// A voxel's own normal, otherwise that of the surface around it.
     #[default]
     FromSurface,
-    /// Only voxels' own normals.
     None,
 }
 
@@ -25,10 +24,8 @@ pub struct BuildOptions {
     pub normals: Normals,
 }
 
-/// Collects voxels in memory and builds a graph.
-///
-/// Holds 20 bytes per pushed voxel. [`Builder::finish`] sorts in place and needs the output in addition, at most about
-/// 29 bytes per voxel of a surface (`spec/graph.md`).
+/// Collects voxels in memory, 20 bytes each, and builds a graph, at most about 29 bytes per voxel of a surface
+/// (`spec/graph.md`).
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
@@ -36,7 +33,6 @@ pub struct Builder {
     min: [i32; 3],
     max: [i32; 3],
     pushed: u64,
-    /// Set when memory was refused; then no voxels are kept.
     short: Option<Shortage>,
 }
 
@@ -52,7 +48,6 @@ impl Builder {
         }
     }
 
-    /// Reserved voxels are not moved before they are sorted.
     pub fn reserve(&mut self, voxels: usize) {
         self.records.reserve(voxels);
     }
@@ -83,9 +78,9 @@ impl Builder {
         self.pushed += 1;
     }
 
-    /// Builds the graph. `placement_world` is the world position of file index (0, 0, 0) and the length of a voxel's
-    /// side. The result does not depend on the number of threads, nor on the order of voxels at different indices.
-    /// Fails when there are no voxels, too many, or too far apart.
+    /// `placement_world` is the world position of file index (0, 0, 0) and the length of a voxel's side. The result does
+    /// not depend on threads, nor on the order of voxels at different indices. Fails when there are no voxels, too many,
+    /// or too far apart.
     pub fn finish(
         self,
         placement_world: ([f64; 3], f64),
@@ -134,16 +129,14 @@ impl Builder {
         let voxels = tree.color.len() as u64 - u64::from(tree.level_start[depth as usize]);
         Ok(Graph {
             depth,
-            root: 0,
             mask: tree.mask.into(),
             first: tree.first.into(),
-            links: Vec::new().into(),
             color: tree.color.into(),
             normal: tree.normal.into(),
-            opacity: Vec::new().into(),
             level_start: tree.level_start,
             voxels,
             placement,
+            ..Graph::default()
         })
     }
 }
@@ -156,7 +149,6 @@ impl Placement {
         }
     }
 
-    /// Whether an object of `depth` levels can be shown and its voxels resolved.
     pub(super) fn can_be_seen(&self, depth: u32) -> bool {
         let side = (1u64 << depth.min(morton::MAX_BITS)) as f64;
         let corner = |inside: f64| {
@@ -187,7 +179,6 @@ struct Tree {
 }
 
 impl Tree {
-    /// Shape and finest level, from sorted records.
     fn build(
         records: Vec<PushedVoxel>,
         depth: u32,
@@ -208,7 +199,6 @@ impl Tree {
 
         let mut mask = budget::filled(THE_GRAPH, 0u8, inner)?;
         let mut first = budget::filled(THE_GRAPH, 0u32, inner)?;
-        // The next node of each level.
         let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
         let mut before = None;
         for record in &records {

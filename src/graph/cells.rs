@@ -14,7 +14,6 @@ pub struct Cell {
 #[derive(Debug)]
 pub struct Voxels<'g> {
     graph: &'g Graph,
-    /// The next cell last; at most seven per level.
     stack: Vec<Cell>,
 }
 
@@ -65,10 +64,8 @@ impl Graph {
         }
     }
 
-    /// Lowest corner, in finest voxels, and level of the one voxel that shows a node.
-    ///
-    /// One binary search per level. None in graphs whose nodes may be in several places or are not stored level by level,
-    /// and for leaves above the finest level.
+    /// Lowest corner, in finest voxels, and level of the one voxel that shows a node. None where nodes may be in several
+    /// places or are not stored level by level, and for leaves above the finest level.
     pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
         if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
             return None;
@@ -132,13 +129,12 @@ impl Graph {
         !self.level_start.is_empty()
     }
 
-    /// Counts the finest voxels, also those inside solid leaves, repeated parts as often as they occur; saturates.
+    /// Counts the finest voxels, also those inside solid leaves and in repeated parts; saturates.
     pub fn count_voxels(&self) -> u64 {
         let ordered = self.is_level_ordered();
         if ordered && self.links.is_empty() {
             return self.count_tree_voxels();
         }
-        // Voxels below a node, by node.
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
             let level = (self.depth - height) as usize;
@@ -159,7 +155,6 @@ impl Graph {
         below.get(self.root as usize).copied().unwrap_or(0)
     }
 
-    /// The same for a tree stored level by level.
     fn count_tree_voxels(&self) -> u64 {
         let levels = self.level_start.windows(2).zip(0u32..);
         levels.fold(0u64, |total, (ends, level)| {
@@ -170,7 +165,6 @@ impl Graph {
             } else {
                 let has_masks = |at: u32| (at as usize).min(self.mask.len());
                 let inner = has_masks(nodes.start)..has_masks(nodes.end);
-                // Nodes without a mask have no children.
                 let beyond = nodes.len() - inner.len();
                 let masks = self.mask[inner].iter();
                 (masks.filter(|&&mask| mask == 0).count() + beyond) as u64
@@ -178,65 +172,5 @@ impl Graph {
             let each = 1u64.checked_shl(3 * height).unwrap_or(u64::MAX);
             total.saturating_add(leaves.saturating_mul(each))
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::graph::{BuildOptions, Builder, Graph, MergeBy, Silent, Voxel, merge};
-
-    fn scattered() -> Graph {
-        let mut builder = Builder::new(BuildOptions::default());
-        let mut state = 1u32;
-        builder.extend((0..500).map(|_| {
-            let index = [0; 3].map(|_| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                (state >> 24) as i32 - 90
-            });
-            Voxel {
-                index,
-                ..Voxel::default()
-            }
-        }));
-        builder.finish(([0.0; 3], 1.0), &Silent).unwrap()
-    }
-
-    #[test]
-    fn every_node_of_a_tree_is_where_a_walk_meets_it() {
-        let graph = scattered();
-        let mut met = 0;
-        let mut stack = vec![(graph.root, [0i32; 3], 0u32)];
-        while let Some((node, corner, level)) = stack.pop() {
-            let [x, y, z] = corner;
-            assert_eq!(graph.place_of(node), Some([x, y, z, level as i32]));
-            met += 1;
-            for (octant, child) in graph.children(node).into_iter().enumerate() {
-                let side = 1 << (graph.depth - level - u32::from(child.is_some()));
-                let along = |k: usize| corner[k] + side * (octant as i32 >> (2 - k) & 1);
-                stack.extend(child.map(|child| (child, [along(0), along(1), along(2)], level + 1)));
-            }
-        }
-        assert_eq!(met, graph.len());
-        assert_eq!(graph.place_of(graph.len() as u32), None);
-        assert_eq!(graph.place_of(u32::MAX), None);
-    }
-
-    #[test]
-    fn places_that_the_graph_does_not_tell() {
-        let graph = scattered();
-        let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-        assert_eq!(merged.place_of(merged.root), None);
-        let mut unordered = graph.clone();
-        unordered.level_start.clear();
-        assert_eq!(unordered.place_of(1), None);
-        // A leaf above the finest level is drawn in parts; and a child list that was lost.
-        let mut damaged = graph.clone();
-        let mut mask = graph.mask.to_vec();
-        let leaf = graph.level_start[2] as usize;
-        mask[leaf] = 0;
-        damaged.mask = mask.into();
-        assert_eq!(damaged.place_of(leaf as u32), None);
-        assert_eq!(damaged.place_of(graph.first[leaf]), None);
-        assert_eq!(damaged.place_of(1), graph.place_of(1));
     }
 }

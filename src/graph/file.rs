@@ -38,7 +38,6 @@ pub enum FileError {
     },
     #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
     ByteOrder { file: PathBuf, ending: &'static str },
-    /// The graph to be written breaks an invariant.
     #[error("the graph cannot be stored: {0}")]
     Graph(#[from] Invalid),
 }
@@ -74,7 +73,6 @@ impl FileError {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
     }
 
-    /// For errors of the operating system.
     fn refused(path: &Path, doing: &'static str) -> impl Fn(io::Error) -> Self {
         move |source| Self::Io {
             file: path.to_owned(),
@@ -89,7 +87,6 @@ pub struct Opened<'p> {
     file: File,
     path: &'p Path,
     pub bytes: u64,
-    /// The header; shorter where the file is.
     pub beginning: Vec<u8>,
 }
 
@@ -139,7 +136,6 @@ impl Bytes {
     }
 }
 
-/// A place in a mapped file, which lies within the address space.
 pub fn range([begin, end]: [u64; 2]) -> Range<usize> {
     begin as usize..end as usize
 }
@@ -156,12 +152,12 @@ pub fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
 pub struct Format {
     pub ending: &'static str,
     pub magic: [u8; 8],
-    pub version: u32,
+    pub versions: &'static [u32],
+    pub header_bytes: usize,
     pub signature: &'static str,
     pub not_ours: &'static str,
 }
 
-/// Bytes of a header, except that of `.vxg`.
 pub const HEADER_BYTES: usize = 128;
 
 pub(super) mod at {
@@ -171,7 +167,7 @@ pub(super) mod at {
 }
 
 impl Format {
-    pub fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
+    pub(super) fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
         if cfg!(target_endian = "big") {
             return Err(FileError::ByteOrder {
                 file: path.to_owned(),
@@ -184,29 +180,22 @@ impl Format {
     /// A header. `fields` receives a function that puts bytes at an offset.
     pub fn header(
         &self,
-        file_bytes: u64,
-        fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
-    ) -> [u8; HEADER_BYTES] {
-        self.header_of(self.version, file_bytes, fields)
-    }
-
-    pub(super) fn header_of<const N: usize>(
-        &self,
         version: u32,
         file_bytes: u64,
         fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
-    ) -> [u8; N] {
-        let mut header = [0u8; N];
+    ) -> Vec<u8> {
+        let mut header = vec![0; self.header_bytes];
         let mut put = |offset: usize, bytes: &[u8]| {
             header[offset..offset + bytes.len()].copy_from_slice(bytes);
         };
         put(0, &self.magic);
         put(at::VERSION, &version.to_le_bytes());
-        put(at::HEADER_BYTES, &(N as u32).to_le_bytes());
+        put(at::HEADER_BYTES, &(self.header_bytes as u32).to_le_bytes());
         put(at::FILE_BYTES, &file_bytes.to_le_bytes());
         fields(&mut put);
-        let checksum = xxh3_64(&header[..N - 8]);
-        header[N - 8..].copy_from_slice(&checksum.to_le_bytes());
+        let end = self.header_bytes - 8;
+        let checksum = xxh3_64(&header[..end]);
+        header[end..].copy_from_slice(&checksum.to_le_bytes());
         header
     }
 
@@ -217,17 +206,7 @@ impl Format {
         file_bytes: u64,
         path: &'f Path,
     ) -> Result<Fields<'f>, FileError> {
-        self.read_of::<HEADER_BYTES>(&[self.version], beginning, file_bytes, path)
-    }
-
-    /// The same for a header of any version of `known`, and any length.
-    pub(super) fn read_of<'f, const N: usize>(
-        &self,
-        known: &[u32],
-        beginning: &'f [u8],
-        file_bytes: u64,
-        path: &'f Path,
-    ) -> Result<Fields<'f>, FileError> {
+        self.check_byte_order(path)?;
         let other = |offset: usize, expected: String, advice: &'static str| FileError::Malformed {
             file: path.to_owned(),
             section: "header",
@@ -238,31 +217,51 @@ impl Format {
         if !beginning.starts_with(&self.magic) {
             return Err(other(0, self.signature.to_owned(), self.not_ours));
         }
-        let Some(header) = beginning.get(..N) else {
+        let bytes = self.header_bytes;
+        let Some(header) = beginning.get(..bytes) else {
             let length = beginning.len();
-            let expected = format!("a header of {N} bytes, not {length}");
+            let expected = format!("a header of {bytes} bytes, not {length}");
             return Err(other(length, expected, DAMAGED));
         };
         let fields = Fields { header, path };
         let version = fields.u32_at(at::VERSION);
-        let stored = fields.u64_at(N - 8);
-        let sound = stored == xxh3_64(&header[..N - 8]);
+        let stored = fields.u64_at(bytes - 8);
+        let sound = stored == xxh3_64(&header[..bytes - 8]);
         // A sound header of another version is no damage.
-        if !known.contains(&version) && sound {
-            let names: Vec<String> = known.iter().map(u32::to_string).collect();
+        if !self.versions.contains(&version) && sound {
+            let names: Vec<String> = self.versions.iter().map(u32::to_string).collect();
             let expected = format!("version {}, not {version}", names.join(" or "));
             return Err(other(at::VERSION, expected, NEWER));
         }
-        fields.ensure(sound, N - 8, || format!("header checksum {stored:016x}"))?;
+        fields.ensure(sound, bytes - 8, || {
+            format!("header checksum {stored:016x}")
+        })?;
         let length = fields.u32_at(at::HEADER_BYTES);
-        fields.ensure(length == N as u32, at::HEADER_BYTES, || {
-            format!("a header length of {N}, not {length}")
+        fields.ensure(length as usize == bytes, at::HEADER_BYTES, || {
+            format!("a header length of {bytes}, not {length}")
         })?;
         let said = fields.u64_at(at::FILE_BYTES);
         fields.ensure(said == file_bytes, at::FILE_BYTES, || {
             format!("a file of {said} bytes, not {file_bytes}")
         })?;
         Ok(fields)
+    }
+
+    /// Checks that there are only zeros between header and sections, which come in order and lie within the file.
+    pub fn check_padding(
+        &self,
+        all: &[u8],
+        sections: impl Iterator<Item = [u64; 2]>,
+        path: &Path,
+    ) -> Result<(), FileError> {
+        let mut end = self.header_bytes as u64;
+        for section in sections {
+            if all[range([end, section[0]])].iter().any(|&byte| byte != 0) {
+                return Err(FileError::damaged(path, "padding", end, "zeros"));
+            }
+            end = section[1];
+        }
+        Ok(())
     }
 }
 
@@ -315,30 +314,6 @@ impl Fields<'_> {
     }
 }
 
-/// Checks that there are only zeros between header and sections, which come in order and lie within the file.
-pub fn check_padding(
-    all: &[u8],
-    sections: impl Iterator<Item = [u64; 2]>,
-    path: &Path,
-) -> Result<(), FileError> {
-    padding_after(HEADER_BYTES as u64, all, sections, path)
-}
-
-pub(super) fn padding_after(
-    mut end: u64,
-    all: &[u8],
-    sections: impl Iterator<Item = [u64; 2]>,
-    path: &Path,
-) -> Result<(), FileError> {
-    for section in sections {
-        if all[range([end, section[0]])].iter().any(|&byte| byte != 0) {
-            return Err(FileError::damaged(path, "padding", end, "zeros"));
-        }
-        end = section[1];
-    }
-    Ok(())
-}
-
 pub fn write<'s>(
     format: &Format,
     header: &[u8],
@@ -354,7 +329,6 @@ pub fn write<'s>(
     out.write_all(header)?;
     let mut written = header.len() as u64;
     for ([begin, end], bytes) in sections {
-        // Less than the alignment.
         out.write_all(&[0; ALIGNMENT as usize][..(begin - written) as usize])?;
         out.write_all(bytes)?;
         written = end;

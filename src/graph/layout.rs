@@ -4,9 +4,8 @@ use std::ops::Range;
 
 use super::GraphView;
 
-/// A node is a word: its children, which of them are leaves, and where they begin. A *brick* is a node two levels above
-/// the finest voxels, in two words (see [`Self::brick_words`]). Its children are not read, because the places of its
-/// voxels follow from its bits.
+/// A node is a word. A *brick* is a node two levels above the finest voxels, in two words (see [`Self::brick_words`]),
+/// from which the places of its voxels follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
     /// Whether a node says which of its children are leaves, so that leaves need not be read.
@@ -21,7 +20,6 @@ struct Bricks {
     end: u32,
 }
 
-/// Bits of a number in a brick's second word.
 const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
@@ -43,7 +41,7 @@ impl NodeLayout {
         self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
     }
 
-    /// The words of a brick: its voxels, a byte per child (all ones for a leaf); then
+    /// The words of a brick. The first has its voxels, a byte per child (all ones for a leaf), the second
     /// `leaves << 56 | where children begin << 28 | where voxels begin`. `None`: a number does not fit.
     pub fn brick_words(graph: &GraphView<'_>, brick: u32) -> Option<[u64; 2]> {
         let (mut voxels, mut leaves, mut first_voxel) = (0, 0, None);
@@ -116,35 +114,26 @@ mod tests {
     fn words_by_hand() {
         let graph = GraphView {
             depth: 3,
-            root: 0,
             mask: &[0b11, 0, 0b111, 0, 0b11, 0],
             first: &[1, 0, 3, 0, 6, 0],
-            links: &[],
-            opacity: &[],
-            light: &[],
+            ..GraphView::default()
         };
         let plain = NodeLayout::new(&graph, true, false);
-        assert_eq!(plain.words(4, 2), 4..5);
         let bricks = NodeLayout::new(&graph, true, true);
-        assert_eq!(bricks.words(0, 0), 0..1);
-        assert_eq!(bricks.words(1, 1), 1..3);
-        assert_eq!(bricks.words(2, 1), 3..5);
-        assert!(bricks.words(4, 2).is_empty());
         assert_eq!((plain.bricks(), bricks.bricks()), (0..0, 1..3));
+        assert_eq!(plain.words(4, 2), 4..5);
+        let words = [(0, 0), (1, 1), (2, 1)].map(|(node, level)| bricks.words(node, level));
+        assert_eq!(words, [0..1, 1..3, 3..5]);
+        assert!(bricks.words(4, 2).is_empty());
         // A leaf, the node with two voxels, a leaf.
         let second = 0b101 << 56 | 3 << 28 | 6;
         let words = NodeLayout::brick_words(&graph, 2);
         assert_eq!(words, Some([0xff_03_ff, second]));
-        let many = GraphView {
-            first: &[1, 0, 3, 0, 1 << 28, 0],
-            ..graph
-        };
-        assert_eq!(NodeLayout::brick_words(&many, 2), None);
-        let linked = GraphView {
-            links: &[1, 2],
-            ..graph
-        };
-        assert!(NodeLayout::new(&linked, true, true).bricks.is_none());
+        let mut other = graph;
+        other.first = &[1, 0, 3, 0, 1 << 28, 0];
+        assert_eq!(NodeLayout::brick_words(&other, 2), None);
+        other.links = &[1, 2];
+        assert!(NodeLayout::new(&other, true, true).bricks.is_none());
         // Lists that are shared, side by side: each level begins behind the one above, but voxels do not follow on
         // those before.
         let shared = GraphView {

@@ -1,6 +1,6 @@
 //! Small graphs made by hand, which may be cyclic.
 
-use super::{Graph, Invalid, PackedNormal, Placement, Store};
+use super::{Graph, Invalid, PackedNormal};
 
 /// Collects nodes. Their children may be any nodes; the root is the first.
 ///
@@ -22,14 +22,12 @@ pub struct LinkedGraph {
 }
 
 impl LinkedGraph {
-    /// A graph without nodes of `2^depth` finest voxels a side.
     pub fn new(depth: u32) -> Self {
         let nodes = Vec::new();
         Self { depth, nodes }
     }
 
-    /// Adds a node and returns its number: 0, 1, 2, ... Children are by octant, `x << 2 | y << 1 | z`, and may be added
-    /// later. A node without children is solid.
+    /// Returns the node's number. Children are by octant, `x << 2 | y << 1 | z`, and may be added later.
     pub fn add_node(&mut self, color: [u8; 3], children: [Option<u32>; 8]) -> u32 {
         let number = self.nodes.len().min(u32::MAX as usize) as u32;
         self.nodes.push((color, children));
@@ -41,7 +39,6 @@ impl LinkedGraph {
         let mut first = Vec::with_capacity(self.nodes.len());
         let mut links = Vec::new();
         for (_, children) in &self.nodes {
-            // Wraps only where there are too many links, which are refused.
             first.push(links.len() as u32);
             links.extend(children.iter().flatten());
             let bits = (0..8).filter(|&octant| children[octant].is_some());
@@ -49,16 +46,12 @@ impl LinkedGraph {
         }
         let mut graph = Graph {
             depth: self.depth,
-            root: 0,
             mask: mask.into(),
             first: first.into(),
             links: links.into(),
             color: self.nodes.iter().map(|(color, _)| *color).collect(),
             normal: vec![PackedNormal::NONE; self.nodes.len()].into(),
-            opacity: Store::default(),
-            level_start: Vec::new(),
-            voxels: 0,
-            placement: Placement::default(),
+            ..Graph::default()
         };
         graph.validate_shape()?;
         graph.validate_children()?;

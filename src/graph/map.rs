@@ -7,47 +7,36 @@ use std::sync::Arc;
 use memmap2::Mmap;
 
 pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
-    // SAFETY: a map must not change while it is borrowed. The map is private to this process and read-only, and this
-    // program never changes files in place: a new file takes the name, and the map keeps the old one alive. That no
-    // other program rewrites or truncates the file is the user's part, as with any program that maps its input
-    // (`spec/graph.md`). All contents are plain numbers of any value and no index among them is followed unchecked, so
-    // changed bytes give a wrong picture. A file truncated under the map ends the process (SIGBUS); the command line
-    // reports why (`crates/cli/src/fatal_signals.rs`).
+    // SAFETY: a map must not change while it is borrowed. It is private and read-only, and this program never changes
+    // files in place: a new file takes the name. That no other program changes the file is the user's part
+    // (`spec/graph.md`). No index is followed unchecked, so changed bytes give a wrong picture. A file truncated under
+    // the map ends the process (SIGBUS); the command line reports why (`crates/cli/src/fatal_signals.rs`).
     let map = unsafe { Mmap::map(file) }?;
     Ok(Arc::new(map))
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::graph) enum Access {
-    /// A missing page is read alone.
-    Scattered,
-    Whole,
-}
-
-/// Advises the system how the file is read, where it has such a call.
-pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
+/// Advises the system that all of the file is read, or scattered pages, where it has such a call.
+pub(in crate::graph) fn advise(map: &Mmap, is_whole: bool) {
     #[cfg(unix)]
     {
-        let advice = match access {
-            Access::Scattered => memmap2::Advice::Random,
-            Access::Whole => memmap2::Advice::Sequential,
+        let advice = match is_whole {
+            true => memmap2::Advice::Sequential,
+            false => memmap2::Advice::Random,
         };
         let _ = map.advise(advice);
     }
     #[cfg(not(unix))]
-    let _ = (map, access);
+    let _ = (map, is_whole);
 }
 
-/// Drops the pages of a range of bytes: they are read from the file again when needed. False where the system has no
-/// such call, or refuses it.
+/// Drops the pages of a range of bytes. False where the system has no such call, or refuses it.
 pub fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
     #[cfg(unix)]
     {
         if from > map.len() || bytes > map.len() - from {
             return false;
         }
-        // SAFETY: this call can only destroy changes to private pages. The map is read-only, so there are none. A
-        // dropped page comes back with the file's bytes, and references into it stay valid.
+        // SAFETY: the map is read-only, so there are no changes to lose. References into a dropped page stay valid.
         let dropped =
             unsafe { map.unchecked_advise_range(memmap2::UncheckedAdvice::DontNeed, from, bytes) };
         dropped.is_ok()

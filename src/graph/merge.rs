@@ -1,9 +1,8 @@
 //! Merging equal subtrees: a tree becomes a directed acyclic graph.
 //!
-//! In a graph stored level by level, levels are merged from the finest up, and equal nodes of different levels stay
+//! Where nodes are stored level by level, levels are merged from the finest up, and equal nodes of different levels stay
 //! apart. In any other graph, nodes start out equal and are distinguished by their children until no class splits.
-//! The result is numbered in breadth-first order. A graph stored level by level stays so, unless some finest levels had
-//! no reachable nodes.
+//! The result is numbered in breadth-first order.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
@@ -88,7 +87,6 @@ fn child_classes(graph: &Graph, node: u32, class: &[u32]) -> [u32; 8] {
 }
 
 fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
-    // Fewer classes than nodes, which 32 bits number.
     let next = known.len() as u32;
     *known.entry(key).or_insert(next)
 }
@@ -151,7 +149,6 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     while next < chosen.len() {
         if ordered && next == level_end {
             level_start.push(level_end as u32);
-            // Only the classes of the level just named are set.
             for &node in &chosen[level_end..] {
                 renamed[class[node as usize] as usize] = ABSENT;
             }
@@ -159,7 +156,6 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
         }
         let mut mask = 0u8;
         let first = links.len() as u32;
-        // In a sound graph the finest level has no children anyway.
         let finest = ordered && level_start.len() > graph.depth as usize;
         let children = if finest {
             [None; 8]
@@ -194,16 +190,15 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     };
     let mut merged = Graph {
         depth: graph.depth,
-        root: 0,
         mask: masks.into(),
         first: firsts.into(),
         links: links.into(),
         color: chosen.iter().map(|&n| graph.color_of(n)).collect(),
         normal: chosen.iter().map(|&n| graph.normal_of(n)).collect(),
         opacity,
-        level_start: Vec::new(),
         voxels: graph.voxels,
         placement: graph.placement,
+        ..Graph::default()
     };
     if ordered {
         level_start.push(merged.len() as u32);

@@ -68,18 +68,16 @@ pub struct PackedNormal(pub u16);
 /// A voxel graph.
 ///
 /// Nodes `0..mask.len()` may have children. Nodes from there up to `color.len()` are voxels of the finest level, which
-/// have neither mask nor child list. Five bytes per node, five more for one that may have children. A node without
-/// children is solid and, as in the image-order paper (section 2.2), its own child. A node reached at level `depth`
-/// is a voxel, even if it has children: this ends a cyclic graph.
-#[derive(Debug, Clone)]
+/// have neither mask nor child list. A node without children is solid and, as in the image-order paper (section 2.2),
+/// its own child. A node reached at level `depth` is a voxel, even if it has children: this ends a cyclic graph.
+#[derive(Debug, Clone, Default)]
 pub struct Graph {
     /// Levels below the root: the object is a cube of `2^depth` finest voxels a side.
     pub depth: u32,
     pub root: u32,
-    /// Children of the inner nodes: bit `c` is set where child `c = x << 2 | y << 1 | z` exists. 0: a solid leaf.
+    /// Bit `c` of an inner node is set where child `c = x << 2 | y << 1 | z` exists. 0: a solid leaf.
     pub mask: Store<u8>,
-    /// First child of the inner nodes: a node in a tree, an entry of `links` in a linked graph. Has no meaning where
-    /// the mask is 0.
+    /// First child of the inner nodes: a node in a tree, an entry of `links` in a linked graph.
     pub first: Store<u32>,
     /// Child lists of a linked graph. Empty in a tree, where a node's children are `first`, `first + 1`, ... in
     /// octant order.
@@ -110,7 +108,6 @@ impl Graph {
         self.color.get(node as usize).copied().unwrap_or_default()
     }
 
-    /// None for a node that does not exist.
     #[inline]
     pub fn normal_of(&self, node: u32) -> PackedNormal {
         self.normal.get(node as usize).copied().unwrap_or_default()
@@ -188,8 +185,8 @@ impl GraphView<'_> {
 
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node; none for a leaf.
     ///
-    /// Never panics, whatever a damaged file holds: a child list that leaves the file reads as no child, and a child
-    /// without a node as a leaf.
+    /// Never panics: in a damaged file, a child list that leaves the file reads as no child, a child without a node as a
+    /// leaf.
     #[inline]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
         let mask = self.mask(node);

@@ -1,5 +1,5 @@
-//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents while it moves. So voxels
-//! are kept in pieces, which become one array at the end, each freed after it is copied.
+//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents, so they are kept in
+//! pieces, each freed after it is copied to one array at the end.
 
 use rayon::prelude::*;
 
@@ -7,7 +7,6 @@ use super::build::BuildError;
 use super::{PackedNormal, morton};
 use crate::budget::{self, Shortage};
 
-/// Sides of the bounding box from its lowest to its highest voxel, finest voxels.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
     let mut extent = [0; 3];
     for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
@@ -23,7 +22,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece, 40 MB; a reserved one may have more. Allocators return such blocks to the system at once.
+/// Voxels per piece, 40 MB; a reserved one may have more.
 const PIECE: usize = 1 << 21;
 
 const VOXELS: &str = "voxels that are sorted";
@@ -80,7 +79,6 @@ impl PushedVoxel {
 /// All voxels pushed, 20 bytes each, and room for at most one piece.
 #[derive(Debug, Default)]
 pub(super) struct PushedVoxels {
-    /// Only the last may be empty, if it was reserved.
     pieces: Vec<Vec<PushedVoxel>>,
 }
 
@@ -92,7 +90,6 @@ impl PushedVoxels {
     /// Reserves memory in one piece, which then need not be copied.
     pub(super) fn reserve(&mut self, more: usize) {
         let room = self.pieces.last().map_or(0, |p| p.capacity() - p.len());
-        // Less than a piece is reserved when needed.
         if more <= room.max(PIECE) {
             return;
         }
@@ -103,11 +100,9 @@ impl PushedVoxels {
         self.pieces.push(Vec::with_capacity(more));
     }
 
-    /// Adds a voxel. Fails when the system refuses memory for another piece.
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
-            // The first grows: most objects in tests are small.
             None => self.pieces.push(vec![record]),
             Some(_) => {
                 let mut piece = budget::room(VOXELS, PIECE)?;
@@ -126,8 +121,7 @@ impl PushedVoxels {
         Ok(sorted)
     }
 
-    /// All voxels in one array, with their Morton keys. A piece is freed before the next one is copied, so memory holds
-    /// at most one piece twice.
+    /// All voxels in one array, with their Morton keys.
     fn in_one(mut self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         if self.pieces.len() == 1
             && let Some(mut only) = self.pieces.pop()
@@ -148,22 +142,16 @@ impl PushedVoxels {
 mod tests {
     use super::*;
 
-    /// Voxel `i` of a row that runs through all axes.
-    fn record(i: u32) -> PushedVoxel {
-        let index = [i % 100, i / 100 % 200, i / 20_000].map(|c| c as i32 - 50);
-        PushedVoxel::new(index, i, [(i & 255) as u8; 3], PackedNormal::NONE)
-    }
-
     #[test]
     fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
         assert_eq!(size_of::<PushedVoxel>(), 20);
         let count = 2 * PIECE + 1000;
-        let mut grown = PushedVoxels::default();
-        let mut reserved = PushedVoxels::default();
+        let (mut grown, mut reserved) = (PushedVoxels::default(), PushedVoxels::default());
         for i in 0..count as u32 {
-            // The last of each thousand lies where the first does.
-            let mut pushed = record(if i % 1000 == 999 { i - 999 } else { i });
-            pushed.sequence = i;
+            // The last of each thousand lies where the first does, in a row that runs through all axes.
+            let at = if i % 1000 == 999 { i - 999 } else { i };
+            let index = [at % 100, at / 100 % 200, at / 20_000].map(|c| c as i32 - 50);
+            let pushed = PushedVoxel::new(index, i, [i as u8; 3], PackedNormal::NONE);
             grown.push(pushed).unwrap();
             if i == 1 {
                 // A later, smaller one changes nothing.
@@ -175,15 +163,16 @@ mod tests {
             let first = grown.len().next_power_of_two().max(4);
             assert!(room <= first.min(grown.len() + PIECE).max(4));
         }
-        assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
-        assert_eq!((reserved.len(), reserved.pieces.len()), (count, 2));
-        let grown = grown.sorted([-50; 3]).unwrap();
-        let reserved = reserved.sorted([-50; 3]).unwrap();
-        assert_eq!(grown.len(), count - count / 1000);
+        let pieces = [&grown, &reserved].map(|pushed| (pushed.len(), pushed.pieces.len()));
+        assert_eq!(pieces, [(count, 3), (count, 2)]);
+        let [grown, reserved] = [grown, reserved].map(|pushed| pushed.sorted([-50; 3]).unwrap());
         assert!(grown.is_sorted_by_key(PushedVoxel::key));
         let parts = |r: &PushedVoxel| (r.key(), r.sequence, r.color);
         assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
         // The last pushed stays.
-        assert_eq!(grown[0].sequence, 999);
+        assert_eq!(
+            (grown.len(), grown[0].sequence),
+            (count - count / 1000, 999)
+        );
     }
 }

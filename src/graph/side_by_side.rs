@@ -3,8 +3,7 @@
 use super::{Graph, Store};
 
 impl Graph {
-    /// The same object without links: the children of a node lie side by side, as in a tree. A node in several lists
-    /// occurs in each of them, with the same children. The root comes first, then the lists in their order, so node `n`
+    /// The same object without links: a node in several lists occurs in each of them. The root comes first, so node `n`
     /// above 0 is entry `n - 1` of `links`. `None` where there are too many nodes for 32 bits.
     ///
     /// ```
@@ -40,16 +39,14 @@ impl Graph {
         };
         Some(Self {
             depth: self.depth,
-            root: 0,
             mask: nodes().map(|node| view.mask(node)).collect(),
             first: nodes().map(first_of).collect(),
-            links: Store::default(),
             color: nodes().map(|node| self.color_of(node)).collect(),
             normal: nodes().map(|node| self.normal_of(node)).collect(),
             opacity,
-            level_start: Vec::new(),
             voxels: self.voxels,
             placement: self.placement,
+            ..Self::default()
         })
     }
 }

@@ -9,7 +9,6 @@ use memmap2::Mmap;
 
 pub enum Store<T: Pod> {
     Owned(Vec<T>),
-    /// A range of bytes of a mapped file, aligned for `T`.
     Mapped(Arc<Mmap>, Range<usize>),
 }
 

@@ -2,7 +2,6 @@
 
 use super::{Graph, MAX_DEPTH, place};
 
-/// A broken invariant of a graph.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{array} entry {index}: expected {expected}")]
 pub struct Invalid {
@@ -12,7 +11,6 @@ pub struct Invalid {
     pub expected: String,
 }
 
-/// Origins beyond this are not exact in `f64`.
 pub(super) const MAX_ORIGIN: i64 = 1 << 52;
 
 fn check(

@@ -1,5 +1,5 @@
 //! Blending, under the rule `alpha` (`SPEC.md`, R11). A side counts by the square of its cosine, which is unbiased over
-//! all directions. Products are sums of shifts over the at most nine bits of one factor.
+//! all directions. Products are sums of shifts over one factor's bits, at most nine.
 
 use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
@@ -22,7 +22,7 @@ const COLOR_BITS: u32 = 16;
 const OPACITY_BITS: u32 = 4;
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
-/// By axis, the sixteenths of a voxel's outline for which the visible side counts.
+/// By axis, the visible side's sixteenths of a voxel's outline.
 #[derive(Debug, Clone, Copy)]
 struct VisibleSides([Narrow; 3]);
 
@@ -126,7 +126,7 @@ fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
 }
 
 const LEAST_LENGTH: u32 = 9;
-/// `n (n + 1)` for `n` from 9 to 15, which is `(n + 1/2)^2 - 1/4`: roots of greater whole numbers are above `n + 1/2`.
+/// `n (n + 1)`, `n` from 9 to 15, is `(n + 1/2)^2 - 1/4`: roots of greater whole numbers are above `n + 1/2`.
 const HALF_WAYS: [u32; 7] = [90, 110, 132, 156, 182, 210, 240];
 
 /// A square of at most 256 divided by a length that is at least its root, to the nearest, halves up.
@@ -194,7 +194,7 @@ impl BlendColor {
         is_seen.then_some(Self { weight, light })
     }
 
-    /// Adds the voxel to sample number `at`. Returns whether it is the first of the sample, and makes it opaque enough.
+    /// Adds the voxel to sample number `at`. Returns whether it is the first there, and makes the sample opaque enough.
     pub(super) fn add_to<P: Probe>(
         &self,
         dp: &mut Datapath<P>,

@@ -1,5 +1,5 @@
-//! Combinational blocks that a designer would build and test separately. [`Datapath::tap`](hwmodel::Datapath::tap)
-//! reports their inputs and outputs, and `shiftvox model --vectors` writes them.
+//! Combinational blocks that are built and tested separately. [`Datapath::tap`](hwmodel::Datapath::tap) reports their
+//! inputs and outputs; `shiftvox model --vectors` writes them.
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
@@ -69,8 +69,8 @@ impl From<Block> for u32 {
 }
 
 numbered! {
-    /// A port to a memory. For a probe it is a block, numbered after all [`Block`]s: its input is the address, and its
-    /// output the written or read data.
+    /// A port to a memory: for a probe a block, numbered after all [`Block`]s, whose input is the address and whose output
+    /// is the data.
     Port, 8:
     /// A record is taken from the stack.
     Pop,

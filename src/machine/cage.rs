@@ -1,6 +1,5 @@
 //! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, as eight corners (the image-order
-//! paper) or as one corner and three edges. A cage has two coordinates in screen space (x, y), three in clip space (X,
-//! Y, W).
+//! paper) or as one corner and three edges. A cage has two in screen space (x, y), three in clip space (X, Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
@@ -30,7 +29,7 @@ pub(super) trait Linear: Copy + std::fmt::Debug + Wires {
 }
 
 pub(super) trait CageCoordinate: Linear {
-    /// The vertices of a parallelepiped with this corner and these edges (along x, y, z).
+    /// Of a parallelepiped with this corner and these edges (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
     /// All numbers of the children.
@@ -39,10 +38,10 @@ pub(super) trait CageCoordinate: Linear {
     /// The children's vertices lie between this coordinate's least and greatest.
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
 
-    /// The coordinate of one child; no operation.
+    /// One child's; no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
-    /// The numbers from which children are made one at a time.
+    /// Numbers for making children one at a time.
     type Seed: Copy;
 
     fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed;
@@ -55,7 +54,7 @@ pub(super) trait CageCoordinate: Linear {
 
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word);
 
-    /// The middle of the lowest and the highest corner, rounded down.
+    /// Of the lowest and the highest corner, rounded down.
     fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word;
 
     fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8];
@@ -68,7 +67,7 @@ pub(super) trait CageCoordinate: Linear {
 
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
 
-    /// The coordinate of the vertices' quotients `x / w`, computed by `divide`.
+    /// Of the vertices' quotients `x / w`, by `divide`.
     fn project<P: Probe>(
         dp: &mut Datapath<P>,
         x: &Self,
@@ -124,8 +123,8 @@ impl CageCoordinate for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The image-order paper's 27-vertex pool (3.4): midpoints along x, then y, then z. The order is normative, because
-    /// they are rounded down.
+    /// The image-order paper's 27-vertex pool (3.4): midpoints along x, then y, then z. The order is normative, as they
+    /// are rounded down.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
@@ -200,7 +199,7 @@ impl CageCoordinate for Corners {
         [4, 2, 1].map(|end| dp.sub(self.0[end], self.0[0]))
     }
 
-    /// The child shares the vertex of its octant; all others are twice as far from it.
+    /// The vertex of the octant stays; all others are twice as far from it.
     fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
         let shared = self.0[usize::from(octant & 7)];
         Self(std::array::from_fn(|corner| {
@@ -227,7 +226,7 @@ impl CageCoordinate for Corners {
 }
 
 impl CageCoordinate for CornerAndEdges {
-    /// The children's lowest corners, and the edges that they share.
+    /// The children's lowest corners, and their edges.
     type Pool = ([Word; 8], [Word; 3]);
 
     fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, [x, y, z]: [Word; 3]) -> Self {

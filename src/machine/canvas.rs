@@ -66,8 +66,7 @@ impl Canvas<'_> {
         self.counts.samples_drawn += 1;
     }
 
-    /// Blends a voxel into sample number `at`, which shows its first voxel. Returns whether the sample is opaque
-    /// enough.
+    /// Blends a voxel into sample number `at`, which shows its first. Returns whether it is opaque enough.
     fn blend<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
@@ -125,8 +124,8 @@ impl Canvas<'_> {
         self.find(dp, quad, silhouette, &mut is_open).is_ok()
     }
 
-    /// Passes the open nodes of `quad` inside a silhouette to `is_found` until it returns true. Otherwise `Err` is the
-    /// level of the last divided node, or of the parent of `quad`.
+    /// Passes the open nodes of `quad` inside a silhouette to `is_found` until it returns true. `Err`: the level of the
+    /// last divided node, or of the parent of `quad`.
     fn find<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,

@@ -1,5 +1,5 @@
-//! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). They are pushed if they
-//! are before the eye and their box has an unfilled quadtree node (3.5).
+//! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). Those before the eye whose
+//! box has an unfilled quadtree node are pushed (3.5).
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
@@ -164,7 +164,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         })
     }
 
-    /// Pushes a record in screen space. `coordinates` selects x and y: twice, because most children are rejected.
+    /// Pushes a record in screen space. `coordinates` selects x and y, twice: most children are rejected.
     #[inline(always)]
     pub(super) fn push_screen<P: Probe>(
         &mut self,
@@ -295,8 +295,7 @@ pub(super) fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate
     pool
 }
 
-/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or, under the rules that have one, before the near
-/// plane (R7.2).
+/// Whether a box is behind the plane of the eye (`SPEC.md`, R8.2) or before the near plane, if there is one (R7.2).
 pub(super) fn is_behind<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -14,12 +14,12 @@ pub(super) enum Margin {
     Plain,
     /// Closed boxes, widened by `2^-shift` samples on each side.
     Grow(i32),
-    /// Closed boxes, narrowed by half a sample on each side, under the rules that draw outlines: a quadrant counts only
-    /// if the box contains one of its sample points.
+    /// Closed boxes, narrowed by half a sample on each side, under the rules that draw outlines: a quadrant counts if the
+    /// box contains a sample point of it.
     Gap,
 }
 
-/// Units of the last place of a screen position: rounded midpoints cannot separate closer vertices.
+/// Units of the last place: rounded midpoints cannot separate closer vertices.
 const LEAST_SIZE: i64 = 4;
 
 /// Records across the near plane are dropped if they span less than its depth, shifted right by this.
@@ -45,7 +45,7 @@ pub(super) struct Constants {
     /// The deepest level of a record.
     pub(super) level_bound: u32,
     pub(super) screen_frac: u32,
-    /// Places to the left, then to the right, that turn half samples into screen positions.
+    /// Places to the left, then right, from half samples to screen positions.
     pub(super) half_sample_places: [u32; 2],
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
@@ -61,12 +61,11 @@ pub(super) struct Constants {
     pub(super) least_size_screen: Word,
     pub(super) near: Word,
     pub(super) near_crossing: Word,
-    /// By level, least depth of a record that may change to screen space.
+    /// By level, least depth for the change to screen space.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a node that level of detail draws as a solid.
+    /// By level, least depth of a solid by level of detail.
     pub(super) lod_depth: Vec<Option<Word>>,
-    /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, moved to just beyond the object if it is
-    /// far away.
+    /// The eye, units of `2^-sub_levels` finest voxels, rounded down and up, at most just beyond the object.
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     /// Whether the edges' clip vectors have a positive determinant.
@@ -101,7 +100,7 @@ impl Constants {
             };
             depths.iter().map(depth).collect()
         };
-        // All eyes beyond the object compare equally, so a far eye is moved to its border.
+        // All eyes beyond the object compare equally.
         let beyond = (1i64 << (setup.depth + setup.sub_levels)) + 1;
         let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, beyond)));
         let screen_frac = setup.format.frac();
@@ -119,7 +118,7 @@ impl Constants {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3); // host: an index
                 let mut plane = |a: [i64; 3], b: [i64; 3]| {
-                    // Beyond 64 bits it is clamped to a number that no format holds, so that the load overflows.
+                    // Beyond 64 bits it is a number that no format holds: the load overflows.
                     cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c))) // host: a constant of the frame
                 };
                 let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
@@ -175,8 +174,8 @@ impl Constants {
     }
 }
 
-/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, then those of
-/// planes (`rtl/stage_b/plane_constants.v`), each in two registers. A level without a depth has the greatest word.
+/// The registers of `rtl/machine/frame_constants.v`, then those of planes (`rtl/stage_b/plane_constants.v`), two per
+/// constant. A level without a depth has the greatest word.
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);

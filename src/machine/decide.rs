@@ -1,5 +1,4 @@
-//! The work on one record without its children: by the drawing rules (`SPEC.md`, R7, and R10, termination) it is drawn,
-//! dropped or subdivided.
+//! The drawing rules (`SPEC.md`, R7, and R10, termination): a record is drawn, dropped or subdivided.
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
@@ -181,7 +180,7 @@ fn verdict<P: Probe, L: CageCoordinate>(
         OutlineRule::Centre => record.cube.solid && is_at_most_a_sample(dp, c, record),
     };
     let is_last = record.cube.level >= c.level_bound;
-    // Rounded screen positions cannot separate the vertices of such a small record.
+    // Rounded screen positions cannot separate its vertices.
     let mut is_least = || match &record.pose {
         Pose::Clip(..) => false,
         Pose::Screen(screen) => size::screen_at_most(dp, screen, c.least_size_screen),
@@ -203,8 +202,8 @@ fn verdict<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether all samples that a record may cover are drawn. Where occluded nodes are read, only records up to the size of
-/// a sample across a bisector are tested. Otherwise the parts of a solid there are kept until both sides are full.
+/// Whether all samples that a record may cover are drawn. Where occluded nodes are read, only records up to a sample's
+/// size across a bisector are tested: their parts would be kept until both sides are full.
 fn is_hidden<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -238,7 +237,7 @@ fn is_seen<P: Probe, L: CageCoordinate>(
     canvas.sees(dp, record.place.quad, silhouette)
 }
 
-/// Near plane (R7.2): whether a record lies across it and spans so little depth that it is dropped.
+/// Near plane (R7.2): whether a record across it spans so little depth that it is dropped.
 fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,

@@ -40,9 +40,8 @@ impl Machine {
         Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
     }
 
-    /// Draws a frame of at most `most_records` records; if it has more, returns `None`, and the frame's contents have
-    /// no meaning. For checks that every frame ends (`SPEC.md`, "Termination"). Fails when a word overflows under the
-    /// trap policy.
+    /// Draws a frame of at most `most_records` records; with more, returns `None`, and the frame has no meaning. For
+    /// checks that every frame ends (`SPEC.md`, "Termination"). Fails when a word overflows under the trap policy.
     pub fn render_within(
         &mut self,
         graph: &GraphView<'_>,

@@ -1,8 +1,7 @@
-//! Fill vectors: four bits per node of the image quadtree. Both decisions of R6 (`SPEC.md`) that follow from one are
-//! here.
+//! Fill vectors, four bits per node of the image quadtree, and both decisions of R6 (`SPEC.md`) that follow from one.
 //!
-//! *Joined*, a node two levels above the samples has one word of 16 bits instead of its own and its descendants' 21
-//! vectors. The last word read stays in a register during a turn. Only accesses differ: all vectors are kept.
+//! *Joined*, a node two levels above the samples has a word of 16 bits instead of its own and its descendants' 21
+//! vectors. The last one read stays in a register during a turn. Only accesses differ.
 
 use std::cell::Cell;
 
@@ -96,8 +95,8 @@ impl<'f> FillStore<'f> {
         full
     }
 
-    /// Whether all quadrants that a box overlaps are full. The search for its node begins in a full one only if a
-    /// parent that draws its children one by one filled it.
+    /// Whether all quadrants that a box overlaps are full. The search for its node begins in a full one only if a parent
+    /// that draws its children one by one filled it.
     #[inline]
     pub(super) fn rejects<P: Probe>(
         &self,

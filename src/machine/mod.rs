@@ -55,7 +55,7 @@ pub use engine::Machine;
 #[cfg(feature = "mutants")]
 pub use instruments::mutants;
 pub use instruments::{
-    Cage, Coordinates, NumberSpan, NumberSpans, Positions, ProvenWidths, RecordNumber,
-    SimulateError, Simulated, cages_along, narrowed, proven_widths, visit_positions,
+    Cage, Coordinates, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
+    Simulated, cages_along, narrowed, proven_widths,
 };
 pub use state::MachineOptions;

@@ -11,10 +11,10 @@
 //!     when none is left: take the current record from the stack; end when that is empty
 //! ```
 //!
-//! The stack holds subdivided records with remaining children, as a whole or as path entries (`path.rs`), so it is
-//! never deeper than the octree. Children are computed again when their parent returns from the stack.
+//! The stack holds subdivided records with remaining children, whole or as path entries (`path.rs`): never more than the
+//! octree has levels. Children are computed again when their parent returns.
 //!
-//! *Tiles*: the object is drawn once per tile of the picture, with everything outside the tile full from the start.
+//! *Tiles*: the object is drawn once per tile of the picture, with everything outside full from the start.
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Datapath, Memory, Probe, Stage, Word};
@@ -158,7 +158,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The object in a tile, if it must be subdivided; otherwise it is drawn or dropped.
+    /// The object in a tile, if it must be subdivided.
     pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
         self.push_object(tile);
         self.work_on_new()
@@ -180,7 +180,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
     }
 
-    /// Restores a parent from its path entry, at `address`, and the previous record. `None`: its quadtree node is full.
+    /// Restores a parent from its path entry and the previous record. `None`: its quadtree node is full.
     pub(super) fn take_back(
         &mut self,
         entry: &PathEntry,
@@ -211,7 +211,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         })
     }
 
-    /// Continues with a parent's children until one is visible. Draws that one, or returns it if it must be subdivided.
+    /// Continues with a parent's children until one is visible: drawn, or returned if it must be subdivided.
     pub(super) fn parent_turn(
         &mut self,
         parent: &mut Parent<L>,
@@ -313,7 +313,7 @@ fn expand<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// A tile's view of the fill vectors above it: everything outside the path to the tile is full.
+/// A tile's view of the fill vectors above it: everything outside its path is full.
 #[derive(Debug, Clone)]
 pub(super) struct TileView {
     tile: QuadNode,

@@ -1,8 +1,8 @@
 //! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
 //!
-//! A ray meets the inside of a cube if and only if for each axis j the four edges along j do not all pass on one side of
-//! it. The plane through the eye and the edge from corner `A` along `e_j` has the normal `A x e_j`. Moving the edge adds
-//! a constant of the object, so children's planes follow by shifts and adds.
+//! A ray meets the inside of a cube exactly if for each axis j the four edges along j do not all pass on one side of it.
+//! The plane through the eye and the edge from corner `A` along `e_j` has the normal `A x e_j`. Moving the edge adds a
+//! constant of the object, so children's planes follow by shifts and adds.
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
@@ -21,7 +21,7 @@ enum Side {
 }
 
 impl Side {
-    /// Encoded in two bits: 0 both, 1 positive, 2 negative, 3 nowhere.
+    /// 0 both, 1 positive, 2 negative, 3 nowhere.
     #[inline]
     fn wires(self) -> Short {
         Short::unsigned(self as u8, 2)
@@ -81,8 +81,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. A tie (R8.1) is decided for a point right of it by an infinitesimal, and below it
-    /// by a smaller one.
+    /// The side of the node's middle. A tie (R8.1) is decided for a point an infinitesimal right of it, and a smaller one
+    /// below.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -129,8 +129,8 @@ impl Cover {
 pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
-    /// Of a cube that is not wholly before the eye: a plane perpendicular to an axis, and the side on which rays reach
-    /// the cube, not its mirror image behind the eye.
+    /// Of a cube that is not wholly before the eye: a plane across an axis, and the side on which rays reach the cube, not
+    /// its mirror image.
     front: Option<(Plane, Side)>,
 }
 
@@ -171,8 +171,8 @@ impl Silhouette {
         Self { edges, front }
     }
 
-    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those towards it along an axis on which the
-    /// eye is outside. `None`: the cube contains the eye.
+    /// Plane of the eye (R8.2): the rays towards a cube along an axis on which the eye is outside. `None`: the cube
+    /// contains the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -297,7 +297,7 @@ pub(super) fn of_child<P: Probe>(
     planes
 }
 
-/// Moves the planes of edges from a parent at a level to its child in an octant, or back.
+/// Moves the planes of edges from a parent to its child in an octant, or back.
 pub(super) fn move_edges<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

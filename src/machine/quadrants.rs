@@ -17,8 +17,7 @@ pub(super) struct Halves {
     pub(super) high: bool,
 }
 
-/// The quadrants (bit `y << 1 | x`) in the given halves. In hardware four gates, counted with the 4-bit "and" that
-/// follows.
+/// The quadrants (bit `y << 1 | x`) in the given halves: four gates, counted with the 4-bit "and" that follows.
 #[inline(always)]
 pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
     const QUADRANTS: [u8; 16] = {
@@ -66,7 +65,7 @@ pub(super) trait ImageBox: Copy {
         tested: Self::Tested,
     ) -> Self;
 
-    /// A search returns up by some levels, and continues in another quadrant.
+    /// Up by some levels, then into another quadrant.
     fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32);
 }
 
@@ -99,7 +98,7 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
         }
     }
 
-    /// Hardware moves a box back one level at a time. Here the boxes above are kept.
+    /// Kept, where hardware moves a box back one level at a time.
     fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
         dp.next_step(levels + 1);
     }

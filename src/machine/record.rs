@@ -32,7 +32,7 @@ pub(super) struct Cube {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImagePlace {
     pub(super) quad: QuadNode,
-    /// Whether the box lies inside the node. If not, it leaves the picture where it leaves the node.
+    /// Otherwise the box leaves the picture where it leaves the node.
     pub(super) inside: bool,
 }
 
@@ -47,7 +47,7 @@ impl ImagePlace {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Child {
     pub(super) cube: Cube,
-    /// Its parent's place, where the search for its own begins.
+    /// Its parent's, where the search for its own begins.
     pub(super) from: ImagePlace,
 }
 
@@ -80,13 +80,13 @@ pub(super) struct Screen<L> {
 /// Least and greatest x, least and greatest y.
 pub(super) type Spans = [(Word, Word); 2];
 
-/// Silhouette planes of a cube (`SPEC.md`, R8), relative to the quadtree node: functions `a x + b y + c` with `x` and
-/// `y` from 0 to 1 across the node.
+/// Silhouette planes of a cube (`SPEC.md`, R8): functions `a x + b y + c`, `x` and `y` from 0 to 1 across the quadtree
+/// node.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Planes {
-    /// By edge direction j: the plane through the eye and the edge that leaves the lowest corner along j.
+    /// By j: through the eye and the edge that leaves the lowest corner along j.
     pub(super) edge: [[WideWord; 3]; 3],
-    /// By axis: the constant `c` of the plane through the eye perpendicular to it.
+    /// By axis: `c` of the plane through the eye across it.
     pub(super) axis_c: [WideWord; 3],
 }
 

@@ -12,8 +12,8 @@ pub(super) fn shift<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Wor
     }
 }
 
-/// `a / 2^places`, one unit larger where places are lost: behind the eye `a` is negative, and rounding down would
-/// narrow the box.
+/// `a / 2^places`, one unit larger where places are lost: rounding a negative `a` (behind the eye) down would narrow the
+/// box.
 pub(super) fn margin<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Word {
     let part = shift(dp, a, places);
     if places > 0 {

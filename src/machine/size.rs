@@ -11,8 +11,8 @@ use crate::frame::QuadNode;
 use crate::project::options::ShiftSum;
 
 /// Whether a clip-space cage is at most `limit` samples wide and high, in a node `below` levels above the samples. An
-/// edge `E` moves a vertex at `x` (0 to 1 across the node) by `(E_X - x E_W) / W`. Summed over the edges, the greater
-/// of `|E_X|` and `|E_X - E_W|`, divided by the least `W`, bounds the size. A few cages just within are rejected.
+/// edge `E` moves a vertex at `x` (0 to 1 across the node) by `(E_X - x E_W) / W`. So the sum of the greater of `|E_X|`
+/// and `|E_X - E_W|`, divided by the least `W`, bounds the size. A few cages just within are rejected.
 pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,

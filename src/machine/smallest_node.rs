@@ -1,5 +1,5 @@
-//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5). Its search does not
-//! depend on drawn samples; only the rejection does.
+//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5). Only the rejection
+//! depends on drawn samples.
 //!
 //! ```text
 //! from the parent's node on:
@@ -46,7 +46,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
         dp.tap(Block::HalfClip, &(&clip.y, &far[1], lower), &to.y);
         let is_near = inside || near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w);
         if !is_near {
-            // The box leaves the quadrant so far that its coordinates there would outgrow the word.
+            // Its coordinates there would outgrow the word.
             break;
         }
         *clip = to;

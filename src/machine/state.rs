@@ -20,9 +20,9 @@ pub struct MachineOptions {
     pub overflow: Overflow,
     /// Whether records whose quadrants are all full are rejected; does not change the picture.
     pub reject_filled: bool,
-    /// Children by octant, nearest first, for octant 000; only tests use another array than [`OCCLUSION_ORDER`].
+    /// Children by octant, nearest first, for octant 000: [`OCCLUSION_ORDER`], except in tests.
     pub order: [u8; 8],
-    /// Organisation of stack, nodes and tiles; changes a frame's records and accesses, but not its picture.
+    /// Organisation of stack, nodes and tiles; does not change the picture.
     pub organisation: Organisation,
 }
 

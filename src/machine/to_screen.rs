@@ -55,8 +55,7 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// Whether the box leaves the picture by no more than an eighth of its side, or four sides where the tolerance is
-/// infinite.
+/// Whether the box leaves the picture by at most an eighth of its side, or four sides with infinite tolerance.
 fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -70,7 +69,7 @@ fn within_guard<P: Probe, L: CageCoordinate>(
         -(OFFSET_SHIFT as i32) - level
     };
     if level > 0 && places <= 0 {
-        // Below the root the search for a node lets no box leave it by more than its width.
+        // Below the root the search lets no box leave its node by more than the node's width.
         return true;
     }
     [&clip.x, &clip.y].into_iter().all(|x| {

@@ -1,4 +1,4 @@
-//! Events of whole records. Operations, memory accesses and wires go to an [`hwmodel::Probe`] instead.
+//! Events of whole records; all others go to an [`hwmodel::Probe`].
 
 use super::cage::CageCoordinate;
 use super::record::Record;
@@ -50,8 +50,7 @@ impl RecordsBySample {
         }
     }
 
-    /// Writes each sample's share, in rows of `width` samples: a record counts 1, spread evenly over the samples of its
-    /// node.
+    /// Writes each sample's share, in rows of `width`: a record counts 1, spread evenly over its node's samples.
     pub(super) fn write_shares(&self, width: u32, shares: &mut [f32]) {
         let width = width as usize;
         for (at, share) in shares.iter_mut().enumerate() {

@@ -15,7 +15,6 @@ const LIGHTS: usize = 1 << 16;
 
 /// Linear light of the sRGB bytes, 16 bits per channel, and back.
 pub struct Linear {
-    /// Linear light of each byte, 0..=65535, rising.
     of: [u16; 256],
     /// For each linear light the byte whose light is nearest. 64 KB, of which a picture uses a part.
     nearest: Box<[u8; LIGHTS]>,
@@ -51,11 +50,9 @@ impl Linear {
     /// The colour whose linear light is nearest; of two the brighter.
     #[inline]
     pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
-        // Excess light is full light.
         self.encode_16(light.map(|value| value.min(u32::from(u16::MAX))))
     }
 
-    /// The same for light that is at most full.
     #[inline]
     pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
         light.map(|value| self.nearest[usize::from(value as u16)])
@@ -100,7 +97,6 @@ mod tests {
         assert_eq!((linear.of[0], linear.of[255]), (0, u16::MAX));
         for light in 0..=u16::MAX {
             let apart = |byte: &u8| light.abs_diff(linear.of[usize::from(*byte)]);
-            // `max_by_key` keeps the last, which is the brighter.
             let nearest = (0..=255u8).max_by_key(|byte| std::cmp::Reverse(apart(byte)));
             let channel = u32::from(light);
             assert_eq!(

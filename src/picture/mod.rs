@@ -40,14 +40,12 @@ pub struct Picture {
     /// File index of the lowest corner of the visible voxel, in finest voxels, and its level (0 = root);
     /// `[0, 0, 0, -1]` without a voxel.
     pub voxel: Vec<[i32; 4]>,
-    /// Graph node; -1 without a voxel.
     pub node: Vec<i32>,
     /// Records processed for the pixel, if the frame counted them.
     pub records: Option<Vec<f32>>,
 }
 
 impl Picture {
-    /// Pixels that show a voxel at their middle sample.
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node >= 0).count()
     }

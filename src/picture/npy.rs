@@ -1,7 +1,6 @@
 //! `.npy` files, format 1.0, of NumPy's `save` and `load`: little-endian `u1`, `i4` and `f4`, C order, up to three
 //! dimensions.
 
-/// The numbers of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     U8(Vec<u8>),
@@ -27,13 +26,11 @@ pub enum NpyError {
     },
     #[error("the array's type is `{0}`; expected '|u1', '<i4' or '<f4' in C order")]
     Type(String),
-    /// Shape and length of the file do not match.
     #[error("the header promises {expected} bytes of numbers, the file has {found}")]
     Length { expected: usize, found: usize },
 }
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
-/// Magic, version and header length.
 const PREFIX: usize = 10;
 
 pub fn is_npy(beginning: &[u8]) -> bool {
@@ -54,7 +51,6 @@ pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
         Values::F32(_) => "<f4",
     };
     let lengths: Vec<String> = shape.iter().map(ToString::to_string).collect();
-    // A tuple of one has a comma.
     let comma = if lengths.len() == 1 { "," } else { "" };
     let mut header = format!(
         "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}{comma}), }}",

@@ -12,9 +12,7 @@ pub(super) struct Painter<'p, const N: usize> {
     shader: &'p Shader<'p>,
     color: &'p [[u8; 3]],
     normal: &'p [PackedNormal],
-    /// None where everything is fully lit.
     shares: Option<&'p Shares>,
-    /// Logarithm of the samples per pixel along an axis.
     aa: u32,
     behind: Vec<[u8; N]>,
 }
@@ -93,7 +91,6 @@ impl<'p, const N: usize> Painter<'p, N> {
     }
 
     fn several(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
-        // Red, green, blue, and the number of samples with a voxel.
         let mut sums = vec![[0u32; 4]; to.len()];
         let linear = self.shader.linear;
         let light = |color, share| {
@@ -265,7 +262,6 @@ fn lit(light: [u32; 3], share: u32) -> [u32; 3] {
     light.map(|channel| (channel * share) >> 8)
 }
 
-/// A pixel of `N` bytes, 3 or 4.
 #[inline]
 fn pixel<const N: usize>([r, g, b]: [u8; 3], alpha: u8) -> [u8; N] {
     let all = [r, g, b, alpha];

@@ -20,12 +20,10 @@ impl Pixels {
         }
     }
 
-    /// Pixels that may be transparent.
     pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
         let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
         let mut bytes = rgba.into_flattened();
         if !has_alpha {
-            // In place, because a second buffer would be as large as the picture.
             let pixels = bytes.len() / 4;
             for pixel in 1..pixels {
                 bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
@@ -49,7 +47,6 @@ impl Pixels {
         }
     }
 
-    /// Appends red, green, blue and alpha of each pixel to some bytes.
     pub fn append_rgba(&self, to: &mut Vec<u8>) {
         if self.has_alpha {
             return to.extend_from_slice(&self.bytes);

@@ -11,7 +11,6 @@ pub use png::{DecodingError, EncodingError};
 pub struct Image {
     pub width: u32,
     pub height: u32,
-    /// sRGB and alpha, row by row from the top left.
     pub rgba: Vec<[u8; 4]>,
 }
 
@@ -82,7 +81,6 @@ fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
             pixels.iter().map(|&[g, a]| [g, g, g, a]).collect()
         }
         ColorType::Rgba => bytes.as_chunks::<4>().0.to_vec(),
-        // A palette was expanded.
         ColorType::Rgb | ColorType::Indexed => {
             let (pixels, _) = bytes.as_chunks::<3>();
             pixels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect()
@@ -95,7 +93,6 @@ fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
     })
 }
 
-/// Rounds to the nearest: 65535 / 255 = 257.
 fn to_8_bits(channel: u16) -> u8 {
     ((u32::from(channel) + 128) / 257) as u8
 }
@@ -105,22 +102,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_come_back() {
-        let opaque = vec![[1, 2, 3, 255], [4, 5, 6, 255]];
-        let clear = vec![[1, 2, 3, 255], [4, 5, 6, 7]];
-        for rgba in [opaque, clear] {
+    fn pictures_come_back_and_other_types_are_converted() {
+        for alpha in [255, 7] {
+            let rgba = vec![[1, 2, 3, 255], [4, 5, 6, alpha]];
             let bytes = encode(2, 1, &rgba).unwrap();
             let image = decode(&bytes).unwrap();
             assert_eq!(size(&bytes), Some((2, 1)));
             assert_eq!((image.width, image.height, image.rgba), (2, 1, rgba));
         }
-        assert!(decode(b"not a picture").is_err());
-        assert_eq!(size(b"not a picture"), None);
-    }
-
-    #[test]
-    fn other_depths_and_color_types_are_converted() {
-        let read = |color, depth, data: &[u8]| {
+        assert!(decode(b"not a picture").is_err() && size(b"not a picture").is_none());
+        let sixteen = [0x01, 0x7f, 0xff, 0xff, 0x01, 0x82, 0x80, 0x00];
+        for (color, depth, data, expected) in [
+            (
+                ColorType::Grayscale,
+                BitDepth::One,
+                &[0x40][..],
+                [[0, 0, 0, 255], [255; 4]],
+            ),
+            (
+                ColorType::Indexed,
+                BitDepth::One,
+                &[0x80],
+                [[6, 5, 4, 255], [9, 8, 7, 255]],
+            ),
+            (
+                ColorType::GrayscaleAlpha,
+                BitDepth::Sixteen,
+                &sixteen,
+                [[1, 1, 1, 255], [2, 2, 2, 128]],
+            ),
+        ] {
             let mut bytes = Vec::new();
             let mut encoder = Encoder::new(&mut bytes, 2, 1);
             encoder.set_color(color);
@@ -129,23 +140,7 @@ mod tests {
             let mut writer = encoder.write_header().unwrap();
             writer.write_image_data(data).unwrap();
             writer.finish().unwrap();
-            decode(&bytes).unwrap().rgba
-        };
-        let grey = [[0, 0, 0, 255], [255, 255, 255, 255]];
-        assert_eq!(
-            read(ColorType::Grayscale, BitDepth::One, &[0b0100_0000]),
-            grey
-        );
-        let palette = [[6, 5, 4, 255], [9, 8, 7, 255]];
-        assert_eq!(
-            read(ColorType::Indexed, BitDepth::One, &[0b1000_0000]),
-            palette
-        );
-        let sixteen = [0x01, 0x7f, 0xff, 0xff, 0x01, 0x82, 0x80, 0x00];
-        let rounded = [[1, 1, 1, 255], [2, 2, 2, 128]];
-        assert_eq!(
-            read(ColorType::GrayscaleAlpha, BitDepth::Sixteen, &sixteen),
-            rounded
-        );
+            assert_eq!(decode(&bytes).unwrap().rgba, expected);
+        }
     }
 }

@@ -51,9 +51,7 @@ pub struct Resolver<'f> {
     frame: &'f Frame,
     shader: Shader<'f>,
     origin_index: [i64; 3],
-    /// Logarithm of the samples per pixel along an axis.
     aa: u32,
-    /// Made on demand; none where everything is fully lit.
     shares: OnceLock<Option<Shares>>,
 }
 
@@ -120,12 +118,10 @@ impl<'f> Resolver<'f> {
         self.frame
     }
 
-    /// Whether no pixel can be transparent.
     pub fn is_opaque(&self) -> bool {
         self.shader.background().is_some()
     }
 
-    /// Pixels that show a voxel at their middle sample.
     pub fn drawn(&self) -> usize {
         if self.aa == 0 {
             return self.frame.drawn();

@@ -48,7 +48,6 @@ impl Buffer {
         }
     }
 
-    /// An empty list of the buffer's type.
     pub fn none(self) -> Values {
         match self {
             Self::Color => Values::U8(Vec::new()),
@@ -58,7 +57,6 @@ impl Buffer {
     }
 }
 
-/// Pixels per group.
 const SHARE: u32 = 1 << 17;
 
 pub trait Rows {
@@ -69,7 +67,6 @@ pub trait Rows {
     /// Some rows of a buffer. Fails when they cannot be made.
     fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Self::Error>;
 
-    /// All rows from the top, in groups.
     fn steps(&self) -> impl Iterator<Item = Range<u32>> {
         let (width, height) = self.size();
         let step = (SHARE / width.max(1)).max(1);
@@ -104,7 +101,6 @@ impl Rows for Picture {
 }
 
 impl Values {
-    /// The numbers' bytes, least significant first.
     pub fn bytes(&self) -> Cow<'_, [u8]> {
         if cfg!(target_endian = "little") {
             return Cow::Borrowed(match self {

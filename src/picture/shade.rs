@@ -15,14 +15,12 @@ pub struct Shader<'g> {
     pub(super) sight: Sight,
     pub(super) light: Light,
     pub(super) linear: &'static Linear,
-    /// Linear light of the background. `None`: transparent.
     background: Option<[u32; 3]>,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
     pub(super) meeting: Meeting,
-    /// Unit normal, world directions.
     pub(super) normal: DVec3,
 }
 
@@ -54,7 +52,6 @@ impl<'g> Shader<'g> {
         self.light_of(node, &self.surface(x, y, node, voxel))
     }
 
-    /// Linear light of a sample that shows nothing. `None`: transparent.
     pub fn background(&self) -> Option<[u32; 3]> {
         self.background
     }

@@ -27,7 +27,6 @@ pub(super) struct Shares {
     /// Object direction of a step across the image root, of one down, and of its corner; of any common length.
     columns: [DVec3; 3],
     columns_f32: [Vec3; 3],
-    /// One divided by the samples across the image root, doubled.
     step: f32,
     margin: f32,
     /// By packed normal: the change of its product with the direction across and down the image root, its start, and both
@@ -42,19 +41,16 @@ pub(super) struct Facing {
     base: f32,
     /// Lit share of the normal's colour, of 256.
     pub(super) front: u32,
-    /// The same of its opposite.
     pub(super) back: u32,
 }
 
 impl Facing {
-    /// Always the front, fully lit.
     pub(super) const FLAT: Self = Self {
         along: 0.0,
         base: f32::NEG_INFINITY,
         front: 256,
         back: 256,
     };
-    /// Left to the rule.
     pub(super) const UNKNOWN: Self = Self {
         base: f32::NAN,
         ..Self::FLAT
@@ -62,7 +58,6 @@ impl Facing {
 }
 
 pub(super) struct Run {
-    /// Position to the right, of the image root.
     across: [f32; TOGETHER],
     /// A normal whose product with the direction is above this is turned,
     limit: [f32; TOGETHER],
@@ -89,7 +84,6 @@ impl Shares {
         }
     }
 
-    /// Position of a row of samples below the top, of the image root.
     pub(super) fn down(&self, y: u32) -> f32 {
         self.across(y)
     }
@@ -99,7 +93,6 @@ impl Shares {
         (2 * x + 1) as i32 as f32 * self.step
     }
 
-    /// Samples `x` and those after it, in a row at `down`.
     #[inline]
     pub(super) fn run(&self, x: u32, down: f32) -> Run {
         let [right, low, corner] = self.columns_f32;
@@ -153,7 +146,6 @@ impl Shares {
 }
 
 impl Run {
-    /// Of a frame that is fully lit.
     pub(super) const FLAT: Self = Self {
         across: [0.0; TOGETHER],
         limit: [0.0; TOGETHER],

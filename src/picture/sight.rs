@@ -15,10 +15,8 @@ pub(super) struct Sight {
     depth: u32,
     /// Whether the clip vectors of all points of the object fit 64 bits.
     is_narrow: bool,
-    /// Object direction of a clip direction.
     pub(super) to_object: DMat3,
     depth_unit: f64,
-    /// Samples across the image root, doubled.
     pub(super) root_doubled: f64,
     axes: [DVec3; 3],
 }
@@ -28,7 +26,6 @@ pub(super) struct Sight {
 pub(super) struct Meeting {
     /// View-axis depth in world units, 0 or more.
     pub(super) depth: f64,
-    /// Outward normal of the visible face.
     pub(super) face: DVec3,
     pub(super) ray: DVec3,
 }
@@ -58,14 +55,12 @@ impl Sight {
         }
     }
 
-    /// World directions of the camera's right, up and back.
     pub(super) fn axes(&self) -> [DVec3; 3] {
         self.axes
     }
 
     pub(super) fn meet(&self, x: u32, y: u32, voxel: [i32; 4]) -> Meeting {
         let (corner, side) = self.cube(voxel);
-        // The ray is eye + t * direction, where t is the depth W.
         let eye = -(self.to_object * corner);
         let direction = self.direction(x, y);
         let (enter, exit, axis) = slabs(eye, direction, side);
@@ -183,23 +178,4 @@ fn facing(offset: DVec3) -> DVec3 {
     let mut face = DVec3::ZERO;
     face[axis] = if offset[axis] < 0.0 { -1.0 } else { 1.0 };
     face
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slabs_of_a_straight_ray() {
-        let eye = DVec3::new(0.5, -3.0, 0.5);
-        assert_eq!(slabs(eye, DVec3::Y, 2.0), (3.0, 5.0, 1));
-        let (enter, exit, _) = slabs(eye, DVec3::X, 2.0);
-        assert!(enter > exit, "a ray beside the cube misses it");
-    }
-
-    #[test]
-    fn the_face_that_looks_at_the_eye() {
-        assert_eq!(facing(DVec3::new(1.0, -5.0, 2.0)), DVec3::NEG_Y);
-        assert_eq!(facing(DVec3::new(1.0, 1.0, 1.0)), DVec3::X);
-    }
 }

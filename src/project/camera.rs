@@ -6,9 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A pinhole camera and the size of its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// Position of the eye, world units.
     pub eye: DVec3,
-    /// A point in the middle of the picture, world units.
     pub target: DVec3,
     /// Not along the view axis.
     pub up: DVec3,
@@ -35,7 +33,7 @@ pub enum CameraError {
     /// Field of view outside 0..180 degrees.
     #[error("the field of view must lie between 0 and 180 degrees, not {0}")]
     FieldOfView(f64),
-    /// No pixels, or more than the image quadtree takes.
+    /// The picture has no pixels, or too many.
     #[error("a picture has 1 to {MAX_SIDE} pixels a side, not {0} x {1}")]
     Size(u32, u32),
 }
@@ -45,9 +43,7 @@ pub const MAX_SIDE: u32 = 1 << 15;
 /// The camera's axes: orthonormal, right-handed as (right, up, back).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes {
-    /// Towards growing pixel x.
     pub right: DVec3,
-    /// Towards falling pixel y.
     pub up: DVec3,
     /// Along the view axis, away from the eye.
     pub forward: DVec3,

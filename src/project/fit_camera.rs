@@ -16,13 +16,9 @@ const MAX_VISITS: u32 = 4_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Up {
-    /// +Y.
-    ///
-    /// The custom of meshes; the front looks towards +Z.
+    /// +Y, the custom of meshes; the front looks towards +Z.
     Y,
-    /// +Z.
-    ///
-    /// The custom of voxel files; the front looks towards -Y.
+    /// +Z, the custom of voxel files; the front looks towards -Y.
     Z,
 }
 
@@ -52,12 +48,10 @@ impl Up {
     }
 }
 
-/// In world units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     pub low: DVec3,
     pub high: DVec3,
-    /// Points whose hull contains all voxels.
     pub hull: Vec<DVec3>,
 }
 
@@ -191,7 +185,6 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
     while let Some((node, at_level, at)) = open.pop() {
         let mask = view.mask(node);
         if at_level == level || mask == 0 {
-            // A leaf above the level has only its own corners.
             let span = 1usize << (level - at_level);
             for corner in 0..8usize {
                 let place = |k: usize| at[k] * span + span * (corner >> (2 - k) & 1);
@@ -220,7 +213,6 @@ fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
 pub struct Direction {
     /// Around the up axis: 0 from the front, 90 from the right.
     pub azimuth: f64,
-    /// Above the horizon.
     pub elevation: f64,
 }
 
@@ -283,7 +275,7 @@ fn tidy(point: DVec3, scale: f64) -> DVec3 {
             -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),
             _ => x,
         };
-        // Adding zero turns -0 into 0.
+        // Not -0.
         rounded + 0.0
     };
     DVec3::new(round(point.x), round(point.y), round(point.z))
@@ -302,56 +294,48 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn cube() -> Bounds {
-        Bounds::of_box(DVec3::splat(0.0), DVec3::splat(10.0))
-    }
-
-    fn eye(azimuth: f64, elevation: f64, up: Up) -> DVec3 {
+    fn camera(bounds: &Bounds, up: Up, [azimuth, elevation]: [f64; 2], size: (u32, u32)) -> Camera {
         let direction = Direction { azimuth, elevation };
-        let camera = fit_camera(&cube(), up, direction, 40.0, 1.0, (100, 100));
-        (camera.eye - camera.target).normalize()
+        fit_camera(bounds, up, direction, 40.0, 1.0, size)
     }
 
     #[test]
-    fn directions() {
-        assert_eq!(eye(0.0, 0.0, Up::Z), DVec3::NEG_Y);
-        assert_eq!(eye(90.0, 0.0, Up::Z), DVec3::X);
-        assert_eq!(eye(0.0, 90.0, Up::Z), DVec3::Z);
-        assert_eq!(eye(0.0, 0.0, Up::Y), DVec3::Z);
-        assert_eq!(eye(90.0, 0.0, Up::Y), DVec3::X);
+    fn all_corners_are_seen_and_one_is_near_the_edge() {
+        let cube = Bounds::of_box(DVec3::ZERO, DVec3::splat(10.0));
+        for (from, up, expected) in [
+            ([0.0, 0.0], Up::Z, DVec3::NEG_Y),
+            ([90.0, 0.0], Up::Z, DVec3::X),
+            ([0.0, 90.0], Up::Z, DVec3::Z),
+            ([0.0, 0.0], Up::Y, DVec3::Z),
+            ([90.0, 0.0], Up::Y, DVec3::X),
+        ] {
+            let camera = camera(&cube, up, from, (100, 100));
+            assert_eq!((camera.eye - camera.target).normalize(), expected);
+        }
+        for from in [[45.0, 35.0], [0.0, 0.0], [10.0, 90.0], [200.0, -60.0]] {
+            let camera = camera(&cube, Up::Z, from, (300, 200));
+            let axes = camera.axes().unwrap();
+            let edge = |corner: u32| {
+                let bit = |b: u32| f64::from(corner >> b & 1) * 10.0;
+                let offset = DVec3::new(bit(0), bit(1), bit(2)) - camera.eye;
+                let scale = axes.focal_px / offset.dot(axes.forward);
+                let across = (offset.dot(axes.right) * scale / 150.0).abs();
+                across.max((offset.dot(axes.up) * scale / 100.0).abs())
+            };
+            let most = (0..8).map(edge).fold(0.0, f64::max);
+            assert!((most - FILL).abs() < 1e-3, "{from:?}: {most}");
+        }
     }
 
     #[test]
     fn a_revolved_object_is_seen_from_the_same_distance_all_around() {
         let bounds = Bounds::of_box(DVec3::ZERO, DVec3::new(10.0, 4.0, 7.0)).revolved(Up::Z);
         let distance = |azimuth: f64| {
-            let direction = Direction {
-                azimuth,
-                elevation: 20.0,
-            };
-            let camera = fit_camera(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
-            (camera.eye - camera.target).length()
+            let camera = camera(&bounds, Up::Z, [azimuth, 20.0], (100, 100));
+            camera.eye.distance(camera.target)
         };
         for turn in [5.0, 45.0, 90.0, 210.0] {
             assert!((distance(turn) - distance(0.0)).abs() < 1e-3, "{turn}");
-        }
-    }
-
-    #[test]
-    fn all_corners_are_seen_and_one_is_near_the_edge() {
-        for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0), (10.0, 90.0), (200.0, -60.0)] {
-            let direction = Direction { azimuth, elevation };
-            let camera = fit_camera(&cube(), Up::Z, direction, 40.0, 1.0, (300, 200));
-            let axes = camera.axes().unwrap();
-            let mut most = 0.0f64;
-            for corner in 0..8u32 {
-                let bit = |b: u32| f64::from(corner >> b & 1) * 10.0;
-                let offset = DVec3::new(bit(0), bit(1), bit(2)) - camera.eye;
-                let scale = axes.focal_px / offset.dot(axes.forward);
-                most = most.max((offset.dot(axes.right) * scale / 150.0).abs());
-                most = most.max((offset.dot(axes.up) * scale / 100.0).abs());
-            }
-            assert!((most - FILL).abs() < 1e-3, "{azimuth} {elevation}: {most}");
         }
     }
 }

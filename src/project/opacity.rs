@@ -7,14 +7,11 @@ const MOST_BITS: u32 = 24;
 /// Bits of a word beyond such a coordinate: sign, the eye's distance, the sum of three, and its double in a divide.
 const HEADROOM_BITS: u32 = 5;
 
-/// Shares of a direction are sixteenths.
 pub const SHARES: i64 = 16;
-/// Transmittance of an empty sample.
 pub const ALL_LEFT: u32 = 256;
 /// Transmittance at which a sample is opaque enough: the last voxel takes the rest.
 pub const OPAQUE_ENOUGH: u32 = 64;
 
-/// The eye, for directions to voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OpacityEye {
     pub shift: u32,

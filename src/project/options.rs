@@ -16,8 +16,6 @@ hwmodel::named! {
     #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
     pub enum CageKind {
         /// Eight corners (the image-order paper).
-        ///
-        /// In Morton order.
         Corners = "corners",
         /// One corner and three edges.
         #[default]
@@ -102,14 +100,10 @@ impl Coverage {
     }
 }
 
-/// The samples that a voxel covers:
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutlineRule {
-    /// Those that its box overlaps.
     Box,
-    /// The one that contains its centre.
     Centre,
-    /// Those whose centres lie within its silhouette.
     Silhouette,
 }
 

@@ -13,7 +13,6 @@ pub(super) struct Quantised {
 
 /// Largest magnitudes in a frame.
 pub(super) struct Reach {
-    /// Of a coordinate of a clip vector.
     pub(super) position: i128,
     /// Of a silhouette plane: the sum of its three coefficients.
     plane: i128,

@@ -13,9 +13,7 @@ use super::reach::{Quantised, Reach};
 use crate::graph::Placement;
 
 pub(super) struct RealView {
-    /// Clip vectors of a voxel's edges.
     edge: [[f64; 3]; 3],
-    /// The eye in object coordinates, voxels.
     eye: [f64; 3],
     /// Pixels of the image root, as a power of two.
     root_px_log2: u32,
@@ -141,9 +139,7 @@ impl RealView {
 
 /// The octree levels of a frame, and the unit of its depths.
 pub(super) struct Levels {
-    /// Level of the finest voxels.
     pub(super) depth: u32,
-    /// Deepest level of a record.
     pub(super) bound: u32,
     pub(super) clip_frac: u32,
     /// Lower bound of all depths below.
@@ -154,7 +150,6 @@ impl Levels {
     /// By level, the depth that is `unit` for a finest voxel, in clip units, rounded up.
     pub(super) fn scaled(&self, unit: f64) -> Vec<i64> {
         let at = |level: u32| {
-            // A record's side in voxels, exact in f64.
             let side = libm::ldexp(unit, self.depth as i32 - level as i32);
             let depth = libm::ceil(libm::ldexp(side, self.clip_frac as i32));
             to_i64(depth).map_or(i64::MAX, |w| w.max(self.near))

@@ -20,7 +20,6 @@ use crate::graph::{MAX_DEPTH, Placement};
 const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Boxes widened by more samples may leave their words.
 const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
-/// Sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
 
 /// Why a frame cannot be set up.
@@ -95,7 +94,6 @@ pub struct FrameSetup {
     pub sub_levels: u32,
     /// The eye in object coordinates, units of `2^-sub_levels` voxels, rounded down.
     pub eye_floor: [i64; 3],
-    /// The same, rounded up.
     pub eye_ceil: [i64; 3],
     /// Least depth `W` at which `any` and `center` draw.
     pub near: i64,
@@ -194,12 +192,10 @@ impl FrameSetup {
         })
     }
 
-    /// The deepest level of a record.
     pub fn level_bound(&self) -> u32 {
         self.depth + self.sub_levels
     }
 
-    /// A reference for measurements.
     pub fn without_detail(&self) -> Self {
         let mut whole = self.clone();
         whole.options.lod_px = 0.0;
@@ -229,7 +225,6 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
 fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
     let (tolerance, lod) = (options.tolerance_px, options.lod_px);
     let samples = f64::from(1u32 << options.aa_log2.min(31));
-    // More than any picture needs, within any word.
     let sizes = 0.0..=4096.0;
     let is_size = sizes.contains(&tolerance) || tolerance == f64::INFINITY;
     for (name, range, value, is_valid) in [

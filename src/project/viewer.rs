@@ -11,7 +11,6 @@ pub enum Contents {
     Nodes,
     #[default]
     Voxels,
-    /// Node, voxel, and the number of processed records.
     Records,
 }
 
@@ -119,7 +118,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.shown.as_ref() == Some(setup)
     }
 
-    /// Shows nothing; the next frame is drawn in any case.
     pub fn forget(&mut self) {
         self.shown = None;
         self.stats = None;
@@ -136,7 +134,6 @@ impl<'g, E: Engine> Viewer<'g, E> {
             (None, true) => Contents::Nodes,
         };
         if (self.frame.width, self.frame.height, has) != (width, height, self.contents) {
-            // The old one's memory is freed first.
             self.frame = Frame::nodes_only(0, 0);
             let samples = width as usize * height as usize;
             let has_voxels = self.contents != Contents::Nodes;

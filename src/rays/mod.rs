@@ -118,7 +118,6 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graph::Placement;
     use crate::project::{Camera, SetupOptions};
 
     #[test]
@@ -133,8 +132,15 @@ mod tests {
             opacity: &[],
             light: &[],
         };
-        for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]] {
-            let eye = glam::DVec3::from_array(eye);
+        let draw = |setup: &FrameSetup, is_narrow| {
+            assert_eq!(RayFrame::new(setup).fits_i128(), is_narrow);
+            let mut frame = Frame::new(32, 32, true);
+            let drawn = Rays.render(&graph, setup, &mut frame);
+            drawn.expect("never fails");
+            assert!(frame.drawn() > 0);
+            frame
+        };
+        for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]].map(glam::DVec3::from) {
             let camera = Camera {
                 eye,
                 target: eye + glam::DVec3::Y,
@@ -143,30 +149,16 @@ mod tests {
                 width: 32,
                 height: 32,
             };
-            let setup =
-                FrameSetup::new(&camera, &Placement::default(), 4, &SetupOptions::default());
+            let setup = FrameSetup::new(&camera, &Default::default(), 4, &SetupOptions::default());
             // Without `lod_depth`, which is not scaled.
-            let setup = setup.expect("a frame").without_detail();
-            let view = RayFrame::new(&setup);
-            assert!(view.fits_i128());
-            let mut narrow = Frame::new(32, 32, true);
-            let mut wide = narrow.clone();
-            render_rows::<i128>(&graph, &view, &mut narrow);
-            render_rows::<Wide>(&graph, &view, &mut wide);
-            assert_eq!(narrow, wide);
-            assert!(narrow.drawn() > 0);
-
+            let mut setup = setup.expect("a frame").without_detail();
+            let narrow = draw(&setup, true);
             // The same view in greater numbers no longer fits 128 bits.
-            let mut huge = setup.clone();
             let numbers = setup.edge_clip.iter().flatten().chain(&setup.origin_clip);
             let spare = numbers.map(|c| c.abs().leading_zeros()).min().unwrap_or(0) - 2;
-            huge.origin_clip = setup.origin_clip.map(|c| c << spare);
-            huge.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
-            assert!(!RayFrame::new(&huge).fits_i128());
-            let mut from_huge = narrow.clone();
-            let drawn = Rays.render(&graph, &huge, &mut from_huge);
-            drawn.expect("never fails");
-            assert_eq!(narrow, from_huge);
+            setup.origin_clip = setup.origin_clip.map(|c| c << spare);
+            setup.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
+            assert_eq!(narrow, draw(&setup, false));
         }
     }
 }

@@ -1,5 +1,3 @@
-//! Builds a `.vxg` file of a scene within a limit of memory.
-
 use std::path::Path;
 
 use super::generate::Spec;
@@ -19,10 +17,8 @@ pub struct BuiltFile {
     pub report: Option<ExternalReport>,
 }
 
-/// Builds a `.vxg` file of a scene within a limit of memory: byte for byte the file that
-/// [`open`](super::open()) and [`vxg::write`] make.
-///
-/// In addition to the limit, a `.vox` file, of at most 4 GB, is held in memory. A `.vxg` file is rejected as input.
+/// Builds a `.vxg` file of a scene within a limit of memory: the file that [`open`](super::open()) and [`vxg::write`]
+/// make. A `.vox` file, of at most 4 GB, is held in addition. A `.vxg` file is rejected as input.
 pub fn build_file(
     source: Source,
     options: &OpenOptions,
@@ -64,7 +60,6 @@ pub fn build_file(
         Source::File(file) if file.kind().is_some_and(FileKind::is_mesh) => {
             let folder = file.path().parent().map(Path::to_owned);
             let ready = meshes.read(file.mesh_file(folder)?, progress)?;
-            // The builder is still empty.
             if let Some(voxels) = ready.expected_voxels(progress) {
                 if voxels >= u64::from(u32::MAX) {
                     return Err(failed(BuildError::TooMany(voxels).into()));

@@ -44,16 +44,26 @@ impl<'a> Emitter<'a> {
         place: impl Fn() -> (String, u64),
     ) -> Result<(), Problem> {
         let mut narrow = [0i32; 3];
-        for axis in 0..3 {
+        for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
             let Ok(i) = i32::try_from(index[axis]) else {
-                return Err(beyond_i32(axis, index[axis], place()));
+                let expected = "voxel indices that fit 32 bits with sign".to_owned();
+                let found = format!("{name} = {}", index[axis]);
+                return limit(
+                    place(),
+                    expected,
+                    found,
+                    "move the scene towards the origin",
+                );
             };
             narrow[axis] = i;
             let low = self.low[axis].min(i);
             let high = self.high[axis].max(i);
             let extent = i64::from(high) - i64::from(low) + 1;
             if extent >= MAX_EXTENT {
-                return Err(too_wide(axis, extent, place()));
+                let expected = format!("an extent below {MAX_EXTENT} voxels along each axis");
+                let found = format!("at least {extent} along {name}");
+                let advice = "look for stray voxels far from the rest, or split the scene";
+                return limit(place(), expected, found, advice);
             }
             self.low[axis] = low;
             self.high[axis] = high;
@@ -96,26 +106,14 @@ impl<'a> Emitter<'a> {
     }
 }
 
-const AXIS: [char; 3] = ['x', 'y', 'z'];
-
 #[cold]
-fn beyond_i32(axis: usize, index: i64, (part, offset): (String, u64)) -> Problem {
-    Problem::Limit(Fault::new(
-        part,
-        offset,
-        "voxel indices that fit 32 bits with sign",
-        format!("{} = {index}", AXIS[axis]),
-        "move the scene towards the origin",
-    ))
-}
-
-#[cold]
-fn too_wide(axis: usize, extent: i64, (part, offset): (String, u64)) -> Problem {
-    Problem::Limit(Fault::new(
-        part,
-        offset,
-        format!("an extent below {MAX_EXTENT} voxels along each axis"),
-        format!("at least {extent} along {}", AXIS[axis]),
-        "look for stray voxels far from the rest, or split the scene",
-    ))
+fn limit(
+    (part, offset): (String, u64),
+    expected: String,
+    found: String,
+    advice: &str,
+) -> Result<(), Problem> {
+    Err(Problem::Limit(Fault::new(
+        part, offset, expected, found, advice,
+    )))
 }

@@ -78,7 +78,6 @@ impl From<Box<Fault>> for Problem {
 }
 
 impl Problem {
-    /// Adds the file's name.
     pub fn in_file(self, name: &str) -> SceneError {
         let file = name.to_owned();
         match self {

@@ -53,7 +53,6 @@ pub struct SceneFile<R = File> {
     stream: R,
     length: u64,
     kind: Option<FileKind>,
-    /// At most [`DETECT_BYTES`].
     beginning: Vec<u8>,
 }
 
@@ -193,39 +192,21 @@ impl<R: Read + Seek> SceneFile<R> {
 mod tests {
     use super::*;
 
-    fn kind(bytes: &[u8], name: &str) -> Option<FileKind> {
-        SceneFile::in_memory(bytes, name).unwrap().kind()
-    }
-
-    /// A PLY header of more than [`DETECT_BYTES`].
-    fn ply(elements: &str) -> Vec<u8> {
-        let comments = "comment nothing\n".repeat(1000);
-        format!("ply\nformat ascii 1.0\n{comments}{elements}end_header\n").into_bytes()
-    }
-
     #[test]
-    fn faces_make_a_mesh_of_a_ply_however_long_its_header() {
-        let vertex = "element vertex 3\nproperty float x\n";
-        let list = "property list uchar int vertex_indices\n";
-        let with = |faces: u32| ply(&format!("{vertex}element face {faces}\n{list}"));
-        assert_eq!(kind(&with(1), "a"), Some(FileKind::PlyMesh));
-        assert_eq!(kind(&with(0), "a"), Some(FileKind::Ply));
-        assert_eq!(kind(&ply(vertex), "a"), Some(FileKind::Ply));
+    fn headers_and_names_tell_what_the_first_bytes_do_not() {
+        let kind = |bytes: &[u8], name| SceneFile::in_memory(bytes, name).unwrap().kind();
+        // Headers of more than `DETECT_BYTES`.
+        let head = "ply\nformat ascii 1.0\n".to_owned() + &"comment nothing\n".repeat(1000);
+        let with = |faces: &str| kind(format!("{head}{faces}end_header\n").as_bytes(), "a");
+        assert_eq!(with("element face 1\n"), Some(FileKind::PlyMesh));
+        assert_eq!(with("element face 0\n"), Some(FileKind::Ply));
         assert_eq!(kind(b"ply\nelement face 1\n", "a"), Some(FileKind::Ply));
-    }
-
-    #[test]
-    fn a_name_counts_for_a_binary_stl_that_was_cut_short() {
+        // A binary STL that was cut short.
         assert_eq!(kind(&[0; 90], "a.stl"), Some(FileKind::Stl));
         assert_eq!(kind(&[0; 90], "a"), None);
         assert_eq!(kind(b"VOX ", "a.stl"), Some(FileKind::Vox));
-    }
-
-    #[test]
-    fn a_file_built_of_a_mesh_is_neither_voxels_nor_a_mesh() {
-        let file = SceneFile::in_memory(b"\x89FAR\r\n\x1a\n", "a.far").unwrap();
-        assert_eq!(file.kind(), Some(FileKind::Far));
-        let refused = file.read_voxels(&ReadOptions::default(), &mut |_| (), &crate::graph::Silent);
+        let far = SceneFile::in_memory(b"\x89FAR\r\n\x1a\n", "a.far").unwrap();
+        let refused = far.read_voxels(&ReadOptions::default(), &mut |_| (), &crate::graph::Silent);
         assert!(matches!(refused, Err(SceneError::BuiltOfMesh { .. })));
     }
 }

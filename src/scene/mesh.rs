@@ -11,7 +11,6 @@ use crate::graph::{Graph, MeshBox, Progress, Voxel};
 
 #[derive(Debug)]
 pub struct MeshFile {
-    /// In error messages.
     pub name: String,
     pub kind: FileKind,
     pub bytes: Vec<u8>,
@@ -20,7 +19,6 @@ pub struct MeshFile {
 }
 
 pub trait MeshReader: Sync {
-    /// Fails if the file is damaged or cannot be voxelised, or without a reader.
     fn read(
         &self,
         file: MeshFile,

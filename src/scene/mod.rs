@@ -1,8 +1,7 @@
 //! Importers and exporters of voxel files.
 //!
-//! Importers pass voxels to a sink one by one, so only the sink's memory grows with their number. (A `.vox` file is
-//! held whole in addition.) File coordinates are kept: voxel `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)`, Z up,
-//! and colours are sRGB as stored. [`FORMATS`] is the table of formats.
+//! Importers pass voxels to a sink one by one. File coordinates are kept: voxel `(i, j, k)` fills
+//! `[i, i+1) x [j, j+1) x [k, k+1)`, Z up, and colours are sRGB as stored. [`FORMATS`] is the table of formats.
 
 use std::path::Path;
 

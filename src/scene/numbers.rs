@@ -47,7 +47,6 @@ impl Scalar {
             Self::I16 => Number::Whole((bits as i16).into()),
             Self::I32 => Number::Whole((bits as i32).into()),
             Self::U8 | Self::U16 | Self::U32 | Self::I64 => Number::Whole(bits as i64),
-            // Too large to be an index.
             Self::U64 => i64::try_from(bits).map_or(Number::Real(bits as f64), Number::Whole),
             Self::F32 => Number::Real(f32::from_bits(bits as u32).into()),
             Self::F64 => Number::Real(f64::from_bits(bits)),
@@ -68,7 +67,6 @@ impl Number {
     pub fn whole(self) -> Option<i64> {
         match self {
             Self::Whole(n) => Some(n),
-            // Below 2^53 the casts are exact.
             Self::Real(x) => {
                 let whole = x as i64;
                 (whole as f64 == x && x.abs() < 9_007_199_254_740_992.0).then_some(whole)
@@ -94,27 +92,10 @@ impl Number {
     }
 
     pub(super) fn parse(word: &[u8]) -> Option<Self> {
-        if let Some(whole) = parse_short(word) {
-            return Some(Self::Whole(whole));
-        }
         let text = std::str::from_utf8(word).ok()?;
         let whole = text.parse().map(Self::Whole);
         whole.or_else(|_| text.parse().map(Self::Real)).ok()
     }
-}
-
-/// A whole number of up to 18 digits, as nearly all are.
-#[inline]
-fn parse_short(word: &[u8]) -> Option<i64> {
-    let (digits, sign) = match word {
-        [b'-', digits @ ..] => (digits, -1),
-        digits => (digits, 1),
-    };
-    if digits.is_empty() || digits.len() > 18 {
-        return None;
-    }
-    let digit = |sum: i64, d: &u8| d.is_ascii_digit().then(|| 10 * sum + i64::from(d - b'0'));
-    digits.iter().try_fold(0, digit).map(|sum| sign * sum)
 }
 
 impl fmt::Display for Number {

@@ -18,8 +18,7 @@ pub enum OutOfBounds {
 pub struct ReadOptions {
     /// Voxels outside `SIZE`; only `.vox` has them.
     pub oob: OutOfBounds,
-    /// Most voxels, with those at one index counted each. More are an error, before the first voxel is passed on if
-    /// the file states their number.
+    /// Most voxels, with those at one index counted each. More are an error.
     pub most_voxels: u64,
 }
 
@@ -37,7 +36,6 @@ pub struct SceneInfo {
     /// Voxels passed on; several at one index count each, a model with several equal placements once.
     pub voxels: u64,
     pub stored_voxels: u64,
-    /// Lowest and highest index, both inclusive.
     pub bounds: Option<([i32; 3], [i32; 3])>,
     pub models: u32,
     pub nodes: u32,

@@ -5,16 +5,13 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use shiftvox::graph::{
-    BuildError, BuildOptions, Builder, ExternalBuilder, ExternalError, ExternalOptions,
-    ExternalReport, Normals, Silent, Voxel, vxg,
+    BuildError, BuildOptions, ExternalBuilder, ExternalError, ExternalOptions, ExternalReport,
+    Normals, Silent, Voxel,
 };
 use shiftvox::picture::npy::{Array, Values, encode};
-use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{self, BuiltFile, NoMeshes, OpenError, OpenOptions, Source};
 
-use crate::voxels;
-
-const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
+use crate::{PLACE, at, build_with, bytes_of, generated, voxels};
 
 fn options(memory: u64, normals: Normals, temporary: &Path) -> ExternalOptions {
     ExternalOptions {
@@ -36,20 +33,13 @@ fn external(voxels: &[Voxel], memory: u64, normals: Normals) -> (Vec<u8>, Extern
 }
 
 fn in_memory(voxels: &[Voxel], normals: Normals) -> Vec<u8> {
-    let mut builder = Builder::new(BuildOptions { normals });
-    builder.extend(voxels.iter().copied());
-    let graph = builder.finish(PLACE, &Silent).unwrap();
-    let mut bytes = Vec::new();
-    vxg::write_to(&graph, &mut bytes).unwrap();
-    bytes
+    bytes_of(&build_with(normals, voxels.iter().copied()))
 }
 
 /// The first place where two files differ.
 fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
-    if a.len() != b.len() {
-        return Some(a.len().min(b.len()));
-    }
-    a.iter().zip(b).position(|(a, b)| a != b)
+    let first = a.iter().zip(b).position(|(a, b)| a != b);
+    first.or((a.len() != b.len()).then_some(a.len().min(b.len())))
 }
 
 /// Memory from nothing, for runs of two voxels, to more than enough.
@@ -73,32 +63,31 @@ proptest! {
 /// Solids, walls, wires and hills, cut in blocks of one cluster and more.
 #[test]
 fn generated_scenes_are_the_same_in_any_memory() {
-    let scenes = [
-        "gen:terrain,depth=7",
-        "gen:sphere,depth=6",
-        "gen:menger,depth=3",
-        "gen:wires,depth=5",
-        "gen:random,depth=5,density=30",
-    ];
-    for scene in scenes {
-        let spec = Spec::parse(scene).unwrap();
-        let mut voxels = Vec::new();
-        spec.voxels(&mut |voxel| voxels.push(voxel), &Silent);
+    const SOME: &[u64] = &[2000, 40_000, 400_000, 4 << 20, 64 << 20];
+    for (scene, memory) in [
+        ("gen:terrain,depth=7", SOME),
+        ("gen:sphere,depth=6", SOME),
+        ("gen:menger,depth=3", SOME),
+        ("gen:wires,depth=5", SOME),
+        ("gen:random,depth=5,density=30", SOME),
+        // So large that work is split below the level of whole clusters.
+        ("gen:shell,depth=8", &[8 << 20]),
+    ] {
+        let voxels = generated(scene);
         // From the far end, so that the lowest corner comes last.
         let reversed: Vec<Voxel> = voxels.iter().rev().copied().collect();
         let expected = in_memory(&voxels, Normals::FromSurface);
-        let mut runs = Vec::new();
-        for memory in [2000, 40_000, 400_000, 4 << 20, 64 << 20] {
+        for &memory in memory {
             for order in [&voxels, &reversed] {
                 let (file, report) = external(order, memory, Normals::FromSurface);
                 assert_eq!(difference(&file, &expected), None, "{scene}, {memory}");
-                runs.push(report.runs);
                 // A run's records take 16 bytes, and are written before the levels.
                 assert!(report.temporary_written >= report.temporary_bytes);
                 assert!(report.runs == 1 || report.temporary_bytes >= 16 * report.voxels);
+                assert!(report.runs > 50 || memory > 2000);
+                assert!(report.runs == 1 || memory < 64 << 20);
             }
         }
-        assert!(runs[0] > 50 && runs.ends_with(&[1, 1]), "{scene}: {runs:?}");
     }
 }
 
@@ -106,60 +95,37 @@ fn generated_scenes_are_the_same_in_any_memory() {
 fn what_cannot_be_built_leaves_nothing_behind() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.vxg");
-    let builder = || ExternalBuilder::new(options(0, Normals::FromSurface, folder.path()));
-    let at = |x: i32| Voxel {
-        index: [x, 0, 0],
-        ..Voxel::default()
-    };
-    let refused = builder().finish(PLACE, &path, true, &Silent).unwrap_err();
-    assert!(matches!(refused, ExternalError::Build(BuildError::Empty)));
-
-    let mut wide = builder();
-    (0..100).for_each(|x| wide.push(at(x * 40_000)));
-    let refused = wide.finish(PLACE, &path, true, &Silent).unwrap_err();
-    let found = matches!(
-        refused,
-        ExternalError::Build(BuildError::TooLarge { axis: 'x', .. })
-    );
-    assert!(found, "{refused}");
-
-    let mut flat = builder();
-    flat.push(at(1));
-    let place = ([0.0; 3], 0.0);
-    let refused = flat.finish(place, &path, true, &Silent).unwrap_err();
-    assert!(matches!(
-        refused,
-        ExternalError::Build(BuildError::Placement)
-    ));
-
     fs::write(&path, b"precious").unwrap();
-    let mut second = builder();
-    (0..100).for_each(|x| second.push(at(x)));
-    let refused = second.finish(PLACE, &path, false, &Silent).unwrap_err();
-    assert!(matches!(refused, ExternalError::Write(_)), "{refused}");
-    assert_eq!(fs::read(&path).unwrap(), b"precious");
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-
-    let nowhere = options(0, Normals::None, &folder.path().join("no/folder"));
-    let mut lost = ExternalBuilder::new(nowhere);
-    (0..100).for_each(|x| lost.push(at(x)));
-    assert_eq!(lost.len(), 100);
-    let refused = lost.finish(PLACE, &path, true, &Silent).unwrap_err();
-    assert!(
-        matches!(refused, ExternalError::Temporary { .. }),
-        "{refused}"
-    );
-    assert!(refused.to_string().contains("no/folder"), "{refused}");
-    assert_eq!(fs::read(&path).unwrap(), b"precious");
+    let nowhere = folder.path().join("no/folder");
+    let refused = |step: i32, count: i32, size: f64, overwrite, temporary: &Path| {
+        let mut builder = ExternalBuilder::new(options(0, Normals::FromSurface, temporary));
+        (0..count).for_each(|x| builder.push(at([x * step, 0, 0])));
+        assert_eq!(builder.len(), count as u64);
+        let refused = builder.finish(([0.0; 3], size), &path, overwrite, &Silent);
+        assert_eq!(fs::read(&path).unwrap(), b"precious");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        refused.unwrap_err()
+    };
+    use ExternalError::{Build, Temporary, Write};
+    let here = folder.path();
+    let empty = refused(1, 0, 1.0, true, here);
+    assert!(matches!(empty, Build(BuildError::Empty)), "{empty}");
+    let wide = refused(40_000, 100, 1.0, true, here);
+    let is_wide = matches!(wide, Build(BuildError::TooLarge { axis: 'x', .. }));
+    assert!(is_wide, "{wide}");
+    let flat = refused(1, 1, 0.0, true, here);
+    assert!(matches!(flat, Build(BuildError::Placement)), "{flat}");
+    let second = refused(1, 100, 1.0, false, here);
+    assert!(matches!(second, Write(_)), "{second}");
+    let lost = refused(1, 100, 1.0, true, &nowhere);
+    let is_named = lost.to_string().contains("no/folder");
+    assert!(is_named && matches!(lost, Temporary { .. }), "{lost}");
 }
 
-fn build_file(
-    source: &str,
-    external: ExternalOptions,
-    output: &Path,
-) -> Result<BuiltFile, OpenError> {
+fn build_file(source: &str, memory: u64, output: &Path) -> Result<BuiltFile, OpenError> {
     let found = Source::find(source)?;
     let reading = OpenOptions::default();
+    let external = options(memory, Normals::FromSurface, output.parent().unwrap());
     scene::build_file(found, &reading, &NoMeshes, external, output, true, &Silent)
 }
 
@@ -167,11 +133,8 @@ fn build_file(
 #[test]
 fn files_of_every_format_are_built_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    let ply = folder.path().join("scene.ply");
-    let npy = folder.path().join("scene.npy");
-    let spec = Spec::parse("gen:terrain,depth=6").unwrap();
-    let mut voxels = Vec::new();
-    spec.voxels(&mut |voxel| voxels.push(voxel), &Silent);
+    let [ply, npy, path] = ["scene.ply", "scene.npy", "out.vxg"].map(|n| folder.path().join(n));
+    let voxels = generated("gen:terrain,depth=6");
     let mut out = fs::File::create(&ply).unwrap();
     scene::write_ply(&mut out, voxels.iter().copied(), true).unwrap();
     let indices = voxels.iter().flat_map(|voxel| voxel.index).collect();
@@ -182,46 +145,28 @@ fn files_of_every_format_are_built_the_same() {
     fs::write(&npy, encode(&array)).unwrap();
 
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    let mut sources: Vec<String> = [ply, npy, data.join("sphere.vox"), data.join("extended.vox")]
-        .map(|path| path.to_str().unwrap().to_owned())
-        .into();
-    sources.push("gen:wires,depth=4".to_owned());
-    sources.push("gen:sierpinski,depth=20".to_owned());
-    for source in sources {
+    let files = [ply, npy, data.join("sphere.vox"), data.join("extended.vox")];
+    let files = files.iter().map(|path| path.to_str().unwrap());
+    for source in files.chain(["gen:wires,depth=4", "gen:sierpinski,depth=20"]) {
         let reading = OpenOptions::default();
-        let opened = scene::open(&source, &reading, &NoMeshes, &Silent).unwrap();
-        let mut expected = Vec::new();
-        vxg::write_to(&opened.graph, &mut expected).unwrap();
-        let path = folder.path().join("out.vxg");
-        let external = options(10_000, Normals::FromSurface, folder.path());
-        let built = build_file(&source, external, &path).unwrap();
+        let opened = scene::open(source, &reading, &NoMeshes, &Silent).unwrap();
+        let built = build_file(source, 10_000, &path).unwrap();
         let file = fs::read(&path).unwrap();
+        let expected = bytes_of(&opened.graph);
         assert_eq!(difference(&file, &expected), None, "{source}");
+        let counts = (built.voxels, built.bytes, built.info);
         assert_eq!(
-            (built.voxels, built.bytes),
-            (opened.graph.voxels, file.len() as u64)
+            counts,
+            (opened.graph.voxels, file.len() as u64, opened.info)
         );
-        assert_eq!(built.info, opened.info);
     }
     // A graph is no list of voxels.
-    let path = folder.path().join("again.vxg");
-    let source = folder.path().join("out.vxg");
-    let external = options(10_000, Normals::FromSurface, folder.path());
-    let refused = build_file(source.to_str().unwrap(), external, &path);
+    let again = folder.path().join("again.vxg");
+    let refused = build_file(path.to_str().unwrap(), 10_000, &again);
     assert!(refused.unwrap_err().to_string().contains(".vxg graph"));
-}
-
-/// A scene of more nodes than 32 bits can number is rejected at once.
-#[test]
-fn scenes_beyond_all_numbers_are_refused_at_once() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("out.vxg");
-    let external = options(64 << 20, Normals::FromSurface, folder.path());
-    let source = "gen:menger,depth=8";
-    let refused = build_file(source, external, &path).unwrap_err();
-    assert!(
-        refused.is_limit() && refused.to_string().contains("25600000000"),
-        "{refused}"
-    );
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    // A scene of more nodes than 32 bits can number is rejected at once.
+    let refused = build_file("gen:menger,depth=8", 64 << 20, &again).unwrap_err();
+    let told = refused.to_string();
+    assert!(refused.is_limit() && told.contains("25600000000"), "{told}");
+    assert!(!again.exists());
 }

@@ -2,12 +2,55 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod external;
+mod normals;
 mod properties;
 mod scale;
+#[path = "../../crates/mesh/tests/sealed/seal.rs"]
+#[allow(dead_code, reason = "other formats, too")]
+mod seal;
 mod vxg;
 
 use proptest::prelude::*;
-use shiftvox::graph::{Graph, PackedNormal, Voxel};
+use shiftvox::graph::{
+    BuildOptions, Builder, Graph, Normals, PackedNormal, Silent, Voxel, vxg as file,
+};
+use shiftvox::scene::generate::Spec;
+
+/// World origin and size of a voxel.
+const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
+
+fn build_with(normals: Normals, voxels: impl IntoIterator<Item = Voxel>) -> Graph {
+    let mut builder = Builder::new(BuildOptions { normals });
+    builder.extend(voxels);
+    let graph = builder.finish(PLACE, &Silent).unwrap();
+    graph.validate().unwrap();
+    graph
+}
+
+fn build(voxels: &[Voxel]) -> Graph {
+    build_with(Normals::FromSurface, voxels.iter().copied())
+}
+
+fn at(index: [i32; 3]) -> Voxel {
+    Voxel {
+        index,
+        color: index.map(|c| c.wrapping_mul(37) as u8),
+        normal: None,
+    }
+}
+
+fn generated(spec: &str) -> Vec<Voxel> {
+    let mut voxels = Vec::new();
+    let spec = Spec::parse(spec).unwrap();
+    spec.voxels(&mut |voxel| voxels.push(voxel), &Silent);
+    voxels
+}
+
+fn bytes_of(graph: &Graph) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    file::write_to(graph, &mut bytes).unwrap();
+    bytes
+}
 
 /// Clusters and strays, with repeated indices, a few colours, some normals.
 fn voxels(most: usize) -> impl Strategy<Value = Vec<Voxel>> {
@@ -28,18 +71,18 @@ fn voxels(most: usize) -> impl Strategy<Value = Vec<Voxel>> {
 
 /// All that makes a graph, to be compared.
 fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
+    let numbers = (graph.depth, graph.root, graph.voxels, graph.placement);
+    let shape = [&graph.first, &graph.links].map(|numbers| numbers.to_vec());
+    let attributes = (
+        graph.color.to_vec(),
+        graph.normal.to_vec(),
+        graph.opacity.to_vec(),
+    );
     (
-        (graph.depth, graph.root, graph.voxels, graph.placement),
-        (
-            graph.mask.to_vec(),
-            graph.first.to_vec(),
-            graph.links.to_vec(),
-        ),
-        (
-            graph.color.to_vec(),
-            graph.normal.to_vec(),
-            graph.opacity.to_vec(),
-        ),
+        numbers,
+        graph.mask.to_vec(),
+        shape,
+        attributes,
         graph.level_start.clone(),
     )
 }

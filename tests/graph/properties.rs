@@ -2,38 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::graph::{
     BuildError, BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Normals, PackedNormal, Silent,
     Voxel, merge,
 };
-
 use shiftvox::split_mix::SplitMix;
 
-use crate::{parts, voxels};
-
-const PLACE: ([f64; 3], f64) = ([0.0; 3], 1.0);
-
-fn build_with(normals: Normals, voxels: &[Voxel]) -> Graph {
-    let mut builder = Builder::new(BuildOptions { normals });
-    builder.extend(voxels.iter().copied());
-    let graph = builder.finish(PLACE, &Silent).unwrap();
-    graph.validate().unwrap();
-    graph
-}
-
-fn build(voxels: &[Voxel]) -> Graph {
-    build_with(Normals::FromSurface, voxels)
-}
-
-fn at(index: [i32; 3]) -> Voxel {
-    Voxel {
-        index,
-        color: [200, 100, 50],
-        normal: None,
-    }
-}
+use crate::normals::solid;
+use crate::{PLACE, at, build, build_with, parts, voxels};
 
 /// Colour and normal of each index, found by walking.
 fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
@@ -46,11 +23,36 @@ fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
     seen
 }
 
-fn last_by_index(voxels: &[Voxel]) -> BTreeMap<[i64; 3], Voxel> {
-    voxels
-        .iter()
-        .map(|v| (v.index.map(i64::from), *v))
+/// Corner, level and colour of each cell, in order.
+fn cells(graph: &Graph) -> Vec<([i32; 3], u32, [u8; 3])> {
+    let cells = graph.voxels();
+    { cells }
+        .map(|c| (c.corner, c.level, graph.color_of(c.node)))
         .collect()
+}
+
+fn last_by_index(voxels: &[Voxel]) -> BTreeMap<[i64; 3], Voxel> {
+    let by_index = voxels.iter().map(|v| (v.index.map(i64::from), *v));
+    by_index.collect()
+}
+
+/// Every node is at the place where a walk meets it.
+fn check_places(graph: &Graph) {
+    let mut met = 0;
+    let mut stack = vec![(graph.root, [0i32; 3], 0u32)];
+    while let Some((node, corner, level)) = stack.pop() {
+        let [x, y, z] = corner;
+        assert_eq!(graph.place_of(node), Some([x, y, z, level as i32]));
+        met += 1;
+        for (octant, child) in graph.children(node).into_iter().enumerate() {
+            let side = 1 << (graph.depth - level - u32::from(child.is_some()));
+            let along = [0, 1, 2].map(|k| corner[k] + side * (octant as i32 >> (2 - k) & 1));
+            stack.extend(child.map(|child| (child, along, level + 1)));
+        }
+    }
+    assert_eq!(met, graph.len());
+    let beyond = [graph.len() as u32, u32::MAX].map(|node| graph.place_of(node));
+    assert_eq!(beyond, [None; 2]);
 }
 
 proptest! {
@@ -59,13 +61,13 @@ proptest! {
     #[test]
     fn a_graph_holds_its_voxels(voxels in voxels(200)) {
         let all = last_by_index(&voxels);
-        let graph = build_with(Normals::None, &voxels);
+        let graph = build_with(Normals::None, voxels.iter().copied());
         let shown = |v: &Voxel| (v.color, v.normal.unwrap_or_default());
         let expected: BTreeMap<_, _> = all.iter().map(|(index, v)| (*index, shown(v))).collect();
         prop_assert_eq!(graph.voxels, expected.len() as u64);
         prop_assert_eq!(seen(&graph), expected);
-        let with_normals = build(&voxels);
-        for (index, (_, normal)) in seen(&with_normals) {
+        check_places(&graph);
+        for (index, (_, normal)) in seen(&build(&voxels)) {
             prop_assert!(all[&index].normal.is_none_or(|own| own == normal));
         }
         // Octants from the root down, as the order defines.
@@ -115,6 +117,7 @@ proptest! {
         prop_assert_eq!(parts(&again), parts(&merged));
         let mut unordered = graph.clone();
         unordered.level_start.clear();
+        prop_assert_eq!(unordered.nodes_per_level(), graph.nodes_per_level());
         let (general, _) = merge(&unordered, MergeBy::ShapeAndAttributes, &Silent);
         let (shape, _) = merge(&graph, MergeBy::Shape, &Silent);
         general.validate().unwrap();
@@ -122,204 +125,39 @@ proptest! {
         prop_assert_eq!(seen(&general), seen(&graph));
         prop_assert!(general.len() <= merged.len() && shape.len() <= merged.len());
         prop_assert!(seen(&shape).keys().eq(seen(&graph).keys()));
+        // The places of nodes that may be in several are not known.
+        prop_assert!(graph.len() < 3 || unordered.place_of(1).or(merged.place_of(0)).is_none());
     }
 }
 
 #[test]
-fn averages_are_over_finest_voxels_in_linear_light() {
-    // Three white voxels in one octant, one black in another: 3/4 of the light.
-    let white = [[0, 0, 0], [0, 0, 1], [0, 1, 0]];
-    let mut voxels: Vec<Voxel> = white
-        .map(|index| Voxel {
-            index,
-            color: [255; 3],
-            normal: Some(PackedNormal::encode(DVec3::X)),
-        })
-        .to_vec();
-    voxels.push(Voxel {
-        index: [3, 3, 3],
-        color: [0; 3],
-        normal: Some(PackedNormal::encode(DVec3::Y)),
-    });
-    let graph = build(&voxels);
-    assert_eq!(graph.level_start, [0, 1, 3, 7]);
-    // 0.75 encodes to 0.88 of 255.
-    assert_eq!(graph.color_of(0), [225; 3]);
-    let normal = graph.normal_of(0).decode().unwrap();
-    assert!(normal.dot(DVec3::new(3.0, 1.0, 0.0).normalize()) > 0.999);
-    assert_eq!(graph.color_of(1), [255; 3]);
-    assert_eq!(graph.color_of(2), [0; 3]);
-}
-
-#[test]
-fn one_voxel_is_a_root_without_children() {
-    let graph = build(&[at([i32::MIN, 7, i32::MAX])]);
-    assert_eq!((graph.depth, graph.len(), graph.voxels), (0, 1, 1));
-    assert!(graph.mask.is_empty() && graph.first.is_empty());
+fn boxes_of_one_voxel_and_of_the_longest_side() {
+    let one = build(&[at([i32::MIN, 7, i32::MAX])]);
+    assert_eq!((one.depth, one.len(), one.mask.len()), (0, 1, 0));
     assert_eq!(
-        graph.placement.origin_index,
+        one.placement.origin_index,
         [i64::from(i32::MIN), 7, i64::from(i32::MAX)]
     );
-    assert_eq!(graph.voxels().count(), 1);
-    let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-    merged.validate().unwrap();
-    assert_eq!(seen(&merged), seen(&graph));
-}
-
-#[test]
-fn the_longest_box_is_built_and_a_longer_one_is_refused() {
     let far = (1 << 21) - 1;
     let graph = build(&[at([-5, 0, 0]), at([far - 5, 0, 3])]);
-    assert_eq!(graph.depth, 21);
-    assert_eq!(graph.voxels, 2);
-
-    let mut builder = Builder::new(BuildOptions::default());
-    builder.extend([at([0, 0, -1]), at([0, 0, far])]);
-    let refused = builder.finish(PLACE, &Silent).unwrap_err();
-    assert_eq!(
-        refused,
-        BuildError::TooLarge {
-            axis: 'z',
-            extent: (1 << 21) + 1
-        }
-    );
-
-    let empty = Builder::new(BuildOptions::default()).finish(PLACE, &Silent);
-    assert_eq!(empty.unwrap_err(), BuildError::Empty);
-    let mut builder = Builder::new(BuildOptions::default());
-    builder.push(at([0; 3]));
-    assert_eq!(
-        builder.finish(([0.0; 3], 0.0), &Silent).unwrap_err(),
-        BuildError::Placement
-    );
+    assert_eq!((graph.depth, graph.voxels), (21, 2));
+    let refused = |voxels: &[Voxel], place| {
+        let mut builder = Builder::new(BuildOptions::default());
+        builder.extend(voxels.iter().copied());
+        builder.finish(place, &Silent).unwrap_err()
+    };
+    let (axis, extent) = ('z', (1 << 21) + 1);
+    let wide = refused(&[at([0, 0, -1]), at([0, 0, far])], PLACE);
+    assert_eq!(wide, BuildError::TooLarge { axis, extent });
+    assert_eq!(refused(&[], PLACE), BuildError::Empty);
+    let flat = refused(&[at([0; 3])], ([0.0; 3], 0.0));
+    assert_eq!(flat, BuildError::Placement);
 }
 
-/// All indices of a cube for which a test holds.
-fn solid(side: i32, inside: impl Fn(DVec3) -> bool) -> Vec<Voxel> {
-    let mut voxels = Vec::new();
-    for i in 0..side * side * side {
-        let index = [i / side / side, i / side % side, i % side];
-        if inside(DVec3::from_array(index.map(|c| f64::from(c) + 0.5))) {
-            voxels.push(at(index));
-        }
-    }
-    voxels
-}
-
+/// Random graphs, some of them cyclic, have the same cells and colours when equal nodes are merged, and when their lists
+/// lie side by side. A node is where `links` had it.
 #[test]
-fn normals_of_a_ball_point_outwards() {
-    let middle = DVec3::splat(25.0);
-    let distance = |p: DVec3| (p - middle).length();
-    let ball = solid(50, |p| distance(p) < 22.0);
-    let shell = solid(50, |p| (21.0..22.0).contains(&distance(p)));
-    for (name, voxels, mean_limit, worst_limit) in
-        [("ball", ball, 4.0, 12.0), ("shell", shell, 4.0, 40.0)]
-    {
-        let graph = build(&voxels);
-        let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0.0);
-        for cell in graph.voxels() {
-            let index = graph.file_index(&cell).map(|c| c as f64 + 0.5);
-            let outward = DVec3::from_array(index) - middle;
-            if outward.length() < 21.0 {
-                continue;
-            }
-            // Voxels that cannot be seen have none.
-            let Some(normal) = graph.normal_of(cell.node).decode() else {
-                continue;
-            };
-            let degrees = libm::acos(normal.dot(outward.normalize()).min(1.0)).to_degrees();
-            sum += degrees;
-            count += 1.0;
-            worst = worst.max(degrees);
-        }
-        assert!(count > 4500.0, "{name}: only {count} normals");
-        assert!(sum / count < mean_limit, "{name}: mean {}", sum / count);
-        assert!(worst < worst_limit, "{name}: worst {worst}");
-    }
-}
-
-#[test]
-fn normals_of_faces_walls_and_edges() {
-    // A block: faces, an edge, a corner, and nothing inside.
-    let block = build(&solid(12, |_| true));
-    let normal = |graph: &Graph, index: [i64; 3]| seen(graph)[&index].1.decode();
-    assert_eq!(normal(&block, [0, 6, 6]), Some(DVec3::NEG_X));
-    assert_eq!(normal(&block, [6, 11, 6]), Some(DVec3::Y));
-    assert_eq!(normal(&block, [6, 6, 6]), None);
-    let corner = normal(&block, [11, 11, 11]).unwrap();
-    assert!(corner.dot(DVec3::ONE.normalize()) > 0.999);
-    // A concave edge.
-    let step = build(&solid(12, |p| p.x < 6.0 || p.z < 6.0));
-    let concave = normal(&step, [5, 6, 6]).unwrap();
-    assert!(
-        concave.x > 0.5 && concave.z > 0.1 && concave.y == 0.0,
-        "{concave}"
-    );
-    // A wall one voxel thick has the normal of its plane, slanted ones too.
-    let wall = build(&solid(16, |p| p.z < 1.0));
-    assert_eq!(normal(&wall, [8, 8, 0]).map(|n| n.abs()), Some(DVec3::Z));
-    let plane = DVec3::new(1.0, 2.0, 4.0);
-    let slanted = build(&solid(32, |p| (p.dot(plane) / 4.0 - 24.0).abs() <= 0.5));
-    for (index, (_, normal)) in seen(&slanted) {
-        if index.iter().all(|&c| (3..29).contains(&c)) {
-            let likeness = normal.decode().unwrap().dot(plane.normalize()).abs();
-            assert!(likeness > 0.97, "{index:?}: {likeness}");
-        }
-    }
-    // A voxel alone has none.
-    let lone = build(&[at([0, 0, 0]), at([100, 0, 0])]);
-    assert!(seen(&lone).values().all(|(_, normal)| normal.is_none()));
-}
-
-#[test]
-fn normals_are_the_same_wherever_the_object_lies() {
-    // Clusters fall differently over the object as it moves by a voxel.
-    let ball = solid(21, |p| (p - DVec3::splat(10.0)).length() < 9.3);
-    let plain = build(&ball);
-    for shift in 1..4 {
-        // A stray voxel fixes the box, far enough away to have no say.
-        let mut moved: Vec<Voxel> = ball.clone();
-        moved.push(at([-8 - shift, -8, -8]));
-        let graph = build(&moved);
-        let moved = seen(&graph);
-        for (index, (_, normal)) in seen(&plain) {
-            let (a, b) = (normal.decode(), moved[&index].1.decode());
-            match (a, b) {
-                (Some(a), Some(b)) => assert!(a.dot(b) > 0.95, "{index:?}: {a} {b}"),
-                _ => assert_eq!(a, b, "{index:?}"),
-            }
-        }
-    }
-}
-
-fn sierpinski(depth: u32) -> Graph {
-    let mut graph = LinkedGraph::new(depth);
-    let own = Some(0);
-    graph.add_node([9, 8, 7], [own, None, None, own, None, own, own, None]);
-    let graph = graph.build().unwrap();
-    graph.validate().unwrap();
-    graph
-}
-
-#[test]
-fn a_sierpinski_tetrahedron_is_one_node() {
-    let graph = sierpinski(4);
-    assert_eq!((graph.len(), graph.voxels), (1, 256));
-    let cells: Vec<_> = graph.voxels().collect();
-    assert_eq!(cells.len(), 256);
-    for cell in cells {
-        // Its voxels have an even number of ones in each bit of x, y, z.
-        assert_eq!(cell.corner[0] ^ cell.corner[1] ^ cell.corner[2], 0);
-    }
-    assert_eq!(graph.nodes_per_level(), [1; 5]);
-    assert_eq!(sierpinski(30).voxels, 1 << 60);
-    assert_eq!(sierpinski(30).voxels().take(1000).count(), 1000);
-}
-
-/// Random graphs, some of them cyclic, have the same cells and colours when their lists lie side by side. A node is
-/// where `links` had it.
-#[test]
-fn lists_side_by_side_are_the_same_object() {
+fn cyclic_graphs_merged_and_side_by_side_are_the_same_object() {
     for seed in 1..60u64 {
         let mut dice = SplitMix::new(seed);
         let mut below = |most: u64| dice.below(most);
@@ -328,69 +166,56 @@ fn lists_side_by_side_are_the_same_object() {
         for node in 0..nodes {
             let children =
                 std::array::from_fn(|_| (below(3) == 0).then(|| below(u64::from(nodes)) as u32));
-            linked.add_node([node as u8, 0, 0], children);
+            linked.add_node([node as u8 / 2, 0, 0], children);
         }
         let linked = linked.build().unwrap();
+        let (merged, _) = merge(&linked, MergeBy::ShapeAndAttributes, &Silent);
         let laid_out = linked.side_by_side().unwrap();
-        laid_out.validate().unwrap();
+        for same in [&merged, &laid_out] {
+            same.validate().unwrap();
+            assert_eq!(cells(same), cells(&linked));
+            // Solid leaves fill their cube: the count is of finest voxels.
+            let finest = cells(same)
+                .iter()
+                .map(|(_, level, _)| 1 << (3 * (3 - level)))
+                .sum();
+            assert_eq!((same.voxels, linked.voxels), (finest, finest));
+        }
         assert_eq!(laid_out.len(), 1 + linked.links.len());
-        assert_eq!(laid_out.voxels, linked.voxels);
-        assert_eq!(laid_out.voxels().count(), linked.voxels().count());
         for (expected, found) in linked.voxels().zip(laid_out.voxels()) {
-            assert_eq!(
-                (found.corner, found.level),
-                (expected.corner, expected.level)
-            );
             let node = match found.node as usize {
                 0 => linked.root,
                 at => linked.links[at - 1],
             };
             assert_eq!(node, expected.node);
-            assert_eq!(laid_out.color_of(found.node), linked.color_of(node));
         }
     }
 }
 
 #[test]
-fn equal_nodes_of_cyclic_graphs_merge() {
+fn equal_nodes_merge() {
     // Two nodes that take turns, with equal colours: one node would do.
     let mut graph = LinkedGraph::new(6);
-    graph.add_node(
-        [1; 3],
-        [Some(1), None, None, Some(1), None, None, None, Some(2)],
-    );
-    graph.add_node(
-        [1; 3],
-        [Some(0), None, None, Some(0), None, None, None, Some(2)],
-    );
+    for other in [Some(1), Some(0)] {
+        graph.add_node(
+            [1; 3],
+            [other, None, None, other, None, None, None, Some(2)],
+        );
+    }
     graph.add_node([5; 3], [None; 8]);
     let graph = graph.build().unwrap();
-    graph.validate().unwrap();
     let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+    assert_eq!(
+        (report.nodes_before, report.nodes_after, report.gain()),
+        (3, 2, 1.5)
+    );
+    assert_eq!(cells(&merged), cells(&graph));
+    // A full cube needs a node per level.
+    let mut cube = solid(16, |_| true);
+    cube.iter_mut().for_each(|voxel| voxel.color = [7; 3]);
+    let graph = build_with(Normals::None, cube);
+    let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
     merged.validate().unwrap();
-    assert_eq!((report.nodes_before, report.nodes_after), (3, 2));
-    let corners = |graph: &Graph| -> Vec<_> {
-        graph
-            .voxels()
-            .map(|c| (c.corner, c.level, graph.color_of(c.node)))
-            .collect()
-    };
-    assert_eq!(corners(&merged), corners(&graph));
-    // Solid leaves fill their cube: the count is of finest voxels.
-    assert_eq!(merged.voxels, graph.voxels);
-    let finest: u64 = graph
-        .voxels()
-        .map(|c| 1 << (3 * (graph.depth - c.level)))
-        .sum();
-    assert_eq!(finest, graph.voxels);
-}
-
-#[test]
-fn a_full_cube_merges_to_a_node_a_level() {
-    let graph = build_with(Normals::None, &solid(16, |_| true));
-    let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-    merged.validate().unwrap();
-    assert_eq!(report.nodes_after, 5);
     assert_eq!(merged.level_start, [0, 1, 2, 3, 4, 5]);
     assert_eq!(merged.voxels, 4096);
 }
@@ -425,13 +250,17 @@ fn validate_names_what_is_broken() {
     }
     let tree = build(&solid(6, |p| p.x + p.y < 6.0));
     let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
-    let breaks: [(&str, Break); 16] = [
+    let breaks: [(&str, Break); 20] = [
         ("depth", |g| g.depth = 31),
         ("root", |g| g.root = g.len() as u32),
         ("normal", |g| g.normal = g.normal[1..].to_vec().into()),
         ("color", |g| g.color = Vec::new().into()),
+        ("opacity", |g| g.opacity = vec![Default::default()].into()),
         ("voxels", |g| g.voxels += 1),
         ("voxel_size", |g| g.placement.voxel_size = f64::NAN),
+        ("voxel_size", |g| g.placement.voxel_size = 5e-324),
+        ("world_origin", |g| g.placement.world_origin[1] = 1e16),
+        ("world_origin", |g| g.placement.world_origin[2] = f64::NAN),
         ("placement", |g| g.placement.origin_index[1] = i64::MIN),
         ("level_start", |g| g.level_start[1] = 2),
         ("level_start", |g| *g.level_start.last_mut().unwrap() += 1),
@@ -450,9 +279,7 @@ fn validate_names_what_is_broken() {
         for (i, (array, change)) in breaks.iter().enumerate() {
             let mut broken = graph.clone();
             change(&mut broken);
-            let invalid = broken
-                .validate()
-                .expect_err(&format!("change {i} of {array}"));
+            let invalid = broken.validate().expect_err(array);
             assert_eq!(invalid.array, *array, "change {i}: {invalid}");
         }
     }
@@ -466,4 +293,9 @@ fn validate_names_what_is_broken() {
     links[3] = dag.len() as u32;
     broken.links = links.into();
     assert_eq!(broken.validate().unwrap_err().array, "links");
+    // Leaves above the finest level are drawn in parts.
+    let leaf = tree.level_start[1];
+    mask(&mut broken, |masks| masks[leaf as usize] = 0);
+    broken.links = Vec::new().into();
+    assert_eq!(broken.place_of(leaf), None);
 }

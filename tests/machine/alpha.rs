@@ -1,89 +1,52 @@
-//! The rule that blends: against a plain reference, by property, and its cost.
+//! The rule that blends, against a plain reference.
 
 use crate::common::*;
-use hwmodel::count::Counter;
-use hwmodel::{Memory, OpClass, Stage};
+use crate::scenes::*;
+use glam::DVec3;
 use proptest::prelude::*;
-use shiftvox::frame::{Blend, Frame, NO_NODE};
+use shiftvox::frame::{Blend, Frame};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
-use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions};
-
-fn alpha(lod_px: f64) -> SetupOptions {
-    SetupOptions {
-        lod_px,
-        ..SetupOptions::of(Coverage::Alpha)
-    }
-}
-
-fn draw_lit(graph: &Graph, light: &[[u16; 3]], setup: &FrameSetup) -> Frame {
-    let view = GraphView {
-        light,
-        ..graph.view()
-    };
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = Machine::default().render(&view, setup, &mut frame);
-    drawn.expect("no overflow");
-    frame
-}
-
-/// Where a ray enters and leaves the cube of side 1 at a corner.
-fn slabs(eye: [f64; 3], ray: [f64; 3], corner: [i64; 3]) -> (f64, f64) {
-    let (mut enter, mut leave) = (f64::MIN, f64::MAX);
-    for k in 0..3 {
-        let low = (corner[k] as f64 - eye[k]) / ray[k];
-        let high = (corner[k] as f64 + 1.0 - eye[k]) / ray[k];
-        enter = enter.max(low.min(high));
-        leave = leave.min(low.max(high));
-    }
-    (enter, leave)
-}
+use shiftvox::project::{Camera, Coverage, Engine, SetupOptions};
 
 /// The blend of a ray, nearest voxel first: `SPEC.md`, section 11, in products and quotients. `None`: it grazes one.
 fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -> Option<Blend> {
     let axes = camera.axes().expect("a camera");
     let across = at[0] - f64::from(camera.width) / 2.0;
     let down = at[1] - f64::from(camera.height) / 2.0;
-    let ray = (axes.forward * axes.focal_px + axes.right * across - axes.up * down).to_array();
-    let eye = camera.eye.to_array();
+    let ray = axes.forward * axes.focal_px + axes.right * across - axes.up * down;
     let mut met = Vec::new();
     for cell in graph.voxels() {
-        let corner = cell.corner.map(i64::from);
-        let (enter, leave) = slabs(eye, ray, corner);
+        let corner = DVec3::from_array(cell.corner.map(f64::from));
+        let [low, high] = [0.0, 1.0].map(|side| (corner + side - camera.eye) / ray);
+        let (enter, leave) = (low.min(high).max_element(), low.max(high).min_element());
         if (enter - leave).abs() < 1e-5 * leave.abs() {
             return None;
         }
         if enter < leave && leave > 0.0 {
-            met.push((enter, cell.node, corner));
+            met.push((enter, cell.node as usize, cell.corner.map(i64::from)));
         }
     }
     met.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let eye = camera.eye.to_array().map(|c| c.floor() as i64);
     let mut sample = Blend::default();
     for (_, node, corner) in met {
-        if sample.left == 0 {
-            break;
-        }
-        let eye = eye.map(|c| c.floor() as i64);
         let way = [0, 1, 2].map(|k| (corner[k] - eye[k]).abs());
         let all = way.iter().sum::<i64>().max(1);
         let nearest = |k: usize| (32 * way[k] / all + 1) / 2;
         let x = nearest(0);
         let y = nearest(1).min(16 - x);
-        let shares = [x, y, 16 - x - y];
-        let squares: f64 = shares.iter().map(|s| (s * s) as f64).sum();
-        let length = squares.sqrt().round();
-        // Halves up: no square over a length ends in a quarter of a half.
-        let counts = shares.map(|s| ((s * s) as f64 / length + 0.5).floor() as i64);
-        let sides = graph.opacity[node as usize].0;
-        let mut weight = 0;
-        let mut is_whole = false;
+        let squares = [x, y, 16 - x - y].map(|share| (share * share) as f64);
+        let length = squares.iter().sum::<f64>().sqrt().round();
+        let (mut weight, mut is_whole) = (0, false);
         for k in 0..3 {
-            let nibble = if corner[k] <= eye[k] {
-                sides[k] >> 4
-            } else {
-                sides[k] & 15
+            let sides = graph.opacity[node].0[k];
+            let nibble = match corner[k] <= eye[k] {
+                true => sides >> 4,
+                false => sides & 15,
             };
-            weight += i64::from(nibble + nibble / 8) * counts[k];
+            // Halves up: no square over a length ends in a quarter of a half.
+            weight += i64::from(nibble + nibble / 8) * (squares[k] / length + 0.5).floor() as i64;
             is_whole |= nibble == 15;
         }
         let weight = if is_whole { 256 } else { weight };
@@ -94,7 +57,7 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
         }
         sample.left -= taken as u16;
         for c in 0..3 {
-            sample.light[c] += taken as u32 * u32::from(light[node as usize][c]);
+            sample.light[c] += taken as u32 * u32::from(light[node][c]);
         }
     }
     Some(sample)
@@ -113,112 +76,26 @@ proptest! {
     fn each_sample_is_what_its_ray_takes(
         graph in any_octree(3, 0.4),
         opacities in any_opacities(),
-        camera in any_camera(8.0, 5..25),
+        seed: u64,
     ) {
-        // Leaves of the finest level alone, and outside: the reference in f64 handles no more.
-        prop_assume!(camera.eye.to_array().iter().any(|&c| !(-0.5..=8.5).contains(&c)));
-        // Where it is not on a lattice point the rounded eye is on its side.
-        prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
+        // From outside, beside all lattice planes, and leaves of the finest level alone: the reference in f64 handles no
+        // more.
+        let camera = camera_at(CameraPlace::Outside, &graph, (23, 17), &mut Dice::new(seed));
+        prop_assume!((camera.eye - camera.eye.round()).abs().min_element() > 1e-3);
         let graph = with_opacities(&graph, &opacities);
         let light = lights(&graph);
-        let setup = setup(&graph, &camera, &alpha(0.0));
-        let frame = draw_lit(&graph, &light, &setup);
-        let blend = frame.blend.as_ref().expect("blended");
-        let (mut compared, mut covered) = (0, 0);
-        for y in 0..camera.height {
-            for x in 0..camera.width {
-                let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
-                let Some(right) = reference(&graph, &light, &camera, at) else { continue };
-                let drawn = blend[(y * camera.width + x) as usize];
+        let options = SetupOptions { lod_px: 0.0, ..SetupOptions::of(Coverage::Alpha) };
+        let setup = setup(&graph, &camera, &options);
+        let view = GraphView { light: &light, ..graph.view() };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let drawn = Machine::default().render(&view, &setup, &mut frame);
+        prop_assert!(drawn.is_ok());
+        for (sample, drawn) in (0..).zip(frame.blend.expect("blended")) {
+            let (x, y) = (sample % camera.width, sample / camera.width);
+            let at = [x, y].map(|c| f64::from(c) + 0.5);
+            if let Some(right) = reference(&graph, &light, &camera, at) {
                 prop_assert_eq!(drawn, right, "at {}, {}", x, y);
-                compared += 1;
-                covered += u32::from(right.left < 256);
             }
         }
-        prop_assert!(compared > 0 || covered == 0);
-    }
-
-    #[test]
-    fn opaque_voxels_are_drawn_as_under_exact(
-        graph in any_mixed_octree(4),
-        camera in any_camera(16.0, 5..60),
-        lod_px in prop_oneof![Just(0.0), Just(1.0)],
-        stored in any::<bool>(),
-    ) {
-        let options = alpha(lod_px);
-        let exact = SetupOptions { coverage: Coverage::Exact, ..options };
-        let (right, _) = draw(&graph, &setup(&graph, &camera, &exact));
-        let graph = if stored { with_opacities(&graph, &[[255; 3]]) } else { graph };
-        let light = lights(&graph);
-        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &options));
-        prop_assert_eq!(&right.voxel, &frame.voxel);
-        let blend = right.node.iter().map(|&node| match node {
-            NO_NODE => Blend::default(),
-            node => Blend { left: 0, light: light[node as usize].map(|c| 256 * u32::from(c)) },
-        });
-        prop_assert_eq!(frame.blend, Some(blend.collect()));
-        prop_assert_eq!(right.node, frame.node);
-    }
-
-    #[test]
-    fn more_opacity_never_lets_more_through(
-        graph in any_octree(3, 0.4),
-        low in any_opacities(),
-        more in any_opacities(),
-        camera in any_camera(8.0, 5..40),
-    ) {
-        let higher = |(a, b): (&[u8; 3], &[u8; 3])| {
-            std::array::from_fn(|k| (a[k] & 15).max(b[k] & 15) | (a[k] >> 4).max(b[k] >> 4) << 4)
-        };
-        let high: Vec<[u8; 3]> = low.iter().zip(&more).map(higher).collect();
-        let setup = setup(&graph, &camera, &alpha(1.0));
-        let [low, high] = [low, high].map(|opacities| {
-            let frame = draw_lit(&with_opacities(&graph, &opacities), &[], &setup);
-            frame.blend.expect("blended")
-        });
-        for (low, high) in low.into_iter().zip(high) {
-            prop_assert!(high.left <= low.left);
-        }
-    }
-}
-
-/// Operations of the stage `blend`: so many for a voxel, so many for a sample.
-#[test]
-fn blending_costs_what_its_steps_do() {
-    for size in [1, 7, 41] {
-        let graph = with_opacities(&octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
-        let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
-        let setup = setup(&graph, &camera, &alpha(0.0));
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let (stats, counter) = Machine::default()
-            .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
-            .expect("no overflow");
-        let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
-        assert!(solids == 1 && blended > 0, "{size}: {stats:?}");
-        // The weights of the sides, once per voxel: the way, its shares, their squares, a root, three quotients.
-        // The voxel's weight: which sides, a product of five bits for each. A sample: four products of nine bits.
-        let [sides, product] = [3 * (1 + 5), 4 * 9];
-        for (class, of_voxel, of_sample) in [
-            (OpClass::Add, 3 + 2 + 2 + 3 * 5 + 2 + 3 + 3 + sides, product),
-            (OpClass::Sub, 3 + 3 + 2, 1),
-            (
-                OpClass::Shift,
-                3 + 3 + 2 + 3 * 5 + 3 * 2 + 3 + sides,
-                product + 1,
-            ),
-            (OpClass::Select, 3 * 5 + 7 + sides + 1, product + 2),
-            (OpClass::Compare, 7 + 3 + 1, 1),
-            (OpClass::MinMax, 3 + 1 + 1, 0),
-            (OpClass::DivideStep, 2 * 6 + 3 * 6, 0),
-            (OpClass::Logic, 0, 0),
-        ] {
-            let found = counter.ops_at(Stage::Blend, class);
-            assert_eq!(found, of_voxel + of_sample * blended, "{class:?}");
-        }
-        assert_eq!(counter.reads(Memory::Accumulator), blended);
-        assert_eq!(counter.writes(Memory::Accumulator), blended);
-        // Each sample shows its first voxel, and this is the only one.
-        assert_eq!(counter.writes(Memory::Pixel), blended);
-        assert_eq!(counter.reads(Memory::Attribute), 1);
     }
 }

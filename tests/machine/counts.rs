@@ -1,184 +1,140 @@
-//! The cost of subdivided records, by stage: under the rule `any`, for boxes inside the picture. Coordinates are x and
-//! y in screen space, and X, Y, W in clip space, where the child box finds the span of W alone, and the fit the others.
+//! Statistics, counters and the simulator agree. Each setting of an organisation saves reads and writes.
 
-use std::collections::BTreeMap;
-
-use crate::common::*;
 use hwmodel::count::Counter;
-use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
+use hwmodel::cycles::{Hardware, Independence, NoObserver, Organisation, StackHolds};
+use hwmodel::{Memory, OpClass, Stage};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::Machine;
-use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats};
 
-/// Counts from the first record on: before it is the object's own fit.
-#[derive(Default)]
-struct Records(Option<Counter>);
+use crate::common::*;
+use crate::scenes::*;
 
-impl Probe for Records {
-    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        if let Some(counter) = &mut self.0 {
-            counter.op(class, bits, place, times);
-        }
-    }
-    fn record(&mut self, index: u64, level: u32) {
-        self.0.get_or_insert_default().record(index, level);
-    }
-}
-
-/// The image-order paper's settings, but for the cage and the tolerance.
-fn options(cage: CageKind, tolerance_px: f64) -> SetupOptions {
-    SetupOptions {
-        bits: 48,
-        cage,
-        tolerance_px,
-        lod_px: 0.0,
-        ..SetupOptions::paper()
-    }
-}
-
-fn watch<P: Probe>(graph: &Graph, setup: &FrameSetup, probe: P) -> P {
+fn count(graph: &Graph, setup: &FrameSetup, organisation: Organisation) -> (Stats, Counter) {
+    let mut machine = Machine::new(MachineOptions {
+        organisation,
+        ..MachineOptions::default()
+    });
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, probe);
-    drawn.expect("no overflow").1
+    let drawn = machine.render_probed(&graph.view(), setup, &mut frame, Counter::new());
+    drawn.expect("no overflow")
+}
+
+/// Each record is pushed and popped once, and statistics and the simulator's counts are those of a counter.
+fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions) {
+    let setup = setup(graph, camera, options);
+    let (stats, counter) = count(graph, &setup, Organisation::default());
+    let divides = counter.ops_at(Stage::ToScreen, OpClass::DivideStep);
+    assert_eq!(counter.ops_of(OpClass::DivideStep), divides);
+    assert_eq!(divides > 0, options.tolerance_px > 0.0);
+    let (reads, writes) = (|of| counter.reads(of), |of| counter.writes(of));
+    let records = counter.records();
+    let [stack, pixels] = [Memory::Stack, Memory::Pixel].map(writes);
+    assert_eq!([reads(Memory::Stack), stack], [records; 2]);
+    let counted = ["records", "samples_drawn"].map(|name| stat(&stats, name));
+    assert_eq!(counted, [records, pixels]);
+    // At each level seven siblings wait, at most, and one has its turn.
+    assert!(stat(&stats, "deepest_stack") <= 1 + 7 * u64::from(setup.level_bound()));
+
+    let mut hardware = Hardware::preset("wide").unwrap();
+    hardware.independence = Independence::Image;
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let view = graph.view();
+    let simulated =
+        Machine::default().simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver);
+    let report = simulated.unwrap().cycles;
+    let operations = Stage::ALL.map(|stage| report.stages[stage as usize].operations);
+    let by_stage = counter.sum_by(|cell| cell.stage);
+    let counted = Stage::ALL.map(|stage| by_stage.get(&stage).copied().unwrap_or(0));
+    assert_eq!(operations, counted);
+    let read = [
+        report.fill_reads,
+        report.node_cache.accesses,
+        report.attribute_cache.accesses,
+    ];
+    let memories = [Memory::FillVector, Memory::Node, Memory::Attribute];
+    assert_eq!(read, memories.map(reads));
+    assert_eq!(
+        [report.fill_writes, report.pixels],
+        [writes(Memory::FillVector), pixels]
+    );
+    assert_eq!(report.records, records);
 }
 
 /// All children, half of them, and few of them; seen askew and straight on.
-fn scenes() -> [(Graph, Camera); 4] {
-    let diagonal = |[x, y, z]: [i32; 3]| (x + y + z) % 4 == 0;
-    [
-        (solid(2), [13.0, 9.0, 11.0], 32),
-        (sierpinski(3), [-9.0, 16.0, 21.0], 32),
-        (octree(3, &diagonal), [4.0, 4.0, 30.0], 64),
-        (octree(3, &|at| at == [5, 2, 7]), [30.0, -5.0, 8.0], 64),
-    ]
-    .map(|(graph, eye, size)| {
-        let middle = f64::from(1u32 << graph.depth) / 2.0;
-        let camera = camera(eye, [middle; 3], size);
-        (graph, camera)
-    })
-}
-
-/// The cost of a cage coordinate: halvings and additions of the vertex pool, numbers held, minima, maxima and additions
-/// of a span, vertices that are divided.
-const CAGES: [(CageKind, [u64; 6]); 2] = [
-    (CageKind::Corners, [19, 0, 8, 7 + 7, 0, 8]),
-    (CageKind::Frame, [3, 7, 4, 3 + 3, 6, 4]),
-];
-
-#[test]
-fn subdivided_records_cost_what_their_steps_do() {
-    use OpClass::{Add, Compare, DivideStep, Logic, MinMax, Select, Shift, Sub};
-    for (cage, [halvings, pool_adds, numbers, min_max, adds, vertices]) in CAGES {
-        for (at, (graph, camera)) in scenes().into_iter().cycle().take(8).enumerate() {
-            let in_clip = at < 4;
-            let tolerance = if in_clip { 0.0 } else { f64::INFINITY };
-            let setup = setup(&graph, &camera, &options(cage, tolerance));
-            let Records(counter) = watch(&graph, &setup, Records::default());
-            let counter = counter.expect("records");
-            let (_, stats) = draw(&graph, &setup);
-            let subdivided = stat(&stats, "subdivided");
-            assert!(subdivided >= 10);
-            let children = 8 * subdivided - stat(&stats, "absent_children");
-            let bits = setup.format.bits();
-            let coordinates = if in_clip { 3 } else { 2 } * subdivided;
-            let spans = if in_clip { 1 } else { 2 } * children;
-            // Each test of the fit takes four compares.
-            let tests = counter.ops_at(Stage::QuadtreeFit, Compare) / 4;
-            let shifts = counter.ops_at(Stage::QuadtreeFit, Shift);
-            assert!(tests >= children, "each child is tested once at least");
-            let in_fit = if in_clip { tests } else { 0 };
-            // Beyond those of the tests, a cage coordinate's worth for each left half.
-            let doubled = shifts - 2 * numbers * in_fit;
-            assert!(doubled % numbers == 0 && doubled <= 2 * numbers * in_fit);
-            // Only the object's record is divided, whose node is the root: 4 integer bits, a bit per level, the
-            // fraction.
-            let steps = 2 * vertices * u64::from(4 + setup.levels + setup.format.frac());
-            let mut expected = BTreeMap::new();
-            for (stage, class, bits, times) in [
-                (Stage::Filled, Logic, 4, stat(&stats, "records")),
-                (Stage::Centre, Add, bits + 1, 3 * subdivided),
-                (Stage::Centre, Shift, bits + 1, 3 * subdivided),
-                (Stage::Order, Compare, bits, 3 * subdivided),
-                (Stage::Order, Logic, 3, 8 * subdivided),
-                (Stage::VertexPool, Add, bits + 1, coordinates * halvings),
-                (Stage::VertexPool, Shift, bits + 1, coordinates * halvings),
-                (Stage::VertexPool, Add, bits, coordinates * pool_adds),
-                (Stage::ChildBox, Select, bits, 6 * children),
-                (Stage::ChildBox, MinMax, bits, spans * min_max),
-                (Stage::ChildBox, Add, bits, spans * adds),
-                (
-                    Stage::ChildBox,
-                    Compare,
-                    bits,
-                    if in_clip { children } else { 0 },
-                ),
-                (Stage::QuadtreeFit, Compare, bits, 4 * tests),
-                (Stage::QuadtreeFit, Logic, 4, tests),
-                (Stage::QuadtreeFit, Shift, bits, shifts),
-                (Stage::QuadtreeFit, Sub, bits, 2 * numbers * in_fit),
-                (Stage::QuadtreeFit, MinMax, bits, 2 * min_max * in_fit),
-                (Stage::QuadtreeFit, Add, bits, 2 * adds * in_fit),
-            ] {
-                *expected.entry((stage, class, bits)).or_default() += times;
-            }
-            expected.retain(|_, times| *times > 0);
-            let mut found: BTreeMap<_, u64> = BTreeMap::new();
-            for cell in counter.cells() {
-                *found
-                    .entry((cell.stage, cell.class, cell.bits))
-                    .or_default() += cell.times;
-            }
-            let others = [
-                Stage::ToScreen,
-                Stage::OnePixel,
-                Stage::Draw,
-                Stage::FillUpdate,
-            ];
-            found.retain(|(stage, ..), _| !others.contains(stage));
-            assert_eq!(found, expected, "{cage:?}");
-            let divides = counter.ops_at(Stage::ToScreen, DivideStep);
-            assert_eq!(divides, if in_clip { 0 } else { steps });
-            assert_eq!(counter.ops_of(DivideStep), divides);
-        }
-    }
-}
-
-/// Divides stay in their stage; each record is pushed and popped once, and statistics are those of a counter.
 #[test]
 fn counts_agree() {
     use Coverage::{Any, Center, Exact};
-    for (coverage, tolerance_px) in [
+    let diagonal = |[x, y, z]: [i32; 3]| (x + y + z) % 4 == 0;
+    let alone = |at: [i32; 3]| at == [5, 2, 7];
+    let rules = [
         (Any, 0.0),
         (Center, 0.0),
         (Exact, 0.0),
         (Any, 0.25),
         (Center, 0.25),
+    ];
+    for (graph, eye, size) in [
+        (solid(2), [13.0, 9.0, 11.0], 32),
+        (sierpinski(3), [-9.0, 16.0, 21.0], 32),
+        (octree(3, &diagonal), [4.0, 4.0, 30.0], 64),
+        (octree(3, &alone), [30.0, -5.0, 8.0], 64),
     ] {
-        for (graph, camera) in scenes() {
+        let middle = f64::from(1u32 << graph.depth) / 2.0;
+        let camera = camera(eye, [middle; 3], size);
+        for (coverage, tolerance_px) in rules {
             for cage in [CageKind::Corners, CageKind::Frame] {
                 let options = SetupOptions {
-                    coverage,
+                    bits: 48,
+                    cage,
+                    tolerance_px,
                     lod_px: 1.0,
-                    ..options(cage, tolerance_px)
+                    ..SetupOptions::of(coverage)
                 };
-                let setup = setup(&graph, &camera, &options);
-                let counter = watch(&graph, &setup, Counter::new());
-                let divides = counter.ops_of(OpClass::DivideStep);
-                assert_eq!(
-                    divides,
-                    counter.ops_at(Stage::ToScreen, OpClass::DivideStep)
-                );
-                assert_eq!(divides > 0, tolerance_px > 0.0);
-                let (_, stats) = draw(&graph, &setup);
-                let records = counter.records();
-                assert_eq!(counter.reads(Memory::Stack), records);
-                assert_eq!(counter.writes(Memory::Stack), records);
-                assert_eq!(stat(&stats, "records"), records);
-                assert_eq!(stat(&stats, "samples_drawn"), counter.writes(Memory::Pixel));
-                // At each level seven siblings wait, at most, and one has its turn.
-                assert!(stat(&stats, "deepest_stack") <= 1 + 7 * u64::from(setup.level_bound()));
+                agree(&graph, &camera, &options);
             }
         }
     }
+}
+
+/// Per setting: records, subdivided ones, most entries of the stack. Then reads and writes of the stack, of nodes, of
+/// fill vectors.
+#[test]
+fn each_setting_saves_reads_and_writes() {
+    let graph = graph_of_spec("gen:terrain,depth=7");
+    let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
+    let setup = setup(&graph, &camera, &SetupOptions::default());
+    let mut organisation = Organisation::default();
+    let mut next = |change: fn(&mut Organisation)| {
+        change(&mut organisation);
+        let (stats, counter) = count(&graph, &setup, organisation);
+        let counts = ["records", "subdivided", "deepest_stack"].map(|name| stat(&stats, name));
+        let accesses = [Memory::Stack, Memory::Node, Memory::FillVector]
+            .map(|memory| (counter.reads(memory), counter.writes(memory)));
+        (counts, accesses)
+    };
+    let found = [
+        next(|_| {}),
+        next(|all| (all.stack, all.leaf_masks) = (StackHolds::Parents, true)),
+        next(|all| all.stack = StackHolds::Path),
+        next(|all| all.hidden_unread = true),
+        next(|all| all.bricks = true),
+        next(|all| (all.bricks, all.joined_fill) = (false, true)),
+        next(|all| all.tile_levels = 2),
+        next(|all| all.stack = StackHolds::Children),
+    ];
+    let parents = ([4872, 1957, 6], [(1685, 1685), (1957, 0), (63125, 50840)]);
+    let expected = [
+        ([4924, 1959, 38], [(4924, 4924), (4879, 0), (66442, 50840)]),
+        parents,
+        // The same, of fewer bits.
+        parents,
+        ([2831, 776, 6], [(749, 749), (776, 0), (58624, 50840)]),
+        ([2831, 776, 6], [(749, 749), (408, 0), (58624, 50840)]),
+        ([2831, 776, 6], [(749, 749), (776, 0), (20781, 14822)]),
+        ([3505, 1103, 6], [(1059, 1059), (1103, 0), (24612, 14858)]),
+        ([3660, 1103, 33], [(3660, 3660), (1103, 0), (27342, 14858)]),
+    ];
+    assert_eq!(found, expected);
 }

@@ -16,16 +16,17 @@
 //! to which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
-use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds};
+use hwmodel::cycles::{Hardware, Organisation, Recorder, StackHolds};
 use shiftvox::frame::Frame;
-use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::machine::Machine;
 use shiftvox::project::SetupOptions;
 
 use crate::common::{camera, octree, setup};
 
 /// One record at a time, operations that cost nothing, memories of one port.
-fn hardware() -> Hardware {
+fn hardware(organisation: Organisation) -> Hardware {
     let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.organisation = organisation;
     hardware.wires = OpClass::ALL.to_vec();
     hardware.units.clear();
     let caches = [&mut hardware.node_cache, &mut hardware.attribute_cache];
@@ -99,77 +100,57 @@ const SEQUENTIAL: &str = "
 
 #[test]
 fn a_tiny_scene_in_each_organisation() {
-    let mut organisation = Organisation::default();
-    follow(hardware(), organisation, CHILDREN, 84);
-    organisation.stack = StackHolds::Parents;
-    follow(hardware(), organisation, PARENTS, 78);
-    organisation.leaf_masks = true;
-    follow(hardware(), organisation, LEAF_MASKS, 76);
-    organisation.stack = StackHolds::Path;
-    follow(hardware(), organisation, LEAF_MASKS, 76);
-    organisation.hidden_unread = true;
-    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
-    // B's voxels are in its own mask: a brick of one level.
-    organisation.bricks = true;
-    follow(hardware(), organisation, HIDDEN_UNREAD, 79);
-    organisation.tile_levels = 1;
-    follow(hardware(), organisation, TILES, 115);
-    (organisation.tile_levels, organisation.joined_fill) = (0, true);
-    follow(hardware(), organisation, JOINED_FILL, 53);
-}
-
-#[test]
-fn a_tiny_scene_step_by_step() {
-    let mut hardware = hardware();
-    hardware.sequential = true;
-    let organisation = Organisation {
-        stack: StackHolds::Path,
-        leaf_masks: true,
-        hidden_unread: true,
-        joined_fill: true,
-        ..Organisation::default()
+    use StackHolds::{Parents, Path};
+    let mut all = Organisation::default();
+    let mut next = |change: fn(&mut Organisation), turns, cycles| {
+        change(&mut all);
+        follow(&hardware(all), turns, cycles);
     };
-    follow(hardware, organisation, SEQUENTIAL, 74);
+    next(|_| {}, CHILDREN, 84);
+    next(|all| all.stack = Parents, PARENTS, 78);
+    next(|all| all.leaf_masks = true, LEAF_MASKS, 76);
+    next(|all| all.stack = Path, LEAF_MASKS, 76);
+    next(|all| all.hidden_unread = true, HIDDEN_UNREAD, 79);
+    // B's voxels are in its own mask: a brick of one level.
+    next(|all| all.bricks = true, HIDDEN_UNREAD, 79);
+    next(|all| all.tile_levels = 1, TILES, 115);
+    next(|all| all.tile_levels = 0, HIDDEN_UNREAD, 79);
+    next(|all| all.joined_fill = true, JOINED_FILL, 53);
+    let mut sequential = hardware(all);
+    (sequential.sequential, sequential.organisation.bricks) = (true, false);
+    follow(&sequential, SEQUENTIAL, 74);
 }
 
 /// Draws the scene, whose visits must be those listed.
-fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycles: u64) {
+fn follow(hardware: &Hardware, turns: &str, cycles: u64) {
     let graph = octree(2, &|at| [[0, 0, 0], [0, 0, 1], [0, 1, 0]].contains(&at));
     let mut camera = camera([2.0, -8.0, 2.0], [2.0, 0.0, 2.0], 4);
     camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
     let setup = setup(&graph, &camera, &SetupOptions::default());
-    hardware.organisation = organisation;
     let mut frame = Frame::new(4, 4, false);
     let mut recorder = Recorder::new(u64::MAX);
-    let simulated = Machine::new(MachineOptions::default())
-        .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
+    let simulated = Machine::default()
+        .simulate(&graph.view(), &setup, &mut frame, hardware, &mut recorder)
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-    // The expected visits.
-    let starts = organisation.tile_levels == 0;
-    let lines = turns.lines().skip(1).enumerate();
-    let listed = lines.flat_map(|(number, line)| {
-        let record = match starts {
-            true => (number as u64).checked_sub(1).unwrap_or(START),
-            false => number as u64,
+    let (mut now, mut last, mut found) = (0, None, String::new());
+    for visit in recorder.visits() {
+        if last != Some(visit.record) {
+            found += "\n   ";
+        }
+        found += &match visit.ends - visit.begins {
+            1 => format!(" {:?}", visit.stage),
+            takes => format!(" {:?}:{takes}", visit.stage),
         };
-        line.split_whitespace().map(move |visit| (record, visit))
-    });
-    let mut now = 0;
-    let mut visits = recorder.visits().iter();
-    for (record, visit) in listed {
-        let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
-        let found = visits.next().unwrap();
-        assert_eq!(
-            (found.record, format!("{:?}", found.stage)),
-            (record, stage.to_owned())
-        );
-        assert_eq!(found.begins, now, "{stage} of {record}, {organisation:?}");
-        now += takes.parse::<u64>().unwrap();
-        assert_eq!(found.ends, now, "{stage} of {record}, {organisation:?}");
+        assert_eq!(visit.begins, now, "{found}");
+        (now, last) = (visit.ends, Some(visit.record));
     }
-    assert!(visits.next().is_none());
-    assert_eq!(now, cycles);
-    assert_eq!(simulated.cycles.cycles, cycles, "{organisation:?}");
+    let organisation = &hardware.organisation;
+    assert_eq!(found, turns, "{organisation:?}");
+    assert_eq!(
+        [now, simulated.cycles.cycles],
+        [cycles; 2],
+        "{organisation:?}"
+    );
 }

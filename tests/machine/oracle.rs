@@ -1,29 +1,16 @@
 //! The oracle against a second, slower way to the same truth: every cell cut with every ray in rational numbers, the
 //! tie rule as a tiny real offset.
 
-use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
+use proptest::prelude::*;
 use shiftvox::frame::{Frame, NO_NODE, NO_VOXEL};
-use shiftvox::graph::{Graph, GraphView, Placement};
-use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::graph::{Graph, GraphView};
+use shiftvox::project::{Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-use crate::common::linked;
+use crate::common::{any_graph, any_view, cases};
 use crate::scenes::Dice;
-
-/// Any node may be any other's child: trees, shared subtrees and cycles.
-fn random_graph(dice: &mut Dice, depth: u32) -> Graph {
-    let nodes = 2 + dice.below(6);
-    let children = |node: u32| {
-        let is_leaf = node > 0 && dice.below(3) == 0;
-        [0; 8].map(|_| {
-            let child = dice.below(nodes);
-            (!is_leaf && dice.below(100) < 45).then_some(child)
-        })
-    };
-    linked(depth, &(0..nodes).map(children).collect::<Vec<_>>())
-}
 
 /// A solid cell: node, lowest corner, level.
 type Cell = (u32, [i64; 3], u32);
@@ -117,33 +104,26 @@ impl Exact {
     }
 
     fn nearest(&self, direction: &[BigInt; 3], depth: u32, cells: &[Cell]) -> (u32, [i32; 4]) {
-        let mut best: Option<(BigRational, &Cell)> = None;
-        for cell in cells {
-            let (_, lo, level) = cell;
+        let entered = cells.iter().filter_map(|cell| {
+            let &(node, lo, level) = cell;
             let side = 1i64 << (depth - level);
-            let mut from = BigRational::from(BigInt::from(0));
-            let mut to: Option<BigRational> = None;
-            for (k, &low) in lo.iter().enumerate() {
-                let a = self.meets(direction, k, low);
-                let b = self.meets(direction, k, low + side);
-                let (near, far) = if a < b { (a, b) } else { (b, a) };
-                from = from.max(near);
-                to = Some(to.map_or(far.clone(), |to| to.min(far)));
-            }
-            let hit = to.is_some_and(|to| from < to);
-            if hit && best.as_ref().is_none_or(|(nearest, _)| from < *nearest) {
-                best = Some((from, cell));
-            }
-        }
-        best.map_or((NO_NODE, NO_VOXEL), |(_, &(node, lo, level))| {
+            let planes = [0, 1, 2].map(|k| {
+                let [a, b] = [lo[k], lo[k] + side].map(|at| self.meets(direction, k, at));
+                if a < b { (a, b) } else { (b, a) }
+            });
+            let [near, far] = [planes.clone().map(|p| p.0), planes.map(|p| p.1)];
+            let zero = BigRational::from(BigInt::from(0));
+            let from = near.into_iter().fold(zero, BigRational::max);
             let [x, y, z] = lo.map(|c| c as i32);
-            (node, [x, y, z, level as i32])
-        })
+            let cell = (node, [x, y, z, level as i32]);
+            far.iter().all(|to| from < *to).then_some((from, cell))
+        });
+        let nearest = entered.min_by(|a, b| a.0.cmp(&b.0));
+        nearest.map_or((NO_NODE, NO_VOXEL), |(_, cell)| cell)
     }
 }
 
-/// Compares every sample; returns how many were drawn.
-fn assert_exact(graph: &Graph, setup: &FrameSetup) -> usize {
+fn assert_exact(graph: &Graph, setup: &FrameSetup) {
     let view = graph.view();
     let mut frame = Frame::new(setup.width, setup.height, true);
     let drawn = Rays.render(&view, setup, &mut frame);
@@ -151,79 +131,34 @@ fn assert_exact(graph: &Graph, setup: &FrameSetup) -> usize {
     let exact = Exact::new(setup);
     let mut all = Vec::new();
     cells(&view, setup, (view.root, [0; 3], 0), &mut all);
-    for (sample, got) in (0..).zip(frame.node.iter().zip(&frame.voxel)) {
+    for (sample, (&node, &voxel)) in (0..).zip(frame.node.iter().zip(&frame.voxel)) {
         let (i, j) = (sample % setup.width, sample / setup.width);
         let expected = exact.nearest(&exact.direction(setup, i, j), graph.depth, &all);
-        assert_eq!(
-            (*got.0, *got.1),
-            expected,
-            "sample ({i}, {j}); {setup:?}, graph {:?} {:?}",
-            (&graph.mask[..], &graph.first[..]),
-            &graph.links[..]
-        );
+        assert_eq!((node, voxel), expected, "sample ({i}, {j}) of {setup:?}");
     }
     let records = frame.records.as_ref().expect("asked for");
     assert!(records.iter().all(|&tested| tested >= 1.0));
-    frame.drawn()
 }
 
-/// Inside, near and farther away, oblong, with several samples per pixel.
-fn anywhere(dice: &mut Dice, side: f64) -> Camera {
-    let reach = dice.of(&[0.0, 0.5, 3.0]) * side;
-    Camera {
-        eye: dice.point(-reach, side + reach),
-        target: dice.point(0.0, side),
-        up: dice.point(-1.0, 1.0),
-        fov_degrees: dice.between(10.0, 120.0),
-        width: 9,
-        height: 1 + dice.below(9),
-    }
-}
+proptest! {
+    #![proptest_config(cases(360))]
 
-/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is
-/// met.
-fn ties(dice: &mut Dice, side: f64) -> Camera {
-    let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
-    let axis = dice.below(3) as usize;
-    let size = dice.of(&[7, 8, 16]);
-    Camera {
-        eye,
-        target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
-        up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
-        fov_degrees: 90.0,
-        width: size,
-        height: size,
-    }
-}
-
-/// Random graphs, in words of many widths: coarse views are exact for their own integers.
-#[test]
-fn every_sample_is_that_of_rational_numbers() {
-    let mut dice = Dice::new(1);
-    let (mut drawn, mut views) = (0, 0);
-    while views < 360 {
-        let depth = dice.below(4);
-        let graph = random_graph(&mut dice, depth);
-        let side = f64::from(1u32 << depth);
-        let camera = match views % 3 {
-            0 => anywhere(&mut dice, side),
-            _ => ties(&mut dice, side),
-        };
-        let coarse = SetupOptions {
-            bits: 16 + dice.below(20),
-            frac: Some(dice.below(6)),
-            aa_log2: dice.below(2),
-            ..SetupOptions::default()
-        };
-        let options = match views % 6 {
-            0 => coarse,
-            _ => SetupOptions::default(),
-        };
+    /// In words of many widths: coarse views are exact for their own integers.
+    #[test]
+    fn every_sample_is_that_of_rational_numbers(
+        (graph, camera) in any_view(any_graph(0..4), 1..10),
+        seed: u64,
+    ) {
+        let mut dice = Dice::new(seed);
+        let mut options = SetupOptions::default();
+        if dice.below(6) == 0 {
+            options.bits = 16 + dice.below(20);
+            options.frac = Some(dice.below(6));
+            options.aa_log2 = dice.below(2);
+        }
         // Some of these views have no volume left.
-        if let Ok(setup) = FrameSetup::new(&camera, &Placement::default(), depth, &options) {
-            drawn += assert_exact(&graph, &setup);
-            views += 1;
+        if let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) {
+            assert_exact(&graph, &setup);
         }
     }
-    assert!(drawn > 3000, "only {drawn} samples show anything");
 }

@@ -1,6 +1,5 @@
 //! Occlusion order (image-order paper, 3.2), proved for every position of the eye.
 
-use hwmodel::cycles::{Child, ImageNode, Independence};
 use shiftvox::machine::OCCLUSION_ORDER;
 
 /// Whether no ray from the eye meets the inside of `second` before that of `first`: some centre plane parts them with
@@ -26,26 +25,4 @@ fn later_children_never_occlude_earlier_ones_for_all_27_eye_positions() {
             }
         }
     }
-}
-
-/// No child of a class may hide another: none whose octant has all bits of the other's.
-#[test]
-fn classes_of_the_cycle_model_are_independent_by_geometry() {
-    let child = |place: usize| Child {
-        item: 0,
-        place: place as u8,
-        image_node: ImageNode::default(),
-    };
-    let mut allowed = 0;
-    for later in 0..8 {
-        for earlier in 0..later {
-            let may_hide =
-                OCCLUSION_ORDER[earlier] & OCCLUSION_ORDER[later] == OCCLUSION_ORDER[later];
-            let allows = Independence::Classes.allows(&child(earlier), &child(later));
-            assert!(!(may_hide && allows), "places {earlier} and {later}");
-            allowed += u32::from(allows);
-        }
-    }
-    // Three pairs in each class of three.
-    assert_eq!(allowed, 6);
 }

@@ -1,15 +1,16 @@
-//! Properties of the machine's rules: nothing has holes, every input ends, narrow words trap, a tolerance has its
-//! rules.
+//! Properties of the machine's rules: every input ends, narrow words trap, an object beside the picture costs nothing,
+//! and classes of children are independent.
 
 use crate::common::*;
 use crate::differential::any_settings;
 use crate::scenes::Dice;
 use hwmodel::Overflow;
+use hwmodel::cycles::{Child, Hardware, ImageNode, Independence, NoObserver};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
-use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::machine::{Machine, MachineOptions, OCCLUSION_ORDER};
 use shiftvox::project::{
-    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupError, SetupOptions,
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions,
 };
 use shiftvox::rays::Rays;
 
@@ -26,10 +27,7 @@ proptest! {
     /// Cyclic graphs, all formats, all policies.
     #[test]
     fn every_frame_ends(
-        (graph, camera) in any_graph(1..7).prop_flat_map(|graph| {
-            let side = f64::from(1u32 << graph.depth);
-            (Just(graph), any_camera(side, 1..24))
-        }),
+        (graph, camera) in any_view(any_graph(1..7), 1..24),
         seed: u64,
         overflow in prop_oneof![
             Just(Overflow::Trap), Just(Overflow::Wrap), Just(Overflow::Saturate)
@@ -103,15 +101,18 @@ fn an_object_beside_the_picture_costs_next_to_nothing() {
     let graph = solid(8);
     for target in [[-1000.0, -900.0, 0.0], [900.0, -1000.0, 128.0]] {
         let camera = camera([128.0, -300.0, 128.0], target, 512);
-        for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+        for coverage in Coverage::UNBLENDED {
             let setup = setup(&graph, &camera, &SetupOptions::of(coverage));
             let (frame, stats) = draw(&graph, &setup);
-            assert_eq!(frame.drawn(), 0);
-            assert!(stat(&stats, "records") <= 1, "{stats:?}");
+            assert!(
+                frame.drawn() == 0 && stat(&stats, "records") <= 1,
+                "{stats:?}"
+            );
         }
     }
 }
 
+/// Also on simulated hardware.
 #[test]
 fn narrow_words_trap_or_finish() {
     let graph = octree(7, &|at| at[1] == 64);
@@ -130,20 +131,31 @@ fn narrow_words_trap_or_finish() {
         let stats = draw(overflow).expect("no trap");
         assert!(stat(&stats, "overflows") > 0);
     }
+    let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.independence = Independence::None;
+    let view = graph.view();
+    let simulated =
+        Machine::default().simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver);
+    assert_eq!(simulated.unwrap_err().to_string(), trapped.to_string());
 }
 
+/// No child of a class may hide another: none whose octant has all bits of the other's.
 #[test]
-fn rules_that_draw_outlines_have_no_tolerance() {
-    for coverage in [Coverage::Exact, Coverage::Alpha] {
-        for tolerance_px in [1.0 / 256.0, 0.125, f64::INFINITY] {
-            let options = SetupOptions {
-                tolerance_px,
-                ..SetupOptions::of(coverage)
-            };
-            let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
-            let made = FrameSetup::new(&camera, &solid(2).placement, 2, &options);
-            let error = made.expect_err("no such frame");
-            assert_eq!(error, SetupError::Tolerance(tolerance_px));
-        }
+fn classes_of_the_cycle_model_are_independent_by_geometry() {
+    let child = |place: usize| Child {
+        item: 0,
+        place: place as u8,
+        image_node: ImageNode::default(),
+    };
+    let pairs = (0..8).flat_map(|later| (0..later).map(move |earlier| (earlier, later)));
+    let is_allowed = |&(earlier, later): &(usize, usize)| {
+        Independence::Classes.allows(&child(earlier), &child(later))
+    };
+    let allowed: Vec<_> = pairs.filter(is_allowed).collect();
+    // Three pairs in each class of three.
+    assert_eq!(allowed.len(), 6);
+    for (earlier, later) in allowed {
+        let [earlier, later] = [earlier, later].map(|place| OCCLUSION_ORDER[place]);
+        assert_ne!(earlier & later, later, "{earlier} may hide {later}");
     }
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::args::{SceneArgs, bytes};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::scene_files::Conversion;
 use super::{far, report, scene_files, scenes, textured};
 use shiftvox::graph::{BuildOptions, ExternalOptions};
 use shiftvox::scene::Source;
@@ -23,22 +23,22 @@ const MOST_RAYS: u64 = 1 << 36;
 pub(super) struct ConvertArgs {
     /// Scene to read, recognised by its content
     #[arg(value_name = "IN")]
-    input: String,
+    pub(super) input: String,
     /// File to write, with the ending .vxg, .vox or .ply, or for a mesh .far (far voxels) or .tvx
     /// (textured voxels)
     #[arg(value_name = "OUT")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Replace an existing file
     #[arg(long)]
-    force: bool,
+    pub(super) force: bool,
     /// Build a .vxg or .far out of core with at most this much memory, such as 64M or 2G. The mesh
     /// of a .far is part of it
     #[arg(long, value_name = "SIZE", value_parser = memory)]
-    memory: Option<u64>,
+    pub(super) memory: Option<u64>,
     /// Folder of the temporary files of --memory, about 22 bytes per voxel of a .vxg and 80 per
     /// triangle of a .far [default: OUT's folder]
     #[arg(long, value_name = "DIR", requires = "memory")]
-    temp: Option<PathBuf>,
+    pub(super) temp: Option<PathBuf>,
     /// Rays of a .far [default: up to 24 per voxel, and 24 more per visible voxel]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_RAYS))]
     rays: Option<u64>,
@@ -58,7 +58,7 @@ pub(super) struct ConvertArgs {
     element: Option<Element>,
     /// Build a .far of so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    instances: Option<u32>,
+    pub(super) instances: Option<u32>,
     /// Keep parts of a .far wider than a voxel as a decimated surface, and thinner parts as voxels
     #[arg(long)]
     hybrid: bool,
@@ -66,7 +66,7 @@ pub(super) struct ConvertArgs {
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
     #[command(flatten)]
-    scene: SceneArgs,
+    pub(super) scene: SceneArgs,
 }
 
 const LEAST_MEMORY: u64 = 64 << 20;
@@ -87,16 +87,14 @@ impl ConvertArgs {
             || self.hybrid
     }
 
-    fn conversion(&self) -> Conversion<'_> {
-        Conversion {
-            input: &self.input,
-            output: &self.output,
-            force: self.force,
-            scene: &self.scene,
-        }
+    pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
+        described["input"] = json!(self.input);
+        described["output"] = json!(self.output.display().to_string());
+        described["build_ms"] = json!(build_ms);
+        console.report("convert", described);
     }
 
-    fn far_options(&self) -> shiftvox_mesh::far::BuildOptions {
+    pub(super) fn far_options(&self) -> shiftvox_mesh::far::BuildOptions {
         let defaults = shiftvox_mesh::far::BuildOptions::default();
         shiftvox_mesh::far::BuildOptions {
             rays: self.rays,
@@ -108,7 +106,7 @@ impl ConvertArgs {
         }
     }
 
-    fn textured_options(&self) -> shiftvox_mesh::textured::BuildOptions {
+    pub(super) fn textured_options(&self) -> shiftvox_mesh::textured::BuildOptions {
         let defaults = shiftvox_mesh::textured::BuildOptions::default();
         shiftvox_mesh::textured::BuildOptions {
             grids: match self.grid.is_empty() {
@@ -135,24 +133,14 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
                  .far files",
             ));
         }
-        return textured::convert(&args.conversion(), &args.textured_options(), console);
+        return textured::convert(args, console);
     }
     if is_ending("far") {
         if args.grid.len() > 1 {
             return Err(CliError::usage("a .far has one --grid"));
         }
         check_temporary(args)?;
-        let resources = far::Resources {
-            memory: args.memory,
-            temporary: args.temp.as_deref(),
-        };
-        return far::convert(
-            &args.conversion(),
-            &args.far_options(),
-            args.instances,
-            &resources,
-            console,
-        );
+        return far::convert(args, console);
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
@@ -176,7 +164,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     let verify = scenes::Verify::All;
     let scene = scenes::open_source(source, &args.input, &args.scene, verify, started, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    scene_files::report_written(
+        "convert",
+        &args.input,
+        &args.output,
+        ("voxels", &written),
+        console,
+    );
     Ok(())
 }
 
@@ -227,37 +221,12 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    scene_files::report_written("convert", &args.input, &args.output, &written, console);
+    scene_files::report_written(
+        "convert",
+        &args.input,
+        &args.output,
+        ("voxels", &written),
+        console,
+    );
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use clap::{Command, ValueEnum};
-
-    use super::*;
-    use shiftvox_mesh::{far, textured};
-
-    #[test]
-    fn help_states_the_true_defaults() {
-        let command = ConvertArgs::augment_args(Command::new("convert"));
-        let states = |flag: &str, default: &str| {
-            let argument = command.get_arguments().find(|a| a.get_id() == flag);
-            let help = argument.unwrap().get_help().unwrap().to_string();
-            let stated = format!("[default: {default}]");
-            assert!(help.contains(&stated), "{flag}: {help}, not {stated}");
-        };
-        let (of_far, of_tvx) = (
-            far::BuildOptions::default(),
-            textured::BuildOptions::default(),
-        );
-        states("leaf_triangles", &of_far.leaf_triangles.to_string());
-        states("grid", &of_far.grid.to_string());
-        states("grid", &of_tvx.grids[0].to_string());
-        states("texels", &of_tvx.texels.to_string());
-        let element = of_tvx.element.to_possible_value().unwrap();
-        states("element", element.get_name());
-        let opacity = of_far.opacity.to_possible_value().unwrap();
-        states("far_opacity", opacity.get_name());
-    }
 }

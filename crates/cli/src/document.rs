@@ -20,7 +20,6 @@ pub(super) fn document(command: &str, fields: Value) -> Value {
     document
 }
 
-/// A command's document with an error, or a document of the error alone.
 pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
     let mut document = document.unwrap_or_else(|| self::document("error", json!({})));
     document["error"] = json!(error.message);

@@ -73,7 +73,6 @@ pub(super) const FAST: Candidate = Candidate {
     make: |threads| fast(threads, |_| {}),
 };
 
-/// A fast engine on so many threads, with a switch off.
 fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
     let mut switches = Switches::default();
     switch(&mut switches);
@@ -104,7 +103,6 @@ const FLOAT_RAYS: Candidate = Candidate {
 const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
 pub(super) const MEASURED: [&str; 4] = ["fast", "machine", "rays", "float-rays"];
 
-/// The engines that `bench time` can measure, for `--engines`.
 pub(super) fn names() -> PossibleValuesParser {
     let name = |c: &Candidate| PossibleValue::new(c.name).help(c.about);
     CANDIDATES.iter().map(name).collect::<Vec<_>>().into()

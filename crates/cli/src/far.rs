@@ -7,9 +7,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::console::Console;
+use super::convert::ConvertArgs;
 use super::error::{CliError, Kind};
 use super::report::{self, grouped};
-use super::scene_files::Conversion;
 use super::scenes;
 use shiftvox::budget;
 use shiftvox::drawing::milliseconds_since;
@@ -18,37 +18,25 @@ use shiftvox::whole;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
-use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
+use shiftvox_mesh::far::{BuildError, FarFile, build_outside};
 
-pub(super) struct Resources<'r> {
-    /// Bytes of memory, of which the mesh is a part.
-    pub(super) memory: Option<u64>,
-    /// Folder of temporary files, or `None` for the output's folder.
-    pub(super) temporary: Option<&'r Path>,
-}
-
-pub(super) fn convert(
-    of: &Conversion<'_>,
-    options: &BuildOptions,
-    instances: Option<u32>,
-    resources: &Resources<'_>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let (mesh, up) = scenes::open_mesh(of.input, of.scene, console)?;
+pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
+    let ConvertArgs { input, output, .. } = args;
+    let options = &args.far_options();
+    let (mesh, up) = scenes::open_mesh(input, &args.scene, console)?;
     let started = Instant::now();
-    let triangles = mesh.triangles().len() as u64 * u64::from(instances.unwrap_or(1));
-    check_room(triangles, resources.memory).map_err(|e| e.at(of.input))?;
-    let beside = whole::folder_of(of.output);
+    let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
+    check_room(triangles, args.memory).map_err(|e| e.at(input))?;
+    let beside = whole::folder_of(output);
     whole::make_folder(beside)?;
     let outside = Outside {
-        // The mesh and the program itself are resident.
-        memory: resources.memory.map(|memory| {
+        memory: args.memory.map(|memory| {
             let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
             (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
         }),
-        folder: resources.temporary.unwrap_or(beside),
+        folder: args.temp.as_deref().unwrap_or(beside),
     };
-    let built = match instances {
+    let built = match args.instances {
         None => build_outside(&mesh, options, &outside, console.progress()),
         Some(count) => {
             let places = in_rows(mesh.bounds(), up, count);
@@ -63,9 +51,9 @@ pub(super) fn convert(
         };
         let error = match error {
             error @ BuildError::File { .. } => CliError::from(error),
-            error => CliError::from(error).at(of.input),
+            error => CliError::from(error).at(input),
         };
-        match resources.memory.zip(short) {
+        match args.memory.zip(short) {
             Some((memory, short)) => {
                 let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
                 let enough = enough.div_ceil(1 << 20) + 1;
@@ -76,13 +64,13 @@ pub(super) fn convert(
     })?;
     built.data.settings.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    whole::write_with(of.output, of.force, |file| built.write_to(file))?;
-    let file = FarFile::open(of.output)?;
-    let described = describe(&file, of.input);
+    whole::write_with(output, args.force, |file| built.write_to(file))?;
+    let file = FarFile::open(output)?;
+    let described = describe(&file, input);
     let n = |key: &str| report::figure(&described[key]);
     console.note(format!(
         "{}: {} triangles, {} nodes, {} voxels, {} rays, {} bytes, built in {:.1} s",
-        of.output.display(),
+        output.display(),
         grouped(triangles),
         n("nodes"),
         n("voxels_kept"),
@@ -96,18 +84,17 @@ pub(super) fn convert(
             "warning: {}: only {per_voxel:.1} rays passed through a voxel that is kept, and {LEAST_RAYS_PER_VOXEL} \
              are too few for opacities; {} voxels were not tested and are kept: ask for more \
              --rays, or leave it out",
-            of.output.display(),
+            output.display(),
             n("voxels_untested")
         ));
     }
-    of.report(described, build_ms, console);
+    args.report(described, build_ms, console);
     Ok(())
 }
 
 /// One of so many parts of a budget is left to the allocator.
 const ALLOCATORS_SHARE: u64 = 8;
 
-/// Fewer rays through a voxel are warned of.
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 
 /// Least bytes of memory per triangle of a build without a budget.
@@ -135,8 +122,7 @@ fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     }
 }
 
-/// Places of copies of an object in a box: in rows on the ground, a tenth of the longest side apart, each a quarter turn
-/// further than the one before.
+/// Places of copies in rows on the ground, a tenth of the longest side apart, each a quarter turn further.
 fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
     let axis = up.axis();
     // The next axes; turned about `axis`, the first becomes the second.
@@ -181,7 +167,6 @@ fn describe(file: &FarFile, name: &str) -> Value {
     };
     let opacity = |kind| share(&|_, opacity| opacity == kind);
     let surface = |n: &Node| if n.is_leaf() { 0 } else { u64::from(n.surface) };
-    // Not negative: the file was checked for it.
     let occluded = touched - kept;
     let last = nodes.iter().map(|n| n.level).max().unwrap_or(0);
     let levels = (0..=last).map(|level| {

@@ -1,15 +1,12 @@
 //! Refused memory (SIGABRT) and a mapped file cut short (SIGBUS).
 //!
-//! Both arrive as signals in a thread that cannot continue. The handler wakes a waiting thread,
-//! which reports the error, removes unfinished files and exits with the usual code. If that thread
-//! does not act within five seconds, the handler exits itself.
+//! The handler wakes a waiting thread, which reports the error, removes unfinished files and exits with the usual code.
+//! After five seconds the handler exits itself.
 
 use std::sync::Mutex;
 
-/// The scenes that are read, for the report.
 static SCENES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Has a scene named in the report.
 pub(super) fn reads(scene: &str) {
     if let Ok(mut scenes) = SCENES.lock()
         && !scenes.iter().any(|known| known == scene)

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::json;
 
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::{report, scene_files, scenes};
+use super::scene_files::{self, Written};
+use super::scenes;
 use shiftvox::scene::Source;
 use shiftvox::whole;
 use shiftvox_mesh::generate;
@@ -39,7 +39,13 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
     };
     let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written("generate", &spec, &args.output, &written, console);
+    scene_files::report_written(
+        "generate",
+        &spec,
+        &args.output,
+        ("voxels", &written),
+        console,
+    );
     Ok(())
 }
 
@@ -54,19 +60,17 @@ fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
     let mesh = generate::generate(kind, seed);
     let bytes = generate::ply(&mesh);
     whole::write(output, &bytes, args.force)?;
-    let triangles = mesh.triangles().len() as u64;
-    console.note(format!(
-        "{}: {} triangles, {} bytes",
-        output.display(),
-        report::grouped(triangles),
-        report::grouped(bytes.len() as u64)
-    ));
-    let fields = json!({
-        "input": args.spec,
-        "output": output.display().to_string(),
-        "triangles": triangles,
-        "bytes": bytes.len(),
-    });
-    console.report("generate", fields);
+    let written = Written {
+        count: mesh.triangles().len() as u64,
+        bytes: bytes.len() as u64,
+        warnings: Vec::new(),
+    };
+    scene_files::report_written(
+        "generate",
+        &args.spec,
+        output,
+        ("triangles", &written),
+        console,
+    );
     Ok(())
 }

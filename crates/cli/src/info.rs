@@ -11,7 +11,7 @@ use super::console::{self, Console};
 use super::error::CliError;
 use super::scenes::{self, Scene};
 use super::{far, report, textured};
-use shiftvox::budget;
+use shiftvox::budget::{self, Shortage};
 use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
 use shiftvox::project::Bounds;
 use shiftvox::scene::{FileKind, Source};
@@ -67,7 +67,7 @@ fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliEr
         _ => {
             let verify = scenes::Verify::All;
             let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
-            Ok(describe(&scene))
+            Ok(describe(&scene, console))
         }
     }
 }
@@ -82,7 +82,7 @@ fn text(mut described: Value, with_levels: bool) -> String {
     report::description(&described)
 }
 
-fn describe(scene: &Scene) -> Value {
+fn describe(scene: &Scene, console: &Console) -> Value {
     let graph = &scene.graph;
     let bounds = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
     let origin = graph.placement.origin_index;
@@ -90,6 +90,10 @@ fn describe(scene: &Scene) -> Value {
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
     let gains = merge_gains(graph);
+    if let Err(short) = &gains {
+        console.note(format!("{}: without dag_gain: {short}", scene.source));
+    }
+    let gain = |by: usize| gains.as_ref().ok().map(|gains| gains[by]);
     let levels = levels(graph)
         .into_iter()
         .enumerate()
@@ -111,8 +115,8 @@ fn describe(scene: &Scene) -> Value {
         "levels": levels.collect::<Vec<Value>>(),
         "bytes": graph.bytes(),
         "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
-        "dag_gain": gains.map(|gains| gains[0]),
-        "dag_gain_by_shape": gains.map(|gains| gains[1]),
+        "dag_gain": gain(0),
+        "dag_gain_by_shape": gain(1),
         "palette_entries": scene.palette,
         "colors": distinct_leaf_colors(graph),
         "camera": camera_line(&camera),
@@ -154,7 +158,6 @@ fn opacities(graph: &Graph) -> String {
     )
 }
 
-/// Different colours of the nodes without children.
 fn distinct_leaf_colors(graph: &Graph) -> usize {
     let view = graph.view();
     let mut seen = vec![0u64; (1 << 24) / 64];
@@ -195,11 +198,10 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
     levels
 }
 
-/// Least bytes per node of merging.
 const MERGE_BYTES: u64 = 16;
 
-/// Nodes over those left when equal subtrees are merged, with attributes and by shape alone. None if memory is short.
-fn merge_gains(graph: &Graph) -> Option<[f64; 2]> {
-    budget::check("merging", graph.len() as u64 * MERGE_BYTES).ok()?;
-    Some([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))
+/// Nodes over those left when equal subtrees are merged, with attributes and by shape alone.
+fn merge_gains(graph: &Graph) -> Result<[f64; 2], Shortage> {
+    budget::check("merging", graph.len() as u64 * MERGE_BYTES)?;
+    Ok([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))
 }

@@ -88,8 +88,13 @@ struct CommonArgs {
     /// Threads, 0 for all, which never change the output [default: 0, of measurements 1]. `bench time`
     /// takes a list such as 1,2
     #[arg(long, global = true, value_name = "N", value_delimiter = ',', action = ArgAction::Set, num_args = 1,
-          value_parser = clap::value_parser!(u16).range(0..=1024))]
+          value_parser = thread_count)]
     threads: Vec<u16>,
+}
+
+fn thread_count(text: &str) -> Result<u16, String> {
+    let count = text.trim().parse().ok().filter(|count| *count <= 1024);
+    count.ok_or_else(|| "expected 0 to 1024 threads".to_owned())
 }
 
 #[derive(Debug, Subcommand)]
@@ -230,7 +235,6 @@ fn no_threads(error: rayon::ThreadPoolBuildError) -> CliError {
 }
 
 fn run_command(cli: Cli, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
-    // Only the page shows flags as the user wrote them.
     let _ = matches;
     match cli.command {
         None => demo::run(console),

@@ -1,5 +1,4 @@
-//! The registry of drawing methods. It finds the method that draws a scene, rejects flags that this method does not
-//! follow, and returns the scene as a [`Drawable`].
+//! The registry of drawing methods: which one draws a scene, and which flags it follows.
 
 use std::path::Path;
 use std::time::Instant;
@@ -18,7 +17,6 @@ use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyl
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
 
-/// The flags that select and set up a drawing method.
 #[derive(Clone, Copy)]
 pub(super) struct DrawArgs<'a> {
     pub(super) engine: &'a EngineArgs,
@@ -131,7 +129,6 @@ impl FileMethod {
             return Err(CliError::usage(message).advise(advice));
         }
         if kind != Some(self.file) {
-            // The method's reader names the fault.
             let refused = (self.open)(Path::new(scene), args).map(|_| ());
             return refused.map_err(|error| {
                 error.advise(format!(

@@ -27,7 +27,6 @@ pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError>
     Ok(())
 }
 
-/// Fails if the buffers of so many pictures take more disk than is free.
 pub(super) fn check_room(
     picture: &Path,
     buffers: &[Buffer],
@@ -43,7 +42,6 @@ pub(super) fn check_room(
     Ok(budget::check_disk(whole::folder_of(picture), needed)?)
 }
 
-/// A name with fields or numbers must be text.
 pub(crate) fn check_text(path: &Path) -> Result<&str, CliError> {
     let wrong = || CliError::usage(format!("{}: the name is not UTF-8", path.display()));
     path.to_str().ok_or_else(wrong)
@@ -70,7 +68,6 @@ pub(super) fn write(
     Ok(whole::keep(prepare(shown, path, buffers, force)?)?)
 }
 
-/// Writes all of them under temporary names, for [`whole::keep`].
 pub(super) fn prepare(
     shown: &Shown<'_>,
     path: &Path,
@@ -119,18 +116,4 @@ fn prepare_buffer(
         return Err(error.into());
     }
     Ok(written?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn buffers_stand_beside_the_picture() {
-        let found = paths(Path::new("a/b.c.png"), &[Buffer::Depth]);
-        assert_eq!(
-            found,
-            [Path::new("a/b.c.png"), Path::new("a/b.c.depth.npy")]
-        );
-    }
 }

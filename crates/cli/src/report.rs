@@ -59,7 +59,6 @@ pub(super) fn figure(value: &Value) -> String {
             (Some(whole), _) => grouped(whole),
             (_, Some(0.0)) => "0".to_owned(),
             (_, Some(real)) if value.is_f64() => {
-                // Six digits or more.
                 let magnitude = real.abs().max(1e-9).log10().floor() as i32;
                 format!("{real:.*}", (5 - magnitude).max(0) as usize)
             }
@@ -114,14 +113,12 @@ pub(super) fn description(object: &Value) -> String {
     tables.join("\n\n")
 }
 
-/// Fields by name, these first.
 fn ordered(object: &Value) -> Vec<(&String, &Value)> {
     let mut fields: Vec<_> = object.as_object().into_iter().flatten().collect();
     fields.sort_by_key(|(key, _)| !matches!(key.as_str(), "scene" | "format" | "level"));
     fields
 }
 
-/// A table of objects, and a table for each array of objects in them.
 fn tables_of(name: &str, rows: &[Value]) -> Vec<String> {
     let Some(first) = rows.first() else {
         return Vec::new();
@@ -151,24 +148,4 @@ fn tables_of(name: &str, rows: &[Value]) -> Vec<String> {
         }
     }
     tables
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn descriptions_have_lines_and_tables() {
-        let levels = json!([{ "faces": 2, "level": 0, "voxels": 12345 }]);
-        let object = json!({
-            "scene": "a.vox",
-            "size": [4, 5],
-            "mesh": { "load_ms": 0.25 },
-            "palette": null,
-            "grids": [{ "cells": 8, "levels": levels }, { "cells": 16 }],
-        });
-        let expected = "scene          a.vox\nmesh: load ms  0.250000\nsize           4, 5\n\n\
-                        cells\n8\n16\n\ngrids 0, levels:\nlevel  faces  voxels\n0          2  12,345";
-        assert_eq!(description(&object), expected);
-    }
 }

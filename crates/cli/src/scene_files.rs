@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::args::SceneArgs;
 use super::console::Console;
@@ -21,26 +21,10 @@ const NODE_BYTES: u64 = 5;
 const PLY_BYTES: u64 = 27;
 const VOX_BYTES: u64 = 4;
 
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Conversion<'a> {
-    pub(super) input: &'a str,
-    pub(super) output: &'a Path,
-    pub(super) force: bool,
-    pub(super) scene: &'a SceneArgs,
-}
-
-impl Conversion<'_> {
-    pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
-        described["input"] = json!(self.input);
-        described["output"] = json!(self.output.display().to_string());
-        described["build_ms"] = json!(build_ms);
-        console.report("convert", described);
-    }
-}
-
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Written {
-    pub(super) voxels: u64,
+    /// Voxels, or the triangles of a mesh.
+    pub(super) count: u64,
     pub(super) bytes: u64,
     pub(super) warnings: Vec<String>,
 }
@@ -103,13 +87,12 @@ pub(super) fn write(
     progress.end();
     let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
     Ok(Written {
-        voxels: graph.voxels,
+        count: graph.voxels,
         bytes,
         warnings,
     })
 }
 
-/// Builds a `.vxg` file of a scene within a limit of memory.
 pub(super) fn build_file(
     source: &str,
     args: &SceneArgs,
@@ -131,7 +114,7 @@ pub(super) fn build_file(
         progress,
     )?;
     let written = Written {
-        voxels: built.voxels,
+        count: built.voxels,
         bytes: built.bytes,
         warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
     };
@@ -155,7 +138,6 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
         (0..side * side * side).map(move |i| {
             let offset = [i / (side * side), i / side % side, i % side];
             Voxel {
-                // Within `i32`, as the builder made sure.
                 index: std::array::from_fn(|k| (corner[k] + offset[k]) as i32),
                 color,
                 normal: Some(normal).filter(|n| !n.is_none()),
@@ -164,26 +146,27 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
     }))
 }
 
+/// `what`: voxels or triangles.
 pub(super) fn report_written(
     command: &str,
     input: &str,
     output: &Path,
-    written: &Written,
+    (what, written): (&str, &Written),
     console: &Console,
 ) {
     for warning in &written.warnings {
         console.note(format!("{}: {warning}", output.display()));
     }
     console.note(format!(
-        "{}: {} voxels, {} bytes",
+        "{}: {} {what}, {} bytes",
         output.display(),
-        report::grouped(written.voxels),
+        report::grouped(written.count),
         report::grouped(written.bytes)
     ));
     let fields = json!({
         "input": input,
         "output": output.display().to_string(),
-        "voxels": written.voxels,
+        what: written.count,
         "bytes": written.bytes,
         "warnings": written.warnings,
     });

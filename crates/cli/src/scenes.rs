@@ -28,7 +28,6 @@ pub(super) struct Scene {
     pub(super) load_ms: f64,
 }
 
-/// Opens a file or makes a `gen:` scene, and prints its warnings.
 pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
     let started = Instant::now();
     open_source(
@@ -163,7 +162,6 @@ fn load_options(args: &SceneArgs) -> LoadOptions {
 
 fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
     let info = opened.info.as_ref();
-    // The axis given for a file is kept in the written file.
     if let (Some(up), Some(mesh)) = (mesh_up, &mut opened.graph.placement.mesh) {
         mesh.y_up = up == Up::Y;
     }

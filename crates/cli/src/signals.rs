@@ -1,13 +1,9 @@
 //! Signals that stop the program: Ctrl-C, `kill`, a closed terminal.
 //!
-//! Files that are not whole yet are removed; then the program ends by the signal, as if it had not
-//! been caught, so that shells and scripts see why (130 for Ctrl-C). Without signals (not Unix), or
-//! where it is killed, a temporary file is left, which the next run that writes to its folder
-//! removes ([`shiftvox::whole`]).
+//! Unfinished files are removed; then the program ends by the signal, so that shells see why (130 for Ctrl-C).
 
-/// Installs the handlers. A file that grows beyond a limit (SIGXFSZ) is an error of the write and
-/// no longer the program's end. A signal that the program was started to ignore, as shells and `nohup` do
-/// for work in the background, stays ignored.
+/// Installs the handlers. A file beyond a limit (SIGXFSZ) is an error of the write. A signal that the program was started
+/// to ignore, as by `nohup`, stays ignored.
 #[cfg(unix)]
 pub(super) fn tidy_up_when_stopped() {
     use std::sync::Arc;
@@ -24,7 +20,6 @@ pub(super) fn tidy_up_when_stopped() {
     let wanted = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|signal| ignored >> (signal - 1) & 1 == 0);
-    // Where signals cannot be had the program is stopped as any other.
     let Ok(mut signals) = Signals::new(wanted) else {
         return;
     };
@@ -32,12 +27,10 @@ pub(super) fn tidy_up_when_stopped() {
         if let Some(signal) = signals.forever().next() {
             remove_unfinished(|| {
                 let _ = emulate_default_handler(signal);
-                // Not reached where the system has the signal's default.
                 std::process::exit(128 + signal);
             });
         }
     };
-    // Without the thread the signals have no effect.
     let _ = std::thread::Builder::new()
         .name("signals".to_owned())
         .spawn(wait);
@@ -46,8 +39,7 @@ pub(super) fn tidy_up_when_stopped() {
 #[cfg(not(unix))]
 pub(super) fn tidy_up_when_stopped() {}
 
-/// The signals that this process was started to ignore, a bit each, from signal 1 on. Only Linux
-/// says.
+/// The signals that this process was started to ignore, a bit each, from signal 1 on. Only Linux says.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

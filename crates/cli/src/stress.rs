@@ -12,7 +12,7 @@ use super::experiment::export;
 use super::{document, report};
 use shiftvox::whole;
 use shiftvox_lab::report::Table;
-use shiftvox_lab::stress::{self, Case, End, Hold, Outcome, SweepPlan};
+use shiftvox_lab::stress::{self, Case, Hold, SweepPlan};
 
 #[derive(Debug, Args)]
 pub(super) struct StressArgs {
@@ -127,11 +127,15 @@ fn plan(args: &StressArgs) -> Result<SweepPlan, CliError> {
 
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
-    if console.json {
-        let fields = json!({ "case": case.to_string(), "outcome": outcome });
-        console.report("stress case", fields);
-    } else {
-        console.data(description(case, &outcome))?;
+    let mut fields = json!({ "case": case.to_string(), "outcome": outcome });
+    match console.json {
+        true => console.report("stress case", fields),
+        false => {
+            for (hold, worst) in Hold::ALL.iter().enumerate() {
+                fields["outcome"]["worst"][hold]["vertices of"] = json!(worst.name());
+            }
+            console.data(case.to_string() + "\n" + &report::description(&fields["outcome"]))?;
+        }
     }
     match outcome.failures.first() {
         None => Ok(()),
@@ -140,50 +144,4 @@ fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
             Err(CliError::new(Kind::Failed, message))
         }
     }
-}
-
-fn description(case: &Case, outcome: &Outcome) -> String {
-    let mut lines = vec![case.to_string()];
-    lines.push(match &outcome.end {
-        End::Drawn => format!(
-            "drawn with {} records; {} samples covered by the oracle, {} extra, {} missing, {} of \
-             another voxel",
-            report::grouped(outcome.records),
-            outcome.coverage.covered,
-            outcome.coverage.extra,
-            outcome.coverage.missing,
-            outcome.coverage.wrong_voxel
-        ),
-        End::Trapped(trap) => format!("trapped: {trap}"),
-        End::Refused(reason) => format!("refused: {reason}"),
-        End::CutOff => format!(
-            "given up after {} records",
-            report::grouped(outcome.records)
-        ),
-    });
-    if outcome.inside > 0 {
-        lines.push(format!(
-            "{} holes in {} samples inside a closed surface",
-            outcome.holes, outcome.inside
-        ));
-    }
-    for (hold, worst) in Hold::ALL.iter().zip(&outcome.worst) {
-        if worst.vertices > 0 {
-            lines.push(format!(
-                "{}: {} coordinates of vertices, worst {:.3e} px of at most {:.3e}",
-                hold.name(),
-                worst.vertices,
-                worst.error_px,
-                worst.bound_px
-            ));
-        }
-    }
-    for failure in &outcome.failures {
-        lines.push(format!(
-            "VIOLATED, {}: {}",
-            failure.check.name(),
-            failure.detail
-        ));
-    }
-    lines.join("\n")
 }

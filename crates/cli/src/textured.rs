@@ -6,41 +6,38 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use super::console::Console;
+use super::convert::ConvertArgs;
 use super::error::CliError;
 use super::report::grouped;
-use super::scene_files::Conversion;
 use super::scenes;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::project::Up;
 use shiftvox::whole;
 use shiftvox_mesh::textured::levels::LevelRow;
 use shiftvox_mesh::textured::store::{Grid, write_to};
-use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
+use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
-pub(super) fn convert(
-    of: &Conversion<'_>,
-    options: &BuildOptions,
-    console: &Console,
-) -> Result<(), CliError> {
-    let (mesh, up) = scenes::open_mesh(of.input, of.scene, console)?;
+pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
+    let ConvertArgs { input, output, .. } = args;
+    let (mesh, up) = scenes::open_mesh(input, &args.scene, console)?;
     let started = Instant::now();
-    let mut data =
-        build(&mesh, options, console.progress()).map_err(|e| CliError::from(e).at(of.input))?;
+    let built = build(&mesh, &args.textured_options(), console.progress());
+    let mut data = built.map_err(|e| CliError::from(e).at(input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
-    let file = TexturedFile::open(of.output)?;
+    whole::write_with(output, args.force, |file| write_to(&data, file))?;
+    let file = TexturedFile::open(output)?;
     let grids = (0..file.grids()).map(|number| file.grid(number));
     let voxels: u64 = grids.map(|grid| grid.voxels().len() as u64).sum();
     console.note(format!(
         "{}: {} triangles, {} voxels, {} bytes, built in {:.2} s",
-        of.output.display(),
+        output.display(),
         grouped(mesh.triangles().len() as u64),
         grouped(voxels),
         grouped(file.len()),
         build_ms / 1e3
     ));
-    of.report(describe(&file, of.input), build_ms, console);
+    args.report(describe(&file, input), build_ms, console);
     Ok(())
 }
 
@@ -80,8 +77,8 @@ fn describe_grid(grid: &Grid<'_>) -> Value {
         })
     };
     json!({
-        "cells": lattice.cells(),
-        "texels": lattice.texels(),
+        "cells": lattice.cells,
+        "texels": lattice.texels,
         "element": match grid.element() {
             Element::Cube => "cube",
             Element::Sides => "sides",

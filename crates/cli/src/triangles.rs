@@ -20,15 +20,6 @@ use shiftvox::whole;
 use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
 use shiftvox_mesh::raster::{Pattern, Samples};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(super) enum PatternName {
-    /// In the middles of equal squares.
-    #[default]
-    Regular,
-    /// At random within equal squares.
-    Stratified,
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum BufferName {
     /// View-axis depth, world units; inf where nothing is seen.
@@ -45,16 +36,10 @@ pub(super) struct TrianglesArgs {
     /// Picture to write, .png
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Samples per pixel
+    /// Samples per pixel, in the middles of equal squares
     #[arg(long, value_name = "N", default_value = "16",
           value_parser = PossibleValuesParser::new(["1", "4", "16", "256"]))]
     samples: String,
-    /// Places of the samples in a pixel
-    #[arg(long, value_enum, default_value_t)]
-    pattern: PatternName,
-    /// Seed of --pattern stratified
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
     /// Pixels, such as 512 (square) or 640x360 [default: 512]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
@@ -130,13 +115,9 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
 
 impl TrianglesArgs {
     fn style(&self) -> Result<TrianglesStyle, CliError> {
-        let pattern = match self.pattern {
-            PatternName::Regular => Pattern::Regular,
-            PatternName::Stratified => Pattern::Stratified { seed: self.seed },
-        };
         let samples = self.samples.parse().unwrap_or(16);
         Ok(TrianglesStyle {
-            samples: Samples::new(samples, pattern).map_err(CliError::usage)?,
+            samples: Samples::new(samples, Pattern::Regular).map_err(CliError::usage)?,
             shading: match self.flat {
                 true => Shading::Flat,
                 false => Shading::Lambert,

@@ -126,18 +126,3 @@ fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
     let path = |frame| format!("{before}{frame:0width$}{after}").into();
     Ok((0..frames).map(path).collect())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbered_names() {
-        let paths = frame_paths(Path::new("out/f##.png"), 11).unwrap();
-        assert_eq!(paths[0], Path::new("out/f00.png"));
-        assert_eq!(paths[10], Path::new("out/f10.png"));
-        for bad in ["out/f.png", "#/a#.png"] {
-            assert!(frame_paths(Path::new(bad), 2).is_err());
-        }
-    }
-}

@@ -6,7 +6,6 @@ use glam::DVec3;
 use shiftvox::graph::Placement;
 use shiftvox::project::{Camera, CameraError};
 
-/// Widths of the numbers of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Widths {
     /// Fraction bits of clip vectors, of a finest voxel.
@@ -20,12 +19,9 @@ pub struct Widths {
 /// Relative error of a sum of a few `f64`.
 const REAL_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// A cube of the object, in finest voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cube {
-    /// Lowest corner.
     pub corner: DVec3,
-    /// Side.
     pub side: f64,
 }
 
@@ -36,7 +32,6 @@ impl Cube {
     }
 }
 
-/// How a vertex is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Space {
     /// X, Y and W: both cages.
@@ -61,9 +56,6 @@ pub struct Bounds {
 
 impl Bounds {
     /// Of a camera's view of an object that lies at `placement`.
-    ///
-    /// # Errors
-    /// When the camera cannot see.
     pub fn new(
         camera: &Camera,
         placement: &Placement,
@@ -104,14 +96,12 @@ impl Bounds {
     }
 
     /// Where a point is seen, samples; `None` where it is not before the eye.
-    #[must_use]
     pub fn project(&self, u: DVec3) -> Option<[f64; 2]> {
         let clip = self.clip(u);
         (clip.z > 0.0).then(|| [clip.x / clip.z, clip.y / clip.z].map(|x| x * self.root))
     }
 
     /// Depth of a point, voxels.
-    #[must_use]
     pub fn depth(&self, u: DVec3) -> f64 {
         self.clip(u).z
     }
@@ -134,7 +124,6 @@ impl Bounds {
 
     /// The host's rounding error of a point before the eye, samples. It is infinite if the rounded
     /// point may be behind the eye.
-    #[must_use]
     pub fn host(&self, u: DVec3) -> [f64; 2] {
         let (clip, shift) = (self.clip(u), self.shift(u));
         let left = clip.z - shift;
@@ -150,7 +139,6 @@ impl Bounds {
     /// `space`, `levels` below the level of the cube that changed. The sum of the host's rounding of
     /// edges and origin, the deviation of the screen's straight lines from perspective, and the
     /// rounding of quotients, midpoints and edges.
-    #[must_use]
     pub fn vertex(&self, space: Space, levels: u32, u: DVec3) -> [f64; 2] {
         let unit = libm::ldexp(1.0, -(self.widths.screen_frac as i32));
         let levels = f64::from(levels);
@@ -213,19 +201,4 @@ impl Bounds {
             (0..3).map(part).sum::<f64>() / (least * least)
         })
     }
-}
-
-/// The worst rounding error of the host anywhere in a picture, pixels. Clip vectors have `clip_frac`
-/// fraction bits, the picture's root has `root_px` pixels per side, depths are at least `near`
-/// voxels, and half of the diagonal field of view is `half_angle` radians.
-#[must_use]
-pub fn worst_host_px(clip_frac: u32, root_px: f64, near: f64, half_angle: f64) -> f64 {
-    let unit = libm::ldexp(1.0, -(clip_frac as i32));
-    let per_depth = libm::sqrt(3.0) / libm::cos(half_angle) + 1.0 / near;
-    let off = unit / 2.0 * per_depth;
-    if off >= 1.0 {
-        return f64::INFINITY;
-    }
-    // In the picture X / W is at most 1.
-    2.0 * root_px * off / (1.0 - off)
 }

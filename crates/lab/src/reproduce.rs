@@ -23,13 +23,11 @@ const PAPER_TABLE_I: [(u32, &str); 5] = [
     (1024, "1772"),
 ];
 
-/// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Settings {
     /// The paper's: eight corners, screen space at once, coverage `any`.
     Paper,
-    /// The program's.
     Default,
 }
 
@@ -42,15 +40,11 @@ impl Settings {
     }
 }
 
-/// One measurement.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
-    /// The title of its table. Runs of one title share a table.
     pub table: String,
-    /// How frames are drawn.
     pub settings: Settings,
-    /// Engines by name.
     pub engines: Vec<String>,
     /// Techniques that are switched off in turn, by name.
     #[serde(default)]
@@ -61,20 +55,16 @@ pub struct Run {
     pub sizes: Vec<u32>,
 }
 
-/// A list of measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct List {
-    /// The measurements.
     pub run: Vec<Run>,
 }
 
 impl List {
-    /// The list that reproduces the paper.
     pub const PAPER: &'static str = include_str!("reproduce.toml");
 
     /// All scenes, each once, in order.
-    #[must_use]
     pub fn scenes(&self) -> Vec<&str> {
         let mut all: Vec<&str> = Vec::new();
         for name in self.run.iter().flat_map(|run| &run.scenes) {
@@ -90,9 +80,6 @@ impl List {
 ///
 /// Rows of the machine with everything on have the hash of the picture, the operations and the
 /// covered pixels. These are the same on every computer.
-///
-/// # Errors
-/// When a frame cannot be set up or drawn.
 pub fn rows(
     run: &Run,
     subjects: &[Subject],
@@ -163,8 +150,6 @@ fn paper_points() -> impl Iterator<Item = (f64, f64)> {
     points.filter_map(|&(side, ms)| Some((f64::from(side * side), ms.parse().ok()?)))
 }
 
-/// The most important columns of the rows of one table, for people.
-#[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "scene size settings engine variant ms paper_ms paper_over_ours time_ratio voxels work \
         operations covered_pixels us_per_covered_pixel exponent paper_exponent changed hash";
@@ -173,7 +158,6 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
 
 /// A plot of the rows of one table: time by pixels (the paper's Figure 5), time by voxels, or how
 /// many times as long a frame takes without a technique.
-#[must_use]
 pub fn panel(title: &str, rows: &[Row]) -> Option<Panel> {
     let growing = rows.first()?.text("growing");
     let has_variants = rows.iter().any(|row| row.text("variant") != EVERYTHING_ON);
@@ -197,20 +181,4 @@ pub fn panel(title: &str, rows: &[Row]) -> Option<Panel> {
             .push(Series::curve("the paper", paper_points()));
     }
     Some(panel)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_papers_list_is_complete() {
-        let list: List = toml::from_str(List::PAPER).unwrap();
-        let titles: Vec<&str> = list.run.iter().map(|run| run.table.as_str()).collect();
-        for part in ["Table I", "Objects", "order"] {
-            assert!(titles.iter().any(|title| title.contains(part)), "{part}");
-        }
-        assert_eq!(list.run[0].sizes, PAPER_TABLE_I.map(|(side, _)| side));
-        assert_eq!(list.scenes().len(), 10);
-    }
 }

@@ -5,10 +5,9 @@ use glam::DVec3;
 use super::SceneError;
 use super::geometry::{plane_normal, point};
 use super::load::{Fault, Place, Problem};
-use super::{Material, Mesh};
+use super::{Material, Mesh, Surface};
 use shiftvox::budget::{self, Shortage};
 
-/// Most positions and triangles of a mesh: both are numbered in 32 bits.
 const MOST: usize = u32::MAX as usize;
 
 /// A triangle names a position that does not exist.
@@ -20,7 +19,6 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
-/// A triangle as it is given: corners, normals, material, tint.
 type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
@@ -30,10 +28,7 @@ type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
-    /// Whether any triangle came with normals; those before it got their plane's.
-    has_normals: bool,
     not_finite: u64,
-    first_not_finite: u64,
     degenerate: u64,
     invisible: u64,
     /// Triangles of opacity 0, while there are no others.
@@ -51,7 +46,6 @@ impl MeshBuilder {
     /// Adds a material and returns its number.
     pub fn material(&mut self, material: Material) -> u32 {
         self.mesh.materials.push(material);
-        // More would not fit a file.
         (self.mesh.materials.len() - 1) as u32
     }
 
@@ -86,11 +80,10 @@ impl MeshBuilder {
         let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
         let needed = needed as u64;
         budget::check(WHAT, needed)?;
-        let had = mesh
-            .positions
-            .try_reserve_exact(positions)
-            .and_then(|()| mesh.triangles.try_reserve_exact(triangles))
-            .and_then(|()| mesh.material_of.try_reserve_exact(triangles));
+        let (corners, materials) = (&mut mesh.triangles, &mut mesh.material_of);
+        let had = mesh.positions.try_reserve_exact(positions);
+        let had = had.and_then(|()| corners.try_reserve_exact(triangles));
+        let had = had.and_then(|()| materials.try_reserve_exact(triangles));
         had.map_err(|_| Shortage {
             what: WHAT,
             needed,
@@ -139,9 +132,6 @@ impl MeshBuilder {
         self.seen += 1;
         let [a, b, c] = corners.map(|i| point(self.mesh.positions[i as usize]));
         if !(a.is_finite() && b.is_finite() && c.is_finite()) {
-            if self.not_finite == 0 {
-                self.first_not_finite = self.seen;
-            }
             self.not_finite += 1;
             return Ok(());
         }
@@ -167,33 +157,22 @@ impl MeshBuilder {
             self.mesh.tints.resize(self.mesh.triangles.len(), [1.0; 3]);
             self.mesh.tints.push(tint);
         }
-        // No zero: `across` is not, though its length may round to it.
-        let plane = across.normalize_or(DVec3::Z).as_vec3().to_array();
-        if normals.is_some() && !self.has_normals {
-            self.has_normals = true;
-            self.fill_normals();
-        }
-        if self.has_normals {
-            let given = normals.unwrap_or([plane; 3]);
-            let sound = given.map(|normal| unit(normal).unwrap_or(plane));
-            self.mesh.corner_normals.push(sound);
-        }
-        self.mesh.triangles.push(corners);
-        self.mesh.material_of.push(material);
-        Ok(())
-    }
-
-    fn fill_normals(&mut self) {
         let mesh = &mut self.mesh;
-        let positions = &mesh.positions;
-        mesh.corner_normals = mesh
-            .triangles
-            .iter()
-            .map(|corners| {
-                let plane = plane_normal(corners.map(|i| point(positions[i as usize])));
-                [plane.as_vec3().to_array(); 3]
-            })
-            .collect();
+        if normals.is_some() || !mesh.corner_normals.is_empty() {
+            // Earlier triangles get the normal of their plane.
+            for number in mesh.corner_normals.len()..mesh.triangles.len() {
+                let plane = plane_normal(Surface::corners(mesh, number));
+                mesh.corner_normals.push([plane.as_vec3().to_array(); 3]);
+            }
+            // No zero: `across` is not, though its length may round to it.
+            let plane = across.normalize_or(DVec3::Z);
+            let given = normals.map_or([plane; 3], |normals| normals.map(point));
+            let sound = given.map(|n| n.try_normalize().unwrap_or(plane).as_vec3().to_array());
+            mesh.corner_normals.push(sound);
+        }
+        mesh.triangles.push(corners);
+        mesh.material_of.push(material);
+        Ok(())
     }
 
     fn show_hidden(&mut self) {
@@ -214,7 +193,6 @@ impl MeshBuilder {
         self.invisible = 0;
         let seen = self.seen;
         for (corners, normals, material, tint) in hidden {
-            // In range: it was when it was given.
             let _ = self.textured_triangle(corners, normals, material, tint);
         }
         self.seen = seen;
@@ -232,25 +210,22 @@ impl MeshBuilder {
             let fault = Fault::new("mesh", Place::Whole, expected, "more", "split the mesh");
             return Err(in_file(Problem::Limit(fault)));
         }
-        let complaints = [
+        let mut told = Vec::new();
+        for (count, what) in [
             (
                 self.not_finite,
-                format!(
-                    "with a coordinate that is infinite or not a number (the first: triangle {})",
-                    self.first_not_finite
-                ),
+                "with a coordinate that is infinite or not a number",
             ),
             (
                 self.degenerate,
-                "without area (corners equal, or on a line)".into(),
+                "without area (corners equal, or on a line)",
             ),
-            (self.invisible, "of a material with opacity 0".into()),
-        ];
-        let mut told: Vec<String> = complaints
-            .iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} of {} triangles {what}", self.seen))
-            .collect();
+            (self.invisible, "of a material with opacity 0"),
+        ] {
+            if count > 0 {
+                told.push(format!("{count} of {} triangles {what}", self.seen));
+            }
+        }
         if self.mesh.triangles.is_empty() {
             let found = match &told[..] {
                 [] => "none".to_owned(),
@@ -268,10 +243,9 @@ impl MeshBuilder {
         if mesh.materials.is_empty() {
             mesh.materials.push(Material::default_color());
         }
-        for material in &mut mesh.material_of {
-            if *material as usize >= mesh.materials.len() {
-                *material = 0;
-            }
+        let is_known = |material: u32| (material as usize) < mesh.materials.len();
+        for material in mesh.material_of.iter_mut().filter(|m| !is_known(**m)) {
+            *material = 0;
         }
         if !mesh.tints.is_empty() {
             mesh.tints.resize(mesh.triangles.len(), [1.0; 3]);
@@ -288,55 +262,36 @@ impl MeshBuilder {
     }
 }
 
-fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
-    point(normal)
-        .try_normalize()
-        .map(|unit| unit.as_vec3().to_array())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A builder with four positions, of which three are on a line.
-    fn four() -> MeshBuilder {
+    #[test]
+    fn some_triangles_are_left_out_and_normals_and_colours_may_come_late() {
         let mut builder = MeshBuilder::new();
-        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]] {
+        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [f32::NAN; 3]] {
             builder.position(position);
         }
-        builder
-    }
-
-    #[test]
-    fn triangles_that_cannot_be_drawn_are_left_out_with_a_warning() {
-        let mut builder = four();
-        let nan = builder.position([f32::NAN, 0.0, 0.0]);
-        for triangle in [[0, 1, 2], [0, 1, 1], [0, 1, 3], [0, 1, nan]] {
+        builder.colored_position([2.0, 0.0, 0.0], [1, 2, 3]);
+        for triangle in [[0, 1, 2], [0, 1, 1], [0, 1, 4], [0, 1, 3]] {
             builder.triangle(triangle, None, 9).unwrap();
         }
+        let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
+        builder.triangle([0, 1, 2], Some(bad), 0).unwrap();
         let error = builder.triangle([0, 1, 5], None, 0).unwrap_err();
         assert_eq!((error.index, error.positions), (5, 5));
         let mesh = builder.finish("a.obj").unwrap();
-        assert_eq!(mesh.triangles(), [[0, 1, 2]]);
-        assert_eq!(mesh.warnings().len(), 2);
-        assert!(mesh.warnings()[0].starts_with("1 of 4 triangles with a coordinate"));
-        assert!(mesh.warnings()[1].starts_with("2 of 4 triangles without area"));
+        assert_eq!(mesh.triangles(), [[0, 1, 2]; 2]);
+        assert!(mesh.warnings()[0].starts_with("1 of 5 triangles with a coordinate"));
+        assert!(mesh.warnings()[1].starts_with("2 of 5 triangles without area"));
         assert_eq!(mesh.bounds().1, DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!(mesh.materials().len(), 1);
-    }
-
-    #[test]
-    fn normals_and_colours_may_come_late() {
-        let mut builder = four();
-        let last = builder.colored_position([5.0; 3], [1, 2, 3]);
-        builder.triangle([0, 1, 2], None, 0).unwrap();
-        let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
-        builder.triangle([0, 1, last], Some(bad), 0).unwrap();
-        let mesh = builder.finish("a").unwrap();
+        assert_eq!(
+            (mesh.materials().len(), mesh.material_of()),
+            (1, &[0, 0][..])
+        );
         assert_eq!(mesh.vertex_colors()[3..], [[255; 3], [1, 2, 3]]);
-        assert_eq!(mesh.corner_normals()[0], [[0.0, 0.0, 1.0]; 3]);
-        let [a, b, c] = mesh.corner_normals()[1];
-        assert_eq!(a, b);
-        assert_eq!(c, [0.0, 1.0, 0.0]);
+        let plane = [0.0, 0.0, 1.0];
+        let normals = [[plane; 3], [plane, plane, [0.0, 1.0, 0.0]]];
+        assert_eq!(mesh.corner_normals(), normals);
     }
 }

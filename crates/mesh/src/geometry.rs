@@ -37,7 +37,6 @@ pub fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     [1.0 - of_b - of_c, of_b, of_c]
 }
 
-/// The mean of the corners' values by their shares.
 pub(crate) fn blend(of: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
     of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2]
 }
@@ -45,7 +44,6 @@ pub(crate) fn blend(of: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
 /// Most corners of a triangle that was cut at six planes, and one more.
 const MOST: usize = 10;
 
-/// A convex polygon.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Polygon {
     corners: [DVec3; MOST],
@@ -123,23 +121,5 @@ impl Sets {
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_of_corners() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        for (point, shares) in [
-            (DVec3::X, [0.0, 1.0, 0.0]),
-            (DVec3::new(0.25, 0.25, 5.0), [0.5, 0.25, 0.25]),
-            (DVec3::splat(9.0), [0.0, 0.5, 0.5]),
-        ] {
-            assert_eq!(barycentric(&triangle, point), shares);
-        }
-        assert_eq!(barycentric(&[DVec3::ZERO; 3], DVec3::X), [1.0 / 3.0; 3]);
     }
 }

@@ -8,13 +8,18 @@
 //! Rules: `spec/mesh.md`.
 
 mod builder;
+#[doc(hidden)]
 pub mod decimate;
+#[doc(hidden)]
 pub mod drawing;
+#[doc(hidden)]
 pub mod far;
+#[doc(hidden)]
 pub mod generate;
 mod geometry;
 mod load;
 mod material;
+#[doc(hidden)]
 pub mod open;
 pub mod raster;
 mod scene_options;
@@ -23,12 +28,6 @@ mod surface;
 pub mod textured;
 #[doc(hidden)]
 pub mod voxelize;
-
-#[cfg(test)]
-extern crate self as shiftvox_mesh;
-#[cfg(test)]
-#[path = "../tests/shared/mod.rs"]
-mod shared;
 
 use glam::DVec3;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
@@ -118,3 +117,9 @@ impl Mesh {
         sizes.iter().map(|&size| size as u64).sum()
     }
 }
+
+#[cfg(test)]
+extern crate self as shiftvox_mesh;
+#[cfg(test)]
+#[path = "../tests/shared/mod.rs"]
+mod shared;

@@ -1,6 +1,6 @@
 //! Opening scenes of any kind: voxel files by the renderer's own readers, meshes read and voxelised here.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use shiftvox::graph::{Graph, MeshBox, Progress, Voxel};
@@ -12,7 +12,6 @@ use shiftvox::scene::{
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
 use crate::{Beside, LoadOptions, Mesh, Nothing, SameFolder, mesh_box};
 
-/// Levels at which the voxels of many more levels are estimated.
 const COUNTED_DEPTH: u32 = 8;
 
 /// How a mesh becomes a scene.
@@ -20,7 +19,6 @@ const COUNTED_DEPTH: u32 = 8;
 pub struct MeshOptions {
     /// Levels below the root: at most `2^depth` voxels a side.
     pub depth: u32,
-    /// How the file is read.
     pub load: LoadOptions,
     /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
     /// scene that is built in memory has room for them.
@@ -50,19 +48,13 @@ impl MeshReader for MeshOptions {
     }
 }
 
-/// How a scene of any kind is opened.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct OpenOptions {
-    /// How voxel files are read, and which graph files are verified.
     pub voxels: scene::OpenOptions,
-    /// How meshes are read and voxelised.
     pub mesh: MeshOptions,
 }
 
 /// Opens a file of any kind, or makes the scene of a `gen:` specification: [`scene::open`] with meshes.
-///
-/// # Errors
-/// See [`OpenError`].
 pub fn open(
     source: &str,
     options: &OpenOptions,
@@ -72,9 +64,6 @@ pub fn open(
 }
 
 /// Opens a file that is held in memory; a mesh finds no other files. [`scene::open_bytes`] with meshes.
-///
-/// # Errors
-/// See [`OpenError`].
 pub fn open_bytes(
     bytes: &[u8],
     name: &str,
@@ -84,36 +73,17 @@ pub fn open_bytes(
     scene::open_bytes(bytes, name, &options.voxels, &options.mesh, progress)
 }
 
-/// Why a mesh cannot be voxelised.
-#[derive(Debug, thiserror::Error)]
-#[error("{source_name}: {error}")]
-pub struct NotVoxelized {
-    /// The scene, as the user named it.
-    pub source_name: String,
-    /// The reason: its extent, or the number of levels.
-    pub error: GridError,
-}
-
 /// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
-///
-/// # Errors
-/// Where it cannot be read, is no mesh, breaks its format's rules or holds
-/// nothing to draw.
 pub fn read_mesh(
     path: &Path,
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<(Mesh, bool), OpenError> {
-    let file = SceneFile::open(path)?.mesh_file(folder_of(path))?;
+    let file = SceneFile::open(path)?.mesh_file(path.parent().map(Path::to_owned))?;
     let mesh = read(&file, options, progress)?;
     Ok((mesh, is_y_up(file.kind)))
 }
 
-fn folder_of(path: &Path) -> Option<PathBuf> {
-    path.parent().map(Path::to_owned)
-}
-
-/// Whether +Y is up, by the custom of the format.
 fn is_y_up(kind: FileKind) -> bool {
     kind != FileKind::Stl
 }
@@ -124,19 +94,16 @@ fn read(
     progress: &dyn Progress,
 ) -> Result<Mesh, OpenError> {
     let folder = file.folder.as_deref().map(SameFolder::new);
-    let beside: &dyn Beside = match &folder {
-        Some(folder) => folder,
-        None => &Nothing,
-    };
-    crate::read(
+    let beside = folder.as_ref().map_or(&Nothing as &dyn Beside, |f| f);
+    let mesh = crate::read(
         &file.bytes,
         file.kind,
         &file.name,
         beside,
         options,
         progress,
-    )
-    .map_err(OpenError::from)
+    );
+    mesh.map_err(OpenError::from)
 }
 
 struct Ready {
@@ -158,10 +125,9 @@ impl Ready {
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let refused = |error: GridError| {
             let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });
-            let source_name = file.name.clone();
             OpenError::Mesh(MeshFailure {
                 is_limit,
-                error: Box::new(NotVoxelized { source_name, error }),
+                error: format!("{}: {error}", file.name).into(),
             })
         };
         let grid = Grid::around(&mesh, options.depth).map_err(refused)?;

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::Mesh;
-use super::geometry::{bounds, plane_normal, point};
+use super::geometry::{barycentric, blend, bounds, plane_normal, point};
 use super::material::srgb_to_linear;
 use shiftvox::graph::MeshBox;
 
@@ -18,6 +18,17 @@ pub struct Triangle {
     pub colors: [DVec3; 3],
     /// Opacity, above 0.
     pub alpha: f64,
+}
+
+impl Triangle {
+    /// The unit normal on the eye's side, and the colour, at a point.
+    pub(crate) fn seen_from(&self, point: DVec3, towards_eye: DVec3) -> (DVec3, DVec3) {
+        let shares = barycentric(&self.corners, point);
+        let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
+        let face = facing(plane_normal(self.corners), towards_eye);
+        let normal = blend(&self.normals, shares).normalize_or(face);
+        (facing(normal, face), blend(&self.colors, shares))
+    }
 }
 
 /// Triangles, accessed by a number below [`Surface::len`].

@@ -23,7 +23,6 @@ pub trait Program: Sync {
     /// begins.
     fn hello(&self) -> Value;
 
-    /// Answers the requests of one socket; an error is the reason of a refusal. It is dropped after 10 s without a
-    /// request, and another is made when one comes.
+    /// Answers the requests of one socket; an error is the reason of a refusal. It is dropped after 10 s without one.
     fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String>;
 }

@@ -1,6 +1,5 @@
-//! The page and its sockets are for clients that know the token and name this computer by an address or as `localhost`.
-//! Under any other name a hostile site could reach them (DNS rebinding). Sockets are for the page itself (Origin). A
-//! connection serves one request.
+//! The page and its sockets are for clients that know the token and name this computer by an address or as `localhost`
+//! (against DNS rebinding). Sockets are for the page itself (Origin). A connection serves one request.
 
 use std::collections::VecDeque;
 use std::io::{self, Read, Write};
@@ -22,14 +21,13 @@ const PAGE: &str = include_str!("page.html");
 const MOST_SOCKETS: usize = 8;
 /// Most connections that are not sockets.
 const MOST_CONNECTIONS: usize = 64;
-/// Longest time in which the head of a request arrives.
+/// Until the head of a request has arrived.
 const HEAD_TIME: Duration = Duration::from_secs(3);
-/// Most bytes of a request's head.
 const MOST_HEAD: usize = 16 << 10;
 /// Longest time of a write without progress; sockets make two attempts.
 const WRITE_TIME: Duration = Duration::from_secs(5);
 
-/// A server of the page, on one address.
+/// A server of the page.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
@@ -43,7 +41,7 @@ impl Server {
     /// Listens on an address. Connections wait until [`Self::serve`] is called.
     ///
     /// # Errors
-    /// When the address cannot be used, or there are no random numbers for the token.
+    /// The address cannot be used, or there are no random numbers.
     pub fn bind(address: SocketAddr) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         Ok(Self {
@@ -72,13 +70,12 @@ impl Server {
         thread::scope(|scope| {
             loop {
                 let Ok((stream, _)) = self.listener.accept() else {
-                    // Too many open files, for example: wait until some are closed.
+                    // For example too many open files.
                     thread::sleep(Duration::from_millis(100));
                     continue;
                 };
                 open.retain(|stream| stream.strong_count() > 0);
                 while open.len() >= MOST_CONNECTIONS {
-                    // Half-open connections do not keep a browser waiting: the oldest ends.
                     if let Some(oldest) = open[0].upgrade() {
                         let _ = oldest.shutdown(Shutdown::Both);
                     }
@@ -110,7 +107,7 @@ impl Server {
         }
     }
 
-    /// The response to a request, and the place of the socket that it opens.
+    /// The response, and the place of the socket that it opens.
     fn respond(&self, request: &Request) -> Result<(Vec<u8>, Option<Arc<()>>), Refused> {
         let is_socket = match request.uri().path() {
             "/" => false,
@@ -180,14 +177,13 @@ fn read_head(mut stream: &TcpStream) -> Result<Request, Refused> {
     Err((StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE, reason))
 }
 
-/// A header that occurs once.
 fn only(request: &Request, name: HeaderName) -> Option<&str> {
     let mut values = request.headers().get_all(name).iter();
     let value = values.next().filter(|_| values.next().is_none())?;
     value.to_str().ok()
 }
 
-/// Whether a host names this computer by an address, or as `localhost`: no other site can use these names.
+/// No other site can use these names.
 fn is_own(host: &str, bind: IpAddr) -> bool {
     let bare = host.strip_prefix('[').and_then(|h| h.strip_suffix(']'));
     match bare.unwrap_or(host).parse::<IpAddr>() {
@@ -196,14 +192,13 @@ fn is_own(host: &str, bind: IpAddr) -> bool {
     }
 }
 
-/// Whether two texts are equal, in a time that depends on their lengths alone.
+/// Compares texts in a time that depends only on their lengths.
 fn is_same(one: &str, other: &str) -> bool {
     let pairs = one.bytes().zip(other.bytes());
     let difference = pairs.fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
     one.len() == other.len() && difference == 0
 }
 
-/// 128 random bits.
 fn random_word() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes)
@@ -238,28 +233,19 @@ fn response(status: StatusCode, headers: &str, body: &str) -> Vec<u8> {
 mod tests {
     use super::*;
 
+    /// `tests/view/refusals.rs` of the program has the other names.
     #[test]
-    fn this_computer_is_named_by_address() {
+    fn other_addresses_are_own_where_all_are_served() {
         let (here, all) = ([127, 0, 0, 1].into(), [0, 0, 0, 0].into());
-        for own in ["127.0.0.1", "localhost", "LOCALHOST", "[::1]", "127.1.2.3"] {
-            assert!(is_own(own, here) && is_own(own, all), "{own}");
-        }
-        assert!(is_own("192.168.0.7", all) && !is_own("192.168.0.7", here));
-        for other in [
-            "evil.example",
-            "localhost.evil.example",
-            "",
-            "127.0.0.1.nip.io",
-        ] {
-            assert!(!is_own(other, here) && !is_own(other, all), "{other}");
-        }
-    }
-
-    #[test]
-    fn tokens_are_compared_to_the_last_letter() {
+        let own = |host| [is_own(host, here), is_own(host, all)];
+        assert_eq!(own("[::1]"), [true, true]);
+        assert_eq!(own("192.168.0.7"), [false, true]);
+        assert_eq!(own("localhost.evil.example"), [false, false]);
         assert!(is_same("abc", "abc"));
-        for wrong in ["", "ab", "abd", "abcd", "bbc"] {
-            assert!(!is_same(wrong, "abc"), "{wrong}");
-        }
+        assert!(
+            ["", "ab", "abd", "abcd", "bbc"]
+                .iter()
+                .all(|wrong| !is_same(wrong, "abc"))
+        );
     }
 }

@@ -20,7 +20,7 @@ const MOST_BYTES: usize = 4096;
 /// Per second.
 const MOST_MESSAGES: u32 = 250;
 const SECOND: Duration = Duration::from_secs(1);
-/// The drawer, whose buffers may take hundreds of megabytes, is dropped after this time without a request.
+/// Until the drawer, whose buffers may take hundreds of megabytes, is dropped.
 const IDLE: Duration = Duration::from_secs(10);
 
 /// A stream for slow links. A write fails after two of the stream's time limits without progress.
@@ -59,8 +59,7 @@ pub(crate) fn talk(stream: TcpStream, program: &impl Program) {
     }
 }
 
-/// Answers requests until the socket is closed. Returns why this program closes it; `None`: the page
-/// closed it, and gets a reply.
+/// Answers requests. Returns why this program closes the socket, or `None` if the page did.
 fn answer_all(
     socket: &mut WebSocket<Patient>,
     program: &impl Program,

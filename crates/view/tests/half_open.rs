@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use shiftvox_view::{Answer, Program, Request, Server};
 
-/// A program without scenes.
 struct Empty;
 
 impl Program for Empty {
@@ -27,32 +26,25 @@ fn half_open_connections_keep_no_browser_waiting() {
     let address = server.page_address();
     std::thread::spawn(move || server.serve(&Empty));
     let (host, path) = address["http://".len()..].split_once('/').unwrap();
-    let half_open = |_| {
+    let connect = |request: String| {
         let mut stream = TcpStream::connect(host).unwrap();
-        let _ = stream.write_all(b"GET / HTTP/1.1\r\nHost: ");
+        let patience = Duration::from_secs(30);
+        stream.set_read_timeout(Some(patience)).unwrap();
+        let _ = stream.write_all(request.as_bytes());
         stream
     };
-    let mut others: Vec<TcpStream> = (0..300).map(half_open).collect();
+    let half_open = || connect("GET / HTTP/1.1\r\nHost: ".to_owned());
+    let mut others: Vec<TcpStream> = (0..300).map(|_| half_open()).collect();
     let asked = Instant::now();
-    let mut stream = TcpStream::connect(host).unwrap();
-    stream
-        .set_read_timeout(Some(Duration::from_secs(30)))
-        .unwrap();
-    let request = format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
-    stream.write_all(request.as_bytes()).unwrap();
-    let mut page = String::new();
-    stream.read_to_string(&mut page).unwrap();
-    let took = asked.elapsed();
-    println!("answered in {took:?}");
-    assert!(page.starts_with("HTTP/1.1 200"), "{page}");
-    assert!(took < Duration::from_secs(5), "{took:?}");
+    let page = connect(format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\n\r\n"));
     // The server ends the latest of the others, too.
-    let latest = others.last_mut().unwrap();
-    latest
-        .set_read_timeout(Some(Duration::from_secs(30)))
-        .unwrap();
-    let mut answer = String::new();
-    latest.read_to_string(&mut answer).unwrap();
-    assert!(answer.starts_with("HTTP/1.1 408"), "{answer}");
-    assert!(asked.elapsed() < Duration::from_secs(8));
+    for (mut stream, status, seconds) in [(page, 200, 5), (others.remove(299), 408, 8)] {
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        assert!(
+            answer.starts_with(&format!("HTTP/1.1 {status} ")),
+            "{answer}"
+        );
+        assert!(asked.elapsed() < Duration::from_secs(seconds));
+    }
 }

@@ -1,7 +1,4 @@
-//! Area, delay and energy of operations, from tables in which every row names its source.
-//!
-//! The crate ships `tables/area.toml` and `tables/energy.toml`. A user's own rows take precedence. An operation without
-//! rows is an error.
+//! Area, delay and energy of operations, from tables in which every row names its source (`tables/*.toml`, and a user's).
 
 mod rows;
 mod sums;
@@ -9,7 +6,7 @@ mod table;
 
 pub use rows::{CostError, Goal, Quantity};
 pub use sums::{
-    Breakdown, Costing, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies,
-    memory_energy_of, operation_of, tallies,
+    Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
+    operation_of,
 };
 pub use table::{Cost, CostTable, Fit};

@@ -53,19 +53,10 @@ impl Goal {
     }
 }
 
-/// Why a table cannot be read, or has no answer.
+/// The problem of a table or of a request.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CostError {
-    /// A file is not a cost table: the file and the problem.
-    #[error("{0} is no cost table: {1}")]
-    Syntax(String, String),
-    /// A row makes no sense: the file, the row and the problem.
-    #[error("{0}, row {1}: {2}")]
-    Row(String, String, &'static str),
-    /// No row has the requested figure, or none is near enough: the request and how to add one.
-    #[error("no {0}; {1}")]
-    NoFigure(String, String),
-}
+#[error("{0}")]
+pub struct CostError(pub(super) String);
 
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
@@ -113,11 +104,7 @@ pub(super) struct CostRow {
 
 pub(super) type Key = (Quantity, String, Option<Goal>);
 
-#[derive(Debug, Default)]
-pub(super) struct Parsed {
-    pub(super) quadratic: Vec<String>,
-    pub(super) rows: BTreeMap<Key, Vec<CostRow>>,
-}
+pub(super) type Rows = BTreeMap<Key, Vec<CostRow>>;
 
 const MAX_FIGURE: f64 = 1e12;
 const MAX_WIDTH: u32 = 1 << 16;
@@ -164,15 +151,19 @@ impl FileRow {
     }
 }
 
-pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
+/// Quadratic operations, and rows.
+pub(super) fn parse(file: &str, text: &str) -> Result<(Vec<String>, Rows), CostError> {
     let parsed: File = toml::from_str(text)
-        .map_err(|error| CostError::Syntax(file.to_owned(), error.to_string()))?;
-    let mut rows = BTreeMap::<Key, Vec<CostRow>>::new();
+        .map_err(|error| CostError(format!("{file} is no cost table: {error}")))?;
+    let mut rows = Rows::new();
     for row in &parsed.row {
-        let wrong = |problem| {
+        let wrong = |problem: &str| {
             let width = row.width.map(|width| format!(" of {width} bits"));
-            let row = format!("`{}`{}", row.operation, width.unwrap_or_default());
-            Err(CostError::Row(file.to_owned(), row, problem))
+            let width = width.unwrap_or_default();
+            let operation = &row.operation;
+            Err(CostError(format!(
+                "{file}, row `{operation}`{width}: {problem}"
+            )))
         };
         if let Some(problem) = row.problem() {
             return wrong(problem);
@@ -181,17 +172,13 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
             let key = (quantity, row.operation.clone(), row.goal);
             let others = rows.entry(key).or_default();
             let place = (row.width, row.bytes);
-            if others
-                .iter()
-                .any(|other| (other.width, other.bytes) == place)
-            {
-                return wrong("there are two such rows");
-            }
-            if others
-                .iter()
-                .any(|other| other.width.is_none() != row.width.is_none())
-            {
-                return wrong("one row is for any width and another for one: which counts?");
+            for other in others.iter() {
+                if (other.width, other.bytes) == place {
+                    return wrong("there are two such rows");
+                }
+                if other.width.is_none() != row.width.is_none() {
+                    return wrong("one row is for any width and another for one: which counts?");
+                }
             }
             let source = parsed.sources.get(&row.source).unwrap_or(&row.source);
             others.push(CostRow {
@@ -208,8 +195,5 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     for together in rows.values_mut() {
         together.sort_by_key(|row| (row.width, row.bytes));
     }
-    Ok(Parsed {
-        quadratic: parsed.quadratic,
-        rows,
-    })
+    Ok((parsed.quadratic, rows))
 }

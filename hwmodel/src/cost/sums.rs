@@ -20,13 +20,6 @@ pub enum ShiftUnits {
     Variable,
 }
 
-/// Choices that the counts leave open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-pub struct Costing {
-    /// Implementation of shifts.
-    pub shifts: ShiftUnits,
-}
-
 /// The operation of a table for a class. Logic is priced as `xor`.
 pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     match class {
@@ -44,28 +37,27 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     }
 }
 
-/// Exclusive ors of the stage *order* with constants, which are one inversion of the octant and wires.
+/// Exclusive ors of the stage *order* with constants: one inversion of the octant, and wires.
 const ORDERED_OCTANTS: u64 = 8;
 
 /// A number of operations of one kind.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Tally {
-    /// Operation of the cost table, such as `add` or `float_multiply`.
+    /// As in the cost table, such as `add` or `float_multiply`.
     pub operation: String,
-    /// Width, in bits.
+    /// In bits.
     pub width: u32,
-    /// Number of operations.
     pub times: u64,
 }
 
 /// One line of a sum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the other fields are as in `Tally`")]
 pub struct Line {
     /// A unit's or a memory's name, or the operation.
     pub name: String,
-    /// Operation of the cost table.
     pub operation: String,
-    /// Width, in bits.
     pub width: u32,
     /// Number of operations, accesses or units.
     pub times: u64,
@@ -77,14 +69,12 @@ pub struct Line {
 
 /// A sum, line by line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Breakdown {
-    /// The lines, in order of operation and width, or of the bill.
+    /// In order of operation and width, or of the bill.
     pub lines: Vec<Line>,
-    /// Sum of the values.
     pub total: f64,
-    /// Sum of the low ends.
     pub low: f64,
-    /// Sum of the high ends.
     pub high: f64,
 }
 
@@ -106,14 +96,13 @@ impl Breakdown {
     }
 }
 
-/// Counted operations as operations of a cost table, by operation and width.
-pub fn tallies(counter: &Counter, costing: Costing) -> Vec<Tally> {
+fn tallies(counter: &Counter, shifts: ShiftUnits) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
     let cells = counter.sum_by(|cell| (cell.stage, cell.class, cell.bits));
     for ((stage, class, bits), times) in cells {
         let (operation, times) = match (stage, class) {
             (Stage::Order, OpClass::Logic) => ("invert", times.div_ceil(ORDERED_OCTANTS)),
-            _ => (operation_of(class, costing.shifts), times),
+            _ => (operation_of(class, shifts), times),
         };
         *sums.entry((operation, bits)).or_default() += times;
     }
@@ -128,7 +117,7 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Vec<Tally> {
 /// Energy of all counted operations, in picojoules.
 ///
 /// ```
-/// use hwmodel::cost::{CostTable, Costing, energy_of};
+/// use hwmodel::cost::{CostTable, ShiftUnits, energy_of};
 /// use hwmodel::count::Counter;
 /// use hwmodel::{OpClass, Probe, Stage, StageLevel};
 ///
@@ -136,25 +125,19 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Vec<Tally> {
 /// let place = StageLevel { stage: Stage::Centre, level: 0 };
 /// counter.op(OpClass::Add, 32, place, 1000);
 /// counter.op(OpClass::Shift, 33, place, 1000); // wires
-/// let energy = energy_of(&counter, &CostTable::load_shipped()?, Costing::default())?;
+/// let energy = energy_of(&counter, &CostTable::load_shipped()?, ShiftUnits::Wires)?;
 /// assert!((energy.total - 100.0).abs() < 1e-9); // pJ
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
-///
-/// # Errors
-/// When an operation has no row.
 pub fn energy_of(
     counter: &Counter,
     table: &CostTable,
-    costing: Costing,
+    shifts: ShiftUnits,
 ) -> Result<Breakdown, CostError> {
-    energy_of_tallies(&tallies(counter, costing), table)
+    energy_of_tallies(&tallies(counter, shifts), table)
 }
 
 /// Energy of operations of any kind, in picojoules.
-///
-/// # Errors
-/// When an operation has no row.
 pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdown, CostError> {
     let mut sum = Breakdown::default();
     for tally in tallies {
@@ -179,9 +162,6 @@ pub enum Store {
 }
 
 /// Energy of accesses, in picojoules.
-///
-/// # Errors
-/// When a row is missing, or a memory is far larger than all rows.
 pub fn memory_energy_of(
     accesses: &BTreeMap<Memory, Accesses>,
     widths: &Widths,
@@ -195,19 +175,12 @@ pub fn memory_energy_of(
             if times == 0 {
                 continue;
             }
+            let (sram, dram) = (format!("sram_{way}"), format!("dram_{way}"));
             let (operation, each) = match store(memory) {
-                Store::Sram { bytes } => {
-                    let operation = format!("sram_{way}");
-                    let each = table.memory_energy(&operation, bytes, width);
-                    (operation, each)
-                }
-                Store::Dram => {
-                    let operation = format!("dram_{way}");
-                    let each = table.energy(&operation, width);
-                    (operation, each)
-                }
+                Store::Sram { bytes } => (&sram, table.memory_energy(&sram, bytes, width)?),
+                Store::Dram => (&dram, table.energy(&dram, width)?),
             };
-            sum.push(memory.name(), &operation, width, times, each?);
+            sum.push(memory.name(), operation, width, times, each);
         }
     }
     Ok(sum)

@@ -1,10 +1,10 @@
 //! The table: shipped rows, a user's rows over them, and interpolation.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Key, Parsed, Quantity, parse};
+use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Quantity, Rows, parse};
 
 /// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -12,7 +12,7 @@ use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Key, Parsed,
 pub enum Fit {
     /// A row contains it.
     Row,
-    /// It lies between two rows (or is scaled to an access of other bits).
+    /// It lies between two rows, or is scaled to an access of other bits.
     Interpolated,
     /// It lies below the narrowest row or above the widest.
     Extrapolated,
@@ -20,16 +20,13 @@ pub enum Fit {
 
 /// A figure and its origin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Cost {
-    /// The quantity.
     pub quantity: Quantity,
-    /// The figure, in the quantity's unit; the middle of its range.
+    /// The middle of its range, in the quantity's unit.
     pub value: f64,
-    /// Low end of the range.
     pub low: f64,
-    /// High end of the range.
     pub high: f64,
-    /// Relation to the rows.
     pub fit: Fit,
     /// Whether a row derives its figure from another source's, as the row's source states.
     pub derived: bool,
@@ -39,7 +36,7 @@ pub struct Cost {
     pub source: String,
 }
 
-/// Cost tables, one over the other.
+/// Rows of several tables, a user's over the shipped ones. A request without a row is an error.
 ///
 /// ```
 /// use hwmodel::cost::{CostTable, Fit, Goal};
@@ -55,36 +52,27 @@ pub struct Cost {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CostTable {
-    rows: BTreeMap<Key, Vec<CostRow>>,
+    rows: Rows,
     quadratic: BTreeSet<String>,
 }
 
 const FARTHEST: f64 = 4.0;
 
 impl CostTable {
-    /// A table without rows.
-    pub fn empty() -> Self {
-        Self::default()
-    }
-
     /// The tables that ship with the crate.
-    ///
-    /// # Errors
-    /// None, since a test checks the shipped files.
     pub fn load_shipped() -> Result<Self, CostError> {
-        Self::empty()
+        Self::default()
             .with_overrides(AREA_FILE, include_str!("../../tables/area.toml"))?
             .with_overrides(ENERGY_FILE, include_str!("../../tables/energy.toml"))
     }
 
     /// The same table with rows of another over it; errors and reports call it `file`.
-    ///
     /// They replace all rows of the same operation, quantity and goal; rows without goal replace those of both goals.
     ///
     /// # Errors
     /// When the text is not a cost table, or a row is invalid or occurs twice.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
-        let Parsed { quadratic, rows } = parse(file, text)?;
+        let (quadratic, rows) = parse(file, text)?;
         self.rows.retain(|(quantity, operation, goal), _| {
             let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
             !is_replaced(*goal) && !is_replaced(None)
@@ -95,31 +83,22 @@ impl CostTable {
     }
 
     /// Area of a unit, in NAND2 equivalents.
-    ///
-    /// # Errors
-    /// [`CostError::NoFigure`].
     pub fn area(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::Nand2, operation, width, Some(goal))
     }
 
-    /// Delay of a unit, in picoseconds, in the process of the source.
-    ///
-    /// # Errors
-    /// [`CostError::NoFigure`].
+    /// Delay of a unit, in picoseconds.
     pub fn delay(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
         self.cost(Quantity::DelayPs, operation, width, Some(goal))
     }
 
     /// Energy of an operation, in picojoules.
-    ///
-    /// # Errors
-    /// [`CostError::NoFigure`].
     pub fn energy(&self, operation: &str, width: u32) -> Result<Cost, CostError> {
         self.cost(Quantity::EnergyPj, operation, width, None)
     }
 
-    /// Between rows linear in the width, or in its square for areas and energies of quadratic operations. Below the first
-    /// row proportional. Above the last extrapolated from two rows, up to four times the widest.
+    /// Linear between rows, in the width or in its square (areas and energies of quadratic operations). Proportional below
+    /// the first row. Extrapolated from two rows above the last, up to four times the widest.
     fn cost(
         &self,
         quantity: Quantity,
@@ -151,13 +130,9 @@ impl CostTable {
         Ok(cost(quantity, operation, goal, &weights, fit))
     }
 
-    /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in picojoules; `operation` is `sram_read` or
-    /// `sram_write`.
-    ///
-    /// It is proportional to the bits, and linear in the square root of the size, as the length of wires.
-    ///
-    /// # Errors
-    /// [`CostError::NoFigure`], also for a memory more than four times as long and wide as that of the largest row.
+    /// Energy of an access (`sram_read` or `sram_write`) of `bits` bits to a memory of `bytes` bytes, in picojoules.
+    /// Proportional to the bits, and linear in the square root of the size, as the length of wires.
+    /// An error for a memory more than four times as long and wide as that of the largest row.
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
@@ -186,7 +161,7 @@ impl CostTable {
         Ok(cost(quantity, operation, None, &weights, fit))
     }
 
-    /// Rows of an operation and goal or, if there are none, without goal.
+    /// Rows of a goal or, if there are none, without goal.
     fn rows_of(
         &self,
         quantity: Quantity,
@@ -203,7 +178,7 @@ impl CostTable {
         Err(no_figure(quantity, operation, &size, goal, ""))
     }
 
-    /// All operations that have rows or are listed as quadratic, in order.
+    /// All operations with rows or listed as quadratic, in order.
     pub fn operations(&self) -> Vec<&str> {
         let of_rows = self.rows.keys().map(|key| key.1.as_str());
         let listed = self.quadratic.iter().map(String::as_str);
@@ -212,7 +187,6 @@ impl CostTable {
     }
 }
 
-/// The error for a figure at a size in words; `why` follows the request.
 fn no_figure(
     quantity: Quantity,
     operation: &str,
@@ -222,10 +196,9 @@ fn no_figure(
 ) -> CostError {
     let [name, key, file] = quantity.words();
     let goal = goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()));
-    CostError::NoFigure(
-        format!("{name} of `{operation}` {size}{goal}{why}"),
-        format!("add a row with `{key}` to a cost table of your own, or to {file}"),
-    )
+    CostError(format!(
+        "no {name} of `{operation}` {size}{goal}{why}; add a row with `{key}` to a cost table of your own, or to {file}"
+    ))
 }
 
 fn too_far(largest: u64, times: f64) -> String {
@@ -234,7 +207,7 @@ fn too_far(largest: u64, times: f64) -> String {
     )
 }
 
-/// The rows next to a place with their weights. Rows are in order of place.
+/// The rows next to a place, with weights. Rows are in order of place.
 fn weigh<'a>(rows: &[(f64, &'a CostRow)], at: f64) -> (Vec<(&'a CostRow, f64)>, Fit) {
     if let Some(&(_, row)) = rows.iter().find(|row| row.0 == at) {
         return (vec![(row, 1.0)], Fit::Row);

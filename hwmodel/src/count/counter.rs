@@ -1,13 +1,12 @@
-//! An operation is counted by one addition at a nearly constant address, so the compiler combines neighbouring counts.
-//! Only the level is unknown at compile time. Each of a few sets has the counts of one level, and is added to the tables
-//! when it changes to another.
+//! An operation is one addition at a nearly constant address, so the compiler combines neighbouring counts. Only the level
+//! is unknown at compile time: each of a few sets has the counts of one level, and is settled when it changes to another.
 
 use std::collections::BTreeMap;
 
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
-/// Octree levels that are counted separately, 0..=63; deeper ones count as the last.
+/// Octree levels; deeper ones count as the last.
 pub const LEVELS: usize = 64;
 
 const CLASSES: usize = OpClass::ALL.len();
@@ -35,7 +34,7 @@ type Table = Vec<[[u64; CLASSES]; STAGES]>;
 /// Counts of one or more frames.
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// By set, since it changed to its level. 94 KB would fill small stacks.
+    /// By set. 94 KB would fill small stacks.
     pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
     pub(super) levels: [usize; SETS],
     set: usize,
@@ -106,7 +105,7 @@ impl Counter {
 
     #[inline(always)]
     fn count_fresh(&mut self, row: usize, column: usize) {
-        // The remainder changes nothing; it gives the compiler the bound.
+        // The remainder gives the compiler the bound.
         self.fresh[self.set % SETS][row][column] += 1;
     }
 

@@ -10,27 +10,25 @@ use crate::probe::{Memory, OpClass, Stage};
 
 /// Number of operations of one kind at one place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct OpCount {
-    /// Class of operation.
     pub class: OpClass,
-    /// Width of its operands, in bits.
+    /// Width of its operands.
     pub bits: u32,
-    /// Stage of the record loop.
     pub stage: Stage,
     /// Octree level, 0 = root, at most 63.
     pub level: u32,
-    /// Number of operations, at least 1.
+    /// At least 1.
     pub times: u64,
 }
 
-/// Reads and writes of a memory.
+/// Numbers of accesses.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
 )]
+#[expect(missing_docs, reason = "names of the fields say what they are")]
 pub struct Accesses {
-    /// Reads.
     pub reads: u64,
-    /// Writes.
     pub writes: u64,
 }
 
@@ -41,16 +39,14 @@ impl AddAssign for Accesses {
     }
 }
 
-/// Number of accesses to one memory from one place.
+/// Accesses to one memory from one place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "as in `OpCount`")]
 pub struct AccessCount {
-    /// The memory.
     pub memory: Memory,
-    /// Stage of the record loop.
     pub stage: Stage,
-    /// Octree level, 0 = root, at most 63.
     pub level: u32,
-    /// Reads and writes, not both zero.
+    /// Not both zero.
     pub accesses: Accesses,
 }
 
@@ -70,8 +66,7 @@ impl Counter {
         self.sum(|_| true)
     }
 
-    /// Operations of the cells that a filter selects.
-    pub fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
+    fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
         let cells = self.cells().filter(wanted);
         cells.map(|cell| cell.times).sum()
     }
@@ -120,7 +115,7 @@ impl Counter {
         levels.filter(|(_, records)| *records > 0)
     }
 
-    /// Width of the widest operation, in bits; 0 if there was none.
+    /// Bits of the widest operation; 0 without operations.
     pub fn widest(&self) -> u32 {
         self.cells().map(|cell| cell.bits).max().unwrap_or(0)
     }

@@ -69,7 +69,7 @@ impl OuterMemory {
     }
 }
 
-/// Organisation of the record loop's data. Pictures under rules of exact coverage do not depend on it.
+/// Organisation of the record loop's data. Exact pictures do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
@@ -84,7 +84,7 @@ pub struct Organisation {
 }
 
 impl Organisation {
-    /// The organisation under rules that do not draw outlines: without recomputed vertices and occlusion tests.
+    /// Under rules that do not draw outlines: without recomputed vertices and occlusion tests.
     #[must_use]
     pub fn without_outlines(self) -> Self {
         let stack = match self.stack {
@@ -106,16 +106,16 @@ pub enum StackHolds {
     /// All visible children, each with its vertices.
     #[default]
     Children,
-    /// Subdivided records, with masks of the remaining children, which are made one by one.
+    /// Subdivided records, with masks of the remaining children.
     Parents,
-    /// Node and remaining children of each parent. The rest is computed back from a descendant.
+    /// Node and remaining children of each parent; the rest is computed back from a descendant.
     Path,
 }
 
 /// Most levels above the tiles of an image.
 pub const MAX_TILE_LEVELS: u32 = 8;
 
-/// Children of a record that may be in progress at once. A dependent one waits for the subtrees of earlier ones.
+/// Children of a record that may be in progress at once. Others wait for the subtrees of earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Independence {
@@ -124,9 +124,9 @@ pub enum Independence {
     /// Those of one class of the occlusion order, as in the image-order paper: the nearest, the next three, the next
     /// three or the farthest. Under rules that are not exact, two may cover the same sample, and the first keeps it.
     Classes,
-    /// Those whose image nodes are disjoint: all results are the serial ones.
+    /// Those with disjoint image nodes: all results are the serial ones.
     Image,
-    /// Those allowed by either rule.
+    /// Those of either rule.
     Both,
 }
 
@@ -160,9 +160,9 @@ pub struct Stack {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StackOverflow {
-    /// It is written to outer memory, and read back for its turn.
+    /// Written to outer memory, and read back for its turn.
     Spill,
-    /// The frame ends with an error.
+    /// An error.
     Error,
 }
 
@@ -205,30 +205,10 @@ pub struct Pixels {
     pub own_port: bool,
 }
 
-/// Why a description is invalid.
+/// An invalid field, its value and the allowed ones.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum HardwareError {
-    /// Not TOML, or not of these fields.
-    #[error("hardware description: {0}")]
-    Syntax(String),
-    /// A number out of its range: its path in the file, its value, and the allowed ones.
-    #[error("hardware description: {0} is {1}; it must be {2}")]
-    Range(String, String, String),
-    /// A class of operation without units that is not wires.
-    #[error(
-        "hardware description: nothing does `{0}`; give it a [units.{0}] or put it into `wires`"
-    )]
-    NoUnit(String),
-    /// A class of operation that is listed both with units and without.
-    #[error(
-        "hardware description: `{0}` is among `wires`, which take no units, and has a [units.{0}]; \
-         take out one"
-    )]
-    WiresAndUnits(String),
-    /// No description of this name ships.
-    #[error("no hardware of the name `{0}` ships; there are tiny, paper, light and wide")]
-    NoPreset(String),
-}
+#[error("hardware description: {0}")]
+pub struct HardwareError(pub String);
 
 /// Names and texts of the shipped descriptions.
 pub const PRESETS: [(&str, &str); 4] = [
@@ -240,26 +220,18 @@ pub const PRESETS: [(&str, &str); 4] = [
 
 impl Hardware {
     /// Reads and checks a description.
-    ///
-    /// # Errors
-    /// With the line or the field.
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let hardware: Self =
-            toml::from_str(text).map_err(|error| HardwareError::Syntax(error.to_string()))?;
+            toml::from_str(text).map_err(|error| HardwareError(error.to_string()))?;
         hardware.check()?;
         Ok(hardware)
     }
 
-    /// A shipped description.
-    ///
-    /// # Errors
-    /// When there is none of that name.
+    /// A shipped description, by its name in [`PRESETS`].
     pub fn preset(name: &str) -> Result<Self, HardwareError> {
-        let (_, text) = PRESETS
-            .iter()
-            .find(|(of, _)| *of == name)
-            .ok_or_else(|| HardwareError::NoPreset(name.to_owned()))?;
-        Self::from_toml(text)
+        let preset = PRESETS.iter().find(|(of, _)| *of == name);
+        let unknown = || HardwareError(format!("`{name}` is none of tiny, paper, light and wide"));
+        Self::from_toml(preset.ok_or_else(unknown)?.1)
     }
 
     /// The units of a class in a stage's block, if it is not wires.
@@ -291,12 +263,9 @@ impl Hardware {
         u64::from(self.lanes) * u64::from(self.contexts)
     }
 
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// With the first field out of its range.
+    /// Reports the first number out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
-        let (stack, organisation) = (&self.stack, &self.organisation);
+        let organisation = &self.organisation;
         if self.name.trim().is_empty() || self.name.contains(char::is_control) {
             let name = format!("{:?}", self.name);
             return Err(out_of_range("name", name, "a line of text"));
@@ -313,75 +282,41 @@ impl Hardware {
             let range = "1 where lanes are sequential and draw no tiles";
             return Err(out_of_range("contexts", self.contexts, range));
         }
+        let table = toml::Table::try_from(self);
+        check_numbers(
+            "",
+            &table.map_err(|error| HardwareError(error.to_string()))?,
+        )?;
         for class in OpClass::ALL {
-            match (self.units.contains_key(&class), self.wires.contains(&class)) {
-                (false, false) => return Err(HardwareError::NoUnit(key(&class))),
-                (true, true) => return Err(HardwareError::WiresAndUnits(key(&class))),
-                _ => {}
-            }
+            let problem = match (self.units.contains_key(&class), self.wires.contains(&class)) {
+                (false, false) => "has neither a [units] nor a place among `wires`",
+                (true, true) => "is among `wires`, which take no units, and has a [units]",
+                _ => continue,
+            };
+            let key = toml::Value::try_from(class).ok();
+            let key = key.as_ref().and_then(toml::Value::as_str);
+            let key = key.unwrap_or(class.name());
+            return Err(HardwareError(format!("`{key}` {problem}")));
         }
-        for (class, unit) in &self.units {
-            unit.check(&format!("units.{}", key(class)))?;
-        }
-        for (stage, units) in &self.stages {
-            for (class, unit) in units {
-                unit.check(&format!("stages.{}.{}", key(stage), key(class)))?;
-            }
-        }
-        self.node_cache.check("node_cache")?;
-        self.attribute_cache.check("attribute_cache")?;
-        let (fill, pixels, outer) = (&self.fill_vectors, &self.pixels, &self.outer_memory);
-        for (field, value, least, most) in [
-            ("lanes", self.lanes, 1, MAX_LANES),
-            ("contexts", self.contexts, 1, MAX_CONTEXTS),
-            ("steal_cycles", self.steal_cycles, 0, MAX_NUMBER),
-            (
-                "organisation.tile_levels",
-                organisation.tile_levels,
-                0,
-                MAX_TILE_LEVELS,
-            ),
-            ("stack.entries", stack.entries, 1, MAX_NUMBER),
-            ("stack.ports", stack.ports, 1, MAX_NUMBER),
-            ("stack.latency", stack.latency, 0, MAX_NUMBER),
-            ("stack.spill_cycles", stack.spill_cycles, 0, MAX_NUMBER),
-            ("stack.record.clip", stack.record.clip, 0, MAX_NUMBER),
-            ("stack.record.screen", stack.record.screen, 0, MAX_NUMBER),
-            ("stack.record.finest", stack.record.finest, 0, MAX_NUMBER),
-            ("fill_vectors.banks", fill.banks, 1, MAX_KEPT),
-            ("fill_vectors.read_ports", fill.read_ports, 1, MAX_NUMBER),
-            ("fill_vectors.write_ports", fill.write_ports, 1, MAX_NUMBER),
-            ("fill_vectors.latency", fill.latency, 0, MAX_NUMBER),
-            ("pixels.buffer", pixels.buffer, 1, MAX_KEPT),
-            ("pixels.write_ports", pixels.write_ports, 1, MAX_NUMBER),
-            (
-                "pixels.drain_interval",
-                pixels.drain_interval,
-                0,
-                MAX_NUMBER,
-            ),
-            (
-                "outer_memory.bytes_per_cycle",
-                outer.bytes_per_cycle,
-                0,
-                MAX_NUMBER,
-            ),
+        for (name, cache) in [
+            ("node_cache", &self.node_cache),
+            ("attribute_cache", &self.attribute_cache),
         ] {
-            within(field, value, least, most)?;
-        }
-        Ok(())
-    }
-}
-
-impl Unit {
-    fn check(&self, at: &str) -> Result<(), HardwareError> {
-        for (field, value, least) in [
-            ("count", self.count, 1),
-            ("latency", self.latency, 0),
-            ("interval", self.interval, 1),
-            ("width", self.width, 1),
-        ] {
-            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+            let Cache {
+                line_bytes,
+                ways,
+                bytes,
+                ..
+            } = *cache;
+            if !line_bytes.is_power_of_two() {
+                let field = format!("{name}.line_bytes");
+                return Err(out_of_range(&field, line_bytes, "a power of two"));
+            }
+            let set = u64::from(ways) * u64::from(line_bytes);
+            if !u64::from(bytes).is_multiple_of(set) {
+                let range = format!("a multiple of ways * line_bytes, {set}");
+                return Err(out_of_range(&format!("{name}.bytes"), bytes, &range));
+            }
         }
         Ok(())
     }
@@ -392,53 +327,40 @@ impl Cache {
     pub fn sets(&self) -> u32 {
         self.bytes / (self.ways * self.line_bytes)
     }
+}
 
-    fn check(&self, at: &str) -> Result<(), HardwareError> {
-        for (field, value, least, most) in [
-            ("bytes", self.bytes, 1, MAX_NUMBER),
-            ("ways", self.ways, 1, MAX_NUMBER),
-            ("line_bytes", self.line_bytes, MIN_LINE, MAX_NUMBER),
-            ("entry_bytes", self.entry_bytes, 1, MAX_ENTRY),
-            ("ports", self.ports, 1, MAX_NUMBER),
-            ("hit_latency", self.hit_latency, 0, MAX_NUMBER),
-            ("miss_latency", self.miss_latency, 0, MAX_NUMBER),
-            ("misses", self.misses, 1, MAX_KEPT),
-        ] {
-            within(&format!("{at}.{field}"), value, least, most)?;
-        }
-        if !self.line_bytes.is_power_of_two() {
-            let field = format!("{at}.line_bytes");
-            return Err(out_of_range(&field, self.line_bytes, "a power of two"));
-        }
-        let set = u64::from(self.ways) * u64::from(self.line_bytes);
-        if !u64::from(self.bytes).is_multiple_of(set) {
-            let range = format!("a multiple of ways * line_bytes, {set}");
-            return Err(out_of_range(&format!("{at}.bytes"), self.bytes, &range));
-        }
-        Ok(())
+fn limits(field: &str) -> (u32, u32) {
+    match field {
+        "lanes" => (1, MAX_LANES),
+        "contexts" => (1, MAX_CONTEXTS),
+        "tile_levels" => (0, MAX_TILE_LEVELS),
+        "banks" | "buffer" | "misses" => (1, MAX_KEPT),
+        "entry_bytes" => (1, MAX_ENTRY),
+        "line_bytes" => (MIN_LINE, MAX_NUMBER),
+        "count" | "interval" | "width" | "entries" | "bytes" | "ways" => (1, MAX_NUMBER),
+        "ports" | "read_ports" | "write_ports" => (1, MAX_NUMBER),
+        _ => (0, MAX_NUMBER),
     }
 }
 
-/// `MinMax` as `min_max`.
-fn key(of: &impl std::fmt::Debug) -> String {
-    let mut name = String::new();
-    for letter in format!("{of:?}").chars() {
-        if letter.is_uppercase() && !name.is_empty() {
-            name.push('_');
+fn check_numbers(path: &str, table: &toml::Table) -> Result<(), HardwareError> {
+    for (field, value) in table {
+        match value {
+            toml::Value::Table(table) => check_numbers(&format!("{path}{field}."), table)?,
+            toml::Value::Integer(number) => {
+                let (least, most) = limits(field);
+                if !(i64::from(least)..=i64::from(most)).contains(number) {
+                    let range = format!("{least} to {most}");
+                    return Err(out_of_range(&format!("{path}{field}"), number, &range));
+                }
+            }
+            _ => {}
         }
-        name.push(letter.to_ascii_lowercase());
     }
-    name
-}
-
-fn within(field: &str, value: u32, least: u32, most: u32) -> Result<(), HardwareError> {
-    if (least..=most).contains(&value) {
-        Ok(())
-    } else {
-        Err(out_of_range(field, value, &format!("{least} to {most}")))
-    }
+    Ok(())
 }
 
 fn out_of_range(field: &str, value: impl ToString, range: &str) -> HardwareError {
-    HardwareError::Range(field.to_owned(), value.to_string(), range.to_owned())
+    let value = value.to_string();
+    HardwareError(format!("{field} is {value}; it must be {range}"))
 }

@@ -1,4 +1,4 @@
-//! Memories under contention. Accesses are served at each port in the order in which their visits start.
+//! Memories under contention. A port serves accesses in the order in which their visits start.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -402,8 +402,7 @@ impl Memories {
                 self.fill[of].access(access, at)
             }
             Memory::Pixel => self.pixels.write(at, &mut self.outer),
-            // Beside the blending block, as wide as an accumulator, with one port to read and one to write: never
-            // waited for.
+            // Beside the blending block, with a port to read and one to write: never waited for.
             Memory::Accumulator => Served {
                 issued: at,
                 done: at + 1,

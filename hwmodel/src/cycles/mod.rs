@@ -1,40 +1,39 @@
 //! The cycles of a hardware design, and their causes.
 //!
-//! [`simulate`] executes a [`Workload`] one turn at a time, in the order of simulated time, observes its work by a probe
-//! ([`TurnLog`]), and lays it out in cycles. So a record that runs early finds fewer samples drawn than serially, as on
-//! the hardware. A [`Recording`] can replace the workload in some cases.
+//! [`simulate`] executes a [`Workload`] turn by turn, in the order of simulated time, and lays its work ([`TurnLog`])
+//! out in cycles. So a record that runs early finds fewer samples drawn than serially, as on the hardware. A
+//! [`Recording`] can replace the workload in some cases.
 //!
 //! # Rules
 //!
 //! All times are whole cycles. The same input gives the same output.
 //!
-//! 1. **Hardware.** There are [`Hardware::lanes`]. Each has a stack, one block per stage, and [`Hardware::contexts`]. A
-//!    context has one record at a time. Caches, fill vectors and pixels are shared by all lanes.
+//! 1. **Hardware.** A design has [`Hardware::lanes`]. Each lane has a stack, one block per stage, and [`Hardware::contexts`] with
+//!    one record each at a time. Caches, fill vectors and pixels are shared by all lanes.
 //! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in this order: pop, filled?,
 //!    to screen, one pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw, blend, fill update. Stages
 //!    without work are left out. Other records see the effects of a turn from its first cycle.
-//! 3. **Block.** A visit waits until earlier visits have entered the block and the block is free. Then, in cycle *s*, it
-//!    begins. An operation of *b* bits is `ceil(b / width)` passes. Issuing a class of operation takes
-//!    `ceil(passes / count) * interval` cycles; the largest of these, at least 1, is the visit's *occupancy*. Its
-//!    *latency* is the largest among the used classes. Results are ready at *s* + occupancy + latency.
-//! 4. **Memory.** The visit's accesses are issued in order from *s*, each in the first cycle with a free port after all
-//!    accesses of visits that began before. A read is done `latency` cycles after its issue, a write after 1. The block
-//!    is free when all operations and accesses are issued. The visit ends when all results are ready and all accesses are
-//!    done. Its delay against a visit with free ports and without misses is *stall*, whose cause is that of the access
-//!    that ended last (of equal ones the first).
+//! 3. **Block.** A visit begins in cycle *s*, when earlier visits have entered the block and it is free. An operation of
+//!    *b* bits is `ceil(b / width)` passes. Issuing a class of operation takes `ceil(passes / count) * interval` cycles;
+//!    the largest of these, at least 1, is the *occupancy*. The *latency* is the largest of the used classes. Results
+//!    are ready at *s* + occupancy + latency.
+//! 4. **Memory.** Accesses are issued in order from *s*, each in the first cycle with a free port after all accesses of
+//!    visits that began before. A read is done `latency` cycles after its issue, a write after 1. The block is free when
+//!    all is issued. The visit ends when all results are ready and all accesses are done. Its delay against a visit with
+//!    free ports and without misses is *stall*, whose cause is that of the access that ended last (of equal ones the
+//!    first).
 //! 5. **Stack.** Each has `ports` accesses per cycle. A record on another lane's stack takes [`Hardware::steal_cycles`]
-//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*. It is then written to
-//!    outer memory in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both
-//!    transfers take the port to outer memory ([`OuterMemory::cycles`]). Waiting for it and the transfer's cycles add to
-//!    the `spill_cycles`.
+//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*. It is written to outer
+//!    memory in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both transfers
+//!    take the port to outer memory ([`OuterMemory::cycles`]); the second one and its wait add to the `spill_cycles`.
 //! 6. **Cache.** Set-associative, replaces the least recently used line. A hit is done after `hit_latency`. A miss waits
 //!    for one of the `misses` slots and for the port to outer memory, which its line then takes; both hold the cache's
 //!    port. It is done after `hit_latency` and the longer of `miss_latency` and the line's own cycles. A hit on the same
 //!    line is not done earlier.
 //! 7. **Fill vectors.** An address lies in bank `address mod banks`; each bank has its own ports.
-//! 8. **Pixels.** Written into a buffer through ports. A pixel that finds it full waits for the oldest to leave. They
-//!    leave in order, at least `drain_interval` cycles apart. On entry, a pixel of 24 bits takes the port to outer
-//!    memory for as many cycles as it completes words, since neighbours share words. It leaves after those cycles.
+//! 8. **Pixels** enter a buffer through ports, and leave in order, at least `drain_interval` cycles apart. A pixel that
+//!    finds the buffer full waits. On entry, its 24 bits take the port to outer memory for the words that they complete,
+//!    since neighbours share words. It leaves after those cycles.
 //! 9. **Children** are on the stack of the lane, nearest on top, when the turn ends. A child is *ready* when all earlier
 //!    siblings that it depends on ([`Independence::allows`]) are finished with all their descendants. Other records need
 //!    not be examined: descendants stay in their ancestor's image node and place in the order.
@@ -43,28 +42,27 @@
 //!     one of the next lane (cyclically) that has one. Then idle contexts of lanes with ready records take those, then
 //!     other idle contexts steal, lowest numbers first.
 //! 11. **Start.** The work before the first record is a turn of lane 0, context 0, in cycle 0.
-//! 12. **Sequential hardware** ([`Hardware::sequential`]) does one thing at a time, in the order of the record loop.
-//!     Wherever the loop enters another stage, or reports a dependence
-//!     ([`Probe::next_step`](crate::Probe::next_step)), a visit ends and the next begins. Work *beside* a stage
-//!     ([`Probe::beside`](crate::Probe::beside)) belongs to that stage's visit. An access is issued when the previous
-//!     one is done; a read takes one more cycle, in which its result is inspected. These cycles issue operations; the
-//!     rest of the visit's occupancy, and its latency, come after the last access. A visit takes at least a cycle.
-//!     Requests of several lanes are served in order, each in its own cycle; of one cycle, nodes before attributes, and
-//!     the lowest lane and context first. An access takes the port of its cache for lookup and inspection, longer for a
-//!     miss that waits for outer memory. An incoming line also takes it for the cycles of its transfer.
-//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]). A context without records requests a tile, from
-//!     cycle 0 on. In each cycle the earliest request receives the next tile, row by row. Its context begins
-//!     the tile in the next cycle and draws it to its end, with its own stack and fill vectors.
+//! 12. **Sequential hardware** ([`Hardware::sequential`]) does one thing at a time, in the order of the record loop. A
+//!     visit ends where the loop enters another stage or reports a dependence
+//!     ([`Probe::next_step`](crate::Probe::next_step)). Work *beside* a stage ([`Probe::beside`](crate::Probe::beside))
+//!     belongs to its visit. An access is issued when the previous one is done; a read takes one more cycle, in which
+//!     its result is inspected. These cycles issue operations; the rest of the occupancy, and the latency, come after
+//!     the last access. A visit takes at least a cycle. Requests of several lanes are served in order, each in its own
+//!     cycle; of one cycle, nodes before attributes, and the lowest lane and context first. An access takes the port of
+//!     its cache for lookup and inspection, longer for a miss that waits for outer memory. An incoming line takes it for
+//!     the cycles of its transfer.
+//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]). From cycle 0 on, a context without records
+//!     requests a tile. In each cycle the earliest request receives the next tile, row by row. Its context begins the
+//!     tile in the next cycle and draws it to its end, with its own stack and fill vectors.
 //! 14. **Contexts of a sequential lane** share it: one has the lane. From its request to a cache, or for a tile, until
-//!     the cycle before the answer, another may have it. In each such cycle the context that was answered first receives the
-//!     lane, of one cycle the lowest number. It continues in the next cycle. The cycles of its wait are *block busy*. A context with the lane inspects its result in the cycle of the answer.
+//!     the cycle before the answer, another may have it: in each such cycle the one that was answered first, of one cycle
+//!     the lowest number. It continues in the next cycle; its wait is *block busy*. A context with the lane inspects its
+//!     result in the cycle of the answer.
 //!
 //! A turn *alone* takes the sum over its visits of the larger of occupancy + latency and the longest latency of an
 //! access that hits. **Work** is the sum over all turns. **Span** is the longest chain of turns alone that had to follow
 //! each other. Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context,
-//! no faster or wider part makes a frame slower.
-//!
-//! docs/hardware-model.md lists what the model leaves out.
+//! no faster or wider part makes a frame slower. docs/hardware-model.md lists what the model leaves out.
 
 mod hardware;
 mod memories;

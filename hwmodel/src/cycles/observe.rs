@@ -8,14 +8,13 @@ pub const START: u64 = u64::MAX;
 
 /// One record's visit of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct VisitSpan {
-    /// The record, in the order of turns, from 0; or [`START`].
+    /// In the order of turns, from 0; or [`START`].
     pub record: u64,
-    /// The lane.
     pub lane: u32,
-    /// The context within the lane.
+    /// Within the lane.
     pub context: u32,
-    /// The stage.
     pub stage: Stage,
     /// Cycle in which the record arrived at the stage's block.
     pub arrives: u64,
@@ -39,15 +38,11 @@ pub trait Observer {
     /// A visit of known course, in the order in which they begin.
     fn visit(&mut self, _: &VisitSpan) {}
 
-    /// The numbers of records on a lane's stack, and of those that are ready, from `cycle` on.
-    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
-        let _ = (cycle, lane, stored, ready);
-    }
+    /// From a `cycle` on: a `lane`, the number of records on its stack, and of those that are ready.
+    fn queue(&mut self, _cycle: u64, _lane: u32, _stored: u32, _ready: u32) {}
 
-    /// Progress, every few thousand records.
-    fn progress(&mut self, cycle: u64, records: u64) {
-        let _ = (cycle, records);
-    }
+    /// Cycle and number of records, every few thousand records.
+    fn progress(&mut self, _cycle: u64, _records: u64) {}
 }
 
 /// Observes nothing.
@@ -56,7 +51,7 @@ pub struct NoObserver;
 
 impl Observer for NoObserver {}
 
-/// Calls a function with cycles and records every few thousand records.
+/// Calls a function at every [`Observer::progress`].
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<F>(pub F);
 

@@ -1,5 +1,5 @@
-//! The turns of a frame, recorded to be simulated again on other hardware. Valid where the result of a turn does not
-//! depend on its time: where records that share a part of the picture run one after the other.
+//! The turns of a frame, recorded for other hardware. Valid where no turn's result depends on its time: where records
+//! that share a part of the picture run one after the other.
 
 use std::collections::HashMap;
 use std::marker::PhantomData;
@@ -17,7 +17,7 @@ pub trait TurnProbe: Probe {
     /// The log.
     fn turn_log(&mut self) -> &mut TurnLog;
 
-    /// The turn of `item`, or of the start, is over, and made `children`.
+    /// The turn of `item`, or of the start, ended with `children`.
     fn ended(&mut self, item: Option<u32>, children: &[Child]);
 }
 
@@ -92,11 +92,7 @@ impl Recording {
             + size_of::<Child>() * self.children.len()
     }
 
-    /// Simulates the recorded turns on hardware that is not [sequential](Hardware::sequential): the order of a turn's
-    /// steps is not recorded.
-    ///
-    /// # Errors
-    /// When [`Hardware::check`] fails, or a stack overflows that does not spill.
+    /// Simulates the turns on hardware that is not [sequential](Hardware::sequential): the order of steps is not recorded.
     pub fn simulate<E>(&self, hardware: &Hardware) -> Result<CycleReport, SimulationError<E>> {
         hardware.check().map_err(SimulationError::Hardware)?;
         let mut replay = Replay {
@@ -122,7 +118,7 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// An empty tape, for a recording of at most so many bytes.
+    /// A tape for a recording of at most so many bytes.
     pub fn new(most_bytes: usize) -> Self {
         Self {
             times: Box::new([[[0; WIDTHS]; CLASSES]; STAGES]),

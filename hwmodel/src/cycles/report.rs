@@ -1,6 +1,6 @@
 //! The report of a simulation.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::hardware::Independence;
 use crate::{OpClass, Stage};
@@ -8,71 +8,64 @@ use crate::{OpClass, Stage};
 /// Version of the report's fields.
 pub const REPORT_VERSION: u32 = 1;
 
-macro_rules! causes {
-    ($($(#[$doc:meta])* $cause:ident $field:ident = $name:literal,)+) => {
-        named! {
-            /// Why a record waited.
-            #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-            #[serde(rename_all = "snake_case")]
-            #[repr(u8)]
-            pub enum Cause {
-                $($(#[$doc])* $cause = $name,)+
-            }
-        }
-
-        /// Cycles by cause, summed over records.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-        pub struct Stalls {
-            $(#[doc = $name] $(#[$doc])* pub $field: u64,)+
-        }
-
-        impl Stalls {
-            /// Cycles of one cause.
-            pub fn of(&self, cause: Cause) -> u64 {
-                match cause { $(Cause::$cause => self.$field,)+ }
-            }
-
-            #[inline]
-            pub(super) fn add(&mut self, cause: Cause, cycles: u64) {
-                *match cause { $(Cause::$cause => &mut self.$field,)+ } += cycles;
-            }
-        }
-    };
+named! {
+    /// Why a record waited.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    #[repr(u8)]
+    pub enum Cause {
+        /// Another record in the stage's block.
+        BlockBusy = "block busy",
+        /// A port of the stack or of a cache.
+        MemoryPort = "memory port",
+        /// A bank of the fill vectors.
+        BankConflict = "bank conflict",
+        /// Its own, or one in flight.
+        CacheMiss = "cache miss",
+        PixelPort = "pixel port",
+        /// Being read back from outer memory.
+        StackSpill = "stack spill",
+        /// Being taken from another lane.
+        Steal = "steal",
+    }
 }
 
-causes! {
-    /// Another record in the stage's block.
-    BlockBusy block_busy = "block busy",
-    /// A port of the stack or of a cache.
-    MemoryPort memory_port = "memory port",
-    /// A bank of the fill vectors.
-    BankConflict bank_conflict = "bank conflict",
-    /// A cache miss, its own or one in flight.
-    CacheMiss cache_miss = "cache miss",
-    PixelPort pixel_port = "pixel port",
-    /// Being read back from outer memory.
-    StackSpill stack_spill = "stack spill",
-    /// Being taken from another lane.
-    Steal steal = "steal",
-}
+/// Cycles by cause, summed over records.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Stalls([u64; Cause::ALL.len()]);
 
 impl Stalls {
+    /// Cycles of one cause.
+    pub fn of(&self, cause: Cause) -> u64 {
+        self.0[cause as usize]
+    }
+
     /// Cycles of all causes.
     pub fn total(&self) -> u64 {
-        Cause::ALL.iter().map(|&cause| self.of(cause)).sum()
+        self.0.iter().sum()
+    }
+
+    #[inline]
+    pub(super) fn add(&mut self, cause: Cause, cycles: u64) {
+        self.0[cause as usize] += cycles;
+    }
+}
+
+impl Serialize for Stalls {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(Cause::ALL.map(|cause| (cause, self.of(cause))))
     }
 }
 
 /// One stage, over all lanes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct StageReport {
-    /// The stage.
     pub stage: Stage,
-    /// Visits by records.
     pub visits: u64,
-    /// Operations, including wires.
+    /// With those that are wires.
     pub operations: u64,
-    /// Passes through units; none for wires.
+    /// Through units.
     pub passes: u64,
     /// Most passes of one visit by class: the most units that can be used.
     pub most_passes: [u64; OpClass::ALL.len()],
@@ -84,35 +77,33 @@ pub struct StageReport {
     pub utilisation: f64,
     /// Cycles of its records without waiting.
     pub alone: u64,
-    /// Additional cycles of its records, by cause.
+    /// Additional cycles of its records.
     pub stalls: Stalls,
 }
 
 /// Cycles of the contexts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContextReport {
-    /// Cycles with a record that did not wait.
+    /// With a record that did not wait.
     pub working: u64,
-    /// Cycles with a record that waited in a stage.
+    /// With a record that waited in a stage.
     pub stalled: u64,
-    /// Cycles without a record, while all remaining records had to wait for others.
+    /// Without a record, while all remaining records had to wait for others.
     pub order_wait: u64,
-    /// Cycles without a record, while all remaining records were in progress.
+    /// Without a record, while all remaining records were in progress.
     pub no_record: u64,
 }
 
 /// A cache.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct CacheReport {
-    /// Reads.
     pub accesses: u64,
-    /// Reads of missing lines.
     pub misses: u64,
-    /// Reads of lines in flight.
+    /// Accesses to lines in flight.
     pub delayed_hits: u64,
     /// `1 - misses / accesses`; 1 without accesses.
     pub hit_rate: f64,
-    /// Bytes of the missing lines.
     pub bytes_in: u64,
 }
 
@@ -133,12 +124,11 @@ pub struct StackReport {
     pub stolen: u64,
 }
 
-/// A lower bound of the frame's cycles.
+/// A lower bound of the frame's cycles, set by a resource.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Bound {
-    /// The resource that sets it.
     pub resource: String,
-    /// Cycles.
     pub cycles: u64,
     /// `cycles` divided by the frame's, 0 to 1.
     pub share: f64,
@@ -170,7 +160,7 @@ pub struct CycleReport {
     pub records: u64,
     pub pixels: u64,
     pub cycles_per_record: f64,
-    /// `cycles / pixels`; 0 without pixels.
+    /// 0 without pixels.
     pub cycles_per_pixel: f64,
     pub frames_per_second: f64,
     /// Cycles of all turns without waiting.
@@ -189,7 +179,7 @@ pub struct CycleReport {
     /// Cycles in which the port to outer memory was taken.
     pub outer_busy: u64,
     pub stack: StackReport,
-    /// By resource, tightest first.
+    /// Tightest first.
     pub bounds: Vec<Bound>,
     pub bottleneck: Bottleneck,
 }

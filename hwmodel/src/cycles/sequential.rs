@@ -46,7 +46,7 @@ impl Asked {
 pub(super) struct Step {
     pub(super) tile: Option<u32>,
     waits: bool,
-    /// First cycle in which another has the lane, cycles in which others had it, and those in which it was wanted.
+    /// First cycle in which another has the lane, cycles in which others had it, and in which it was requested.
     pub(super) away_from: u64,
     pub(super) away: u64,
     pub(super) wanted: u64,
@@ -148,7 +148,7 @@ impl<W: Workload> Simulation<'_, W> {
         step.cause = Some(cause);
     }
 
-    /// Handles a context's event, except an arrival at a block or the end of a turn.
+    /// Handles an event, except an arrival at a block or the end of a turn.
     pub(super) fn step_on(
         &mut self,
         now: u64,

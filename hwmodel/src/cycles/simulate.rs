@@ -20,10 +20,10 @@ const PROGRESS: u64 = 1 << 14;
 /// Why a simulation ended early.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError<E> {
-    /// The workload failed.
+    /// Of the workload.
     #[error(transparent)]
     Workload(#[from] E),
-    /// The hardware's description is invalid.
+    /// An invalid description.
     #[error(transparent)]
     Hardware(HardwareError),
     /// A stack without room, on hardware that does not spill.
@@ -31,12 +31,10 @@ pub enum SimulationError<E> {
         "record {record} leaves more records than the {entries} entries of lane {lane}'s \
          stack hold; give it more, or set overflow = \"spill\""
     )]
+    #[expect(missing_docs, reason = "the record is numbered in the order of turns")]
     StackOverflow {
-        /// The record, in the order of turns, from 0.
         record: u64,
-        /// The lane.
         lane: u32,
-        /// Entries of its stack.
         entries: u32,
     },
 }
@@ -76,9 +74,6 @@ pub(super) struct Lane {
 }
 
 /// Simulates a workload.
-///
-/// # Errors
-/// When [`Hardware::check`] fails, the workload fails, or a stack overflows that does not spill.
 pub fn simulate<W: Workload>(
     hardware: &Hardware,
     workload: &mut W,
@@ -112,7 +107,7 @@ pub(super) struct Simulation<'a, W> {
 
 impl<'a, W: Workload> Simulation<'a, W> {
     fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut dyn Observer) -> Self {
-        // With tiles, contexts have their own stacks: as far as records go, each is a lane.
+        // With tiles, contexts have their own stacks: for records, each is a lane.
         let (lanes, contexts) = match hardware.hands_out_tiles() {
             true => (hardware.stacks(), 1),
             false => (hardware.lanes, hardware.contexts),

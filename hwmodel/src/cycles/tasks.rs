@@ -103,9 +103,8 @@ impl Tasks {
         a.parent == b.parent && a.slot < b.slot
     }
 
-    /// Ends a turn that would have taken `alone` cycles without contention. Its children, all of one kind, lie on the
-    /// stack of `lane`; the `spills` nearest (last pushed) ones found no entry. Appends tasks that became ready to
-    /// `ready`, the one to run last first.
+    /// Ends a turn of `alone` cycles without contention. Its children are on the stack of `lane`; the `spills` nearest
+    /// (last pushed) ones found no entry. Appends tasks that became ready, the one to run last first.
     #[inline]
     pub(super) fn end(
         &mut self,

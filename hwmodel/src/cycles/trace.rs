@@ -5,20 +5,13 @@ use std::io::{self, Write};
 use super::hardware::Hardware;
 use super::observe::{Observer, START, VisitSpan};
 
-#[derive(Debug, Clone, Copy)]
-struct Queue {
-    cycle: u64,
-    lane: u32,
-    stored: u32,
-    ready: u32,
-}
-
 /// Keeps the visits of the start and of the first records, about 80 bytes each.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Recorder {
     records: u64,
     visits: Vec<VisitSpan>,
-    queues: Vec<Queue>,
+    /// Cycle, lane, stored and ready records.
+    queues: Vec<(u64, u32, u32, u32)>,
     end: u64,
 }
 
@@ -27,9 +20,7 @@ impl Recorder {
     pub fn new(records: u64) -> Self {
         Self {
             records,
-            visits: Vec::new(),
-            queues: Vec::new(),
-            end: 0,
+            ..Self::default()
         }
     }
 
@@ -40,39 +31,35 @@ impl Recorder {
 
     /// Writes trace events (JSON) for Perfetto or `chrome://tracing`: lanes are processes, contexts are threads, one
     /// microsecond is one cycle.
-    ///
-    /// # Errors
-    /// Those of `to`.
     pub fn write_chrome(&self, hardware: &Hardware, mut to: impl Write) -> io::Result<()> {
+        let clock = hardware.clock_mhz;
         write!(
             to,
-            "{{\"otherData\":{{\"unit\":\"1 us is 1 cycle\",\"clock_mhz\":\"{}\"}},\n\"traceEvents\":[",
-            hardware.clock_mhz
+            "{{\"otherData\":{{\"unit\":\"1 us is 1 cycle\",\"clock_mhz\":\"{clock}\"}},\n\"traceEvents\":["
         )?;
         let mut comma = "";
-        for lane in 0..hardware.lanes {
-            write!(
-                to,
-                "{comma}\n{{\"ph\":\"M\",\"name\":\"process_name\",\"pid\":{lane},\"args\":{{\"name\":\"lane {lane}\"}}}}"
-            )?;
+        let mut event = |kind: char, name: &str, lane: u32, rest: &str| {
+            write!(to, "{comma}\n{{\"ph\":\"{kind}\",\"name\":\"{name}\",")?;
             comma = ",";
+            write!(to, "\"pid\":{lane},{rest}}}")
+        };
+        for lane in 0..hardware.lanes {
+            let name = format!("\"args\":{{\"name\":\"lane {lane}\"}}");
+            event('M', "process_name", lane, &name)?;
             for context in 0..hardware.contexts {
-                write!(
-                    to,
-                    ",\n{{\"ph\":\"M\",\"name\":\"thread_name\",\"pid\":{lane},\"tid\":{context},\"args\":{{\"name\":\"context {context}\"}}}}"
-                )?;
+                let name = format!("\"tid\":{context},\"args\":{{\"name\":\"context {context}\"}}");
+                event('M', "thread_name", lane, &name)?;
             }
         }
         for visit in &self.visits {
-            let VisitSpan { lane, context, .. } = *visit;
             let name = visit.stage.name();
+            let span = |category: &str, begins: u64, ends: u64| {
+                let (context, cycles) = (visit.context, ends - begins);
+                format!("\"cat\":\"{category}\",\"tid\":{context},\"ts\":{begins},\"dur\":{cycles}")
+            };
             if visit.begins > visit.arrives {
-                write!(
-                    to,
-                    ",\n{{\"ph\":\"X\",\"name\":\"wait for {name}\",\"cat\":\"wait\",\"pid\":{lane},\"tid\":{context},\"ts\":{},\"dur\":{}}}",
-                    visit.arrives,
-                    visit.begins - visit.arrives
-                )?;
+                let wait = span("wait", visit.arrives, visit.begins);
+                event('X', &format!("wait for {name}"), visit.lane, &wait)?;
             }
             let record = match visit.record {
                 START => "\"start\"".to_owned(),
@@ -81,24 +68,18 @@ impl Recorder {
             let stall = visit.stall.map_or_else(String::new, |(cause, cycles)| {
                 format!(",\"stall\":\"{}\",\"stall_cycles\":{cycles}", cause.name())
             });
-            write!(
-                to,
-                ",\n{{\"ph\":\"X\",\"name\":\"{name}\",\"cat\":\"stage\",\"pid\":{lane},\"tid\":{context},\"ts\":{},\"dur\":{},\"args\":{{\"record\":{record}{stall}}}}}",
-                visit.begins,
-                visit.ends - visit.begins
-            )?;
+            let span = span("stage", visit.begins, visit.ends);
+            let rest = format!("{span},\"args\":{{\"record\":{record}{stall}}}");
+            event('X', name, visit.lane, &rest)?;
         }
         let begin = self.visits.first().map_or(0, |visit| visit.arrives);
-        let is_shown = |queue: &&Queue| (begin..=self.end).contains(&queue.cycle);
-        for queue in self.queues.iter().filter(is_shown) {
-            write!(
-                to,
-                ",\n{{\"ph\":\"C\",\"name\":\"stack\",\"pid\":{},\"ts\":{},\"args\":{{\"ready\":{},\"waiting\":{}}}}}",
-                queue.lane,
-                queue.cycle,
-                queue.ready,
-                queue.stored - queue.ready
-            )?;
+        for &(cycle, lane, stored, ready) in &self.queues {
+            if (begin..=self.end).contains(&cycle) {
+                let waiting = stored - ready;
+                let rest =
+                    format!("\"ts\":{cycle},\"args\":{{\"ready\":{ready},\"waiting\":{waiting}}}");
+                event('C', "stack", lane, &rest)?;
+            }
         }
         writeln!(to, "\n]}}")
     }
@@ -118,12 +99,7 @@ impl Observer for Recorder {
 
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
         if self.queues.len() <= 4 * self.visits.len() {
-            self.queues.push(Queue {
-                cycle,
-                lane,
-                stored,
-                ready,
-            });
+            self.queues.push((cycle, lane, stored, ready));
         }
     }
 }

@@ -11,30 +11,21 @@ pub(super) const WIDTHS: usize = 128;
 
 /// The simulated work: records, one turn each, called in the order of simulated time.
 pub trait Workload {
-    /// Failure of a turn.
+    /// Ends the simulation.
     type Error;
 
     /// Makes the first records.
-    ///
-    /// # Errors
-    /// Those of the workload.
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Executes a record's turn. New records go into the empty `children`, nearest first, at most eight.
-    ///
-    /// # Errors
-    /// Those of the workload.
+    /// Executes a record's turn and adds its children, nearest first, at most eight.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
-    /// Number of tiles, which replace [`Self::start`] on hardware that [hands them out](Hardware::hands_out_tiles).
+    /// Number of tiles, which replace the start on hardware that [hands them out](Hardware::hands_out_tiles).
     fn tiles(&self) -> u32 {
         0
     }
 
-    /// Begins a tile and makes its first records, at most eight.
-    ///
-    /// # Errors
-    /// Those of the workload.
+    /// As [`start`](Self::start), for a tile.
     fn begin_tile(&mut self, _: u32, _: &mut Vec<Child>) -> Result<(), Self::Error> {
         Ok(())
     }
@@ -46,22 +37,20 @@ pub trait Workload {
 /// A new record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
-    /// The workload's number of it.
+    /// The workload's number.
     pub item: u32,
-    /// Place in the occlusion order, 0 (nearest) to 7.
+    /// In the occlusion order, 0 (nearest) to 7.
     pub place: u8,
-    /// Part of the picture, within its parent's.
+    /// Within its parent's.
     pub image_node: ImageNode,
 }
 
-/// A node of a quadtree.
+/// A node of a quadtree: level (0 = root), column and row among `2^level`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(missing_docs, reason = "names of the fields say what they are")]
 pub struct ImageNode {
-    /// Level, 0 = root.
     pub level: u32,
-    /// Column among `2^level`.
     pub x: u32,
-    /// Row among `2^level`.
     pub y: u32,
 }
 
@@ -122,7 +111,7 @@ struct Done {
     passes: u64,
 }
 
-/// The probe of a turn: operations as passes through units, and accesses, by stage.
+/// The probe of a turn: passes through units, and accesses, by stage.
 #[derive(Debug)]
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
@@ -163,7 +152,6 @@ impl TurnLog {
                 };
                 let by_width = &mut passes_of[stage as usize][class as usize];
                 for (bits, passes) in by_width.iter_mut().enumerate() {
-                    // At most 127: it fits.
                     *passes = (bits as u32).div_ceil(unit.width.max(1)).max(1) as u8;
                 }
             }
@@ -384,7 +372,6 @@ pub(super) struct Visit {
 pub(super) struct TurnVisits {
     pub(super) visits: Vec<Visit>,
     pub(super) accesses: Vec<Access>,
-    /// Cycles without any waiting.
     pub(super) alone: u64,
     /// Cycles with the longest waits, alone on the hardware.
     pub(super) worst: u64,

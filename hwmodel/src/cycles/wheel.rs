@@ -120,32 +120,3 @@ impl Wheel {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn agrees_with_a_sorted_list() {
-        let mut wheel = Wheel::new(50);
-        let mut list: Vec<(u64, u64, u32)> = Vec::new();
-        let (mut random, mut order) = (1u64, 0);
-        for context in 0..50 {
-            wheel.set(0, context);
-            list.push((0, u64::from(context), context));
-        }
-        for _ in 0..20_000 {
-            list.sort_unstable();
-            let (at, _, context) = list.remove(0);
-            assert_eq!(wheel.next_at(), Some(at));
-            assert_eq!(wheel.take(), Some((at, context)));
-            random = random
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            let ahead = [random >> 60, random >> 52, random >> 50][(random >> 40) as usize % 3];
-            order += 1;
-            wheel.set(at + ahead, context);
-            list.push((at + ahead, 100 + order, context));
-        }
-    }
-}

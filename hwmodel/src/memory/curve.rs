@@ -5,16 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::hash::NumberMap;
 
-/// One size of cache and its misses.
+/// One size of cache, in lines and bytes, and its misses.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct MissPoint {
-    /// Size of the cache, in lines.
     pub lines: u64,
-    /// Size of the cache, in bytes.
     pub bytes: u64,
-    /// Lines that were fetched.
     pub misses: u64,
-    /// Misses divided by accesses, 0..=1; 0 without accesses.
+    /// `misses` divided by accesses, 0 to 1; 0 without accesses.
     pub miss_rate: f64,
 }
 
@@ -65,7 +63,7 @@ impl MissCurve {
         self.line_bytes
     }
 
-    /// Accesses `bytes` bytes, at least one, from an address: each of their lines, in order.
+    /// Accesses each line of `bytes` bytes, at least one.
     pub fn access(&mut self, byte_address: u64, bytes: u64) {
         let line_bytes = u64::from(self.line_bytes);
         let end = byte_address.saturating_add(bytes.saturating_sub(1));
@@ -87,7 +85,7 @@ impl MissCurve {
         let now = self.now;
         self.now += 1;
         if let Some(before) = self.last.insert(line, now) {
-            // Lines accessed since: all known ones less those last accessed up to `before`, including this one.
+            // Lines accessed since: all less those last accessed up to `before`.
             let distance = self.last.len() as u64 - u64::from(self.marks_up_to(before));
             self.note(distance as usize);
             self.mark(before, 0u32.wrapping_sub(1));
@@ -136,12 +134,12 @@ impl MissCurve {
         }
     }
 
-    /// Number of accesses; one that spans lines counts once per line.
+    /// One that spans lines counts once per line.
     pub fn accesses(&self) -> u64 {
         self.accesses
     }
 
-    /// Number of different lines: the misses of a cache that holds everything.
+    /// Number of different lines.
     pub fn distinct_lines(&self) -> u64 {
         self.last.len() as u64
     }
@@ -153,7 +151,7 @@ impl MissCurve {
         self.distinct_lines() + far.sum::<u64>()
     }
 
-    /// The curve at 1, 2, 4, ... lines, up to the first size that holds every line.
+    /// The curve at 1, 2, 4, ... lines, up to a size that holds all.
     pub fn points(&self) -> Vec<MissPoint> {
         let sizes = (0..).map(|power| 1 << power);
         let last = self.distinct_lines().max(1).next_power_of_two();

@@ -5,7 +5,7 @@ mod curve;
 mod records;
 mod traffic;
 
-pub use cache::{Cache, CacheError};
+pub use cache::Cache;
 pub use curve::{MissCurve, MissPoint};
 pub use records::{RecordBits, RecordKind, RecordProbe};
 pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, PIXEL_BITS, Widths};

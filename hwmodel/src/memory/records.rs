@@ -1,4 +1,4 @@
-//! Kinds of record on the stack, which need different numbers of bits.
+//! Kinds of record on the stack, and their bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,12 +21,10 @@ named! {
 /// Bits of a record by its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the other fields are as in `RecordKind`")]
 pub struct RecordBits {
-    /// Of [`RecordKind::Clip`].
     pub clip: u32,
-    /// Of [`RecordKind::Screen`].
     pub screen: u32,
-    /// Of [`RecordKind::Finest`].
     pub finest: u32,
     /// First octree level of finest voxels, if known.
     pub finest_level: Option<u32>,
@@ -67,8 +65,7 @@ impl RecordBits {
     }
 }
 
-/// A probe of the kinds of records on the stack. A record that divides has changed to screen space with all that it
-/// pushes.
+/// A probe of the records on the stack. One that divides is in screen space with all that it pushes.
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};

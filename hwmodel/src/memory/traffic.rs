@@ -17,16 +17,15 @@ pub const PIXEL_BITS: u32 = 24;
 
 /// Bits per access of each memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct Widths {
-    /// A record of the stack.
+    /// Of a record.
     pub stack_bits: u32,
-    /// A node.
     pub node_bits: u32,
     /// Colour and normal of a node.
     pub attribute_bits: u32,
-    /// A fill vector: four bits, one per quarter.
+    /// One per quarter of a picture node.
     pub fill_vector_bits: u32,
-    /// A pixel.
     pub pixel_bits: u32,
 }
 
@@ -44,7 +43,7 @@ impl Widths {
     }
 }
 
-/// A probe of the traffic to the memories. It ignores operations.
+/// A probe of the traffic to the memories.
 #[derive(Debug, Clone)]
 pub struct MemoryProbe {
     widths: Widths,
@@ -73,11 +72,6 @@ impl MemoryProbe {
         self
     }
 
-    /// Bits per access.
-    pub fn widths(&self) -> Widths {
-        self.widths
-    }
-
     /// Reads of a memory.
     pub fn reads(&self, memory: Memory) -> u64 {
         self.accesses[memory as usize].reads
@@ -98,17 +92,17 @@ impl MemoryProbe {
         self.writes(memory) * u64::from(self.widths.of(memory))
     }
 
-    /// Number of different addresses that were accessed.
+    /// Number of different addresses.
     pub fn distinct(&self, memory: Memory) -> u64 {
         self.touched[memory as usize].distinct
     }
 
-    /// Miss curves, in the order in which they were requested.
+    /// Miss curves, in the order of requests.
     pub fn curves(&self) -> &[(Memory, MissCurve)] {
         &self.curves
     }
 
-    /// Most records that the stack held at once.
+    /// Most records on the stack.
     pub fn deepest_stack(&self) -> u64 {
         self.deepest
     }

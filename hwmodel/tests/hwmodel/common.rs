@@ -1,7 +1,10 @@
-//! Formats, numbers and places for several tests.
+//! Places, formats, and a workload that does what a list says.
 
-use hwmodel::{Format, MAX_BITS, MIN_BITS, Stage, StageLevel};
-use proptest::prelude::*;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use hwmodel::cycles::{Child, Hardware, TurnLog, Workload};
+use hwmodel::{Format, Stage, StageLevel};
 
 pub(crate) const fn at(stage: Stage, level: u32) -> StageLevel {
     StageLevel { stage, level }
@@ -11,33 +14,65 @@ pub(crate) fn format(bits: u32) -> Format {
     Format::new(bits, bits / 4).expect("a width within 16..=64")
 }
 
-pub(crate) fn widths() -> std::ops::RangeInclusive<u32> {
-    MIN_BITS..=MAX_BITS
+pub(crate) type Act = Rc<dyn Fn(&mut TurnLog)>;
+
+pub(crate) fn act(does: impl Fn(&mut TurnLog) + 'static) -> Act {
+    Rc::new(does)
 }
 
-pub(crate) fn least(bits: u32) -> i128 {
-    -(1i128 << (bits - 1))
+/// A record: its operations and accesses, and its children.
+#[derive(Clone, Default)]
+pub(crate) struct Node {
+    pub acts: Vec<Act>,
+    pub children: Vec<Child>,
 }
 
-pub(crate) fn greatest(bits: u32) -> i128 {
-    (1i128 << (bits - 1)) - 1
+/// Record 0 of the list is the workload's start.
+pub(crate) struct Listed<'a> {
+    nodes: &'a [Node],
+    log: TurnLog,
+    /// Items in the order of their turns.
+    pub turns: Vec<u32>,
+    /// Number of tiles; record `n` is the start of tile `n`.
+    pub tiles: u32,
 }
 
-/// Numbers of `bits` bits at which carries, signs and rounding change.
-pub(crate) fn edge_cases(bits: u32) -> Vec<i64> {
-    let (low, high, half) = (least(bits), greatest(bits), 1i128 << (bits - 2));
-    let ends = [low, low + 1, high - 1, high];
-    let halves = [-half, half].map(|half| [half - 1, half, half + 1]);
-    let all = ends.into_iter().chain(halves.concat()).chain(-3..=3);
-    all.map(|value| i64::try_from(value).expect("64 bits at most"))
-        .collect()
+impl<'a> Listed<'a> {
+    pub(crate) fn new(nodes: &'a [Node], hardware: &Hardware) -> Self {
+        Self {
+            nodes,
+            log: TurnLog::new(hardware),
+            turns: Vec::new(),
+            tiles: 0,
+        }
+    }
 }
 
-/// Any number of `bits` bits, small or large.
-pub(crate) fn any_value(bits: u32) -> impl Strategy<Value = i64> {
-    let spare = 64 - bits;
-    prop_oneof![
-        3 => (any::<i64>(), 0..bits).prop_map(move |(v, less)| v >> (spare + less)),
-        1 => proptest::sample::select(edge_cases(bits)),
-    ]
+impl Workload for Listed<'_> {
+    type Error = Infallible;
+
+    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        self.begin_tile(0, children)
+    }
+
+    fn tiles(&self) -> u32 {
+        self.tiles
+    }
+
+    fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        let node = &self.nodes[tile as usize];
+        node.acts.iter().for_each(|act| act(&mut self.log));
+        children.extend(&node.children);
+        Ok(())
+    }
+
+    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        assert!(children.is_empty());
+        self.turns.push(item);
+        self.begin_tile(item, children)
+    }
+
+    fn log(&mut self) -> &mut TurnLog {
+        &mut self.log
+    }
 }

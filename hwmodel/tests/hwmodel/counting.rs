@@ -1,192 +1,132 @@
-//! The counter against a list of its events.
+//! The counter against maps of its events.
 
 use std::collections::BTreeMap;
 
 use crate::common::*;
-use hwmodel::count::{Accesses, Counter, LEVELS};
-use hwmodel::{Datapath, Memory, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word};
+use hwmodel::count::Counter;
+use hwmodel::{
+    Datapath, Memory, NoProbe, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word,
+};
 use proptest::prelude::*;
 
-type Cells = BTreeMap<(u32, u32, Stage, OpClass), u64>;
-
+/// Operations, accesses (the flag: writes) and records.
 #[derive(Debug, Default)]
 struct Plain {
-    ops: Cells,
-    accesses: BTreeMap<(u32, Stage, Memory), Accesses>,
+    ops: BTreeMap<(u32, u32, Stage, OpClass), u64>,
+    accesses: BTreeMap<(u32, Stage, Memory, bool), u64>,
     records: BTreeMap<u32, u64>,
-}
-
-fn level(level: u32) -> u32 {
-    level.min(LEVELS as u32 - 1)
 }
 
 impl Probe for Plain {
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        let cell = (bits, level(place.level), place.stage, class);
+        let cell = (bits, place.level.min(63), place.stage, class);
         *self.ops.entry(cell).or_default() += u64::from(times);
     }
     fn read(&mut self, memory: Memory, _: u64, place: StageLevel) {
-        let cell = (level(place.level), place.stage, memory);
-        self.accesses.entry(cell).or_default().reads += 1;
+        let cell = (place.level.min(63), place.stage, memory, false);
+        *self.accesses.entry(cell).or_default() += 1;
     }
     fn write(&mut self, memory: Memory, _: u64, place: StageLevel) {
-        let cell = (level(place.level), place.stage, memory);
-        self.accesses.entry(cell).or_default().writes += 1;
+        let cell = (place.level.min(63), place.stage, memory, true);
+        *self.accesses.entry(cell).or_default() += 1;
     }
-    fn record(&mut self, _: u64, at: u32) {
-        *self.records.entry(level(at)).or_default() += 1;
+    fn record(&mut self, _: u64, level: u32) {
+        *self.records.entry(level.min(63)).or_default() += 1;
     }
 }
 
-#[track_caller]
 fn compare(counter: &Counter, plain: &Plain) {
     let cells = counter.cells();
     let cells = cells.map(|c| ((c.bits, c.level, c.stage, c.class), c.times));
     assert!(cells.eq(plain.ops.clone()));
-    let accesses = counter.accesses();
-    let accesses = accesses.map(|c| ((c.level, c.stage, c.memory), c.accesses));
-    assert!(accesses.eq(plain.accesses.clone()));
+    let accesses = counter.accesses().flat_map(|c| {
+        let times = [(false, c.accesses.reads), (true, c.accesses.writes)];
+        times.map(|(way, times)| ((c.level, c.stage, c.memory, way), times))
+    });
+    assert!(accesses.filter(|of| of.1 > 0).eq(plain.accesses.clone()));
     assert!(counter.records_by_level().eq(plain.records.clone()));
     assert_eq!(counter.records(), plain.records.values().sum::<u64>());
     assert_eq!(counter.ops(), plain.ops.values().sum::<u64>());
-    let widest = plain.ops.keys().map(|key| key.0).max();
-    assert_eq!(counter.widest(), widest.unwrap_or(0));
-    let node = |of: fn(&Accesses) -> u64| {
-        let cells = plain
-            .accesses
-            .iter()
-            .filter(|(key, _)| key.2 == Memory::Node);
-        cells.map(|(_, accesses)| of(accesses)).sum::<u64>()
-    };
-    assert_eq!(counter.reads(Memory::Node), node(|of| of.reads));
-    assert_eq!(counter.writes(Memory::Node), node(|of| of.writes));
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Act {
-    Record(u32),
-    Stage(usize),
-    Words(u8),
-    Read(usize),
-    Write(usize),
-    Integer(u32),
-    Format(u32),
-}
+/// Levels, some of them 16 apart, where a counter has one set of counts for both; 70 is beyond the last.
+const LEVELS: [u32; 9] = [0, 1, 2, 3, 16, 17, 34, 62, 70];
 
-fn act() -> impl Strategy<Value = Act> {
-    prop_oneof![
-        // Some of them 16 apart, where a counter has one set of counts for both; 70 is beyond the last.
-        prop::sample::select(vec![0, 1, 2, 3, 16, 17, 34, 62, 70]).prop_map(Act::Record),
-        (0..Stage::ALL.len()).prop_map(Act::Stage),
-        (0u8..10).prop_map(Act::Words),
-        (0..Memory::ALL.len()).prop_map(Act::Read),
-        (0..Memory::ALL.len()).prop_map(Act::Write),
-        (0u32..80).prop_map(Act::Integer),
-        (16u32..=64).prop_map(Act::Format),
-    ]
-}
+/// Kinds of act, and a number for it.
+type Acts = Vec<(u8, usize)>;
 
-fn words<P: Probe>(dp: &mut Datapath<P>, which: u8) {
+fn play<P: Probe>(acts: &Acts, probe: &mut P) {
+    let mut dp = Datapath::new(format(24), Overflow::Wrap, &mut *probe);
+    dp.begin_record(0, 0);
     let (a, b) = (Word::from_host(3), Word::from_host(5));
     let (c, d) = (WideWord::from_host(3), WideWord::from_host(5));
-    match which {
-        0 => _ = dp.add(a, b),
-        1 => _ = dp.sub(c, d),
-        2 => _ = dp.midpoint(a, b),
-        3 => _ = dp.midpoint(c, d),
-        4 => _ = dp.and_bits(4, 1, 2),
-        5 => _ = dp.xor_bits(3, 1, 2),
-        6 => _ = dp.or_bits(8, 1, 2),
-        7 => _ = dp.divide_step(a, b, true),
-        8 => _ = dp.select(true, c, d),
-        _ => _ = dp.min(a, b),
-    }
-}
-
-fn play<P: Probe>(acts: &[Act], probe: &mut P) {
-    let mut dp = Datapath::new(format(24), Overflow::Wrap, &mut *probe);
-    let mut stage = Stage::Pop;
-    let mut current = 0;
-    for &act in acts {
-        match act {
-            Act::Record(level) => {
-                current = level;
-                dp.begin_record(0, level);
-            }
-            Act::Stage(to) => {
-                stage = Stage::ALL[to];
-                dp.stage(stage);
-            }
-            Act::Words(which) => words(&mut dp, which),
-            Act::Read(memory) => dp.read(Memory::ALL[memory], 1),
-            Act::Write(memory) => dp.write(Memory::ALL[memory], 1),
-            Act::Integer(place) => {
-                dp.divide_integer_step(Word::from_host(9), Word::from_host(2), place);
-            }
-            Act::Format(bits) => {
-                let probe = dp.into_probe();
-                dp = Datapath::new(format(bits), Overflow::Wrap, probe);
-                dp.stage(stage);
-                dp.begin_record(0, current);
+    for &(kind, number) in acts {
+        match kind {
+            0 => dp.begin_record(0, LEVELS[number % LEVELS.len()]),
+            1 => dp.stage(Stage::ALL[number % Stage::ALL.len()]),
+            2 => dp.read(Memory::ALL[number % Memory::ALL.len()], 1),
+            3 => dp.write(Memory::ALL[number % Memory::ALL.len()], 1),
+            4 => _ = dp.add(a, b),
+            5 => _ = dp.sub(c, d),
+            6 => _ = dp.midpoint(a, b),
+            7 => _ = dp.midpoint(c, d),
+            8 => _ = dp.and_bits(number as u32 % 9, 1, 2),
+            9 => _ = dp.divide_integer_step(a, b, number as u32),
+            _ => {
+                let format = format(16 + number as u32 % 49);
+                dp = Datapath::new(format, Overflow::Wrap, dp.into_probe());
+                dp.begin_record(0, LEVELS[number % LEVELS.len()]);
             }
         }
     }
 }
 
+fn acts() -> impl Strategy<Value = Acts> {
+    prop::collection::vec((0..11u8, 0..80usize), 0..200)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn a_counter_is_a_map_alone_and_in_a_pair(acts in prop::collection::vec(act(), 0..300)) {
-        let mut pair = (Counter::new(), (hwmodel::NoProbe, Plain::default()));
-        play(&acts, &mut pair);
-        let (counter, (_, plain)) = pair;
-        compare(&counter, &plain);
-        let mut alone = Plain::default();
-        play(&acts, &mut alone);
-        compare(&counter, &alone);
-        let (stage, class) = (Stage::ALL[acts.len() % 13], OpClass::ALL[acts.len() % 8]);
-        let wanted = plain.ops.iter().filter(|(key, _)| (key.2, key.3) == (stage, class));
-        prop_assert_eq!(counter.ops_at(stage, class), wanted.map(|(_, n)| n).sum::<u64>());
+    fn a_counter_is_a_map_alone_in_a_pair_and_merged(first in acts(), second in acts()) {
+        let mut pair = (Counter::new(), (NoProbe, Plain::default()));
+        let mut halves = [Counter::new(), Counter::new()];
+        for (acts, half) in [first, second].iter().zip(&mut halves) {
+            play(acts, &mut pair);
+            play(acts, half);
+        }
+        let (whole, (_, plain)) = pair;
+        compare(&whole, &plain);
+        let [mut merged, mut second] = halves;
+        let first = merged.clone();
+        merged.merge(&second);
+        compare(&merged, &plain);
+        second.merge(&first);
+        prop_assert!(second == merged && merged == whole && whole != Counter::new());
     }
-
-    #[test]
-    fn halves_merge_into_the_whole(
-        first in prop::collection::vec(act(), 0..150),
-        second in prop::collection::vec(act(), 0..150),
-    ) {
-        let (mut a, mut b, mut plain) = (Counter::new(), Counter::new(), Plain::default());
-        play(&first, &mut a);
-        play(&second, &mut b);
-        play(&first, &mut plain);
-        play(&second, &mut plain);
-        let mut other = b.clone();
-        a.merge(&b);
-        compare(&a, &plain);
-        let mut one = Counter::new();
-        play(&first, &mut one);
-        other.merge(&one);
-        prop_assert_eq!(&other, &a);
-        prop_assert!(a.ops() == 0 || other != Counter::new());
-    }
-
 }
 
 #[test]
 fn sums_by_any_key() {
     let mut counter = Counter::new();
+    assert_eq!(counter.widest(), 0);
     counter.op(OpClass::Add, 24, at(Stage::Centre, 2), 3);
     counter.op(OpClass::Add, 200, at(Stage::Draw, 2), 4);
     counter.op(OpClass::Shift, 24, at(Stage::Draw, 64), 5);
     counter.op(OpClass::Shift, 24, at(Stage::Draw, 9), 0);
     assert_eq!(counter.sum_by(|cell| cell.level), [(2, 7), (63, 5)].into());
-    assert_eq!(counter.sum_by(|cell| cell.bits), [(24, 8), (200, 4)].into());
-    assert_eq!(counter.ops_of(OpClass::Add), 7);
+    assert_eq!((counter.ops_of(OpClass::Add), counter.widest()), (7, 200));
+    assert_eq!(counter.ops_at(Stage::Draw, OpClass::Shift), 5);
     counter.record(0, 1);
     counter.read(Memory::Node, 7, at(Stage::OnePixel, 1));
     counter.record(1, 2);
     counter.write(Memory::Node, 7, at(Stage::OnePixel, 2));
+    assert_eq!(
+        (counter.reads(Memory::Node), counter.writes(Memory::Node)),
+        (1, 1)
+    );
     let sums = counter.accesses_by(|cell| cell.level);
-    let sums: Vec<_> = sums.values().map(|of| (of.reads, of.writes)).collect();
-    assert_eq!(sums, [(1, 0), (0, 1)]);
+    let reads = sums.into_iter().map(|(level, of)| (level, of.reads));
+    assert!(reads.eq([(1, 1), (2, 0)]));
 }

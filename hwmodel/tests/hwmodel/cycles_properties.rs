@@ -1,122 +1,141 @@
 //! Properties of every simulation, on random records and random hardware.
 use std::collections::BTreeMap;
 
-use crate::cycles_common::{Does, Listed, Node};
+use crate::common::*;
 use hwmodel::cycles::{
-    Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
-    Unit, simulate,
+    Cache, Child, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, START,
+    StackOverflow, Unit, simulate,
 };
 use hwmodel::memory::RecordBits;
-use hwmodel::{Memory, OpClass, Stage};
+use hwmodel::{Memory, OpClass, Probe, Stage};
 use proptest::prelude::*;
+use serde_json::Value;
 
 struct Dice(u64);
 
 impl Dice {
-    fn below(&mut self, end: u64) -> u64 {
+    fn below(&mut self, end: u32) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % end
+        ((z ^ (z >> 31)) % u64::from(end)) as u32
     }
 
-    fn one_in(&mut self, of: u64) -> bool {
+    fn one_in(&mut self, of: u32) -> bool {
         self.below(of) == 0
+    }
+
+    fn of<T: Copy, const N: usize>(&mut self, values: [T; N]) -> T {
+        values[self.below(N as u32) as usize]
     }
 }
 
-fn does(dice: &mut Dice) -> Vec<Does> {
-    let mut does = vec![Does::Read(Stage::Pop, Memory::Stack, 0)];
+fn acts(dice: &mut Dice) -> Vec<Act> {
+    let mut acts = vec![act(|log| log.read(Memory::Stack, 0, at(Stage::Pop, 0)))];
     for stage in Stage::ALL {
         if dice.one_in(2) {
             continue;
         }
         for _ in 0..dice.below(3) {
-            let class = OpClass::ALL[dice.below(8) as usize];
-            let bits = [3, 16, 33, 64][dice.below(4) as usize];
-            does.push(Does::Ops(stage, class, bits, 1 + dice.below(20) as u32));
+            let (class, bits) = (dice.of(OpClass::ALL), dice.of([3, 16, 33, 64]));
+            let times = 1 + dice.below(20);
+            acts.push(act(move |log| log.op(class, bits, at(stage, 0), times)));
         }
         for _ in 0..dice.below(4) {
-            let address = dice.below(64);
-            does.push(match dice.below(6) {
-                0 => Does::Read(stage, Memory::Node, address),
-                1 => Does::Read(stage, Memory::Attribute, address),
-                2 => Does::Read(stage, Memory::FillVector, address),
-                3 => Does::Write(stage, Memory::FillVector, address),
-                4 => Does::Write(stage, Memory::Pixel, address),
-                _ => Does::Write(stage, Memory::Stack, address),
-            });
+            let address = dice.below(64).into();
+            let (memory, is_write) = dice.of([
+                (Memory::Node, false),
+                (Memory::Attribute, false),
+                (Memory::FillVector, false),
+                (Memory::FillVector, true),
+                (Memory::Pixel, true),
+                (Memory::Stack, true),
+            ]);
+            acts.push(act(move |log| match is_write {
+                true => log.write(memory, address, at(stage, 0)),
+                false => log.read(memory, address, at(stage, 0)),
+            }));
         }
     }
-    does
+    acts
 }
 
-fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
-    let mut part = image_node;
+fn part_of(mut part: ImageNode, dice: &mut Dice) -> ImageNode {
     while part.level < 6 && dice.one_in(2) {
         part = ImageNode {
             level: part.level + 1,
-            x: part.x << 1 | dice.below(2) as u32,
-            y: part.y << 1 | dice.below(2) as u32,
+            x: part.x << 1 | dice.below(2),
+            y: part.y << 1 | dice.below(2),
         };
     }
     part
 }
 
-fn records(seed: u64, most: u64) -> Vec<Node> {
+fn records(seed: u64, most: u32) -> Vec<Node> {
     let mut dice = Dice(seed);
-    let mut nodes = vec![Node::default(), Node::default()];
-    nodes[0].children.push((1, 0, ImageNode::default()));
-    let mut image_nodes = vec![ImageNode::default(); 2];
-    let mut at = 1;
-    while at < nodes.len() {
-        nodes[at].does = does(&mut dice);
+    let first = Child {
+        item: 1,
+        place: 0,
+        image_node: ImageNode::default(),
+    };
+    let mut nodes = vec![Node::default()];
+    nodes[0].children.push(first);
+    let mut unmade = std::collections::VecDeque::from([first]);
+    let mut made = 2;
+    while let Some(of) = unmade.pop_front() {
+        let mut node = Node {
+            acts: acts(&mut dice),
+            children: Vec::new(),
+        };
         for place in 0..8 {
-            if (nodes.len() as u64) < most && dice.one_in(3) {
-                let image_node = part_of(image_nodes[at], &mut dice);
-                let child = nodes.len() as u32;
-                nodes[at].children.push((child, place, image_node));
-                nodes.push(Node::default());
-                image_nodes.push(image_node);
+            if made < most && dice.one_in(3) {
+                let child = Child {
+                    item: made,
+                    place,
+                    image_node: part_of(of.image_node, &mut dice),
+                };
+                made += 1;
+                node.children.push(child);
+                unmade.push_back(child);
             }
         }
-        at += 1;
+        nodes.push(node);
     }
     nodes
 }
 
 fn unit(dice: &mut Dice) -> Unit {
     Unit {
-        count: 1 + dice.below(9) as u32,
-        latency: dice.below(5) as u32,
-        interval: 1 + dice.below(3) as u32,
-        width: [4, 16, 33, 64][dice.below(4) as usize],
+        count: 1 + dice.below(9),
+        latency: dice.below(5),
+        interval: 1 + dice.below(3),
+        width: dice.of([4, 16, 33, 64]),
     }
 }
 
 fn cache(dice: &mut Dice) -> Cache {
-    let (ways, line_bytes) = (1 + dice.below(4) as u32, 16 << dice.below(3));
+    let (ways, line_bytes) = (1 + dice.below(4), 16 << dice.below(3));
     Cache {
-        bytes: ways * line_bytes * (1 + dice.below(4) as u32),
+        bytes: ways * line_bytes * (1 + dice.below(4)),
         ways,
         line_bytes,
         entry_bytes: 8,
-        ports: 1 + dice.below(2) as u32,
-        hit_latency: dice.below(3) as u32,
+        ports: 1 + dice.below(2),
+        hit_latency: dice.below(3),
         // Beyond the timing wheel now and then.
-        miss_latency: [0, 10, 100, 1500][dice.below(4) as usize],
-        misses: 1 + dice.below(4) as u32,
+        miss_latency: dice.of([0, 10, 100, 1500]),
+        misses: 1 + dice.below(4),
     }
 }
 
 fn hardware(seed: u64, independence: Independence) -> Hardware {
     let dice = &mut Dice(seed);
     let mut hardware = Hardware::preset("tiny").unwrap();
-    hardware.lanes = 1 + dice.below(5) as u32;
-    hardware.contexts = 1 + dice.below(5) as u32;
+    hardware.lanes = 1 + dice.below(5);
+    hardware.contexts = 1 + dice.below(5);
     hardware.independence = independence;
-    hardware.steal_cycles = dice.below(4) as u32;
+    hardware.steal_cycles = dice.below(4);
     for class in OpClass::ALL {
         let unit = unit(dice);
         if !hardware.wires.contains(&class) {
@@ -125,18 +144,17 @@ fn hardware(seed: u64, independence: Independence) -> Hardware {
     }
     hardware.node_cache = cache(dice);
     hardware.attribute_cache = cache(dice);
-    hardware.stack.entries = 1 + dice.below(40) as u32;
-    hardware.stack.ports = 1 + dice.below(2) as u32;
-    hardware.stack.latency = dice.below(3) as u32;
-    hardware.fill_vectors.banks = 1 + dice.below(4) as u32;
-    hardware.fill_vectors.read_ports = 1 + dice.below(2) as u32;
-    hardware.fill_vectors.latency = dice.below(3) as u32;
-    hardware.pixels.write_ports = 1 + dice.below(2) as u32;
-    hardware.pixels.buffer = 1 + dice.below(4) as u32;
-    hardware.pixels.drain_interval = dice.below(9) as u32;
-    hardware.outer_memory.bytes_per_cycle = dice.below(4) as u32 * 3;
-    hardware.stack.record = RecordBits::uniform(dice.below(2000) as u32);
-    hardware.check().unwrap();
+    hardware.stack.entries = 1 + dice.below(40);
+    hardware.stack.ports = 1 + dice.below(2);
+    hardware.stack.latency = dice.below(3);
+    hardware.fill_vectors.banks = 1 + dice.below(4);
+    hardware.fill_vectors.read_ports = 1 + dice.below(2);
+    hardware.fill_vectors.latency = dice.below(3);
+    hardware.pixels.write_ports = 1 + dice.below(2);
+    hardware.pixels.buffer = 1 + dice.below(4);
+    hardware.pixels.drain_interval = dice.below(9);
+    hardware.outer_memory.bytes_per_cycle = dice.below(4) * 3;
+    hardware.stack.record = RecordBits::uniform(dice.below(2000));
     hardware
 }
 
@@ -146,13 +164,20 @@ fn run(nodes: &[Node], hardware: &Hardware) -> (CycleReport, Vec<u32>) {
     (report, workload.turns)
 }
 
+fn recorded(nodes: &[Node], hardware: &Hardware, most: u64) -> (Recorder, Vec<u32>) {
+    let mut workload = Listed::new(nodes, hardware);
+    let mut recorder = Recorder::new(most);
+    simulate(hardware, &mut workload, &mut recorder).unwrap();
+    (recorder, workload.turns)
+}
+
 fn depth_first(nodes: &[Node]) -> Vec<u32> {
     let mut stack = vec![1];
     let mut order = Vec::new();
     while let Some(item) = stack.pop() {
         order.push(item);
         let children = &nodes[item as usize].children;
-        stack.extend(children.iter().rev().map(|child| child.0));
+        stack.extend(children.iter().rev().map(|child| child.item));
     }
     order
 }
@@ -162,12 +187,10 @@ fn any_independence() -> impl Strategy<Value = Independence> {
     prop::sample::select(vec![None, Classes, Image, Both])
 }
 
-type Child = (u32, u8, ImageNode);
-
 fn is_independent(rule: Independence, earlier: &Child, later: &Child) -> bool {
-    let class = |place: u8| [0, 1, 1, 1, 2, 2, 2, 3][place as usize];
-    let same_class = class(earlier.1) == class(later.1);
-    let (a, b) = (earlier.2, later.2);
+    let class = |child: &Child| [0, 1, 1, 1, 2, 2, 2, 3][child.place as usize];
+    let same_class = class(earlier) == class(later);
+    let (a, b) = (earlier.image_node, later.image_node);
     let level = a.level.min(b.level);
     let ancestor = |of: ImageNode| [of.x, of.y].map(|at| at >> (of.level - level));
     let disjoint = ancestor(a) != ancestor(b);
@@ -184,14 +207,12 @@ proptest! {
 
     #[test]
     fn cycles_lie_between_every_bound_and_the_serial_sum(
-        seed: u64, hw: u64, independence in any_independence(), most in 2..200u64,
+        seed: u64, hw: u64, independence in any_independence(), most in 2..200u32,
     ) {
         let nodes = records(seed, most);
         let hardware = hardware(hw, independence);
         let (report, mut turns) = run(&nodes, &hardware);
-        for bound in &report.bounds {
-            prop_assert!(bound.cycles <= report.cycles, "{bound:?} of {}", report.cycles);
-        }
+        prop_assert!(report.bounds.iter().all(|bound| bound.cycles <= report.cycles));
         prop_assert!(report.span <= report.work);
         prop_assert!(report.cycles <= report.serial, "{} > {}", report.cycles, report.serial);
         let sum = report.context_cycles;
@@ -211,12 +232,10 @@ proptest! {
     ) {
         let nodes = records(seed, 120);
         let hardware = hardware(hw, independence);
-        let mut workload = Listed::new(&nodes, &hardware);
-        let mut recorder = Recorder::new(u64::MAX);
-        simulate(&hardware, &mut workload, &mut recorder).unwrap();
+        let (recorder, turns) = recorded(&nodes, &hardware, u64::MAX);
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();
         for visit in recorder.visits() {
-            if let Some(&item) = workload.turns.get(visit.record as usize) {
+            if let Some(&item) = turns.get(visit.record as usize) {
                 let time = times.entry(item).or_insert((visit.arrives, visit.ends));
                 time.1 = time.1.max(visit.ends);
             }
@@ -225,8 +244,8 @@ proptest! {
         let mut whole = times.clone();
         for item in (1..nodes.len() as u32).rev() {
             for child in &nodes[item as usize].children {
-                prop_assert!(whole[&child.0].0 >= times[&item].1, "a child before its parent");
-                let ends = whole[&child.0].1;
+                let (begins, ends) = whole[&child.item];
+                prop_assert!(begins >= times[&item].1, "a child before its parent");
                 let of = whole.get_mut(&item).unwrap();
                 of.1 = of.1.max(ends);
             }
@@ -234,16 +253,18 @@ proptest! {
         for node in &nodes {
             for (i, later) in node.children.iter().enumerate() {
                 for earlier in &node.children[..i] {
-                    if !is_independent(independence, earlier, later) {
-                        prop_assert!(whole[&later.0].0 >= whole[&earlier.0].1);
-                    }
+                    prop_assert!(
+                        is_independent(independence, earlier, later)
+                            || whole[&later.item].0 >= whole[&earlier.item].1
+                    );
                 }
             }
         }
     }
 
     /// With one context the order is the serial one, so that nothing that is
-    /// made faster or wider can make the frame slower.
+    /// made faster or wider can make the frame slower. Only pixels that reach
+    /// the outer memory earlier may delay a miss there.
     #[test]
     fn with_one_context_better_parts_are_never_slower(
         seed: u64, hw: u64, independence in any_independence(), which in 0..22usize,
@@ -251,6 +272,9 @@ proptest! {
         let nodes = records(seed, 100);
         let mut hardware = hardware(hw, independence);
         (hardware.lanes, hardware.contexts) = (1, 1);
+        if (17..20).contains(&which) {
+            hardware.outer_memory.bytes_per_cycle = 0;
+        }
         let (before, turns) = run(&nodes, &hardware);
         prop_assert_eq!(&turns, &depth_first(&nodes));
         improve(&mut hardware, which);
@@ -261,9 +285,11 @@ proptest! {
 }
 
 fn improve(hardware: &mut Hardware, which: usize) {
-    let class = OpClass::ALL[which % 8];
     let mut none = unit(&mut Dice(0));
-    let unit = hardware.units.get_mut(&class).unwrap_or(&mut none);
+    let unit = hardware
+        .units
+        .get_mut(&OpClass::ALL[which % 8])
+        .unwrap_or(&mut none);
     match which {
         0..4 => unit.count += 1,
         4..6 => unit.latency = unit.latency.saturating_sub(1),
@@ -302,10 +328,8 @@ fn anomalies_with_several_contexts_are_rare_and_small() {
         let before = run(&nodes, &hardware).0.cycles;
         improve(&mut hardware, seed as usize % 20);
         let after = run(&nodes, &hardware).0.cycles;
-        if after > before {
-            slower += 1;
-            worst = worst.max(after as f64 / before as f64);
-        }
+        slower += u32::from(after > before);
+        worst = worst.max(after as f64 / before as f64);
     }
     assert_eq!(slower, 117);
     assert!((1.18..1.19).contains(&worst), "{worst}");
@@ -319,8 +343,39 @@ fn a_stack_that_does_not_spill_overflows() {
     hardware.stack.overflow = StackOverflow::Error;
     let mut workload = Listed::new(&nodes, &hardware);
     let error = simulate(&hardware, &mut workload, &mut NoObserver).unwrap_err();
-    assert!(
-        error.to_string().contains("the 2 entries of lane"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("the 2 entries of lane"));
+}
+
+#[test]
+fn traces_are_json_with_an_event_per_visit_and_wait() {
+    let nodes = records(5, 100);
+    let mut hardware = hardware(5, Independence::Image);
+    (hardware.lanes, hardware.contexts) = (2, 3);
+    let (recorder, _) = recorded(&nodes, &hardware, u64::MAX);
+    let mut text = Vec::new();
+    recorder.write_chrome(&hardware, &mut text).unwrap();
+    let json: Value = serde_json::from_slice(&text).unwrap();
+    let events = json["traceEvents"].as_array().unwrap();
+    assert!(events.iter().any(|event| event["ph"] == "C"));
+    let spans = events.iter().filter(|event| event["ph"] == "X");
+    let span = |event: &Value| ["pid", "tid", "ts", "dur"].map(|key| event[key].as_u64().unwrap());
+    let mut spans: Vec<_> = spans.map(span).collect();
+    let mut expected = Vec::new();
+    for visit in recorder.visits() {
+        let (lane, context) = (u64::from(visit.lane), u64::from(visit.context));
+        let waits = (visit.arrives, visit.begins - visit.arrives);
+        for (begins, cycles) in [waits, (visit.begins, visit.ends - visit.begins)] {
+            expected.push([lane, context, begins, cycles]);
+        }
+    }
+    expected.retain(|span| span[3] > 0);
+    spans.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(spans, expected);
+    // On one thread nothing overlaps.
+    let ends_before = |a: &[u64; 4], b: &[u64; 4]| a[..2] < b[..2] || a[2] + a[3] <= b[2];
+    assert!(spans.is_sorted_by(ends_before));
+    let (first, _) = recorded(&nodes, &hardware, 5);
+    let last = first.visits().iter().map(|visit| visit.record);
+    assert_eq!(last.filter(|&record| record != START).max(), Some(4));
 }

@@ -6,8 +6,6 @@ mod common;
 mod costs;
 mod counting;
 mod cycles_by_hand;
-mod cycles_common;
 mod cycles_hardware;
 mod cycles_properties;
-mod cycles_traces;
 mod words;

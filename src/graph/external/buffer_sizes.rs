@@ -1,10 +1,8 @@
 use super::record::MAX_RUN;
 
-/// Bytes of the program itself: code, stacks, the allocator's reserve.
 const PROGRAM: u64 = 48 << 20;
 const LEAST_READER: u64 = 64 << 10;
 const MAX_FAN_IN: u64 = 256;
-/// Bytes per cluster in progress: 64 voxels with colour and normal, up to nine nodes, and the sum.
 const CLUSTER_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
 /// Streams that may be open together: four for each of 21 levels, and a few.
 const SPOOLS: u64 = 96;
@@ -16,10 +14,8 @@ fn block_bytes(shift: u32) -> u64 {
     (side + 2).pow(3) * 8 + side.pow(3) * 16
 }
 
-/// Sizes of the buffers of an external build.
-///
-/// Each stage stays within the limit. First there are two buffers of voxels, one filled and one sorted. Then come the
-/// readers of the merge and the halo's buffer, and last the halo's readers, a block and a chunk.
+/// Sizes of the buffers of an external build. First there are two buffers of voxels, then the readers of the merge and
+/// the halo's buffer, and last the halo's readers, a block and a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct BufferSizes {
     pub(super) run_records: usize,

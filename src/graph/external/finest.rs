@@ -23,7 +23,6 @@ pub(super) struct Finest {
     pub(super) color: Spool,
     own_normal: Spool,
     clusters: Spool,
-    /// Cluster copies for the blocks beside their own.
     halo: Sorter,
     pub(super) voxels: u64,
     lacking: bool,
@@ -177,12 +176,6 @@ struct FinestInProgress {
     centre: [f64; 3],
 }
 
-struct ClusterBatch<'c> {
-    clusters: &'c [[u64; 2]],
-    color: &'c [[u8; 3]],
-    normal: &'c mut [PackedNormal],
-}
-
 impl FinestInProgress {
     fn work(
         &mut self,
@@ -207,19 +200,13 @@ impl FinestInProgress {
         let mut parts = Vec::with_capacity(clusters.len().div_ceil(PART));
         for clusters in clusters.chunks(PART) {
             let count = voxels_of(clusters);
-            let (color, rest) = color_rest.split_at(count);
-            color_rest = rest;
-            let (normal, rest) = std::mem::take(&mut normal_rest).split_at_mut(count);
-            normal_rest = rest;
-            parts.push(ClusterBatch {
-                clusters,
-                color,
-                normal,
-            });
+            let color = color_rest.split_off(..count).unwrap_or_default();
+            let normal = normal_rest.split_off_mut(..count).unwrap_or_default();
+            parts.push((clusters, color, normal));
         }
         let nodes: Vec<Vec<ClusterNodes>> = parts
             .into_par_iter()
-            .map(|part| part.nodes(grid, self.centre))
+            .map(|(clusters, color, normal)| nodes_of(clusters, color, normal, grid, self.centre))
             .collect();
         for (cluster, nodes) in clusters.iter().zip(nodes.iter().flatten()) {
             tree.push(cluster[0], cluster[1].count_ones(), nodes)?;
@@ -230,24 +217,24 @@ impl FinestInProgress {
     }
 }
 
-impl ClusterBatch<'_> {
-    fn nodes(self, grid: Option<&Grid>, centre: [f64; 3]) -> Vec<ClusterNodes> {
-        let mut all = Vec::with_capacity(self.clusters.len());
-        let (mut color, mut normal) = (self.color, self.normal);
-        for &[key, word] in self.clusters {
-            let count = word.count_ones() as usize;
-            let (own_color, rest) = color.split_at(count);
-            color = rest;
-            let (own_normal, rest) = normal.split_at_mut(count);
-            normal = rest;
-            if let Some(grid) = grid {
-                let corner = morton::at(key).map(|c| (c << 2) as i32);
-                fill_cluster(centre, &grid.surroundings(key), word, corner, own_normal);
-            }
-            all.push(averages(word, own_color, own_normal));
+fn nodes_of(
+    clusters: &[[u64; 2]],
+    mut color: &[[u8; 3]],
+    mut normal: &mut [PackedNormal],
+    grid: Option<&Grid>,
+    centre: [f64; 3],
+) -> Vec<ClusterNodes> {
+    let nodes = clusters.iter().map(|&[key, word]| {
+        let count = word.count_ones() as usize;
+        let own_color = color.split_off(..count).unwrap_or_default();
+        let own_normal = normal.split_off_mut(..count).unwrap_or_default();
+        if let Some(grid) = grid {
+            let corner = morton::at(key).map(|c| (c << 2) as i32);
+            fill_cluster(centre, &grid.surroundings(key), word, corner, own_normal);
         }
-        all
-    }
+        averages(word, own_color, own_normal)
+    });
+    nodes.collect()
 }
 
 fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> ClusterNodes {

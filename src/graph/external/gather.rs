@@ -15,7 +15,6 @@ use super::runs::{Merge, Runs};
 use super::scratch::Scratch;
 use crate::graph::{Progress, Voxel};
 
-/// Of the thread that sorts and writes a run.
 type Sorted = io::Result<(Vec<u128>, Runs)>;
 
 #[derive(Debug)]
@@ -79,7 +78,6 @@ impl Gather {
                 .par_iter_mut()
                 .for_each(|record| *record = placed(*record, corner));
             records.par_sort_unstable();
-            // Of equal keys, the last pushed comes first.
             records.dedup_by_key(|record| key(*record));
             runs.add(&records)?;
             records.clear();
@@ -89,7 +87,6 @@ impl Gather {
         Ok(())
     }
 
-    /// The results of the thread that sorts, or new ones if there is none.
     fn waited(&mut self) -> Sorted {
         match self.running.take() {
             None => Ok((Vec::new(), Runs::new(&self.scratch)?)),

@@ -1,8 +1,7 @@
 //! Blocks of clusters, and the clusters around a block.
 //!
-//! A voxel's normal needs the clusters around its own. Clusters are processed in Morton order, one block at a time: a
-//! cube of `2^shift` clusters a side, contiguous in that order. Neighbours of a cluster at a block's face are elsewhere
-//! in the order. So copies of such a cluster, sorted by block, are added to the blocks beside its own.
+//! A voxel's normal needs the clusters around its own. A block is a cube of `2^shift` clusters per side, contiguous in
+//! Morton order. Clusters at its face are copied to the blocks beside it.
 
 use std::io;
 
@@ -111,7 +110,6 @@ impl Grid {
                 self.ahead = Some(copy);
                 return Ok(());
             }
-            // Copies for blocks without clusters are skipped.
             if of == block {
                 let slot = [2, 1, 0].map(|axis| (key >> (axis * bits) & mask) as usize);
                 self.set(self.place(slot), copy as u64);
@@ -125,7 +123,6 @@ impl Grid {
         let mut rows = Surroundings::default();
         for neighbour in 0..27 {
             let [x, y, z] = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
-            // The cluster is never at the grid's border.
             let word = self.words[place + (x * side + y) * side + z - (side + 1) * side - 1];
             if word != 0 {
                 put(&mut rows, neighbour, word);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::scratch::{Scratch, Spool};
 use super::tree::LevelArrays;
-use crate::graph::{BuildError, Graph, Placement, Store};
+use crate::graph::{BuildError, Graph, Placement};
 
 pub(super) struct Built {
     pub(super) depth: u32,
@@ -31,72 +31,51 @@ impl Built {
         }
         Ok(Graph {
             depth: self.depth,
-            root: 0,
-            mask: Store::default(),
-            first: Store::default(),
-            links: Store::default(),
-            color: Store::default(),
-            normal: Store::default(),
-            opacity: Store::default(),
             level_start,
             voxels: self.counts[self.depth as usize],
             placement,
+            ..Graph::default()
         })
     }
 
     pub(super) fn sections(self) -> Sections {
-        let mut sections = Sections::default();
+        let mut sections: [Vec<Spool>; 4] = Default::default();
         for level in self.levels {
-            sections.mask.push(level.mask);
-            sections.first.push(level.first);
-            sections.color.push(level.color);
-            sections.normal.push(level.normal);
+            let both = sections.iter_mut().zip(level);
+            both.for_each(|(section, spool)| section.push(spool));
         }
-        sections.color.push(self.color);
-        sections.normal.push(self.normal);
-        sections
+        sections[2].push(self.color);
+        sections[3].push(self.normal);
+        Sections(sections)
     }
 }
 
-/// The levels' parts of each section, freed once written.
-#[derive(Default)]
-pub(super) struct Sections {
-    mask: Vec<Spool>,
-    first: Vec<Spool>,
-    color: Vec<Spool>,
-    normal: Vec<Spool>,
-}
+/// The levels' masks, first children, colours and normals, freed once written.
+pub(super) struct Sections([Vec<Spool>; 4]);
 
 impl Sections {
-    /// Writes a section's bytes: `MASK`, `FRST`, `LINK`, `COLR`, `NRML`.
+    /// Writes a section's bytes: `MASK`, `FRST`, `LINK` (which is empty), `COLR`, `NRML`.
     pub(super) fn hand_on(
         &mut self,
         section: usize,
         level_start: &[u32],
         put: &mut dyn FnMut(&[u8]) -> io::Result<()>,
     ) -> io::Result<()> {
-        let levels = match section {
-            0 => &mut self.mask,
-            1 => {
-                for (level, spool) in std::mem::take(&mut self.first).into_iter().enumerate() {
+        let Some(of) = [Some(0), Some(1), None, Some(2), Some(3)][section] else {
+            return Ok(());
+        };
+        for (level, spool) in std::mem::take(&mut self.0[of]).into_iter().enumerate() {
+            spool.drain(|piece| {
+                if section == 1 {
                     // Children are of the level below.
                     let base = level_start[level + 1];
-                    spool.drain(|piece| {
-                        for number in piece.as_chunks_mut::<4>().0 {
-                            let first = base.wrapping_add(u32::from_ne_bytes(*number));
-                            *number = first.to_le_bytes();
-                        }
-                        put(piece)
-                    })?;
+                    for number in piece.as_chunks_mut::<4>().0 {
+                        let first = base.wrapping_add(u32::from_ne_bytes(*number));
+                        *number = first.to_le_bytes();
+                    }
                 }
-                return Ok(());
-            }
-            3 => &mut self.color,
-            4 => &mut self.normal,
-            _ => return Ok(()),
-        };
-        for spool in std::mem::take(levels) {
-            spool.drain(|piece| put(piece))?;
+                put(piece)
+            })?;
         }
         Ok(())
     }

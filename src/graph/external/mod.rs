@@ -5,8 +5,8 @@
 //!
 //! 1. `gather`: voxels are pushed, sorted in runs as large as memory allows, and spilled;
 //! 2. `runs`: the runs are merged in Morton order;
-//! 3. `finest`: the voxels' attributes and the clusters of 4^3 that they fill are written, a cluster at the face of its
-//!    block once more for each block beside it (`halo`);
+//! 3. `finest`: attributes and clusters of 4^3 voxels are written, those at a block's face also for the blocks beside it
+//!    (`halo`);
 //! 4. `finest` and `tree`: block by block, normals are estimated, and the nodes of each level written when complete;
 //! 5. `join`: the levels become the sections of the file.
 
@@ -42,8 +42,7 @@ const GRAPH_BYTES: u64 = 5;
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
     pub build: BuildOptions,
-    /// Limit of memory in bytes, including the program. It is exceeded below about 64 MB, because the program itself
-    /// is larger.
+    /// Limit of memory in bytes, including the program; exceeded below about 64 MB.
     pub memory: u64,
     /// Folder of the temporary files; about 22 bytes per voxel of a surface.
     pub temporary: PathBuf,
@@ -96,7 +95,6 @@ impl ExternalBuilder {
         }
     }
 
-    /// The mesh of which the voxels are made, for fitted cameras.
     #[must_use]
     pub fn of_mesh(self, mesh: MeshBox) -> Self {
         Self {
@@ -125,7 +123,6 @@ impl ExternalBuilder {
         budget::free_disk(&self.options.temporary).map_or(u64::MAX, |free| free / RUN_BYTES)
     }
 
-    /// [`Self::finish`] returns errors of temporary files.
     pub fn push(&mut self, voxel: Voxel) {
         self.gather.push(&voxel);
     }

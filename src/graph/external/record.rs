@@ -9,10 +9,8 @@
 
 use crate::graph::{PackedNormal, Voxel, morton};
 
-/// Most records per run: their numbers take 24 bits.
 pub(super) const MAX_RUN: usize = 1 << 24;
 
-/// A voxel as it is pushed, the `number`-th of its run.
 pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
     let latest_first = (MAX_RUN - 1 - number) as u64;
     let [r, g, b] = voxel.color.map(u64::from);
@@ -39,7 +37,6 @@ fn with_key(record: u128, key: u64) -> u128 {
     u128::from(key) << 64 | u128::from(record as u64)
 }
 
-/// The upper half: the sorting key.
 pub(super) fn key(record: u128) -> u64 {
     (record >> 64) as u64
 }

@@ -112,7 +112,6 @@ struct Reader {
 pub(super) struct Merge {
     file: ScratchFile,
     readers: Vec<Reader>,
-    /// The next record of each reader: its key, then the latest run first.
     heads: BinaryHeap<Reverse<(u64, Reverse<u32>)>>,
     last: Option<u64>,
     reader_bytes: u64,

@@ -118,7 +118,6 @@ impl Spool {
         if self.file.is_none() {
             self.file = Some(self.scratch.file()?);
         }
-        // Just made, if it was not there.
         self.file.as_mut().map_or(Ok(()), |file| file.append(bytes))
     }
 

@@ -35,14 +35,8 @@ pub(super) struct ClusterNodes {
     pub(super) sum: Sum,
 }
 
-#[derive(Debug)]
-pub(super) struct LevelArrays {
-    pub(super) mask: Spool,
-    /// Number of the first child within its level, `u32`.
-    pub(super) first: Spool,
-    pub(super) color: Spool,
-    pub(super) normal: Spool,
-}
+/// Masks, first children (`u32`, numbers within their level), colours and normals of a level.
+pub(super) type LevelArrays = [Spool; 4];
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Open {
@@ -65,14 +59,7 @@ impl TreeWriter {
         let spool = || Spool::new(scratch, spool_bytes);
         Self {
             depth,
-            levels: (0..depth)
-                .map(|_| LevelArrays {
-                    mask: spool(),
-                    first: spool(),
-                    color: spool(),
-                    normal: spool(),
-                })
-                .collect(),
+            levels: (0..depth).map(|_| [(); 4].map(|()| spool())).collect(),
             begun: vec![0; depth as usize + 1],
             open: vec![Open::default(); depth.saturating_sub(2) as usize],
             before: None,
@@ -117,7 +104,6 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Closes nodes that do not contain the next cluster, and opens those that do.
     fn open_above(&mut self, cluster_key: u64, cluster_level: usize) -> io::Result<()> {
         let new_level = first_new_level(self.before, cluster_key, cluster_level as u32) as usize;
         if self.before.is_some() {
@@ -138,7 +124,6 @@ impl TreeWriter {
         Ok(())
     }
 
-    /// Writes the open nodes of a level and below, lowest first.
     fn close(&mut self, from: usize) -> io::Result<()> {
         for level in (from..self.open.len()).rev() {
             let Open { mask, first, sum } = self.open[level];
@@ -151,14 +136,13 @@ impl TreeWriter {
     }
 
     fn write(&mut self, level: usize, node: FinishedNode, first: u64) -> io::Result<()> {
-        let to = &mut self.levels[level];
-        to.mask.push(&[node.mask])?;
-        to.first.push(&(first as u32).to_ne_bytes())?;
-        to.color.push(&node.color)?;
-        to.normal.push(&node.normal.0.to_le_bytes())
+        let [masks, firsts, colors, normals] = &mut self.levels[level];
+        masks.push(&[node.mask])?;
+        firsts.push(&(first as u32).to_ne_bytes())?;
+        colors.push(&node.color)?;
+        normals.push(&node.normal.0.to_le_bytes())
     }
 
-    /// The levels above the finest, and the number of nodes per level.
     pub(super) fn finish(mut self) -> io::Result<(Vec<LevelArrays>, Vec<u64>)> {
         if self.before.is_some() {
             self.close(0)?;

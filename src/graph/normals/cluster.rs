@@ -48,7 +48,6 @@ fn to_rows(word: u64) -> u64 {
 /// Puts cluster `(x * 3 + y) * 3 + z` of the 27 in and around the surroundings' middle into its place.
 #[inline]
 pub(in crate::graph) fn put(rows: &mut Surroundings, neighbour: usize, cluster_rows: u64) {
-    /// First place in the surroundings, first place in the cluster, how many.
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
     let (to_x, from_x, count_x) = SPAN[neighbour / 9];
     let (to_y, from_y, count_y) = SPAN[neighbour / 3 % 3];
@@ -74,24 +73,19 @@ pub(super) fn enclosed(rows: &Surroundings, [x, y, z]: [usize; 3]) -> bool {
 mod tests {
     use super::*;
 
+    /// One voxel in each neighbour, seen at its place in the surroundings.
     #[test]
     fn rows_of_the_surroundings_are_where_they_should_be() {
-        // One voxel in each neighbour, seen at its place in the surroundings.
-        for neighbour in 0..27 {
-            for (bit, place_in_cluster) in MORTON_TO_XYZ.into_iter().enumerate() {
-                let mut rows = [[0u8; 8]; 8];
-                put(&mut rows, neighbour, to_rows(1 << bit));
-                let offset = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
-                let at = [0, 1, 2].map(|k| {
-                    let place = place_in_cluster[k] + 4 * offset[k];
-                    place.checked_sub(2).filter(|&p| p < 8)
-                });
-                let mut expected = [[0u8; 8]; 8];
-                if let [Some(x), Some(y), Some(z)] = at {
-                    expected[z][y] = 1 << x;
-                }
-                assert_eq!(rows, expected, "neighbour {neighbour} bit {bit}");
+        for (neighbour, bit) in (0..27).flat_map(|n| (0..64).map(move |bit| (n, bit))) {
+            let mut rows = Surroundings::default();
+            put(&mut rows, neighbour, to_rows(1 << bit));
+            let offset = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
+            let at = [0, 1, 2].map(|k| (MORTON_TO_XYZ[bit][k] + 4 * offset[k]).wrapping_sub(2));
+            let mut expected = Surroundings::default();
+            if at.iter().all(|&c| c < 8) {
+                expected[at[2]][at[1]] = 1 << at[0];
             }
+            assert_eq!(rows, expected, "neighbour {neighbour} bit {bit}");
         }
     }
 }

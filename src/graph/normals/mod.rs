@@ -2,8 +2,8 @@
 //!
 //! Each voxel's 5 x 5 x 5 neighbourhood is a heap of mass (weights 1 2 2 2 1 along each axis). Where the heap lies to
 //! one side of the voxel or fills most of the neighbourhood, the normal points away from its centre of mass. In a thin
-//! wall it is the least axis of the heap's covariance, turned away from the middle of the object. A voxel alone has no
-//! normal. Neither has one whose six faces are covered, because it cannot be seen.
+//! wall it is the least axis of the heap's covariance, turned away from the middle of the object. Lone and covered
+//! voxels have none.
 //!
 //! The unit of work is a cluster of 4^3 voxels, 64 bits: the node two levels above the finest.
 
@@ -20,9 +20,7 @@ use moments::Moments;
 const ABSENT: u32 = u32::MAX;
 /// Nodes of one level in and around a node: `(x * 3 + y) * 3 + z`.
 type Neighbours = [u32; 27];
-/// The node itself among its neighbours.
 const SELF: usize = 13;
-/// Most pieces that the work is split into.
 const MAX_PIECES: usize = 4096;
 
 pub(super) struct Estimate<'t> {
@@ -65,7 +63,6 @@ impl Estimate<'_> {
             .collect();
         let (split_level, pieces) = self.pieces(level);
 
-        // Pieces are in Morton order, so each owns the next part of the level.
         let mut rest = normals;
         let mut work = Vec::with_capacity(pieces.len());
         for piece in pieces {

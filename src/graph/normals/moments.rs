@@ -38,7 +38,7 @@ const ROW_MOMENTS: [i64; 32] = {
     table
 };
 
-/// Sums of five numbers, at -2 to 2 along an axis, weighted by [`WEIGHT`], times the place to the power of 0, 1 and 2.
+/// Weighted sums of five numbers, times the place to the power of 0, 1 and 2.
 #[inline(always)]
 fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
     let [a, b, c, d, e] = [of(0), of(1), of(2), of(3), of(4)];
@@ -75,7 +75,6 @@ pub(super) struct Moments {
 impl Moments {
     #[inline]
     pub(super) fn around(rows: &Surroundings, [x, y, z]: [usize; 3]) -> Self {
-        // Along x by the table, then along y in each plane, then along z.
         let planes: [[i64; 3]; 5] = std::array::from_fn(|k| {
             let rows = &rows[z + k];
             along(|j| ROW_MOMENTS[usize::from(rows[y + j] >> x & 31)])
@@ -96,7 +95,7 @@ impl Moments {
         }
     }
 
-    /// The normal; `outward`: the preferred side of a thin wall.
+    /// `outward` is the preferred side of a thin wall.
     pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
         if self.mass <= LONE_MASS {
             return PackedNormal::NONE;
@@ -157,35 +156,25 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
 mod tests {
     use super::super::cluster::MORTON_TO_XYZ;
     use super::*;
+    use crate::split_mix::SplitMix;
 
     #[test]
     fn moments_match_a_plain_sum() {
-        let mut state = 1u64;
-        let mut rows = [[0u8; 8]; 8];
-        for row in rows.iter_mut().flatten() {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            *row = (state >> 56) as u8;
-        }
+        let mut random = SplitMix::new(1);
+        let rows = [(); 8].map(|()| random.bits().to_le_bytes());
         for at in MORTON_TO_XYZ {
             let mut plain = Moments::default();
-            for (dx, dy, dz) in (0..125).map(|i| (i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2)) {
-                let place = |k: usize, d: i32| (at[k] as i32 + d + 2) as usize;
-                if rows[place(2, dz)][place(1, dy)] >> place(0, dx) & 1 == 0 {
+            for d in (0..125).map(|i| [i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2]) {
+                let [x, y, z] = [0, 1, 2].map(|k| (at[k] as i32 + d[k] + 2) as usize);
+                if rows[z][y] >> x & 1 == 0 {
                     continue;
                 }
-                let weight = [dx, dy, dz]
-                    .map(|d| WEIGHT[(d + 2) as usize])
-                    .iter()
-                    .product::<i32>();
+                let weight: i32 = d.map(|d| WEIGHT[(d + 2) as usize]).iter().product();
                 plain.mass += weight;
-                for (sum, d) in plain.first.iter_mut().zip([dx, dy, dz]) {
-                    *sum += weight * d;
-                }
-                let products = [dx * dx, dy * dy, dz * dz, dx * dy, dx * dz, dy * dz];
-                for (sum, product) in plain.second.iter_mut().zip(products) {
-                    *sum += weight * product;
+                for (k, [a, b]) in [[0, 1], [0, 2], [1, 2]].into_iter().enumerate() {
+                    plain.first[k] += weight * d[k];
+                    plain.second[k] += weight * d[k] * d[k];
+                    plain.second[3 + k] += weight * d[a] * d[b];
                 }
             }
             assert_eq!(Moments::around(&rows, at), plain);

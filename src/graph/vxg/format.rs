@@ -12,7 +12,8 @@ pub(super) const VERSION_WITH_OPACITY: u32 = 2;
 pub(super) const FORMAT: Format = Format {
     ending: ".vxg",
     magic: MAGIC,
-    version: VERSION,
+    versions: &[VERSION, VERSION_WITH_OPACITY],
+    header_bytes: HEADER_BYTES,
     signature: "the signature of a .vxg file",
     not_ours: "is this a .vxg file? Convert other formats with `convert`",
 };
@@ -58,7 +59,6 @@ pub(super) const KINDS: [(&str, &str, u32); SECTIONS + 1] = [
     ("OPAC", "opacity", 3),
 ];
 
-/// Offset of the header's entry of section `i` of [`KINDS`].
 pub(super) const fn entry_at(i: usize) -> usize {
     if i < SECTIONS {
         at::SECTIONS + i * SECTION_ENTRY_BYTES
@@ -67,7 +67,6 @@ pub(super) const fn entry_at(i: usize) -> usize {
     }
 }
 
-/// A section's place in the file, and the xxh3-64 of its bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Section {
     pub(super) offset: u64,

@@ -1,9 +1,7 @@
 //! The `.vxg` file: a graph as it is in memory, to be mapped and used in place.
 //!
-//! [`open`] reads only the header, so it takes the same time for any size. Indices in the sections are *not* checked
-//! on opening. Nothing follows an index unchecked ([`GraphView::child`](super::GraphView::child),
-//! [`Graph::color_of`](super::Graph::color_of), [`Graph::children`](super::Graph::children)), so a damaged section
-//! gives a wrong picture at worst. [`verify`] reads everything and finds every damage that a 64-bit checksum can.
+//! [`open`] reads only the header. Nothing follows an index of a section unchecked, so a damaged section gives a wrong
+//! picture at worst. [`verify`] reads everything.
 
 mod format;
 mod read;

@@ -10,32 +10,27 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::VxgError;
 use super::format::{
     FORMAT, HEADER_BYTES, KINDS, MAX_LEVEL_STARTS, MESH_Y_UP, NO_MESH, SECTIONS, Section, VERSION,
-    VERSION_WITH_OPACITY, at, entry_at, layout,
+    at, entry_at, layout,
 };
-use crate::graph::file::{self, Fields, padding_after, range};
-use crate::graph::map::{Access, advise};
+use crate::graph::file::{self, Fields, range};
+use crate::graph::map::advise;
 use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
-/// Opens a file: maps it, and checks the header and that all sections are there.
-///
-/// No section is read. A graph from a damaged file may look wrong, but walking it never panics: see [`super`]. Fails
-/// when the file cannot be read, is something else, is truncated, or its header is damaged.
+/// Maps a file. Fails when it cannot be read, is something else, is truncated, or its header is damaged.
 pub fn open(path: &Path) -> Result<Graph, VxgError> {
     Ok(open_with_header(path)?.0)
 }
 
-/// Opens a file and checks all of it: checksums, padding and every index. Errors: as [`open`], and when any byte is not
-/// as it was written.
+/// Opens a file and checks all of it: checksums, padding and every index.
 pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     let (graph, header, map) = open_with_header(path)?;
-    advise(&map, Access::Whole);
+    advise(&map, true);
     header.verify_sections(&graph, &map, path)?;
-    advise(&map, Access::Scattered);
+    advise(&map, false);
     Ok(graph)
 }
 
-/// A graph from the bytes of a whole file, checked like [`verify`]. It owns its arrays. Errors name the file
-/// `(memory)`. Errors: as [`verify`].
+/// A graph from the bytes of a whole file, checked like [`verify`]. Errors name the file `(memory)`.
 pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
     let path = Path::new("(memory)");
     let header = Header::read(bytes, bytes.len() as u64, path)?;
@@ -54,12 +49,11 @@ fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError>
         let offset = at::FILE_BYTES as u64;
         return Err(VxgError::damaged(path, "header", offset, expected));
     }
-    advise(&map, Access::Scattered);
+    advise(&map, false);
     let graph = header.graph(&Source::Mapped(&map), path)?;
     Ok((graph, header, map))
 }
 
-/// The whole file, from which arrays are taken: as windows of the map, or as copies.
 enum Source<'f> {
     Mapped(&'f Arc<Mmap>),
     Held(&'f [u8]),
@@ -90,9 +84,7 @@ struct Header {
 
 impl Header {
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, VxgError> {
-        FORMAT.check_byte_order(path)?;
-        let known = [VERSION, VERSION_WITH_OPACITY];
-        let fields = FORMAT.read_of::<HEADER_BYTES>(&known, beginning, file_bytes, path)?;
+        let fields = FORMAT.read(beginning, file_bytes, path)?;
         let sections = read_sections(&fields, file_bytes)?;
         let levels = fields.u32_at(at::LEVELS) as usize;
         fields.ensure(levels <= MAX_LEVEL_STARTS, at::LEVELS, || {
@@ -148,7 +140,6 @@ impl Header {
         Ok(graph)
     }
 
-    /// The byte of the file at which an invariant is broken.
     fn locate(&self, invalid: Invalid, path: &Path) -> VxgError {
         let arrays = KINDS.iter().zip(&self.sections);
         let array = { arrays }.find(|((_, array, _), _)| *array == invalid.array);
@@ -171,7 +162,7 @@ impl Header {
 
     fn verify_sections(&self, graph: &Graph, bytes: &[u8], path: &Path) -> Result<(), VxgError> {
         let places = self.sections.iter().map(Section::place);
-        padding_after(HEADER_BYTES as u64, bytes, places, path)?;
+        FORMAT.check_padding(bytes, places, path)?;
         for ((name, ..), section) in KINDS.iter().zip(&self.sections) {
             let actual = xxh3_64(&bytes[range(section.place())]);
             if actual != section.checksum {

@@ -15,9 +15,7 @@ use crate::graph::Graph;
 use crate::graph::file::ALIGNMENT;
 use crate::whole::{self, WholeError};
 
-/// Writes a graph to a file.
-///
-/// A temporary file beside `path` is renamed when complete. Missing folders are created. Fails when the graph breaks an
+/// Writes a graph to a file that appears when complete. Missing folders are created. Fails when the graph breaks an
 /// invariant, when `path` exists and `overwrite` is false, or when the system refuses.
 pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
     graph.validate()?;
@@ -29,7 +27,6 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
     whole::write_with(path, overwrite, fill).map_err(refused)
 }
 
-/// Fails where a file exists that may not be replaced.
 pub(in crate::graph) fn check_free(path: &Path, overwrite: bool) -> Result<(), VxgError> {
     whole::check_free(path, overwrite).map_err(refused)
 }
@@ -47,10 +44,8 @@ fn refused(error: WholeError) -> VxgError {
     }
 }
 
-/// Writes a file whose arrays do not exist as a whole, and returns its length in bytes.
-///
-/// `outline` is the graph without its arrays; `lengths` are the bytes of the sections. `hand_on` is called once per
-/// section, in order, and puts the section's bytes, little-endian.
+/// Writes a file whose arrays do not exist as a whole, and returns its length in bytes. `lengths` are the bytes of the
+/// sections, which `hand_on` puts one by one.
 pub(in crate::graph) fn write_pieces(
     outline: &Graph,
     lengths: [u64; SECTIONS],
@@ -74,7 +69,6 @@ pub(in crate::graph) fn write_pieces(
 
 type Put<'p> = &'p mut dyn FnMut(&[u8]) -> io::Result<()>;
 
-/// Writes all that follows the header.
 fn put_sections(
     lengths: &[u64],
     out: &mut dyn Write,
@@ -84,7 +78,6 @@ fn put_sections(
     let mut written = HEADER_BYTES as u64;
     let mut table = Vec::new();
     for (i, (&length, offset)) in lengths.iter().zip(offsets).enumerate() {
-        // Less than the alignment.
         out.write_all(&[0; ALIGNMENT as usize][..(offset - written) as usize])?;
         let mut checksum = Xxh3::new();
         let mut bytes = 0;
@@ -107,8 +100,7 @@ fn put_sections(
     Ok(table)
 }
 
-/// Writes a graph to anything that takes bytes. Fails when the graph breaks an invariant, or the writer fails (errors
-/// name the file `(output)`).
+/// Writes a graph to anything that takes bytes. Errors name the file `(output)`.
 pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
     let file = Path::new("(output)");
     graph.validate()?;
@@ -140,12 +132,12 @@ fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTES] {
+fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> Vec<u8> {
     let version = match table.len() {
         SECTIONS => VERSION,
         _ => VERSION_WITH_OPACITY,
     };
-    FORMAT.header_of(version, file_bytes, |put| {
+    FORMAT.header(version, file_bytes, |put| {
         put(at::DEPTH, &graph.depth.to_le_bytes());
         put(at::ROOT, &graph.root.to_le_bytes());
         put(at::VOXELS, &graph.voxels.to_le_bytes());

@@ -1,5 +1,5 @@
-//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, numbers
-//! stay some bits below the ends of the format, so that no result leaves its word.
+//! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, they leave
+//! some bits, so that no result leaves its word.
 
 use hwmodel::{Datapath, Narrow, Probe, Stage, WideWord, Word};
 
@@ -220,7 +220,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     planes::move_to_quadrant(dp, c, &mut moved, quadrant);
     let level = inputs.level(c.depth);
     let mut cube = inputs.cube(level);
-    // Along the axes before this one the eye lies within the cube; along others near its faces, or anywhere.
+    // Along earlier axes the eye is within the cube; along others near its faces, or anywhere.
     let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);
@@ -311,7 +311,7 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     c.screen_depth[level] = kept;
 }
 
-/// A voxel of random opacities, seen from an eye with these distances from its centre, and this shift.
+/// A voxel of random opacities, these distances of the eye from its centre, and this shift.
 fn blend_voxel<P: Probe>(
     dp: &mut Datapath<P>,
     inputs: &mut Inputs,
@@ -416,7 +416,7 @@ fn blending<P: Probe>(dp: &mut Datapath<P>, inputs: &mut Inputs) {
     color.add_to(dp, 0, &mut sample);
 }
 
-/// Bits by which words stay below the ends of the format where they are added, doubled or halved a few times.
+/// Spare bits of words that are added, doubled or halved a few times.
 const SPARE: u32 = 8;
 
 struct Inputs {
@@ -434,7 +434,7 @@ impl Inputs {
         }
     }
 
-    /// A number of at most `bits` bits with its sign: an end of the range, near zero, or random.
+    /// A number of `bits` bits with its sign: an end of the range, near zero, or random.
     fn number(&mut self, bits: u32) -> i64 {
         let most = i64::MAX >> (64 - bits);
         let ends = [-most - 1, -most, most, most - 1, -2, -1, 0, 1, 2];

@@ -7,6 +7,6 @@ mod positions;
 mod simulate;
 mod widths;
 
-pub use positions::{Cage, Coordinates, Positions, cages_along, visit_positions};
+pub use positions::{Cage, Coordinates, cages_along};
 pub use simulate::{SimulateError, Simulated};
 pub use widths::{NumberSpan, NumberSpans, ProvenWidths, RecordNumber, narrowed, proven_widths};

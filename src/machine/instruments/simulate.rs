@@ -23,8 +23,7 @@ use crate::project::{EngineError, FrameSetup, Stats};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulated {
     pub cycles: CycleReport,
-    /// Without the stack's depth; at last the most tiles in progress at once, each of which needs fill vectors on the
-    /// chip.
+    /// Without the stack's depth; at last the most tiles in progress at once, each with fill vectors on the chip.
     pub counts: Stats,
 }
 
@@ -35,10 +34,7 @@ impl Machine {
     ///
     /// Under [`Independence::None`](cycles::Independence) and `Image` the machine does exactly the serial work. Under
     /// `Classes` and `Both` the picture is the same if no two children of one class draw the same sample, as under the
-    /// exact rule.
-    ///
-    /// Fails when the hardware's description is invalid, a word overflows under the trap policy, or a stack that does
-    /// not spill is full.
+    /// exact rule. Fails as [`cycles::simulate`] does, and when a word overflows under the trap policy.
     pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,

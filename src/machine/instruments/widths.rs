@@ -1,11 +1,11 @@
-//! The bits of a record's numbers under the rules that draw outlines: proven from a frame's set-up, and measured.
+//! The bits of a record's numbers under the rules that draw outlines, proven from a set-up and measured.
 //!
 //! Clip vectors lie in the hull of the object's corners, which bounds `W`, and `X` and `Y` relative to the whole
 //! picture. A box enters a quadrant only if it leaves that by at most half a sample, or by the quadrant's width
 //! (`near_node`). So relative to any other node `-W <= X <= 2W`, and no vertex lies behind the eye. Edges are
 //! differences of two such numbers. Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are greatest at a
-//! corner of the object, and the same relative to every node. The edge's end is on the plane, so `|c| <= 2 (|a| +
-//! |b|)`. A plane across an axis is the difference of two planes through edges, so its `c` is at most twice theirs.
+//! corner of the object, and equal for all nodes. The edge's end is on it, so `|c| <= 2 (|a| + |b|)`. A plane across an
+//! axis is the difference of two of these, so its `c` is at most twice theirs.
 
 use std::collections::BTreeMap;
 
@@ -276,13 +276,16 @@ mod tests {
 
     #[test]
     fn bits_by_hand() {
-        let span = |least, greatest| NumberSpan { least, greatest }.bits();
-        assert_eq!(span(0, 0), 0);
-        assert_eq!(span(0, 255), 8);
-        assert_eq!(span(0, 256), 9);
-        assert_eq!(span(-1, 0), 1);
-        assert_eq!(span(-128, 127), 8);
-        assert_eq!(span(-129, 0), 9);
-        assert_eq!(span(-1, 128), 9);
+        let spans = [
+            (0, 0),
+            (0, 255),
+            (0, 256),
+            (-1, 0),
+            (-128, 127),
+            (-129, 0),
+            (-1, 128),
+        ];
+        let bits = spans.map(|(least, greatest)| NumberSpan { least, greatest }.bits());
+        assert_eq!(bits, [0, 8, 9, 1, 8, 9, 9]);
     }
 }

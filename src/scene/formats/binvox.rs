@@ -1,6 +1,4 @@
 //! Voxel grids of the program binvox: a text header, then runs of empty and filled cells.
-//!
-//! Nothing is allocated by the sizes in the header.
 
 use std::io::{BufRead, ErrorKind, Read};
 
@@ -9,7 +7,6 @@ use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
 use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
-/// Longest line of the header, bytes.
 const MAX_LINE: u64 = 256;
 
 const AGAIN: &str = "the file is damaged or its exporter is at fault; export or copy it again";
@@ -45,7 +42,6 @@ pub(super) fn read(
         if value != 0 {
             info.stored_voxels += u64::from(count);
             for cell in cell..end {
-                // Below 2^21 each.
                 let index = [cell / y / z, cell % y, cell / y % z].map(|i| i as i64);
                 emitter.voxel(index, DEFAULT_COLOR, None, || ("runs".to_owned(), offset))?;
             }

@@ -1,7 +1,6 @@
 //! NumPy arrays of voxel indices: N x 3, or N x 6 and N x 7 with colours.
 //!
-//! Memory does not depend on the file. In Fortran order each column is contiguous, and a block is collected by
-//! seeking.
+//! In Fortran order each column is contiguous, and a block is collected by seeking.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
@@ -12,7 +11,6 @@ use crate::scene::numbers::{Number, Scalar};
 use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 const BLOCK_ROWS: u64 = 4096;
-/// Longest header, bytes; NumPy's own is below 200.
 const MAX_HEADER: u64 = 1 << 16;
 
 const SAVE_AGAIN: &str =
@@ -34,7 +32,6 @@ impl Layout {
         self.scalar.size() as u64
     }
 
-    /// Place of a number among those of `rows` rows.
     fn slot(&self, rows: u64, row: u64, column: u64) -> u64 {
         match self.fortran {
             true => column * rows + row,
@@ -87,7 +84,6 @@ fn read_block<R: Read + Seek>(
     rows: u64,
     block: &mut Vec<u8>,
 ) -> std::io::Result<()> {
-    // At most BLOCK_ROWS x 7 x 8 bytes.
     block.resize((rows * layout.columns * layout.width()) as usize, 0);
     let runs = if layout.fortran { layout.columns } else { 1 };
     let length = block.len() / runs as usize;
@@ -141,7 +137,6 @@ fn pass_on(
 /// Reads the header: magic, version, and a Python dictionary in text.
 fn read_header<R: Read>(reader: &mut R, length: u64) -> Result<Layout, Problem> {
     let mut head = [0u8; 12];
-    // Version 1 has a length of 2 bytes, versions 2 and 3 one of 4.
     exact(reader, &mut head[..10], 0)?;
     let (start, size) = match head[6] {
         1 => (10, u64::from(u16::from_le_bytes([head[8], head[9]]))),

@@ -6,10 +6,8 @@ use crate::graph::{PackedNormal, Voxel};
 
 const COUNT_DIGITS: usize = 20;
 
-/// Writes voxels in the given order and returns their number.
-///
-/// Positions are the indices (`int`), colours `uchar`. With `normals`, `float` normals follow, zero for none. The
-/// count is written into the header last, so `out` must be at its beginning.
+/// Writes voxels in the given order and returns their number. With `normals`, `float` normals follow, zero for none.
+/// The count is written into the header last, so `out` must be at its beginning.
 pub fn write_ply<W: Write + Seek>(
     out: &mut W,
     voxels: impl IntoIterator<Item = Voxel>,
@@ -58,7 +56,6 @@ pub fn write_ply<W: Write + Seek>(
     Ok(count)
 }
 
-/// Equally long for every count.
 fn count_lines(count: u64) -> Vec<u8> {
     let count = count.to_string();
     let filler = "-".repeat(COUNT_DIGITS - count.len());

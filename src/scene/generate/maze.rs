@@ -6,7 +6,6 @@ use crate::graph::{Progress, Voxel};
 
 /// A floor with walls of `max(2, side / 16)` voxels. Squares of the plan with two odd coordinates are rooms, those with
 /// one may be doors.
-/// There is exactly one way between any two rooms.
 pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
     let side = (1i32 << settings.depth) - 1;
     let top = ((side + 1) / 16).max(2);

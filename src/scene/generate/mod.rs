@@ -27,7 +27,6 @@ fn palette(which: u32) -> [u8; 3] {
 
 /// A light colour that grows with the position in a cube of `side` voxels.
 fn gradient(index: [i32; 3], side: i32) -> [u8; 3] {
-    // 70 + 170 at most: fits a byte.
     index.map(|i| (70 + i64::from(i) * 170 / i64::from(side)) as u8)
 }
 

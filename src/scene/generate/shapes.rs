@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 
 use super::list::Settings;
 use super::{gradient, hash, palette};
-use crate::graph::{Graph, PackedNormal, Placement, Progress, Store, Voxel};
+use crate::graph::{Graph, PackedNormal, Progress, Voxel};
 
-/// Cells of the truss along a side.
 const CELLS: i32 = 8;
-/// Wires along each side of the far face, less one.
 const SPACES: i32 = 8;
 
 type Sink<'s> = &'s mut dyn FnMut(Voxel);
@@ -75,7 +73,6 @@ pub(super) fn random(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
     let filled_below = (u64::from(settings.density) << 32) / 100;
     rows("random", side, sink, progress, |y, z, put| {
         for x in 0..side {
-            // At most 10 bits each.
             let h = hash((x | y << 10) as u32, z as u32, settings.seed);
             if u64::from(h) < filled_below {
                 put(x, palette(hash(h, x as u32, !settings.seed)));
@@ -84,8 +81,8 @@ pub(super) fn random(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
     });
 }
 
-/// Half the number of voxels, along x, of the column `(y, z)` of the ball that touches the cube of `side` voxels; 0 also
-/// outside of the cube. A voxel belongs to the ball if its centre does.
+/// Half the number of voxels, along x, of the column `(y, z)` of the ball that touches the cube of `side` voxels. A voxel
+/// belongs to the ball if its centre does.
 fn half_chord(side: i32, y: i32, z: i32) -> i32 {
     if !(0..side).contains(&y) || !(0..side).contains(&z) {
         return 0;
@@ -93,7 +90,6 @@ fn half_chord(side: i32, y: i32, z: i32) -> i32 {
     // In half voxels from the middle, where centres are odd numbers.
     let from_middle = |c: i32| i64::from(2 * c + 1 - side).pow(2);
     let rest = i64::from(side).pow(2) - from_middle(y) - from_middle(z);
-    // Odd numbers from 1 to the root; at most 2^11.
     ((rest.max(0).isqrt() + 1) / 2) as i32
 }
 
@@ -107,8 +103,7 @@ pub(super) fn sphere(settings: &Settings, sink: Sink<'_>, progress: &dyn Progres
     });
 }
 
-/// The ball's voxels that have one of their 26 neighbours outside of it. Each voxel inside then has all its 26
-/// neighbours in the ball, so that no step over a face, an edge or a corner leads from the inside out.
+/// The ball's voxels that have one of their 26 neighbours outside of it.
 pub(super) fn shell(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     let middle = side / 2;
@@ -148,14 +143,12 @@ pub(super) fn truss(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
 }
 
 /// Straight wires from the middle of the face `x = 0` to 9 x 9 points of the far face. A wire has one voxel at each x,
-/// the nearest to its line (halves upwards), and never leaves it by more than a step over a corner. Where wires meet,
-/// the first one's colour stays.
+/// the nearest to its line (halves upwards). Where wires meet, the first one's colour stays.
 pub(super) fn wires(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress) {
     let last = (1i32 << settings.depth) - 1;
     let middle = last / 2;
     progress.begin("generating wires", last as u64 + 1);
     let ends: Vec<i32> = (0..=SPACES).map(|i| last * i / SPACES).collect();
-    // At most 2^12 x 2^12 * 2.
     let at = |end: i32, x: i32| middle + (2 * (end - middle) * x + last).div_euclid(2 * last);
     for x in 0..=last {
         let mut here = BTreeMap::new();
@@ -181,15 +174,12 @@ pub(super) fn wires(settings: &Settings, sink: Sink<'_>, progress: &dyn Progress
 pub(super) fn sierpinski(settings: &Settings) -> Graph {
     Graph {
         depth: settings.depth,
-        root: 0,
         mask: vec![0b0110_1001].into(),
         first: vec![0].into(),
         links: vec![0; 4].into(),
         color: vec![[226, 174, 88]].into(),
         normal: vec![PackedNormal::NONE].into(),
-        opacity: Store::default(),
-        level_start: Vec::new(),
         voxels: 4u64.saturating_pow(settings.depth),
-        placement: Placement::default(),
+        ..Graph::default()
     }
 }

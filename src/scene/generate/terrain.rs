@@ -1,8 +1,7 @@
 //! Hills under floating balls, hollow: the benchmark's large scene.
 //!
-//! A column is a list of solid spans, and three rows of columns are held at a time, so depths work for which a grid of
-//! bits would exceed memory. The axes are the benchmark's: `row` is its z and our y, `height` its y and our z. For seed 1
-//! all voxels and colours are its.
+//! A column is a list of solid spans, and three rows of columns are held at a time. `row` is the benchmark's z and our y,
+//! `height` its y and our z. For seed 1 all voxels and colours are its.
 
 use super::hash;
 use super::list::Settings;
@@ -27,7 +26,6 @@ struct Terrain {
     balls: Vec<Ball>,
 }
 
-/// The spans of all columns of a row.
 #[derive(Default)]
 struct RowSpans {
     spans: Vec<Span>,
@@ -125,7 +123,6 @@ impl Terrain {
                 let place = hash(i, 77, 5 ^ variation);
                 let height = hash(i, 78, 6 ^ variation);
                 let size = hash(i, 79, 7 ^ variation);
-                // All below 2 * side.
                 Ball {
                     center: [
                         (place % side) as i32,
@@ -169,7 +166,6 @@ impl Terrain {
                     _ => spans.push((from, to)),
                 }
             }
-            // At most 49 spans in each of 2^16 columns.
             start.push(spans.len() as u32);
         }
         RowSpans { spans, start }
@@ -184,7 +180,6 @@ impl Terrain {
                 i64::from(self.noise(x, row, cell_log2, octave + 1) >> octave)
             })
             .sum();
-        // Below 7/16 of the side.
         ((sum * i64::from(self.side) * 11 / 32) >> 17) as i32 + self.side / 16
     }
 
@@ -192,7 +187,6 @@ impl Terrain {
     fn noise(&self, x: i32, row: i32, cell_log2: u32, seed: u32) -> i32 {
         let seed = seed ^ self.variation;
         let (cell_x, cell_row) = ((x >> cell_log2) as u32, (row >> cell_log2) as u32);
-        // 16 fraction bits.
         let within = |c: i32| {
             let t = i64::from(c & ((1 << cell_log2) - 1)) << 16 >> cell_log2;
             (((t * t) >> 16) * (3 * 65536 - 2 * t)) >> 16
@@ -210,7 +204,6 @@ impl Terrain {
     fn color(&self, x: i32, height: i32, row: i32) -> [u8; 3] {
         let speckle = hash((x * 31 + height) as u32, row as u32, 9 ^ self.variation);
         let bright = (height * 255 / self.side / 2) as u32;
-        // At most 198, 203 and 188.
         [
             (40 + bright + (speckle & 31)) as u8,
             (100 + (speckle >> 5 & 63) + ((height as u32 / 8) & 1) * 40) as u8,
@@ -220,11 +213,9 @@ impl Terrain {
 }
 
 impl Ball {
-    /// The heights of its voxels in a column.
     fn chord(&self, x: i32, row: i32) -> Option<Span> {
         let [dx, drow] = [x - self.center[0], row - self.center[2]];
         let rest = i64::from(self.radius).pow(2) - i64::from(dx).pow(2) - i64::from(drow).pow(2);
-        // The root is at most the radius.
         (rest >= 0).then(|| {
             let half = rest.isqrt() as i32;
             (self.center[1] - half, self.center[1] + half + 1)

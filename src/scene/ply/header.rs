@@ -6,7 +6,6 @@ use super::source::Source;
 use super::{Encoding, Scalar};
 use crate::scene::fault::{Fault, Problem, printable};
 
-/// Longest line of a header, bytes.
 const MAX_LINE: usize = 1 << 12;
 
 const BROKEN: &str = "the header is damaged or not PLY 1.0; export the file again";
@@ -40,12 +39,10 @@ impl Header {
 }
 
 impl Element {
-    /// Number of the first property of one of these names, no list.
     pub fn scalar(&self, names: &[&str]) -> Option<usize> {
         self.position(|p| p.list.is_none() && names.iter().any(|n| p.name == n.as_bytes()))
     }
 
-    /// Number of the first list of one of these names.
     pub fn list(&self, names: &[&str]) -> Option<usize> {
         self.position(|p| p.list.is_some() && names.iter().any(|n| p.name == n.as_bytes()))
     }
@@ -54,7 +51,6 @@ impl Element {
         self.properties.iter().position(is_meant)
     }
 
-    /// Numbers of the properties x, y and z.
     pub fn positions(&self, offset: u64) -> Result<[usize; 3], Box<Fault>> {
         self.triple([&["x"], &["y"], &["z"]]).ok_or_else(|| {
             Fault::new(

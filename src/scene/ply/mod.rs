@@ -12,7 +12,6 @@ use super::numbers::{Number, Scalar};
 pub use header::{Element, Header, Property};
 use source::Source;
 
-/// Longest line of an ASCII body, bytes.
 const MAX_LINE: usize = 1 << 20;
 
 const CUT: &str = "the file is cut short; export or copy it again";
@@ -37,7 +36,6 @@ pub struct Row<'r> {
     pub offset: u64,
     /// One number per property; 0 for a list.
     pub values: &'r [Number],
-    /// Numbers of the list that was asked for.
     pub list: &'r [Number],
 }
 
@@ -62,7 +60,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         self.source.offset
     }
 
-    /// Skips all elements of the next kind.
     pub fn skip(&mut self, element: &Element) -> Result<(), Problem> {
         let is_list = |property: &Property| property.list.is_some();
         let is_text = self.header.encoding == Encoding::Ascii;
@@ -117,9 +114,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                     let mut is_whole = true;
                     for (at, property) in element.properties.iter().enumerate() {
                         let kept = (list == Some(at)).then_some(&mut kept);
-                        let value = self.binary(property, big_endian, kept);
-                        let value =
-                            value.map_err(|error| error.at_part(|| part(element, number)))?;
+                        let value = self.binary((element, number), property, big_endian, kept)?;
                         is_whole &= value.is_some();
                         values.extend(value);
                         if !is_whole {
@@ -157,6 +152,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
     /// Reads a binary number, or a list and returns 0; `None` if the file ends first.
     fn binary(
         &mut self,
+        (element, number): (&Element, u64),
         property: &Property,
         big_endian: bool,
         kept: Option<&mut Vec<Number>>,
@@ -170,7 +166,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         };
         let Some(length) = length.whole().and_then(|length| u64::try_from(length).ok()) else {
             return Err(Fault::new(
-                "",
+                part(element, number),
                 offset,
                 "a list's length that is not negative",
                 length.to_string(),
@@ -189,17 +185,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
             }
         }
         Ok(Some(Number::Whole(0)))
-    }
-}
-
-impl Problem {
-    fn at_part(mut self, part: impl FnOnce() -> String) -> Self {
-        if let Self::Invalid(fault) = &mut self
-            && fault.part.is_empty()
-        {
-            fault.part = part();
-        }
-        self
     }
 }
 
@@ -254,7 +239,6 @@ fn parse_row(
     }
     match words.next() {
         None => Ok(()),
-        // Lines of an element without properties are not looked at.
         Some(_) if element.properties.is_empty() => Ok(()),
         Some(word) => Err(fault(
             format!(

@@ -8,13 +8,17 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, LinkedGraph, Opacity};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
-use shiftvox::split_mix::SplitMix;
 
-pub use crate::scenes::up_of;
+use crate::scenes::{Dice, any_camera};
+
+/// A number that a variable may set.
+pub fn number_of(variable: &str, usual: u32) -> u32 {
+    std::env::var(variable).map_or(usual, |n| n.parse().expect("a number"))
+}
 
 /// The factor `SHIFTVOX_CASES` of the numbers of cases.
 pub fn times() -> u32 {
-    std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"))
+    number_of("SHIFTVOX_CASES", 1)
 }
 
 /// New cases in every run.
@@ -44,113 +48,61 @@ pub fn sierpinski(depth: u32) -> Graph {
 
 /// A full octree over the voxels of a predicate, leaves at the finest level.
 pub fn octree(depth: u32, is_filled: &dyn Fn([i32; 3]) -> bool) -> Graph {
-    fn node(
-        nodes: &mut Vec<[Option<u32>; 8]>,
-        at: [i32; 3],
-        side: i32,
-        is_filled: &dyn Fn([i32; 3]) -> bool,
-    ) -> Option<u32> {
-        if side == 1 && !is_filled(at) {
-            return None;
+    let mut nodes = vec![[None; 8]];
+    for place in 0..1u32 << (3 * depth) {
+        let octants = (0..depth).rev().map(|level| place >> (3 * level) & 7);
+        let halved = |at: [i32; 3], octant: u32| {
+            [0, 1, 2].map(|k| at[k] << 1 | (octant >> (2 - k) & 1) as i32)
+        };
+        if !is_filled(octants.clone().fold([0; 3], halved)) {
+            continue;
         }
-        let me = nodes.len();
-        nodes.push([None; 8]);
-        if side > 1 {
-            let half = side / 2;
-            for octant in 0..8 {
-                let bit = |axis: usize| at[axis] + half * (octant >> (2 - axis) & 1);
-                let child = node(nodes, [bit(0), bit(1), bit(2)], half, is_filled);
-                nodes[me][octant as usize] = child;
-            }
-            if nodes[me] == [None; 8] {
-                nodes.truncate(me);
-                return None;
+        let mut node = 0;
+        for octant in octants {
+            let next = nodes.len();
+            let child = &mut nodes[node][octant as usize];
+            node = *child.get_or_insert(next as u32) as usize;
+            if node == next {
+                nodes.push([None; 8]);
             }
         }
-        Some(me as u32)
     }
-    let mut nodes = Vec::new();
-    node(&mut nodes, [0; 3], 1 << depth, is_filled).expect("an octree needs a voxel");
     linked(depth, &nodes)
 }
 
-/// Random graphs. Children may be any node, so most are cyclic: a graph ends at its depth.
+/// Random graphs: trees, shared subtrees, cycles that end at the depth, and large leaves.
 pub fn any_graph(depths: std::ops::Range<u32>) -> impl Strategy<Value = Graph> {
     (depths, 1..8usize).prop_flat_map(|(depth, count)| {
         let child = prop_oneof![
             2 => Just(None),
             1 => (0..count as u32).prop_map(Some),
         ];
-        proptest::collection::vec(proptest::array::uniform8(child), count)
-            .prop_map(move |nodes| linked(depth, &nodes))
+        let node = prop_oneof![
+            4 => proptest::array::uniform8(child),
+            1 => Just([None; 8]),
+        ];
+        proptest::collection::vec(node, count).prop_map(move |nodes| linked(depth, &nodes))
     })
 }
 
 /// Random octrees of the finest voxels.
 pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
-    let side = 1usize << depth;
-    proptest::collection::vec(proptest::bool::weighted(density), side * side * side).prop_map(
-        move |bits| {
-            octree(depth, &|[x, y, z]| {
-                let at = (x as usize * side + y as usize) * side + z as usize;
-                bits[at] || at == 0
-            })
-        },
-    )
-}
-
-/// Random octrees with leaves of two and four finest voxels among the finest.
-pub fn any_mixed_octree(depth: u32) -> impl Strategy<Value = Graph> {
-    fn node(nodes: &mut Vec<[Option<u32>; 8]>, side: u32, numbers: &mut SplitMix) -> u32 {
-        let me = nodes.len();
-        nodes.push([None; 8]);
-        let is_leaf = side == 1 || side <= 4 && numbers.below(4) == 0;
-        let most = if is_leaf { 0 } else { 8 };
-        for octant in 0..most {
-            // One of them at least, or it would be a leaf.
-            if numbers.below(5) < 2 || octant == 7 {
-                let child = node(nodes, side / 2, numbers);
-                nodes[me][octant] = Some(child);
-            }
-        }
-        me as u32
-    }
-    any::<u64>().prop_map(move |seed| {
-        let mut nodes = Vec::new();
-        node(&mut nodes, 1 << depth, &mut SplitMix::new(seed));
-        linked(depth, &nodes)
+    let bits = proptest::collection::vec(proptest::bool::weighted(density), 1 << (3 * depth));
+    bits.prop_map(move |bits| {
+        let number = |at: [i32; 3]| at.iter().fold(0, |number, c| number << depth | *c as usize);
+        octree(depth, &|at| bits[number(at)] || at == [0; 3])
     })
 }
 
-/// Cameras outside, inside, on faces and on lattice points of a cube of side `side`. Many are aligned with an axis, so
-/// that ties abound.
-pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
-    let free = -2.0..3.0f64;
-    let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
-    let coordinate = prop_oneof![3 => free, 1 => lattice].boxed();
-    let eye = proptest::array::uniform3(coordinate);
-    let axis = (0..3usize, prop_oneof![Just(1.0), Just(-1.0)])
-        .prop_map(|(axis, sign)| DVec3::AXES[axis] * sign);
-    let towards = prop_oneof![
-        3 => proptest::array::uniform3(0.0..1.0f64).prop_map(Some),
-        1 => Just(None),
-    ];
-    (eye, towards, axis, 5.0..150.0f64, sizes.clone(), sizes).prop_filter_map(
-        "a camera that sees",
-        move |(eye, towards, axis, fov_degrees, width, height)| {
-            let eye = DVec3::from_array(eye) * side;
-            let target = towards.map_or(eye + axis, |target| DVec3::from_array(target) * side);
-            let camera = Camera {
-                eye,
-                target,
-                up: up_of(target - eye),
-                fov_degrees,
-                width,
-                height,
-            };
-            camera.axes().ok().map(|_| camera)
-        },
-    )
+/// Graphs, each with a camera around it.
+pub fn any_view(
+    graphs: impl Strategy<Value = Graph>,
+    sizes: std::ops::Range<u32>,
+) -> impl Strategy<Value = (Graph, Camera)> {
+    (graphs, any::<u64>()).prop_map(move |(graph, seed)| {
+        let camera = any_camera(&graph, sizes.clone(), &mut Dice::new(seed));
+        (graph, camera)
+    })
 }
 
 /// A square camera of 60 degrees.

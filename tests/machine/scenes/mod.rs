@@ -2,7 +2,7 @@
 #![expect(unreachable_pub, reason = "a module of several test crates")]
 #![allow(dead_code, reason = "each test uses a part of it")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
@@ -11,53 +11,28 @@ use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
 use shiftvox::split_mix::SplitMix;
 
-pub fn data() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data")
-}
-
-/// All `.vox` files of a folder and the folders in it, sorted.
-pub fn vox_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).expect("a folder that can be listed") {
-            let path = entry.expect("a folder entry").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "vox") {
-                files.push(path);
-            }
-        }
-    }
-    files.sort();
-    files
-}
-
-pub fn graph_of_file(path: &Path) -> Result<Graph, String> {
-    let mut builder = builder();
-    let read = ReadOptions::default();
-    read_voxels(path, &read, &mut |voxel| builder.push(voxel), &Silent)
-        .map_err(|error| error.to_string())?;
-    let built = builder.finish(([0.0; 3], 1.0), &Silent);
-    built.map_err(|error| error.to_string())
-}
-
 pub fn graph_of_spec(spec: &str) -> Graph {
     let parsed = Spec::parse(spec).expect(spec);
-    if let Some(graph) = parsed.linked() {
-        return graph;
-    }
-    let mut builder = builder();
-    parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
-    builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
+    parsed.linked().unwrap_or_else(|| {
+        let mut builder = builder();
+        parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
+        builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
+    })
 }
 
 /// The graph of a generator, or of a file of `tests/data`.
 pub fn graph_of(name: &str) -> Graph {
-    match name.starts_with("gen:") {
-        true => graph_of_spec(name),
-        false => graph_of_file(&data().join(name)).expect(name),
+    if name.starts_with("gen:") {
+        return graph_of_spec(name);
     }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name);
+    let mut builder = builder();
+    let mut push = |voxel| builder.push(voxel);
+    let read = read_voxels(&path, &ReadOptions::default(), &mut push, &Silent);
+    read.expect(name);
+    builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
 }
 
 /// Without normals, which no engine reads.
@@ -138,14 +113,9 @@ pub enum CameraPlace {
     CubeFace,
 }
 
-pub const PLACES: [CameraPlace; 6] = [
-    CameraPlace::Outside,
-    CameraPlace::Inside,
-    CameraPlace::Solid,
-    CameraPlace::VoxelFace,
-    CameraPlace::VoxelCorner,
-    CameraPlace::CubeFace,
-];
+use CameraPlace::{CubeFace, Inside, Outside, Solid, VoxelCorner, VoxelFace};
+
+pub const PLACES: [CameraPlace; 6] = [Outside, Inside, Solid, VoxelFace, VoxelCorner, CubeFace];
 
 /// A camera with its eye at a place, looking at a voxel or, one time in four, from beside one along an axis, so that
 /// ties abound. 5 to 150 degrees.
@@ -156,27 +126,21 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
         let axis = dice.below(3) as usize;
         let end = f64::from(dice.below(2));
         let mut eye = match place {
-            CameraPlace::Outside | CameraPlace::Inside | CameraPlace::CubeFace => {
-                low + dice.point(0.0, side)
-            }
-            CameraPlace::Solid | CameraPlace::VoxelFace => {
-                any_voxel(graph, dice) + dice.point(0.0, voxel)
-            }
-            CameraPlace::VoxelCorner => {
-                any_voxel(graph, dice) + voxel * dice.point(0.0, 2.0).floor()
-            }
+            Outside | Inside | CubeFace => low + dice.point(0.0, side),
+            Solid | VoxelFace => any_voxel(graph, dice) + dice.point(0.0, voxel),
+            VoxelCorner => any_voxel(graph, dice) + voxel * dice.point(0.0, 2.0).floor(),
         };
         match place {
-            CameraPlace::Outside => {
+            Outside => {
                 let out = dice.between(0.02, 1.5) * side;
                 eye[axis] = low[axis] + end * side + (2.0 * end - 1.0) * out;
             }
-            CameraPlace::VoxelFace => {
+            VoxelFace => {
                 let from_low = ((eye[axis] - low[axis]) / voxel).floor() + end;
                 eye[axis] = low[axis] + from_low * voxel;
             }
-            CameraPlace::CubeFace => eye[axis] = low[axis] + end * side,
-            CameraPlace::Inside | CameraPlace::Solid | CameraPlace::VoxelCorner => {}
+            CubeFace => eye[axis] = low[axis] + end * side,
+            Inside | Solid | VoxelCorner => {}
         }
         let mut target = any_voxel(graph, dice) + dice.point(0.0, voxel);
         if dice.below(4) == 0 {
@@ -196,6 +160,32 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
         if camera.axes().is_ok() {
             return camera;
         }
+    }
+}
+
+/// From a whole or half voxel along an axis with 90 degrees: every ray through a corner, an edge or along a face is
+/// met.
+fn camera_of_ties(side: f64, dice: &mut Dice) -> Camera {
+    let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
+    let axis = dice.below(3) as usize;
+    let size = dice.of(&[7, 8, 16]);
+    Camera {
+        eye,
+        target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
+        up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
+        fov_degrees: 90.0,
+        width: size,
+        height: size,
+    }
+}
+
+/// From any place, one time in three with many ties.
+pub fn any_camera(graph: &Graph, sizes: std::ops::Range<u32>, dice: &mut Dice) -> Camera {
+    let mut side = || sizes.start + dice.below(sizes.end - sizes.start);
+    let size = (side(), side());
+    match dice.below(3) {
+        0 => camera_of_ties(cube(graph).1, dice),
+        _ => camera_at(dice.of(&PLACES), graph, size, dice),
     }
 }
 

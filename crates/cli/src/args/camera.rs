@@ -119,7 +119,6 @@ impl CameraArgs {
     }
 }
 
-/// A camera as a line of flags to paste.
 pub(crate) fn camera_line(camera: &Camera) -> String {
     format!(
         "--eye {} --target {} --up {} --fov {}",

@@ -1,5 +1,3 @@
-//! Arguments that several commands share.
-
 mod camera;
 mod engine;
 mod picture;

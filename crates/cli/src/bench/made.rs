@@ -82,7 +82,6 @@ impl Made {
                     };
                     let left = timed(|| decimate(&mesh, &how));
                     let (left, ms) = left.map_err(|e| CliError::new(Kind::Limit, e))?;
-                    // Nothing is left of a mesh with too few triangles.
                     if let Some(left) = left {
                         let (mesh, bytes) = compact(&left);
                         made.decimated.push(((one_of, mesh, bytes), ms));
@@ -199,7 +198,7 @@ impl Made {
                         None => Erosion::Auto { texel_px: 1.0 },
                         Some(level) => Erosion::Level {
                             level,
-                            cells: Some(of.0.grid(0).cell_grid().cells()),
+                            cells: Some(of.0.grid(0).cell_grid().cells),
                         },
                     };
                     textured(of, erosion, aa_log2, style)

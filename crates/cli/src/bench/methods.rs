@@ -43,7 +43,6 @@ pub(super) enum Choice {
 #[derive(Debug, Clone)]
 pub(super) struct Choices(Vec<Choice>);
 
-/// The methods of a list without repetitions.
 pub(super) fn of_list(list: &[Choices]) -> Vec<Choice> {
     let mut all: Vec<Choice> = Vec::new();
     for choice in list.iter().flat_map(|choices| &choices.0) {
@@ -178,7 +177,6 @@ impl std::str::FromStr for Choices {
                 .ok_or_else(|| format!("`{part}` is no setting; expected KEY=VALUE[+VALUE]"))?;
             alternatives.push((key, values.split('+').collect()));
         }
-        // `paper` is a setting of `any`.
         let name = match name {
             "paper" => {
                 alternatives.extend([("tolerance", vec!["inf"]), ("cage", vec!["corners"])]);
@@ -214,18 +212,11 @@ mod tests {
 
     #[test]
     fn lists_become_methods() {
-        let count = |text: &str| {
-            let list: Vec<Choices> = text.split(',').map(|one| one.parse().unwrap()).collect();
-            of_list(&list).len()
-        };
-        assert_eq!(count(OF_VOXELS), 2 + 2 * 8 + 3 * (1 + 3 + 5) + 1);
-        assert_eq!(count(OF_MESHES), 3 + 12 + 3 + 1 + 6 + 6 + 4);
-        let first = default(false)[0];
-        assert_eq!(
-            first,
-            Choice::Voxels(SetupOptions::default(), engines::FAST.name)
-        );
+        let default_rule = Choice::Voxels(SetupOptions::default(), engines::FAST.name);
+        assert_eq!(default(false)[0], default_rule);
         for (text, methods) in [
+            (OF_VOXELS, 2 + 2 * 8 + 3 * (1 + 3 + 5) + 1),
+            (OF_MESHES, 3 + 12 + 3 + 1 + 6 + 6 + 4),
             ("exact:bits=24+32:aa=2", 2),
             ("exact,exact:aa=1", 1),
             ("paper:bits=20", 1),
@@ -235,26 +226,12 @@ mod tests {
             ("textured=auto+0+3", 3),
             ("any:engine=fast+machine", 2),
         ] {
-            assert_eq!(count(text), methods, "{text}");
+            let list: Vec<Choices> = text.split(',').map(|one| one.parse().unwrap()).collect();
+            assert_eq!(of_list(&list).len(), methods, "{text}");
         }
-    }
-
-    #[test]
-    fn wrong_methods_are_rejected() {
-        for wrong in [
-            "",
-            "most",
-            "exact:aa=3",
-            "exact:bits=8",
-            "exact:tolerance=1",
-            "exact:engine=rays",
-            "exact=2",
-            "exact:fov",
-            "far=many",
-            "far:bits=32",
-            "hybrid:lod=0",
-            "decimated=1",
-        ] {
+        let wrong = ",most,exact:aa=3,exact:bits=8,exact:tolerance=1,exact:engine=rays,exact=2,exact:fov,far=many,\
+                     far:bits=32,hybrid:lod=0,decimated=1";
+        for wrong in wrong.split(',') {
             assert!(wrong.parse::<Choices>().is_err(), "{wrong}");
         }
     }

@@ -80,10 +80,8 @@ impl ScheduleArgs {
 }
 
 const MAX_PIXELS: u64 = 1 << 26;
-/// Least bytes per pixel of a measured picture and its reference.
 const PIXEL_BYTES: u64 = 40;
 
-/// Rejects pictures with a side above `most_side` or too many pixels.
 fn check_sizes(sizes: &[Size], most_side: u32) -> Result<(), CliError> {
     let most_side = most_side.min(MAX_SIDE);
     for size in sizes {

@@ -19,7 +19,6 @@ use shiftvox_lab::quality::{
 use shiftvox_lab::report::Row;
 use shiftvox_mesh::{Surface, mesh_box};
 
-/// Scenes by default: a model, a landscape, a sponge, thin things.
 const SCENES: [&str; 5] = [
     subjects::BUNDLED,
     "gen:terrain,depth=9",
@@ -31,7 +30,6 @@ const DEFAULT_SIDE: u32 = 256;
 /// Most pixels a side: references take 512 times the work of a picture.
 const MOST_SIDE: u32 = 4096;
 
-/// A camera motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MotionName {
     /// Half a degree around the target per frame.

@@ -44,7 +44,6 @@ impl Context {
     pub(crate) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
         let mut options = json!(options);
         if options["tolerance_px"].is_null() {
-            // JSON has no infinity.
             options["tolerance_px"] = json!("inf");
         }
         json!({
@@ -85,16 +84,4 @@ fn processor_name(cpuinfo: &str) -> Option<String> {
     let mut lines = cpuinfo.lines();
     let line = lines.find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_processor_has_a_name() {
-        let text = "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: a b\n";
-        assert_eq!(processor_name(text).as_deref(), Some("Some CPU @ 2 GHz"));
-        assert_eq!(processor_name("Hardware : x"), None);
-    }
 }

@@ -91,7 +91,6 @@ pub(crate) fn check<'p>(
     Ok(())
 }
 
-/// [`check`], where scenes have plots of their own.
 pub(crate) fn check_plots(args: &ExportArgs, scenes: &[String]) -> Result<(), CliError> {
     check(args, [])?;
     if let Some(path) = &args.export_svg {

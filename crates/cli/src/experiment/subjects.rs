@@ -85,36 +85,3 @@ fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
         height: 1,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_files() {
-        let stems = ["gen:terrain,depth=8", "a/b c.vox", BUNDLED].map(file_stem);
-        assert_eq!(stems, ["terrain-depth-8", "a-b-c-vox", "bundled"]);
-    }
-
-    #[test]
-    fn standard_cameras_are_the_benchmarks() {
-        let console = Console::new(true, 0, false);
-        let open = |name: &str| {
-            let (camera, scene) = (CameraArgs::default(), SceneArgs::default());
-            open(name, &camera, &scene, (64, 64), &console).unwrap()
-        };
-        // The benchmarks have depth 10, 1024 voxels per side, and five steps of the sponge, 243 voxels in a cube of 256.
-        let close = |found: DVec3, expected: [f64; 3], scale: f64| {
-            let expected = DVec3::from_array(expected);
-            assert!((found * scale - expected).length() < 1e-9, "{found}");
-        };
-        let terrain = open("gen:terrain,depth=6").camera;
-        close(terrain.eye, [1638.4, -716.8, 1280.0], 16.0);
-        close(terrain.target, [512.0, 512.0, 307.2], 16.0);
-        let menger = open("gen:menger,depth=3").camera;
-        close(menger.eye, [120.32, -243.2, 135.68], 8.0);
-        close(menger.target, [121.6, 128.0, 121.6], 8.0);
-        assert_eq!((terrain.fov_degrees, menger.fov_degrees), (60.0, 60.0));
-        assert!(open("gen:sphere,depth=3").camera.fov_degrees < 60.0);
-    }
-}

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hwmodel::cost::{CostTable, Costing, Goal, ShiftUnits};
+use hwmodel::cost::{CostTable, Goal, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
@@ -112,7 +112,6 @@ pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliE
     Hardware::from_toml(&text).map_err(|error| CliError::input(error).at(name))
 }
 
-/// Default width of a word: that of the shipped hardware.
 const BITS: u32 = 32;
 
 impl ModelArgs {
@@ -148,7 +147,7 @@ impl HardwareArgs {
         if let Some(path) = &self.costs {
             let name = path.display().to_string();
             let text = read(path)?;
-            let own = CostTable::empty()
+            let own = CostTable::default()
                 .with_overrides(&name, &text)
                 .map_err(CliError::input)?;
             // An operation that the model never prices is a typing error.
@@ -165,11 +164,9 @@ impl HardwareArgs {
         }
         Ok(Prices {
             table,
-            costing: Costing {
-                shifts: match self.shifters {
-                    true => ShiftUnits::Variable,
-                    false => ShiftUnits::Wires,
-                },
+            shifts: match self.shifters {
+                true => ShiftUnits::Variable,
+                false => ShiftUnits::Wires,
             },
             goal: self.goal,
         })

@@ -125,7 +125,6 @@ fn summary(found: &Found) -> Table {
                 cycles.parallelism, cycles.contexts, cycles.lanes
             ),
         ),
-        // Under some rules, children of one class may claim the same sample.
         (
             "samples unlike the serial machine's",
             grouped(of.differing_samples),

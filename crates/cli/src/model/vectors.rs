@@ -51,7 +51,6 @@ pub(super) fn write(
         folder,
         overwrite: args.export.force,
     };
-    // The same light as in the frame that is counted.
     let light = lights(graph, setup, Shading::Lambert);
     let lit = GraphView {
         light: &light,

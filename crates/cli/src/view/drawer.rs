@@ -167,7 +167,6 @@ fn no_scene() -> CliError {
     CliError::usage("there is no scene of this number")
 }
 
-/// The camera with a smaller picture of the same shape.
 fn of_model_size(camera: Camera) -> Camera {
     let longer = camera.width.max(camera.height).max(MODEL_SIDE);
     let side = |side: u32| (u64::from(side) * u64::from(MODEL_SIDE) / u64::from(longer)).max(1);

@@ -10,7 +10,6 @@ use shiftvox_view::{FLAGS, Flags, Request};
 use crate::args::{EngineArgs, PictureArgs};
 use crate::error::CliError;
 
-/// The flags of a page that `model` also has.
 pub(super) const MODEL_FLAGS: &str = "bits cage coverage frac lod overflow tolerance";
 
 #[derive(Debug, Parser)]
@@ -62,7 +61,6 @@ fn given<'m>(
     })
 }
 
-/// The flags of `shiftvox view` with which pages begin.
 pub(super) fn first(matches: &ArgMatches) -> Flags {
     let paper = [
         ("cage", "corners"),
@@ -109,33 +107,16 @@ pub(super) fn quoted(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
-    fn request(flags: &str) -> Request {
-        let message = format!(
-            r#"{{"seq":1,"ask":"picture","scene":0,"size":[64,32],"aa":2,"flags":{flags}}}"#
-        );
-        serde_json::from_str(&message).unwrap()
-    }
-
-    #[test]
-    fn flags_are_those_of_the_command_line() {
-        let settings = settings(&request(r#"{"coverage":"any","lod":"2"}"#)).unwrap();
-        assert_eq!(settings.engine.given(), ["coverage"]);
-        assert_eq!(settings.engine.rules.lod, Some(2.0));
-        assert_eq!(settings.picture.aa_log2(), 1);
-        assert_eq!(settings.picture.size(), (64, 32));
-        for wrong in [r#"{"coverage":"some"}"#, r#"{"bits":"-3"}"#] {
-            assert!(super::settings(&request(wrong)).is_err(), "{wrong}");
-        }
-    }
-
     #[test]
     fn names_come_through_a_shell() {
-        assert_eq!(quoted("a/b.vox"), "a/b.vox");
-        assert_eq!(quoted("gen:menger,depth=3"), "gen:menger,depth=3");
-        assert_eq!(quoted("it's $HOME.vox"), r"'it'\''s $HOME.vox'");
-        assert_eq!(quoted("-o.vox"), "'./-o.vox'");
-        assert_eq!(quoted("'\n.vox"), r"$'\x27\x0a.vox'");
+        for (name, expected) in [
+            ("a/b.vox", "a/b.vox"),
+            ("gen:menger,depth=3", "gen:menger,depth=3"),
+            ("it's $HOME.vox", r"'it'\''s $HOME.vox'"),
+            ("-o.vox", "'./-o.vox'"),
+            ("'\n.vox", r"$'\x27\x0a.vox'"),
+        ] {
+            assert_eq!(super::quoted(name), expected);
+        }
     }
 }

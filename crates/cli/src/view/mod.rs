@@ -1,7 +1,4 @@
 //! `view`: scenes on a page, for a browser on this computer.
-//!
-//! The crate `shiftvox-view` serves the page. `drawer.rs` answers its requests, with the settings
-//! that `flags.rs` parses and the overlays of `overlay.rs`.
 
 mod drawer;
 mod flags;
@@ -43,7 +40,6 @@ pub(super) struct ViewArgs {
     scene: SceneArgs,
 }
 
-/// The scenes and the settings of all pages.
 struct Shared {
     args: ViewArgs,
     /// The flags with which pages begin.

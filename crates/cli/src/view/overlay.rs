@@ -11,7 +11,6 @@ use crate::error::CliError;
 
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
 
-/// Colours, row by row, and the range of the values behind them.
 pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
 
 pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, CliError> {
@@ -59,7 +58,6 @@ fn normal(normal: &[f32; 3]) -> [u8; 4] {
     [red, green, blue, 255]
 }
 
-/// Colours of levels, which repeat: neighbours differ.
 const LEVELS: [[u8; 4]; 8] = [
     [230, 97, 1, 255],
     [94, 60, 153, 255],

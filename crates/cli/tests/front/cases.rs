@@ -1,34 +1,30 @@
 //! Runs of the program as rows of files: `crates/cli/tests/cases/README.md` says how to read them.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::{Command, Output};
 
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// The longest that a command may take.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+use crate::program::{Folder, PROGRAM, ROOT};
 
 /// A case while it runs.
 struct Case {
-    folder: tempfile::TempDir,
+    folder: Folder,
     /// Kept outputs, by name.
     kept: BTreeMap<String, String>,
-    /// Limit of address space, MB. 0: no limit.
-    memory: u32,
-    is_on_small_disk: bool,
-    last: Option<Output>,
+    /// The script of the shell that runs a command.
+    script: String,
+    /// The last output.
+    stdout: String,
+    stderr: String,
 }
 
-fn stdout_of(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).trim().to_owned()
-}
+const ON_SMALL_DISK: &str = "exec unshare -m sh -c 'mount -t tmpfs -o size=1m none \"$PWD\" && cd \"$PWD\" || exit 99; \
+                             \"$0\" \"$@\"; code=$?; ls -A >&2; exit $code' \"$0\" \"$@\"";
 
 /// The text with `N(part)` after a `%` written out N times.
 fn repeated(text: &str) -> String {
@@ -43,251 +39,198 @@ fn repeated(text: &str) -> String {
     all
 }
 
-fn holds(is_so: bool, why: impl FnOnce() -> String) -> Result<(), String> {
-    if is_so { Ok(()) } else { Err(why()) }
+/// A rough sheet of so many vertices along each side, as a Wavefront file.
+fn sheet(side: usize) -> String {
+    let mut text = String::new();
+    for (z, x) in (0..side).flat_map(|z| (0..side).map(move |x| (z, x))) {
+        text += &format!("v {x} {} {z}\n", (x * z) % 3);
+    }
+    for (z, x) in (0..side - 1).flat_map(|z| (1..side).map(move |x| (z, x))) {
+        let a = z * side + x;
+        text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
+    }
+    text
+}
+
+/// The value at a pointer. `*` means every entry of an array. Entries without a value there are left out.
+fn at(document: &Value, pointer: &str) -> Option<Value> {
+    let Some((array, rest)) = pointer.split_once("/*") else {
+        return document.pointer(pointer).cloned();
+    };
+    let entries = document.pointer(array)?.as_array()?.iter();
+    let entries = entries.filter_map(|entry| at(entry, rest));
+    Some(entries.filter(|entry| !entry.is_null()).collect())
 }
 
 impl Case {
-    fn at(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn read(&self, name: &str) -> Result<Vec<u8>, String> {
-        fs::read(self.at(name)).map_err(|error| format!("{name}: {error}"))
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.folder.path()).unwrap();
-        let mut names: Vec<String> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-
-    /// Runs a command to its end.
-    fn run(&self, words: &str) -> Result<Output, String> {
-        let mount = "mount -t tmpfs -o size=1m none \"$PWD\" && cd \"$PWD\" || exit 99";
-        let script = match (self.memory, self.is_on_small_disk) {
-            (0, false) => "exec \"$0\" \"$@\"".to_owned(),
-            (0, true) => format!("{mount}; \"$0\" \"$@\"; code=$?; ls -A >&2; exit $code"),
-            (megabytes, _) => format!(
-                "ulimit -v {}; exec \"$0\" \"$@\" --threads 2",
-                megabytes << 10
-            ),
+    fn run(&self, words: &str) -> Output {
+        let (script, words) = match words.strip_prefix("$ ") {
+            Some(script) => (script, ""),
+            None => (&*self.script, words),
         };
-        let mut command = match self.is_on_small_disk {
-            false => Command::new("sh"),
-            true => {
-                let mut command = Command::new("unshare");
-                command.args(["-m", "sh"]);
-                command
-            }
-        };
-        let (stdout, stderr) = (
-            tempfile::NamedTempFile::new().unwrap(),
-            tempfile::NamedTempFile::new().unwrap(),
-        );
-        let mut child = command
-            .args(["-c", &script])
-            .arg(crate::common::program())
-            .args(words.split_whitespace())
-            .current_dir(self.folder.path())
-            .stdin(Stdio::null())
-            .stdout(stdout.reopen().unwrap())
-            .stderr(stderr.reopen().unwrap())
-            .spawn()
-            .unwrap();
-        let started = Instant::now();
-        let status = loop {
-            if let Some(status) = child.try_wait().unwrap() {
-                break status;
-            }
-            if started.elapsed() > PATIENCE {
-                child.kill().unwrap();
-                return Err("it does not end".to_owned());
-            }
-            std::thread::sleep(Duration::from_millis(2));
-        };
-        let read = |file: &tempfile::NamedTempFile| fs::read(file.path()).unwrap();
-        Ok(Output {
-            status,
-            stdout: read(&stdout),
-            stderr: read(&stderr),
-        })
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", script, PROGRAM])
+            .args(words.split(' ').filter(|word| !word.is_empty()));
+        command.current_dir(self.folder.path()).output().unwrap()
     }
 
-    /// `CODE command | fragment | out: fragment | not: fragment`
-    fn command(&mut self, code: i32, rest: &str) -> Result<(), String> {
+    /// Whether `CODE command | fragment | out: fragment | not: fragment` does what it says.
+    fn command(&mut self, code: i32, rest: &str) -> bool {
         let rest = format!(" {rest}");
         let mut parts = rest.split(" | ").map(str::trim);
-        let output = self.run(parts.next().unwrap_or(""))?;
-        let (stdout, stderr) = (stdout_of(&output), String::from_utf8_lossy(&output.stderr));
-        let all = || format!("{}\n{stdout}\n{stderr}", output.status);
-        holds(
-            output.status.code() == Some(code) && !stderr.contains("panicked"),
-            all,
-        )?;
+        let output = self.run(parts.next().unwrap_or(""));
+        let [stdout, stderr] = [output.stdout, output.stderr]
+            .map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         // A failure has a message. A wrong line prints only a document.
         let may_print = code != 2 || rest.starts_with(" compare") || stdout.starts_with('{');
-        holds(code == 0 || !stderr.is_empty(), all)?;
-        holds(may_print || stdout.is_empty(), all)?;
-        for part in parts {
-            let is_so = match part.split_once(": ") {
+        let is_so = output.status.code() == Some(code)
+            && !stderr.contains("panicked")
+            && (code == 0 || !stderr.is_empty())
+            && (may_print || stdout.is_empty())
+            && parts.all(|part| match part.split_once(": ") {
                 Some(("out", wanted)) => stdout.contains(wanted),
                 Some(("not", unwanted)) => !stderr.contains(&unwanted.replace("\\n", "\n")),
                 _ => stderr.contains(part),
-            };
-            holds(is_so, || format!("{part:?}: {}", all()))?;
-        }
-        self.last = Some(output);
-        Ok(())
+            });
+        (self.stdout, self.stderr) = (stdout.trim().to_owned(), stderr);
+        is_so
     }
 
-    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries).
-    fn json(&self, line: &str) -> Result<(), String> {
-        let text = stdout_of(self.last.as_ref().ok_or("no command")?);
-        let document: Value =
-            serde_json::from_str(&text).map_err(|error| format!("{error}: {text}"))?;
+    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries), `rises`, `falls`.
+    fn json(&self, line: &str) -> bool {
+        let documents = serde_json::Deserializer::from_str(&self.stdout).into_iter();
+        let mut documents: Vec<Value> = documents.map_while(Result::ok).collect();
+        let document = match documents.len() {
+            1 => documents.remove(0),
+            _ => Value::Array(documents),
+        };
         let mut words = line.splitn(3, ' ');
         let (first, relation) = (words.next().unwrap_or(""), words.next().unwrap_or("exists"));
         if first == "!" {
-            return holds(document.pointer(relation).is_none(), || text.clone());
+            return document.is_object() && at(&document, relation).is_none();
         }
-        let found = document.pointer(first).unwrap_or(&Value::Null);
-        let expected = words.next().unwrap_or("");
-        let number = || expected.parse::<f64>().unwrap_or(f64::NAN);
-        let found_text = found.to_string();
-        let is_so = match relation {
-            "=" => found_text == expected,
-            "!=" => found_text != expected,
-            "<" => found.as_f64().is_some_and(|found| found < number()),
-            ">" => found.as_f64().is_some_and(|found| found > number()),
-            "#" => found
-                .as_array()
-                .is_some_and(|list| list.len() as f64 == number()),
-            "~" => found_text.contains(expected),
-            _ => !found.is_null(),
+        let found = at(&document, first).unwrap_or(Value::Null);
+        let mut expected = words.next().unwrap_or("").to_owned();
+        if expected.starts_with('/') {
+            expected = at(&document, &expected).map_or(expected, |other| other.to_string());
+        }
+        let list = match &found {
+            Value::Array(list) => list,
+            _ => &vec![found.clone()],
         };
-        holds(is_so, || format!("{found} in {text}"))
+        let numbers: Vec<f64> = list.iter().filter_map(Value::as_f64).collect();
+        let limit = || expected.parse::<f64>().unwrap();
+        let text = found.to_string();
+        match relation {
+            "=" => text == expected,
+            "!=" => text != expected,
+            "~" => text.contains(&expected),
+            "#" => found.is_array() && list.len() as f64 == limit(),
+            "<" => !numbers.is_empty() && numbers.iter().all(|of| *of < limit()),
+            ">" => !numbers.is_empty() && numbers.iter().all(|of| *of > limit()),
+            "rises" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a < b),
+            "falls" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a >= b),
+            _ => !found.is_null(),
+        }
     }
 
-    fn step(&mut self, line: &str) -> Result<(), String> {
-        let line = self
-            .kept
-            .iter()
-            .fold(line.to_owned(), |line, (name, text)| {
-                line.replace(&format!("{{{name}}}"), text)
-            });
+    /// Whether a step does what it says.
+    fn step(&mut self, line: &str) -> bool {
+        let kept = self.kept.iter();
+        let line = kept.fold(line.to_owned(), |line, (name, text)| {
+            line.replace(&format!("{{{name}}}"), text)
+        });
         let (word, rest) = line.split_once(' ').unwrap_or((&line, ""));
-        let mut words = rest.split(' ');
-        let mut next = || words.next().unwrap_or("");
+        let (name, text) = rest.split_once(' ').unwrap_or((rest, ""));
         if let Ok(code) = word.parse() {
             return self.command(code, rest);
         }
-        let last = self.last.as_ref().map(stdout_of).unwrap_or_default();
+        let folder = &self.folder;
         match word {
             // Before commands.
-            "put" => {
-                let (name, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                let path = self.at(name);
-                fs::create_dir_all(path.parent().unwrap()).unwrap();
-                fs::write(path, repeated(&text.replace("\\n", "\n"))).unwrap();
-            }
+            "put" => folder.put(name, repeated(&text.replace("\\n", "\n"))),
             "copy" => {
-                let name = Path::new(rest).file_name().unwrap();
-                fs::copy(Path::new(ROOT).join(rest), self.folder.path().join(name)).unwrap();
+                let name = rest.rsplit('/').next().unwrap_or(rest);
+                folder.put(name, fs::read(Path::new(ROOT).join(rest)).unwrap());
             }
-            "sheet" => fs::write(
-                self.at(next()),
-                crate::common::sheet(next().parse().unwrap()),
-            )
-            .unwrap(),
-            "fifo" => drop(Command::new("mkfifo").arg(self.at(rest)).status().unwrap()),
+            "sheet" => folder.put(name, sheet(text.parse().unwrap())),
             "cut" | "flip" => {
                 // A new file of the first bytes, or of all with one changed, counted from the end.
-                let (name, from, at) = (next(), next(), next());
-                let mut bytes = self.read(from)?;
-                let at: usize = at.parse().unwrap();
+                let (from, at) = text.split_once(' ').unwrap();
+                let (mut bytes, at) = (folder.get(from), at.parse().unwrap());
                 match word {
                     "cut" => bytes.truncate(at),
                     _ => *bytes.iter_mut().rev().nth(at).unwrap() ^= 4,
                 }
-                fs::write(self.at(name), bytes).unwrap();
+                folder.put(name, bytes);
             }
-            "memory" => self.memory = rest.parse().unwrap(),
-            "disk" => self.is_on_small_disk = true,
+            "edit" => {
+                let (from, change) = text.split_once(' ').unwrap();
+                let (old, new) = change.split_once(" => ").unwrap();
+                let text = folder.text(from);
+                folder.put(name, text.replacen(old, new, 1));
+                return text.contains(old);
+            }
+            "memory" => {
+                let kibibytes = rest.parse::<u32>().unwrap() << 10;
+                self.script = format!("ulimit -v {kibibytes}; exec \"$0\" \"$@\" --threads 2");
+            }
+            "disk" => self.script = ON_SMALL_DISK.to_owned(),
             // After a command.
-            "keep" => drop(self.kept.insert(rest.to_owned(), last)),
-            "prints" => holds(last == rest, || last.clone())?,
-            "differs" => holds(last != rest, || last.clone())?,
-            "lines" => holds(last.lines().count().to_string() == rest, || last.clone())?,
-            "quiet" => holds(
-                self.last
-                    .as_ref()
-                    .is_some_and(|last| last.stderr.is_empty()),
-                || "stderr".to_owned(),
-            )?,
-            "files" => {
-                let expected: Vec<&str> = rest.split_whitespace().collect();
-                holds(self.files() == expected, || format!("{:?}", self.files()))?;
-            }
-            "has" | "lacks" => {
-                let (name, text) = rest.split_once(' ').unwrap();
-                let bytes = self.read(name)?;
-                let has = String::from_utf8_lossy(&bytes).contains(text);
-                holds(has == (word == "has"), || rest.to_owned())?;
-            }
-            "read" => {
-                let stdout = self.read(rest)?;
-                self.last = Some(Output {
-                    stdout,
-                    ..self.last.take().ok_or("no command")?
-                });
-            }
-            "same" => holds(self.read(next())? == self.read(next())?, || rest.to_owned())?,
-            "unlike" => holds(self.read(next())? != self.read(next())?, || rest.to_owned())?,
-            _ => self.json(&line)?,
+            "keep" => drop(self.kept.insert(rest.to_owned(), self.stdout.clone())),
+            "prints" => return self.stdout == rest,
+            "differs" => return self.stdout != rest,
+            "lines" => return self.stdout.lines().count().to_string() == rest,
+            "quiet" => return self.stderr.is_empty(),
+            "files" => return folder.names() == rest.split_whitespace().collect::<Vec<_>>(),
+            "has" => return String::from_utf8_lossy(&folder.get(name)).contains(text),
+            "lacks" => return !String::from_utf8_lossy(&folder.get(name)).contains(text),
+            "read" => self.stdout = folder.text(rest),
+            "same" => return folder.get(name) == folder.get(text),
+            "unlike" => return folder.get(name) != folder.get(text),
+            _ => return self.json(&line),
         }
-        Ok(())
+        true
     }
 }
 
-/// Runs the cases of a file; what failed.
-fn failures(file: &str) -> Vec<String> {
-    let path = Path::new(ROOT).join("crates/cli/tests/cases").join(file);
-    let text = fs::read_to_string(path).unwrap();
-    let cases: Vec<&str> = text.split("\n== ").skip(1).collect();
-    assert!(!cases.is_empty());
-    let run = |case: &&str| {
-        let (name, steps) = case.split_once('\n')?;
-        let mut case = Case {
-            folder: tempfile::tempdir().unwrap(),
-            kept: BTreeMap::new(),
-            memory: 0,
-            is_on_small_disk: false,
-            last: None,
-        };
-        let mut steps = steps
-            .lines()
-            .map(str::trim)
-            .filter(|step| !step.is_empty() && !step.starts_with('#'));
-        steps.find_map(|step| {
-            case.step(step)
-                .err()
-                .map(|error| format!("{file}, {name}: {step}\n{error}"))
-        })
-    };
-    cases.par_iter().filter_map(run).collect()
-}
-
+/// Asserts that all steps of files do what they say.
 fn check(files: &[&str]) {
-    let failures: Vec<String> = files.iter().flat_map(|file| failures(file)).collect();
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    let read = |file: &&str| {
+        let path = Path::new(ROOT).join("crates/cli/tests/cases").join(file);
+        let text = fs::read_to_string(path).unwrap();
+        text.split("\n== ")
+            .skip(1)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let cases: Vec<String> = files.iter().flat_map(read).collect();
+    let failure = |text: &String| {
+        let mut case = Case {
+            folder: Folder::new(),
+            kept: BTreeMap::new(),
+            script: "exec \"$0\" \"$@\"".to_owned(),
+            stdout: String::new(),
+            stderr: String::new(),
+        };
+        let (name, steps) = text.split_once('\n')?;
+        let steps = steps.lines().map(str::trim);
+        let mut steps = steps.filter(|step| !step.is_empty() && !step.starts_with('#'));
+        let failed = steps.find(|step| !case.step(step))?;
+        let (stdout, stderr, names) = (case.stdout, case.stderr, case.folder.names());
+        Some(format!("{name}: {failed}\n{stdout}\n{stderr}\n{names:?}"))
+    };
+    let failures: Vec<String> = cases.par_iter().filter_map(failure).collect();
+    assert!(
+        cases.len() >= files.len() && failures.is_empty(),
+        "{}",
+        failures.join("\n")
+    );
 }
 
 #[test]
-fn lines_exit_with_their_codes() {
+fn lines_do_what_they_say() {
     check(&[
         "refused.txt",
         "pictures.txt",
@@ -298,7 +241,7 @@ fn lines_exit_with_their_codes() {
 }
 
 #[test]
-#[ignore = "needs the right to mount, for a small disk"]
-fn small_disks_are_told_before_the_work() {
+#[ignore = "needs the right to mount, for a small disk, and the program `script`"]
+fn small_disks_and_terminals() {
     check(&["disk.txt"]);
 }

@@ -1,81 +1,54 @@
-//! Every command that README and docs print does what it says, in a fresh folder, and does it again.
+//! Every command that README and docs print does what it says in a fresh folder, and says how to replace files.
 //!
 //! Commands are the lines that begin with `shiftvox` (`sed`, `mkdir`) in blocks of code. A block after `<!-- takes 5 min -->`
-//! is long: it runs only where `SHIFTVOX_PRINTED` is `all`. A block after `<!-- forms -->` has placeholders.
+//! is long: it runs only where `SHIFTVOX_PRINTED` is `all`, and then with its large scenes. A block after `<!-- forms -->`
+//! has placeholders.
 #![cfg(unix)]
 
-use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-/// The mark of a block of code.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Mark {
-    Runs,
-    Long,
-    Forms,
-}
+use crate::program::{Folder, PROGRAM, ROOT};
+
+/// Scenes and sizes, and the small ones that are taken in their place.
+const SMALL: [(&str, &str); 9] = [
+    ("gen:terrain,depth=10", "gen:terrain,depth=5"),
+    ("gen:menger,depth=5", "gen:menger,depth=3"),
+    ("gen:maze,depth=5", "gen:maze,depth=3"),
+    ("assets/tree.vox", "gen:maze,depth=4"),
+    ("model --", "model gen:maze,depth=3 --"),
+    ("--depth 8", "--depth 6"),
+    ("--depth 9", "--depth 7"),
+    ("--size 128", "--size 32"),
+    ("--samples 256", "--samples 16"),
+];
 
 /// The commands of a page, in order.
-fn commands(page: &str) -> Vec<(String, Mark)> {
-    let mut found: Vec<(String, Mark)> = Vec::new();
-    let (mut mark, mut is_fenced, mut is_continued) = (Mark::Runs, false, false);
-    for line in page.lines() {
-        let comment = line.strip_prefix("<!-- ");
-        if comment.is_some_and(|text| text.starts_with("takes ")) {
-            mark = Mark::Long;
-        } else if comment.is_some_and(|text| text.starts_with("forms")) {
-            mark = Mark::Forms;
+fn commands(page: &str, with_long: bool) -> Vec<String> {
+    let (mut is_left_out, mut is_fenced) = (false, false);
+    let mut found = Vec::new();
+    for line in page.replace("\\\n", " ").lines() {
+        is_fenced ^= line.starts_with("```");
+        let is_code = is_fenced || line.starts_with("    ");
+        if line.starts_with("<!-- takes ") {
+            is_left_out = !with_long;
+        } else if line.starts_with("<!-- forms") {
+            is_left_out = true;
+        } else if !is_code && !line.is_empty() {
+            is_left_out = false;
         }
-        let is_fence = line.starts_with("```");
-        let code = match is_fenced {
-            true => Some(line),
-            false => line.strip_prefix("    "),
-        };
-        is_fenced ^= is_fence;
-        let is_text =
-            !is_fenced && code.is_none() && !line.is_empty() && comment.is_none() && !is_fence;
-        if is_text || (is_fence && !is_fenced) {
-            mark = Mark::Runs;
-        }
-        let Some(code) = code.filter(|_| !is_fence) else {
-            continue;
-        };
-        let part = code.split(" # ").next().unwrap_or_default().trim();
-        let (part, goes_on) = part
-            .strip_suffix('\\')
-            .map_or((part, false), |part| (part, true));
-        if std::mem::replace(&mut is_continued, goes_on) {
-            found.last_mut().unwrap().0 += part;
-        } else if ["shiftvox ", "sed ", "mkdir "]
-            .iter()
-            .any(|name| part.starts_with(name))
-        {
-            let fails = code.contains("exit code 3");
+        let command = line.split(" # ").next().unwrap_or_default().trim();
+        let is_run = |name: &&str| command.starts_with(name);
+        if is_code && !is_left_out && ["shiftvox ", "sed ", "mkdir "].iter().any(is_run) {
+            let fails = line.contains("exit code 3");
             let check = if fails { "; [ $? = 3 ]" } else { "" };
-            found.push((format!("{part}{check}"), mark));
-        } else {
-            is_continued = false;
+            found.push(format!("{command}{check}"));
         }
     }
     found
-}
-
-fn pages() -> Vec<PathBuf> {
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    let docs = fs::read_dir(root.join("docs")).unwrap();
-    let mut pages: Vec<PathBuf> = docs
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|ending| ending == "md"))
-        .collect();
-    pages.sort();
-    pages.insert(0, root.join("README.md"));
-    pages.push(root.join("CONTRIBUTING.md"));
-    pages
 }
 
 /// Files in a folder and below, without those of links.
@@ -88,79 +61,50 @@ fn files(folder: &Path) -> usize {
     counts.sum()
 }
 
-/// Runs the commands of a page in a folder of its own, and once more those that wrote something
-/// and that `again` does not hold yet. Tells how many ran, and which failed.
-fn run_page(page: &Path, again: &Mutex<HashSet<String>>) -> (usize, Vec<String>) {
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    let program = crate::common::program();
-    let path = std::env::var("PATH").unwrap_or_default();
-    let path = format!("{}:{path}", program.parent().unwrap().display());
-    let all = std::env::var_os("SHIFTVOX_PRINTED").is_some_and(|what| what == "all");
-    let folder = tempfile::tempdir().unwrap();
-    for (from, to) in [("assets", "assets"), ("tests/data", "tests/data")] {
-        fs::create_dir_all(folder.path().join(to).parent().unwrap()).unwrap();
-        std::os::unix::fs::symlink(root.join(from), folder.path().join(to)).unwrap();
+/// The number of a page's commands, and those that fail.
+fn run(page: &Path) -> (usize, Vec<String>) {
+    let folder = Folder::new();
+    fs::create_dir(folder.at("tests")).unwrap();
+    for name in ["assets", "tests/data"] {
+        std::os::unix::fs::symlink(Path::new(ROOT).join(name), folder.at(name)).unwrap();
     }
-    let commands = commands(&fs::read_to_string(page).unwrap());
-    let mut writes = HashSet::new();
-    let (mut ran, mut failed) = (0, Vec::new());
-    for round in 1..=2 {
-        for (command, mark) in &commands {
-            if *mark == Mark::Forms || (*mark == Mark::Long && !all) {
-                continue;
-            }
-            let is_wanted =
-                || writes.contains(command) && again.lock().unwrap().insert(command.clone());
-            if round == 2 && !is_wanted() {
-                continue;
-            }
-            let before = files(folder.path());
-            let output = Command::new("sh")
-                .args(["-c", command])
-                .current_dir(folder.path())
-                .env("PATH", &path)
-                .output()
-                .unwrap();
-            ran += 1;
-            if files(folder.path()) > before {
-                writes.insert(command);
-            }
-            if !output.status.success() {
-                let told = String::from_utf8_lossy(&output.stderr);
-                let at = page.display();
-                failed.push(format!("{at}, round {round}: {command}\n{told}"));
-            }
+    let programs = Path::new(PROGRAM).parent().unwrap().display();
+    let path = format!("{programs}:{}", std::env::var("PATH").unwrap_or_default());
+    let all = std::env::var_os("SHIFTVOX_PRINTED").is_some_and(|what| what == "all");
+    let mut failed = Vec::new();
+    let commands = commands(&fs::read_to_string(page).unwrap(), all);
+    for printed in &commands {
+        let small = SMALL.iter().filter(|_| !all);
+        let small = small.fold(printed.clone(), |line, (of, by)| line.replace(of, by));
+        let before = files(folder.path());
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &small]).env("PATH", &path);
+        let output = shell.current_dir(folder.path()).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        let has_written = files(folder.path()) > before && printed.starts_with("shiftvox");
+        if !output.status.success() {
+            failed.push(format!("{}: {small}\n{told}", page.display()));
+        } else if has_written && !["--force", " > "].iter().any(|word| printed.contains(word)) {
+            failed.push(format!("{}: {printed}: without --force", page.display()));
         }
     }
-    (ran, failed)
+    (commands.len(), failed)
 }
 
 #[test]
-fn printed_commands_run_and_run_again() {
-    let again = Mutex::default();
-    let pages: Vec<_> = pages()
-        .into_par_iter()
-        .map(|page| run_page(&page, &again))
+fn printed_commands_run_and_may_run_again() {
+    let docs = fs::read_dir(Path::new(ROOT).join("docs")).unwrap();
+    let docs = docs.map(|entry| entry.unwrap().path());
+    let docs = docs.filter(|path| path.extension().is_some_and(|ending| ending == "md"));
+    let others = ["README.md", "CONTRIBUTING.md"].map(|name| Path::new(ROOT).join(name));
+    let pages: Vec<PathBuf> = docs.chain(others).collect();
+    let runs: Vec<_> = pages.par_iter().map(|page| run(page)).collect();
+    let failed: Vec<&str> = runs
+        .iter()
+        .flat_map(|(_, failed)| failed)
+        .map(String::as_str)
         .collect();
-    let ran: usize = pages.iter().map(|(ran, _)| ran).sum();
-    let failed: Vec<String> = pages.into_iter().flat_map(|(_, failed)| failed).collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
-    assert!(ran > 40, "{ran} commands run");
-}
-
-#[test]
-fn commands_are_found_with_what_is_said_of_them() {
-    let page = "text\n\n    shiftvox a # b\n    cargo c\n\n<!-- takes 5 min -->\n\n    shiftvox d \\\n        e\n\nmore\n\n\
-                <!-- forms -->\n```sh\nshiftvox F\n```\n```sh\nshiftvox g ####.png # exit code 3 if so\n```\n";
-    let found = commands(page);
-    let expected = [
-        ("shiftvox a", Mark::Runs),
-        ("shiftvox d e", Mark::Long),
-        ("shiftvox F", Mark::Forms),
-        ("shiftvox g ####.png; [ $? = 3 ]", Mark::Runs),
-    ];
-    assert_eq!(
-        found,
-        expected.map(|(command, mark)| (command.to_owned(), mark))
-    );
+    let ran: usize = runs.iter().map(|(ran, _)| ran).sum();
+    assert!(ran > 50, "{ran} commands run");
 }

@@ -4,17 +4,13 @@ use std::fs;
 
 use rayon::prelude::*;
 use shiftvox::graph::vxg;
+use tempfile::TempDir;
 
 use super::frames::tree_with_larger_solids;
-use super::machines::{
-    Expected, LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree_in_icarus,
-};
-use super::tools::{icarus, rtl, run, text};
+use super::machines::{Expected, LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS};
+use super::tools::{files, icarus, run, stem};
 
-/// The list of mistakes.
-const FAULTS: &str = include_str!("faults.txt");
-
-static TWO_LANES: Machine = Machine::new("stage_c", Some([2, 2, 2]), true);
+static TWO_LANES: Machine = Machine::new("stage_c", "LANES=2 CONTEXTS=2 TILE_LEVELS=2 BRICKS=1");
 
 fn machine_of(name: &str) -> &'static Machine {
     match name {
@@ -29,66 +25,57 @@ fn machine_of(name: &str) -> &'static Machine {
     }
 }
 
-/// File, text, mistake.
-fn fault_of(line: &'static str) -> [String; 3] {
-    let mut parts = line.split('"');
-    let [file, right, _, fault] = std::array::from_fn(|_| parts.next().unwrap());
-    [file.trim(), right, fault].map(|text| text.replace("\\n", "\n"))
+/// A folder with a file of these folders that has a line's mistake.
+fn mistaken(folders: &str, line: &str) -> TempDir {
+    let parts = line.split('"').map(|part| part.replace("\\n", "\n"));
+    let [name, right, _, fault, _] = &parts.collect::<Vec<_>>()[..] else {
+        panic!("{line}");
+    };
+    let files = files(folders);
+    let path = files.iter().find(|path| stem(path) == name.trim()).unwrap();
+    let source = fs::read_to_string(path).unwrap();
+    assert_eq!(source.matches(right).count(), 1, "{line}");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(path.file_name().unwrap());
+    fs::write(file, source.replace(right, fault)).unwrap();
+    folder
 }
 
-/// Draws the small frame of a section in Icarus Verilog: as it is, and with each mistake. Returns how many there were.
-fn faults_are_found(machine: &'static Machine, view: &str, lines: &[&'static str]) -> usize {
+/// Draws the small frame of a section in Icarus Verilog: as it is, and with each mistake.
+fn faults_are_found(machine: &Machine, view: &str, lines: &[&str]) {
     let shelter = tempfile::tempdir().unwrap();
     let file = shelter.path().join("solids.vxg");
     vxg::write(&tree_with_larger_solids(3), &file, true).unwrap();
-    let expected = Expected::new(machine, &view.replace("SOLIDS", text(&file)), None);
-    let modules = shelter.path().join("modules");
-    fs::create_dir(&modules).unwrap();
+    let view = view.replace("SOLIDS", file.to_str().unwrap());
+    let expected = Expected::new(machine, &view, None);
     let compiled = shelter.path().join("frame.vvp");
-    let faults = lines.iter().map(|line| fault_of(line));
-    for [file, right, fault] in std::iter::once(Default::default()).chain(faults) {
-        // Of files in several folders the first counts.
-        let mut found = 1;
-        for folder in machine.folders().iter().rev() {
-            for path in fs::read_dir(rtl().join(folder)).unwrap() {
-                let path = path.unwrap().path();
-                let mut source = fs::read_to_string(&path).unwrap();
-                if path.file_stem().unwrap() == file.as_str() {
-                    found = source.matches(&right).count();
-                    source = source.replace(&right, &fault);
-                }
-                fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
-            }
-        }
-        assert_eq!(found, 1, "{file}: {right}");
-        icarus(
-            &[text(&modules)],
-            machine.testbench(),
-            &machine.parameters(),
-            &compiled,
-        );
-        let drawn = agree_in_icarus(&expected, &compiled, 2 * expected.cycles);
-        assert_eq!(drawn.is_ok(), file.is_empty(), "{file}: {fault}: {drawn:?}");
+    let draw = |folders: &str| {
+        icarus(folders, machine.testbench(), machine.parameters, &compiled);
+        expected.compare_in_icarus(&compiled, 2 * expected.cycles)
+    };
+    draw(machine.folders()).unwrap_or_else(|error| panic!("{view}: {error}"));
+    for line in lines {
+        let modules = mistaken(machine.folders(), line);
+        let folders = format!("{} {}", modules.path().display(), machine.folders());
+        assert!(draw(&folders).is_err(), "{line}");
     }
-    lines.len()
 }
 
-/// The mistakes of a set's sections.
+/// Tests the sections of a set, and returns the number of mistakes.
 fn faults_of_set_are_found(set: &str) -> usize {
-    let lines = FAULTS
-        .lines()
-        .filter(|line| !line.is_empty() && !line.starts_with('#'));
-    let lines: Vec<&str> = lines.collect();
-    let mut sections = lines
-        .chunk_by(|_, next| !next.starts_with('['))
-        .collect::<Vec<_>>();
+    let lines = include_str!("faults.txt").lines();
+    let lines: Vec<&str> = lines
+        .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        .collect();
+    let mut sections: Vec<_> = lines.chunk_by(|_, next| !next.starts_with('[')).collect();
     sections.retain(|section| section[0].starts_with(&format!("[{set} ")));
-    let found = sections.into_par_iter().map(|section| {
+    let count = |section: &[&str]| {
         let (head, view) = section[0].split_once("] ").unwrap();
         let (_, machine) = head.split_once(' ').unwrap();
-        faults_are_found(machine_of(machine), view, &section[1..])
-    });
-    found.sum()
+        faults_are_found(machine_of(machine), view, &section[1..]);
+        section.len() - 1
+    };
+    sections.into_par_iter().map(count).sum()
 }
 
 #[test]
@@ -99,33 +86,28 @@ fn faults_of_every_machine_are_found() {
 #[test]
 #[ignore = "takes minutes"]
 fn more_faults_are_found() {
-    assert_eq!(faults_of_set_are_found("long"), 47);
+    assert_eq!(faults_of_set_are_found("long"), 48);
 }
 
 #[test]
 fn an_arbiter_serves_who_came_first() {
     let shelter = tempfile::tempdir().unwrap();
-    let [module, compiled] = ["arbiter.v", "tb.vvp"].map(|name| shelter.path().join(name));
-    let source = fs::read_to_string(rtl().join("machine/arbiter.v")).unwrap();
-    for (right, fault) in [
-        ("", ""),
-        ("waiting[i] | ~waiting[j]", "1'b1"),
-        ("waiting[j] ? lower_first[i*N + j]", "waiting[j] ? 1'b1"),
-        ("request & ~grant", "request"),
-        ("first & {N{enable}}", "request & {N{enable}}"),
+    let is_right = |folders: &str| {
+        let compiled = shelter.path().join("tb.vvp");
+        icarus(folders, "arbiter_tb", "", &compiled);
+        run(shelter.path(), "vvp -n tb.vvp").trim() == "0 wrong"
+    };
+    assert!(is_right("machine"));
+    for line in [
+        r#"arbiter "waiting[i] | ~waiting[j]" "1'b1""#,
+        r#"arbiter "waiting[j] ? lower_first[i*N + j]" "waiting[j] ? 1'b1""#,
+        r#"arbiter "request & ~grant" "request""#,
+        r#"arbiter "first & {N{enable}}" "request & {N{enable}}""#,
     ] {
-        let times = usize::from(!right.is_empty());
+        let modules = mistaken("machine", line);
         assert!(
-            right.is_empty() || source.matches(right).count() == 1,
-            "{right}"
-        );
-        fs::write(&module, source.replacen(right, fault, times)).unwrap();
-        icarus(&[text(shelter.path())], "arbiter_tb", &[], &compiled);
-        let printed = run(shelter.path(), "vvp", &["-n", text(&compiled)]);
-        assert_eq!(
-            printed.trim() == "0 wrong",
-            right.is_empty(),
-            "{fault}: {printed}"
+            !is_right(&format!("{} machine", modules.path().display())),
+            "{line}"
         );
     }
 }

@@ -1,12 +1,13 @@
 //! Whole frames in Verilog against the machine: every event with all its bits in order, the picture, and the cycles.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
+use std::fs;
 
 use shiftvox::graph::{Graph, LinkedGraph, NodeLayout, vxg};
 
 use super::machines::{LANES, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree};
-use super::tools::{modules, rtl, run, text};
-use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within, with_tiles};
+use super::tools::{each, files, rtl, run};
+use super::views::{Dice, INSIDE, SCENES, TREE, view_from_outside, view_from_within};
 
 #[test]
 fn views_from_outside_and_inside_have_the_machines_events_picture_and_cycles() {
@@ -24,33 +25,35 @@ fn views_from_outside_and_inside_have_the_machines_events_picture_and_cycles() {
 /// Synthesis accepts all machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
 fn yosys_takes_the_machines() {
+    let shelter = tempfile::tempdir().unwrap();
+    let script = shelter.path().join("check.ys");
     let lanes = [
-        Machine::new("stage_b", Some([2, 1, 1]), false),
-        Machine::new("stage_c", Some([2, 2, 1]), true),
+        Machine::new("stage_b", "LANES=2 CONTEXTS=1 TILE_LEVELS=1"),
+        Machine::new("stage_c", "LANES=2 CONTEXTS=2 TILE_LEVELS=1 BRICKS=1"),
     ];
     let machines = [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS];
-    let machines = machines.map(|machine| (machine, "machine")).into_iter();
-    for (machine, top) in machines.chain(lanes.iter().map(|machine| (machine, "lanes"))) {
-        // Of modules in several folders the first counts.
-        let mut files = BTreeMap::new();
-        for folder in machine.folders() {
-            for name in modules(folder) {
-                let path = format!("{folder}/{name}.v");
-                files.entry(name).or_insert(path);
-            }
-        }
-        let files: Vec<String> = files.into_values().collect();
-        let (files, folders) = (files.join(" "), machine.folders().join(" -I"));
-        let parameters = machine.parameters();
-        let parameters = parameters
+    for machine in machines.into_iter().chain(&lanes) {
+        let top = if machine.has_lanes() {
+            "lanes"
+        } else {
+            "machine"
+        };
+        let mut modules = files(machine.folders());
+        modules.retain(|path| path.extension().is_some_and(|end| end == "v"));
+        let modules: String = modules
             .iter()
-            .map(|(name, value)| format!(" -chparam {name} {value}"));
-        let parameters: String = parameters.collect();
-        let script = format!(
-            "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top {top}{parameters}; proc; check -assert; \
+            .map(|path| format!(" {}", path.display()))
+            .collect();
+        let folders = each(machine.folders(), |folder| format!(" -I{folder}"));
+        let parameters = each(machine.parameters, |of| {
+            format!(" -chparam {}", of.replace('=', " "))
+        });
+        let text = format!(
+            "read_verilog -sv -I.{folders}{modules}; hierarchy -check -top {top}{parameters}; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
-        run(&rtl(), "yosys", &["-q", "-p", &script]);
+        fs::write(&script, text).unwrap();
+        run(&rtl(), &format!("yosys -q -s {}", script.display()));
     }
 }
 
@@ -59,31 +62,32 @@ fn yosys_takes_the_machines() {
 #[test]
 #[ignore = "takes minutes"]
 fn many_views() {
-    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
-        for view in SCENES {
-            agree(machine, view, None);
+    let shelter = tempfile::tempdir().unwrap();
+    let file = shelter.path().join("solids.vxg");
+    vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
+    let solids = format!("{} --size 64 --view iso", file.display());
+    // Without bricks: the first has less than two levels, the second the root alone.
+    let small = [
+        "gen:random,depth=1,seed=2 --size 20",
+        "gen:random,depth=2,seed=3 --size 20",
+    ];
+    let chosen = [&[TREE, INSIDE, &solids], &SCENES[..], &small].concat();
+    // A lane draws more samples than a tile has.
+    let lanes = LANES.iter().map(|machine| (machine, 25, 25, 9));
+    let alone = [
+        (&STAGE_A, 200, 0, 1),
+        (&STAGE_B, 200, 200, 1),
+        (&STAGE_C, 200, 200, 1),
+        (&STAGE_C_BRICKS, 100, 100, 1),
+    ];
+    for (machine, outside, within, least) in alone.into_iter().chain(lanes) {
+        let (mut dice, mut inner) = (Dice(1), Dice(1));
+        let outside = (0..outside).map(|_| view_from_outside(&mut dice, least));
+        let within = (0..within).map(|_| view_from_within(&mut inner, least));
+        let chosen = chosen.iter().map(|view| (*view).to_owned());
+        for view in chosen.chain(outside).chain(within) {
+            agree(machine, &view, None);
         }
-        random_views(machine, 200, &any_view);
-    }
-    for machine in [&STAGE_B, &STAGE_C] {
-        random_views(machine, 200, &view_from_within);
-    }
-    random_views(&STAGE_C_BRICKS, 100, &any_view);
-    random_views(&STAGE_C_BRICKS, 100, &view_from_within);
-    for machine in &LANES {
-        for view in SCENES.into_iter().chain([TREE, INSIDE]) {
-            agree(machine, view, None);
-        }
-        random_views(machine, 25, &|dice| with_tiles(any_view, dice));
-        random_views(machine, 25, &|dice| with_tiles(view_from_within, dice));
-    }
-}
-
-/// Draws views by seed.
-fn random_views(machine: &Machine, number: u32, make: &dyn Fn(&mut Dice) -> String) {
-    let mut dice = Dice(1);
-    for _ in 0..number {
-        agree(machine, &make(&mut dice), None);
     }
 }
 
@@ -110,19 +114,19 @@ fn linked_and_cyclic_graphs() {
         (7, "1..0.21. .01....0 ........"),
         (3, "12.11.21 3.3..3.3 .31.3... ........"),
     ] {
-        let (name, graph) = (nodes, linked_graph(depth, nodes));
-        assert!(bricks_of(&graph).is_empty(), "{name}");
+        let graph = linked_graph(depth, nodes);
+        assert!(bricks_of(&graph).is_empty(), "{nodes}");
         vxg::write(&graph, &file, true).unwrap();
-        for view in [
+        for camera in [
             "--size 64 --view iso",
             "--size 40x60 --azimuth 130 --lod 0",
             "--size 33 --view right --zoom 5",
         ] {
-            let view = format!("{} {view}", text(&file));
+            let view = format!("{} {camera}", file.display());
             let machines = [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS];
             let drawn = machines.map(|machine| agree(machine, &view, Some(&graph.links)));
-            assert!(drawn.iter().all(|of| of.samples > 0), "{name}");
-            assert_eq!(drawn[2].cycles, drawn[3].cycles, "{name}");
+            assert!(drawn.iter().all(|of| of.samples > 0), "{nodes}");
+            assert_eq!(drawn[2].cycles, drawn[3].cycles, "{nodes}");
         }
     }
 }
@@ -135,8 +139,8 @@ pub(crate) fn tree_with_larger_solids(depth: u32) -> Graph {
     while let Some(level) = levels.pop_front() {
         let mask = match level {
             0 => 0xff,
-            _ if level == depth || dice.next(3) == 0 => 0,
-            _ => 1 + dice.next(255),
+            _ if level == depth || dice.below(3) == 0 => 0,
+            _ => 1 + dice.below(255),
         };
         let children = std::array::from_fn(|octant| {
             (mask >> octant & 1 != 0).then(|| {
@@ -156,29 +160,4 @@ pub(crate) fn tree_with_larger_solids(depth: u32) -> Graph {
 fn bricks_of(graph: &Graph) -> std::ops::Range<u32> {
     let graph = graph.side_by_side().unwrap();
     NodeLayout::new(&graph.view(), true, true).bricks()
-}
-
-/// Cycles with bricks beside those without.
-#[test]
-#[ignore = "takes minutes"]
-fn bricks_in_many_scenes() {
-    let shelter = tempfile::tempdir().unwrap();
-    let file = shelter.path().join("solids.vxg");
-    vxg::write(&tree_with_larger_solids(5), &file, true).unwrap();
-    let solids = format!("{} --size 64 --view iso", text(&file));
-    // The first has less than two levels, the second the root alone.
-    let without_bricks = [
-        "gen:random,depth=1,seed=2 --size 20",
-        "gen:random,depth=2,seed=3 --size 20",
-    ];
-    let views = [TREE, INSIDE, &solids]
-        .into_iter()
-        .chain(SCENES)
-        .chain(without_bricks);
-    for view in views {
-        let [with, without] = [&STAGE_C_BRICKS, &STAGE_C].map(|machine| agree(machine, view, None));
-        assert_eq!(with.samples, without.samples);
-        let is_fewer = with.cycles[0] < without.cycles[0];
-        assert!(is_fewer || without_bricks.contains(&view), "{view}");
-    }
 }

@@ -1,11 +1,7 @@
 //! The hardware in `rtl/`, simulated, against the machine: blocks by the rows of `model --vectors` (Icarus Verilog), whole
 //! frames by their events, picture and cycles (Verilator). `docs/rtl.md` has the results.
 //!
-//! The tests need `iverilog`, `verilator` and `yosys`. The long set:
-//!
-//! ```text
-//! cargo test --release -p shiftvox-cli --test rtl -- --ignored --nocapture
-//! ```
+//! The tests need `iverilog`, `verilator` and `yosys`; the long ones run with `--ignored`.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod area;
@@ -16,5 +12,4 @@ mod frames;
 mod machines;
 mod mutants;
 mod tools;
-mod turned;
 mod views;

@@ -1,16 +1,16 @@
 //! The quality of the rows: the mistakes in the text of a block that they detect.
 
+use std::fs;
+
 use rayon::prelude::*;
 
 use super::blocks::{
-    BACK, CENTRES, CORNERS, EXACT, FRAMES, NEAR, OUTSIDE, PAPER, Rows, WIDENED, WITHIN,
-    is_detected, rows, text_of,
+    CENTRES, CORNERS, EXACT, FRAMES, NEAR, OUTSIDE, PAPER, Rows, WIDENED, WITHIN, is_detected,
 };
-use super::tools::{modules, words};
-use super::turned::turned;
+use super::tools::{files, stem};
 
 /// A text, and a mistake.
-const SLIPS: [(&str, &str); 16] = [
+const SLIPS: [(&str, &str); 17] = [
     (" + ", " - "),
     (" - ", " + "),
     (" < ", " <= "),
@@ -24,13 +24,14 @@ const SLIPS: [(&str, &str); 16] = [
     (" >>> ", " >> "),
     ("= ~|", "= |"),
     ("= ~", "= "),
+    ("= &", "= |"),
     ("[W:1]", "[W-1:0]"),
     ("1'b1", "1'b0"),
     (" ? ", " ? ~"),
 ];
 
 /// Lines that begin like this compute nothing.
-const DECLARES: &str = "// for ( module input output localparam ` if ( function";
+const DECLARES: &str = "// for module input output localparam ` if function";
 
 /// Whether the mistake makes no difference: of two numbers that are compared one is chosen, and they are equal.
 fn chooses_of_equals(code: &str, at: usize, compare: &str) -> bool {
@@ -48,25 +49,19 @@ fn chooses_of_equals(code: &str, at: usize, compare: &str) -> bool {
 fn mutants(source: &str) -> Vec<(String, String)> {
     let mut mutants = Vec::new();
     let mut begun = 0;
-    let declares = words(DECLARES);
-    let is_code = |line: &str| {
-        let line = line.trim_start();
-        !declares
-            .iter()
-            .any(|word| *word != "(" && line.starts_with(word))
-    };
     for line in source.split_inclusive('\n') {
-        // Indices and comments are no arithmetic of the block.
         let code = line.split("//").next().unwrap_or_default();
-        for (right, wrong) in SLIPS.iter().filter(|_| is_code(line)) {
+        let is_code = !DECLARES
+            .split(' ')
+            .any(|word| line.trim_start().starts_with(word));
+        for (right, wrong) in SLIPS.iter().filter(|_| is_code) {
             for (at, _) in code.match_indices(right) {
-                let open = code[..at].matches('[').count() - code[..at].matches(']').count();
-                if open == 0 && !chooses_of_equals(code, at, right) {
+                // Indices are no arithmetic of the block.
+                let is_index = code[..at].matches('[').count() > code[..at].matches(']').count();
+                if !is_index && !chooses_of_equals(code, at, right) {
                     let (before, after) = source.split_at(begun + at);
                     let text = format!("{before}{wrong}{}", &after[right.len()..]);
-                    let (left, rest) = code.split_at(at);
-                    let slip = format!("{left}{wrong}{}", &rest[right.len()..]);
-                    mutants.push((text, slip.trim().to_owned()));
+                    mutants.push((text, format!("{right} became {wrong} in {}", code.trim())));
                 }
             }
         }
@@ -75,31 +70,33 @@ fn mutants(source: &str) -> Vec<(String, String)> {
     mutants
 }
 
-/// Asserts that rows detect 95 % of the mistakes in these modules.
-fn assert_score(names: &[String], folders: &[&str], all: &[Rows]) {
-    let slips = names.iter().flat_map(|module| {
-        let all = mutants(&text_of(module, folders)).into_iter();
-        all.map(move |(text, slip)| (module, text, slip))
-    });
-    let slips: Vec<_> = slips.collect();
-    let results: Vec<(String, bool)> = slips
-        .into_par_iter()
-        .filter_map(|(module, text, slip)| {
-            let is_detected = is_detected(all, folders, module, &text)?;
-            Some((format!("{module}: {slip}"), is_detected))
-        })
-        .collect();
-    let missed: Vec<_> = results
+/// The modules of a folder and their texts, except those whose registers a mistake may make endless.
+fn modules(folder: &str) -> Vec<(String, String)> {
+    let mut files = files(folder);
+    let endless = ["divide_lane", "divide_control", "to_screen_divide"];
+    files.retain(|path| !endless.contains(&stem(path)));
+    let texts = files.iter().map(|path| fs::read_to_string(path).unwrap());
+    files
         .iter()
-        .filter(|(_, is_detected)| !is_detected)
+        .map(|path| stem(path).to_owned())
+        .zip(texts)
+        .collect()
+}
+
+/// Two views of stage A suffice.
+#[test]
+fn a_mistake_in_any_block_is_found() {
+    let rows = [OUTSIDE, WITHIN].map(|view| Rows::new(PAPER, view, 32, 60));
+    let missed: Vec<String> = modules("blocks")
+        .into_par_iter()
+        .filter(|(module, text)| {
+            let mut mutants = mutants(text).into_iter();
+            !mutants.any(|(text, _)| is_detected(&rows, CORNERS, module, &text) == Some(true))
+        })
+        .map(|(module, _)| module)
         .collect();
-    for (slip, _) in &missed {
-        eprintln!("not detected: {slip}");
-    }
-    let (all, missed) = (results.len(), missed.len());
-    let score = 100.0 - 100.0 * missed as f64 / all as f64;
-    eprintln!("{missed} of {all} mistakes not detected, {score:.1} %");
-    assert!(all > 20 && score >= 95.0, "{score}");
+    // Under its rules no margin grows. The pool's sums are in other modules.
+    assert_eq!(missed, ["margin_grow", "vertex_pool"]);
 }
 
 /// Words so short that comparisons often have equal sides.
@@ -115,36 +112,53 @@ const FRAME_WHOLE: &str = "--coverage any --cage frame --tolerance inf --frac 1"
 
 #[test]
 #[ignore = "takes minutes"]
-fn mutation_scores() {
-    // A mistake in the divide's registers may make it endless.
-    let modules_in = |folder: &str| {
-        let mut names = modules(folder);
-        let endless = ["divide_lane", "divide_control", "to_screen_divide"];
-        names.retain(|name| !endless.contains(&name.as_str()));
-        names
-    };
-    let all = [
-        rows(PAPER, OUTSIDE, "32"),
-        rows(PAPER, WITHIN, "32"),
-        rows(SHORT, NEAR, "16"),
-        rows(WIDENED, NEAR, "24"),
-        rows(WIDE, NEAR, "16"),
-        rows(CENTRES, NEAR, "24"),
-        rows(SAMPLES, OUTSIDE, "32"),
+fn rows_detect_most_mistakes() {
+    let of_corners = [
+        (PAPER, OUTSIDE, 32),
+        (PAPER, WITHIN, 32),
+        (SHORT, NEAR, 16),
+        (WIDENED, NEAR, 24),
+        (WIDE, NEAR, 16),
+        (CENTRES, NEAR, 24),
+        (SAMPLES, OUTSIDE, 32),
     ];
-    assert_score(&modules_in("blocks"), CORNERS, &all);
-    let all = [
-        rows(EXACT, OUTSIDE, "32"),
-        rows(EXACT, WITHIN, "32"),
-        rows(EXACT, NEAR, "24"),
-        rows(FRAME_NARROW, NEAR, "24"),
-        rows(FRAME_WHOLE, NEAR, "16"),
-        rows(FRAME_WIDE, NEAR, "16"),
+    let of_frames = [
+        (EXACT, OUTSIDE, 32),
+        (EXACT, WITHIN, 32),
+        (EXACT, NEAR, 24),
+        (FRAME_NARROW, NEAR, 24),
+        (FRAME_WHOLE, NEAR, 16),
+        (FRAME_WIDE, NEAR, 16),
     ];
-    assert_score(&modules_in("blocks_exact"), FRAMES, &all);
-    let all = [(OUTSIDE, "32"), (WITHIN, "32"), (NEAR, "24")];
-    let all = all.map(|(view, bits)| turned(rows(EXACT, view, bits)));
-    let back = words("grown_cage parent_cage plane_whole parent_planes whole_clip");
-    let back: Vec<String> = back.into_iter().map(str::to_owned).collect();
-    assert_score(&back, BACK, &all);
+    for (folder, folders, settings) in [
+        ("blocks", CORNERS, &of_corners[..]),
+        ("blocks_exact", FRAMES, &of_frames[..]),
+    ] {
+        let rows = settings
+            .iter()
+            .map(|(rules, view, bits)| Rows::new(rules, view, *bits, 60));
+        let rows: Vec<Rows> = rows.collect();
+        let modules = modules(folder);
+        let mistakes = modules.iter().flat_map(|(module, text)| {
+            let mutants = mutants(text).into_iter();
+            mutants.map(move |(text, slip)| (module, text, slip))
+        });
+        let mistakes: Vec<_> = mistakes.collect();
+        let results: Vec<bool> = mistakes
+            .into_par_iter()
+            .filter_map(|(module, text, slip)| {
+                let is_detected = is_detected(&rows, folders, module, &text)?;
+                if !is_detected {
+                    eprintln!("not detected: {module}: {slip}");
+                }
+                Some(is_detected)
+            })
+            .collect();
+        let (all, detected) = (
+            results.len(),
+            results.iter().filter(|&&found| found).count(),
+        );
+        eprintln!("{folder}: {detected} of {all} mistakes detected");
+        assert!(all > 100 && detected * 100 >= all * 95);
+    }
 }

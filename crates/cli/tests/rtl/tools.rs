@@ -3,74 +3,60 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+pub(crate) const SHIFTVOX: &str = env!("CARGO_BIN_EXE_shiftvox");
+
 /// The folder of the hardware.
 pub(crate) fn rtl() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("rtl")
 }
 
-/// The words of a command line.
-pub(crate) fn words(line: &str) -> Vec<&str> {
-    line.split_whitespace().collect()
+/// A text for each of some words.
+pub(crate) fn each(words: &str, text: impl Fn(&str) -> String) -> String {
+    words.split_whitespace().map(text).collect()
 }
 
-/// Runs a program in a folder and returns its output, or its errors.
-pub(crate) fn try_run<A: AsRef<str>>(
-    folder: &Path,
-    program: &str,
-    arguments: &[A],
-) -> Result<String, String> {
-    let arguments: Vec<&str> = arguments.iter().map(AsRef::as_ref).collect();
-    let ran = Command::new(program)
-        .args(&arguments)
-        .current_dir(folder)
-        .output();
+/// Runs a command line in a folder and returns its output, or its errors.
+pub(crate) fn try_run(folder: &Path, line: &str) -> Result<String, String> {
+    let mut words = line.split_whitespace();
+    let mut command = Command::new(words.next().unwrap());
+    let ran = command.args(words).current_dir(folder).output();
     let needed = "the tests need iverilog, verilator and yosys";
-    let ran = ran.unwrap_or_else(|error| panic!("{program}: {error}; {needed}"));
-    let words = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
+    let ran = ran.unwrap_or_else(|error| panic!("{line}: {error}; {needed}"));
+    let text = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
     match ran.status.success() {
-        true => Ok(words(&ran.stdout)),
-        false => Err(format!("{program} {arguments:?}: {}", words(&ran.stderr))),
+        true => Ok(text(&ran.stdout)),
+        false => Err(format!("{line}: {}", text(&ran.stderr))),
     }
 }
 
-/// Runs a program in a folder and returns its output.
-pub(crate) fn run<A: AsRef<str>>(folder: &Path, program: &str, arguments: &[A]) -> String {
-    try_run(folder, program, arguments).unwrap_or_else(|error| panic!("{error}"))
+pub(crate) fn run(folder: &Path, line: &str) -> String {
+    try_run(folder, line).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with the modules of those folders.
-pub(crate) fn icarus(folders: &[&str], top: &str, parameters: &[(&str, u64)], into: &Path) {
-    let mut arguments: Vec<String> = words("-g2012 -I .")
-        .into_iter()
-        .map(str::to_owned)
-        .collect();
-    for folder in folders {
-        arguments.extend(["-I", folder, "-y", folder].map(str::to_owned));
+/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with the modules of these folders and the parameters `NAME=value`.
+pub(crate) fn icarus(folders: &str, top: &str, parameters: &str, into: &Path) {
+    let folders = each(folders, |folder| format!(" -I {folder} -y {folder}"));
+    let parameters = each(parameters, |parameter| format!(" -P{top}.{parameter}"));
+    let line = format!("iverilog -g2012 -I .{folders} -s {top} tb/{top}.v{parameters}");
+    run(&rtl(), &format!("{line} -o {}", into.display()));
+}
+
+/// The files in some folders of `rtl`: of several with the same name, that of the first folder.
+pub(crate) fn files(folders: &str) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = Vec::new();
+    for folder in folders.split(' ') {
+        for file in std::fs::read_dir(rtl().join(folder)).unwrap() {
+            let path = file.unwrap().path();
+            if files.iter().all(|of| of.file_name() != path.file_name()) {
+                files.push(path);
+            }
+        }
     }
-    let source = format!("tb/{top}.v");
-    arguments.extend(["-s", top, &source, "-o", text(into)].map(str::to_owned));
-    arguments.extend(
-        parameters
-            .iter()
-            .map(|(name, value)| format!("-P{top}.{name}={value}")),
-    );
-    run(&rtl(), "iverilog", &arguments);
+    files.sort();
+    files
 }
 
-/// Runs `shiftvox`.
-pub(crate) fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
-    run(folder, env!("CARGO_BIN_EXE_shiftvox"), arguments)
-}
-
-/// A path as a command needs it.
-pub(crate) fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// The names of the modules in a folder of `rtl`.
-pub(crate) fn modules(folder: &str) -> Vec<String> {
-    let files = std::fs::read_dir(rtl().join(folder)).unwrap();
-    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
-    let names = names.filter_map(|name| name.strip_suffix(".v").map(str::to_owned));
-    names.collect()
+/// The name of a file's module.
+pub(crate) fn stem(path: &Path) -> &str {
+    path.file_stem().and_then(|stem| stem.to_str()).unwrap()
 }

@@ -28,8 +28,7 @@ pub(crate) const SCENES: [&str; 6] = [
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
-    /// A number below another.
-    pub(crate) fn next(&mut self, most: u64) -> u64 {
+    pub(crate) fn below(&mut self, most: u64) -> u64 {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -38,39 +37,29 @@ impl Dice {
     }
 }
 
-/// Scattered voxels by seed, from all sides and from near by, at random sizes and levels of detail.
-pub(crate) fn any_view(dice: &mut Dice) -> String {
-    let mut next = |most| dice.next(most);
-    let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
-    let size = format!("{}x{}", 1 + next(60), 1 + next(60));
-    let lod = ["0", "1", "3"][next(3) as usize];
-    let (azimuth, elevation, zoom) = (next(360), next(180) as i64 - 90, 1 + next(8));
+/// Scattered voxels from all sides and from near by, at random sizes and levels of detail, at least `least` samples
+/// across.
+pub(crate) fn view_from_outside(dice: &mut Dice, least: u64) -> String {
+    let mut below = |most| dice.below(most);
+    let scene = format!("gen:random,depth={},seed={}", 2 + below(4), below(1000));
+    let size = format!("{}x{}", least + below(61 - least), 1 + below(60));
+    let lod = ["0", "1", "3"][below(3) as usize];
+    let (azimuth, elevation, zoom) = (below(360), below(180) as i64 - 90, 1 + below(8));
     let camera = format!("--azimuth={azimuth} --elevation={elevation} --zoom={zoom}");
     format!("{scene} --size {size} --lod {lod} {camera}")
 }
 
 /// From between voxels. Every other eye is at a voxel's corner.
-pub(crate) fn view_from_within(dice: &mut Dice) -> String {
-    let (depth, on_corner) = (2 + dice.next(3), dice.next(2) == 0);
-    let scene = format!("gen:random,depth={depth},seed={}", dice.next(1000));
-    let size = format!("{}x{}", 1 + dice.next(30), 1 + dice.next(30));
+pub(crate) fn view_from_within(dice: &mut Dice, least: u64) -> String {
+    let (depth, on_corner) = (2 + dice.below(3), dice.below(2) == 0);
+    let scene = format!("gen:random,depth={depth},seed={}", dice.below(1000));
+    let size = format!("{}x{}", least + dice.below(31 - least), 1 + dice.below(30));
     let mut place = |tenths: u64| {
-        let mut coordinate = || dice.next(10 << depth) / tenths * tenths;
-        let [x, y, z] = [(); 3].map(|()| coordinate() as f64 / 10.0);
+        let [x, y, z] = [(); 3].map(|()| dice.below(10 << depth) / tenths * tenths);
+        let [x, y, z] = [x, y, z].map(|tenths| tenths as f64 / 10.0);
         format!("{x:.1},{y:.1},{z:.1}")
     };
     let (eye, target) = (place(if on_corner { 10 } else { 1 }), place(1));
-    let fov = 40 + dice.next(100);
+    let fov = 40 + dice.below(100);
     format!("{scene} --size {size} --fov {fov} --eye {eye} --target {target}5")
-}
-
-/// A view with tiles: more than eight samples across.
-pub(crate) fn with_tiles(make: fn(&mut Dice) -> String, dice: &mut Dice) -> String {
-    loop {
-        let view = make(dice);
-        let (_, size) = view.split_once("--size ").unwrap();
-        if size.split('x').next().unwrap().parse::<u32>().unwrap() > 8 {
-            return view;
-        }
-    }
 }

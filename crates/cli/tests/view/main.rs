@@ -5,5 +5,4 @@ mod browser;
 mod chromium;
 mod pictures;
 mod program;
-mod rate;
 mod refusals;

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use shiftvox::picture::png;
 
-use crate::program::{Page, Program, run_command, shiftvox};
+use crate::program::{Page, Program, question, run_command, shiftvox};
 
 /// Asks for a picture as bytes and as PNG, and compares both, and the hash, with the command's.
 fn assert_is_renders(page: &mut Page, mut fields: Value) -> Value {
@@ -20,18 +20,20 @@ fn assert_is_renders(page: &mut Page, mut fields: Value) -> Value {
     head
 }
 
+fn camera(eye: [f64; 3]) -> Value {
+    json!({ "eye": eye, "target": [-10, -11, 128], "up": [0, 0, 1], "fov": 33.5 })
+}
+
 #[test]
 fn a_picture_is_that_of_its_command() {
-    let program = Program::start(&["assets/tree.vox", "gen:menger,depth=3"]);
+    let program = Program::start("assets/tree.vox gen:menger,depth=3");
     let mut page = program.page();
-    assert_eq!(
-        page.hello["scenes"],
-        json!(["assets/tree.vox", "gen:menger,depth=3"])
-    );
-    let fitted = assert_is_renders(&mut page, json!({}));
-    let near = json!({ "eye": [170.5, -300.25, 228.0], "target": [-10, -11, 128], "up": [0, 0, 1], "fov": 33.5 });
-    let mut hashes = vec![fitted["hash"].clone()];
+    let scenes = json!(["assets/tree.vox", "gen:menger,depth=3"]);
+    assert_eq!(page.hello["scenes"], scenes);
+    let near = camera([170.5, -300.25, 228.0]);
+    let mut hashes = Vec::new();
     for fields in [
+        json!({}),
         json!({ "camera": near }),
         json!({ "camera": near, "aa": 2, "size": [77, 130] }),
         json!({ "camera": near, "flags": { "coverage": "any", "cage": "corners", "tolerance": "inf" } }),
@@ -39,9 +41,9 @@ fn a_picture_is_that_of_its_command() {
         json!({ "camera": near, "flags": { "engine": "machine", "bits": "32", "frac": "9" } }),
         json!({ "scene": 1 }),
     ] {
-        hashes.push(assert_is_renders(&mut page, fields)["hash"].clone());
+        hashes.push(assert_is_renders(&mut page, fields)["hash"].to_string());
     }
-    hashes.sort_by_key(Value::to_string);
+    hashes.sort();
     hashes.dedup();
     assert_eq!(hashes.len(), 7, "different settings are different pictures");
 }
@@ -50,40 +52,31 @@ fn a_picture_is_that_of_its_command() {
 fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     let folder = tempfile::tempdir().unwrap();
     let made = |name: &str, words: &str| {
-        let path = folder.path().join(name).to_str().unwrap().to_owned();
+        let path = folder.path().join(name).display().to_string();
         let line = format!("convert assets/knot.obj --quiet {path} {words}");
         assert!(shiftvox(&line).status.success());
         path
     };
     let far = made("knot.far", "--rays 1000 --leaf-triangles 500");
     let tvx = made("knot.tvx", "--grid 8 --texels 4");
-    let program = Program::start(&["assets/knot.obj", &far, &tvx, "--lod", "2"]);
+    let program = Program::start(&format!("assets/knot.obj {far} {tvx} --lod 2"));
     let mut page = program.page();
     assert_eq!(page.hello["flags"], json!({ "lod": "2" }));
     for scene in 0..3 {
-        assert_is_renders(
-            &mut page,
-            json!({ "scene": scene, "flags": { "lod": "1.5" } }),
-        );
+        let fields = json!({ "scene": scene, "flags": { "lod": "1.5" } });
+        assert_is_renders(&mut page, fields);
     }
     // The mesh gets the opacities that this rule blends.
     let opaque = assert_is_renders(&mut page, json!({}));
     let blended = assert_is_renders(&mut page, json!({ "flags": { "coverage": "alpha" } }));
     assert_ne!(opaque["hash"], blended["hash"]);
-    let camera = json!({ "eye": [3, 4, 5], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 40 });
+    let figures = json!({ "scene": 1, "ask": "figures", "camera": camera([3.0, 4.0, 5.0]) });
+    let any = json!({ "scene": 1, "flags": { "coverage": "any" } });
+    let normal = json!({ "scene": 2, "show": "normal" });
     for (fields, reason) in [
-        (
-            json!({ "scene": 1, "flags": { "coverage": "any" } }),
-            "--coverage changes nothing",
-        ),
-        (
-            json!({ "scene": 2, "show": "normal" }),
-            "has no --aov normal",
-        ),
-        (
-            json!({ "scene": 1, "ask": "figures", "camera": camera }),
-            "has none",
-        ),
+        (any, "--coverage changes nothing"),
+        (normal, "has no --aov normal"),
+        (figures, "has none"),
     ] {
         let (head, _) = page.ask(fields);
         assert!(head["error"].as_str().unwrap().contains(reason), "{head}");
@@ -92,45 +85,35 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
 
 #[test]
 fn the_flags_of_the_command_line_begin() {
-    let line = "tests/data/axes.vox --paper --bits 40 --shade flat --size 60x50 --aa 2 --azimuth 10 --mesh-up y";
-    let program = Program::start(&line.split(' ').collect::<Vec<_>>());
+    let rules = "--paper --bits 40 --shade flat";
+    let line = format!("tests/data/axes.vox {rules} --size 60x50 --aa 2 --azimuth 10 --mesh-up y");
+    let program = Program::start(&line);
     let mut page = program.page();
     let flags = json!({ "bits": "40", "cage": "corners", "coverage": "any", "shade": "flat", "tolerance": "inf" });
-    assert_eq!(page.hello["flags"], flags);
-    assert_eq!(
-        (&page.hello["size"], &page.hello["aa"]),
-        (&json!([60, 50]), &json!(2))
-    );
-    let head = assert_is_renders(
-        &mut page,
-        json!({ "size": [60, 50], "aa": 2, "flags": flags }),
-    );
+    let begin = json!({ "size": [60, 50], "aa": 2, "flags": flags });
+    for (key, value) in begin.as_object().unwrap() {
+        assert_eq!(page.hello[key], *value);
+    }
+    let head = assert_is_renders(&mut page, begin);
     assert_eq!(head["axis"], json!([0.0, 1.0, 0.0]));
-    assert!(
-        head["command"].as_str().unwrap().contains("--mesh-up=y"),
-        "{head}"
-    );
+    let command = head["command"].as_str().unwrap();
+    assert!(command.contains("--mesh-up=y"), "{head}");
 }
 
 #[test]
 fn overlays_are_buffers_as_colours() {
-    let program = Program::start(&["gen:menger,depth=3"]);
+    let program = Program::start("gen:menger,depth=3");
     let mut page = program.page();
     let mut seen = Vec::new();
     for show in ["color", "records", "voxel", "depth", "normal"] {
         let (head, rgba) = page.ask(json!({ "show": show, "hash": true, "size": [64, 64] }));
         assert_eq!(rgba.len(), 64 * 64 * 4, "{head}");
-        assert_eq!(
-            head["ends"].is_null(),
-            ["color", "normal"].contains(&show),
-            "{head}"
-        );
+        let has_no_ends = ["color", "normal"].contains(&show);
+        assert_eq!(head["ends"].is_null(), has_no_ends, "{head}");
         seen.push(rgba);
         // The buffer that is shown does not change the picture's hash.
-        assert_eq!(
-            head["hash"],
-            run_command(head["command"].as_str().unwrap()).1
-        );
+        let (_, hash) = run_command(head["command"].as_str().unwrap());
+        assert_eq!(head["hash"], hash);
     }
     seen.sort();
     seen.dedup();
@@ -139,18 +122,18 @@ fn overlays_are_buffers_as_colours() {
 
 #[test]
 fn figures_are_those_of_the_model() {
-    let program = Program::start(&["gen:menger,depth=3"]);
+    let program = Program::start("gen:menger,depth=3");
     let mut page = program.page();
-    let (picture, _) = page.ask(json!({ "size": [1024, 512], "flags": { "cage": "corners" } }));
-    let camera = &picture["camera"];
-    let camera = json!({ "eye": camera["eye"], "target": camera["target"], "up": camera["up"], "fov": camera["fov_degrees"] });
-    let (head, body) = page.ask(
-        json!({ "ask": "figures", "size": [1024, 512], "camera": camera, "flags": { "cage": "corners", "shade": "flat" } }),
-    );
+    let cage = json!({ "cage": "corners", "shade": "flat" });
+    let mut fields = json!({ "size": [1024, 512], "flags": cage });
+    let placed = page.ask(fields.clone()).0["camera"].take();
+    fields["ask"] = json!("figures");
+    fields["camera"] = json!({ "eye": placed["eye"], "target": placed["target"], "up": placed["up"], "fov": placed["fov_degrees"] });
+    let (head, body) = page.ask(fields);
     assert!(body.is_empty());
     assert_eq!(
-        (&head["width"], &head["height"]),
-        (&json!(256), &json!(128)),
+        json!([head["width"], head["height"]]),
+        json!([256, 128]),
         "{head}"
     );
     let command = head["command"].as_str().unwrap();
@@ -169,27 +152,20 @@ fn figures_are_those_of_the_model() {
 
 #[test]
 fn two_pages_have_cameras_of_their_own() {
-    let program = Program::start(&["assets/tree.vox"]);
-    let camera = |x: f64| json!({ "eye": [x, -359, 228], "target": [-10, -11, 128], "up": [0, 0, 1], "fov": 40 });
-    let ask =
-        |x: f64| crate::program::question(json!({ "camera": camera(x), "hash": true })).to_string();
-    let (mut one, mut two) = (program.page(), program.page());
-    for round in 0..5 {
+    let program = Program::start("assets/tree.vox");
+    let mut pages = [program.page(), program.page()];
+    for round in 0..3 {
         let eyes = [190.0 + f64::from(round), -150.0 - f64::from(round)];
-        one.send(&ask(eyes[0]));
-        two.send(&ask(eyes[1]));
-        let heads = [one.answer().0, two.answer().0];
-        for (head, eye) in heads.iter().zip(eyes) {
-            assert_eq!(head["camera"]["eye"][0], eye);
+        for (page, x) in pages.iter_mut().zip(eyes) {
+            page.send(question(
+                json!({ "camera": camera([x, -359.0, 228.0]), "hash": true }),
+            ));
         }
-        assert_ne!(heads[0]["hash"], heads[1]["hash"]);
-        if round == 4 {
-            for head in heads {
-                assert_eq!(
-                    head["hash"],
-                    run_command(head["command"].as_str().unwrap()).1
-                );
-            }
+        for (page, x) in pages.iter_mut().zip(eyes) {
+            let (head, _) = page.answer();
+            assert_eq!(head["camera"]["eye"][0], x);
+            let (_, hash) = run_command(head["command"].as_str().unwrap());
+            assert_eq!(head["hash"], hash);
         }
     }
 }

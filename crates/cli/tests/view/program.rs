@@ -6,116 +6,84 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use tungstenite::handshake::client::generate_key;
-use tungstenite::http::Request;
+use tungstenite::client::ClientRequestBuilder;
 use tungstenite::protocol::frame::coding::CloseCode;
-use tungstenite::{Message, WebSocket, client};
+use tungstenite::{Message, WebSocket};
 
 /// A program that serves pages, until it goes out of scope.
 pub(crate) struct Program {
     pub(crate) child: Child,
     pub(crate) address: String,
-    pub(crate) port: u16,
+    pub(crate) host: String,
     pub(crate) token: String,
 }
 
+/// `shiftvox` with these words, in the folder of the sources.
+fn command(line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
+    command.args(line.split(' '));
+    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    command
+}
+
 impl Program {
-    /// Starts `shiftvox view` with these words, in the folder of the sources.
-    pub(crate) fn start(words: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
-            .args(["view", "--quiet"])
-            .args(words)
-            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+    /// Starts `shiftvox view` with these words.
+    pub(crate) fn start(line: &str) -> Self {
+        let mut command = command(&format!("view --quiet {line}"));
+        let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let mut address = String::new();
         let stdout = child.stdout.take().unwrap();
         BufReader::new(stdout).read_line(&mut address).unwrap();
         let address = address.trim().to_owned();
-        let (before, token) = address.split_once("/?token=").expect("an address");
-        let (_, port) = before.rsplit_once(':').unwrap();
+        let parts = address.strip_prefix("http://").unwrap();
+        let (host, token) = parts.split_once("/?token=").unwrap();
         Self {
-            port: port.parse().unwrap(),
-            token: token.to_owned(),
             child,
+            host: host.to_owned(),
+            token: token.to_owned(),
             address,
         }
     }
 
-    /// Sends a request as it is, and returns the answer.
-    pub(crate) fn raw(&self, request: &str) -> String {
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+    fn stream(&self) -> TcpStream {
+        let stream = TcpStream::connect(&self.host).unwrap();
+        let patience = Some(Duration::from_secs(30));
+        stream.set_read_timeout(patience).unwrap();
         stream
-            .set_read_timeout(Some(Duration::from_secs(20)))
-            .unwrap();
-        stream.write_all(request.as_bytes()).unwrap();
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        String::from_utf8_lossy(&answer).into_owned()
     }
 
-    /// The status of a request for a path with some headers.
-    pub(crate) fn status(&self, path: &str, headers: &[&str]) -> u16 {
-        let headers: String = headers
-            .iter()
-            .map(|header| format!("{header}\r\n"))
-            .collect();
-        let answer = self.raw(&format!(
-            "GET {path} HTTP/1.1\r\n{headers}Connection: close\r\n\r\n"
-        ));
-        let status = answer.split(' ').nth(1);
-        status
-            .and_then(|code| code.parse().ok())
-            .unwrap_or_else(|| panic!("{answer}"))
+    /// Sends a request: its first line up to the version, and headers, separated by `|`. Returns the answer, or of a
+    /// socket that opens the first line.
+    pub(crate) fn request(&self, parts: &str) -> String {
+        let mut parts = parts.split('|').map(str::trim);
+        let mut head = format!("{} HTTP/1.1\r\n", parts.next().unwrap());
+        head.extend(parts.map(|header| format!("{header}\r\n")));
+        let mut stream = self.stream();
+        stream.write_all(format!("{head}\r\n").as_bytes()).unwrap();
+        let mut stream = BufReader::new(stream);
+        let mut answer = String::new();
+        let _ = stream.read_line(&mut answer);
+        if !answer.starts_with("HTTP/1.1 101") {
+            let _ = stream.read_to_string(&mut answer);
+        }
+        answer
     }
 
-    /// Opens a socket as the page does, or returns the HTTP status of the refusal.
-    pub(crate) fn try_page(&self) -> Result<Page, u16> {
-        let host = format!("127.0.0.1:{}", self.port);
-        let origin = format!("http://{host}");
-        self.socket(&host, Some(&origin), &self.token)
+    /// Opens a socket as the page does, if there is a place for it.
+    pub(crate) fn try_page(&self) -> Option<Page> {
+        let Self { host, token, .. } = self;
+        let uri = format!("ws://{host}/socket?token={token}").parse().unwrap();
+        let request =
+            ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{host}"));
+        let (socket, _) = tungstenite::client(request, self.stream()).ok()?;
+        let hello = Value::Null;
+        let mut page = Page { socket, hello };
+        page.hello = page.answer().0;
+        Some(page)
     }
 
     pub(crate) fn page(&self) -> Page {
         self.try_page().unwrap()
-    }
-
-    pub(crate) fn socket(
-        &self,
-        host: &str,
-        origin: Option<&str>,
-        token: &str,
-    ) -> Result<Page, u16> {
-        let mut request = Request::builder()
-            .uri(format!("ws://127.0.0.1:{}/socket?token={token}", self.port))
-            .header("Host", host)
-            .header("Connection", "Upgrade")
-            .header("Upgrade", "websocket")
-            .header("Sec-WebSocket-Version", "13")
-            .header("Sec-WebSocket-Key", generate_key());
-        if let Some(origin) = origin {
-            request = request.header("Origin", origin);
-        }
-        let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.set_nodelay(true).unwrap();
-        stream
-            .set_read_timeout(Some(Duration::from_secs(30)))
-            .unwrap();
-        match client(request.body(()).unwrap(), stream) {
-            Ok((socket, _)) => {
-                let mut page = Page {
-                    socket,
-                    hello: Value::Null,
-                };
-                page.hello = page.answer().0;
-                Ok(page)
-            }
-            Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(answer))) => {
-                Err(answer.status().as_u16())
-            }
-            Err(other) => panic!("{other}"),
-        }
     }
 }
 
@@ -133,8 +101,8 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    pub(crate) fn send(&mut self, text: &str) {
-        self.socket.send(Message::text(text)).unwrap();
+    pub(crate) fn send(&mut self, text: impl ToString) {
+        self.socket.send(Message::text(text.to_string())).unwrap();
     }
 
     /// The next answer: its head, and its picture.
@@ -147,11 +115,11 @@ impl Page {
 
     /// Asks for a picture with some fields of a question.
     pub(crate) fn ask(&mut self, fields: Value) -> (Value, Vec<u8>) {
-        self.send(&question(fields).to_string());
+        self.send(question(fields));
         self.answer()
     }
 
-    /// Reads on until the program closes the socket, and says why.
+    /// Reads until the program closes the socket, and returns the reason.
     pub(crate) fn closed(&mut self) -> Option<CloseCode> {
         loop {
             match self.socket.read() {
@@ -164,22 +132,18 @@ impl Page {
 }
 
 /// A question with some fields of its own.
-pub(crate) fn question(fields: Value) -> Value {
-    let mut question =
-        json!({ "seq": 1, "ask": "picture", "scene": 0, "size": [120, 90], "aa": 1 });
-    question
-        .as_object_mut()
-        .unwrap()
-        .extend(fields.as_object().unwrap().clone());
-    question
+pub(crate) fn question(mut fields: Value) -> Value {
+    let question = json!({ "seq": 1, "ask": "picture", "scene": 0, "size": [120, 90], "aa": 1 });
+    for (key, value) in question.as_object().unwrap() {
+        if fields[key].is_null() {
+            fields[key] = value.clone();
+        }
+    }
+    fields
 }
 
-/// Runs the program in the folder of the sources.
 pub(crate) fn shiftvox(line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
-    command.args(line.split(' '));
-    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    command.output().unwrap()
+    command(line).output().unwrap()
 }
 
 /// Draws the picture of a printed command: its bytes, and its hash.

@@ -9,40 +9,31 @@ use shiftvox::project::{Engine, EngineError, FrameSetup, SetupOptions};
 /// Makes an engine for a number of threads, 1 or more. The engine draws in a pool of that size.
 pub type MakeEngine = fn(usize) -> Box<dyn Engine + Send>;
 
-/// An engine by name.
 #[derive(Debug, Clone, Copy)]
 pub struct Candidate {
-    /// Its name in tables.
     pub name: &'static str,
-    /// One line about it.
     pub about: &'static str,
     /// The counter among its `Stats` that measures its work.
     pub work: &'static str,
     /// Whether it uses several threads; else it is measured on one.
     pub parallel: bool,
-    /// Makes it.
     pub make: MakeEngine,
 }
 
 /// The nodes that a traversal fetches, in its order, repeated as often as they are fetched.
 pub(super) type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
 
-/// How a contender gets its frames.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Frames {
-    /// The engine draws each frame.
     #[default]
     Drawn,
-    /// A viewer draws the first frame and keeps it.
     Kept,
     /// The engine draws each frame, and the attributes of all these nodes are read.
     WithAttributesOf(FetchedNodes),
 }
 
-/// An engine without one of its techniques.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
-    /// Its name in tables.
     pub name: &'static str,
     /// The technique that is off, and whether the picture may change.
     pub about: &'static str,
@@ -50,23 +41,16 @@ pub struct Variant {
     pub adjust: fn(&mut SetupOptions),
     /// Makes the engine, for techniques that the engine switches.
     pub make: MakeEngine,
-    /// How it gets its frames.
     pub frames: Frames,
 }
 
 /// An engine and the variants that are measured beside it.
 #[derive(Debug, Clone)]
 pub struct Family {
-    /// The engine with everything on.
     pub whole: Candidate,
-    /// One technique off at a time.
     pub variants: Vec<Variant>,
 }
 
-/// The nodes that the machine fetches for a frame.
-///
-/// # Errors
-/// When the machine cannot finish the frame.
 pub fn fetched_nodes(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
     struct Reads(Vec<u32>);
     impl Probe for Reads {

@@ -1,8 +1,7 @@
 //! Interleaved runs: each round draws one frame per contender.
 //!
-//! Drift during a measurement then affects all contenders, and none finds the caches as its own last
-//! frame left them. Buffers are made before the first frame. One more frame gives the counters and
-//! the picture. `spec/lab.md` defines a frame.
+//! Drift then affects all contenders, and none finds the caches as its own last frame left them. One
+//! more frame gives the counters and the picture. `spec/lab.md` defines a frame.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -18,10 +17,8 @@ use shiftvox::graph::{Graph, Progress};
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
 
-/// How often each contender draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schedule {
-    /// Frames before those that count.
     pub warmup: u32,
     /// Frames that count, 1 or more.
     pub runs: u32,
@@ -39,7 +36,6 @@ pub(super) struct Contender<'c> {
 
 pub(super) enum Drawer<'c> {
     Engine(Box<dyn Engine + Send>),
-    /// A viewer, which draws only frames that change.
     Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
@@ -119,34 +115,18 @@ pub(crate) fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
     })
 }
 
-/// An error of a measurement.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BenchError {
-    /// An engine did not finish its frame.
     #[error("{who}: {source}")]
-    Engine {
-        /// The contender.
-        who: String,
-        /// The engine's error.
-        source: EngineError,
-    },
-    /// A frame cannot be set up.
+    Engine { who: String, source: EngineError },
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// Samples make no picture.
     #[error(transparent)]
     Resolve(#[from] ResolveError),
-    /// A picture cannot be compared.
     #[error("{0}")]
     Picture(String),
-    /// The system gave no threads.
     #[error("cannot start {threads} threads: {reason}")]
-    Threads {
-        /// How many were requested.
-        threads: usize,
-        /// The system's reason.
-        reason: String,
-    },
+    Threads { threads: usize, reason: String },
 }
 
 /// A picture whose memory is touched before the first frame.
@@ -166,7 +146,6 @@ pub struct Harness<'p> {
 
 impl<'p> Harness<'p> {
     /// A harness; `progress` advances with every frame, between frames.
-    #[must_use]
     pub fn new(schedule: Schedule, progress: &'p dyn Progress) -> Self {
         Self {
             schedule,
@@ -275,70 +254,22 @@ fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::{Arc, Mutex};
-
     use super::*;
-    use shiftvox::graph::{GraphView, Silent};
-    use shiftvox::project::{Camera, SetupOptions};
-
-    struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
-
-    impl Engine for NameRecorder {
-        fn render(
-            &mut self,
-            _: &GraphView<'_>,
-            _: &FrameSetup,
-            frame: &mut Frame,
-        ) -> Result<Stats, EngineError> {
-            frame.clear();
-            frame.node[0] = 0;
-            let mut notes = self.1.lock().unwrap();
-            notes.push((self.0, rayon::current_num_threads()));
-            Ok(vec![("frames", notes.len() as u64)])
-        }
-    }
+    use shiftvox::graph::Silent;
 
     #[test]
-    fn contenders_take_turns_in_pools_of_their_own() {
-        let graph = crate::test_graphs::one_node(0, 0, [1, 2, 3]);
-        let camera = Camera {
-            eye: glam::DVec3::new(0.5, -3.0, 0.5),
-            target: glam::DVec3::splat(0.5),
-            up: glam::DVec3::Z,
-            fov_degrees: 60.0,
-            width: 4,
-            height: 2,
-        };
-        let setup =
-            FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default()).unwrap();
-        let notes = Arc::new(Mutex::new(Vec::new()));
-        let contender = |name: &'static str, threads| Contender {
-            name: name.to_owned(),
-            graph: &graph,
-            setup: setup.clone(),
-            threads,
-            drawer: Drawer::Engine(Box::new(NameRecorder(name, Arc::clone(&notes)))),
-            attributes: Vec::new(),
-        };
-        let mut contenders = [contender("a", 1), contender("b", 2)];
+    fn contenders_take_turns() {
+        let mut order = Vec::new();
         let schedule = Schedule { warmup: 1, runs: 2 };
-        let mut seen = Vec::new();
-        let measured = Harness::new(schedule, &Silent)
-            .race(&mut contenders, &mut |place, frame| {
-                seen.push((place, frame.drawn()));
+        let times = interleave(2, schedule, &Silent, &mut |place| {
+            order.push(place);
+            Ok::<_, ()>(Elapsed {
+                wall_ms: order.len() as f64,
+                thread_ms: None,
             })
-            .unwrap();
-        let round = [("a", 1), ("b", 2)];
-        assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
-        assert_eq!(seen, [(0, 1), (1, 1)]);
-        let [one, two] = &measured[..] else {
-            panic!("two contenders");
-        };
-        assert_eq!((one.0.wall.runs, two.0.wall.runs), (2, 2));
-        // Counters are those of the first frame, which is not timed; one
-        // thread's time is measured for one thread alone.
-        assert_eq!(two.1, [("frames", 2)]);
-        assert_eq!(two.0.thread, None);
-        assert_eq!(one.0.thread.is_some(), cfg!(unix));
+        });
+        assert_eq!(order, [0, 1, 0, 1, 0, 1]);
+        let medians = times.unwrap().into_iter().map(|of| of.wall.median_ms);
+        assert_eq!(medians.collect::<Vec<_>>(), [4.0, 5.0]);
     }
 }

@@ -1,7 +1,5 @@
 //! Frame times of engines, measured side by side.
-//!
-//! [`measure`] makes contenders of scenes, sizes, engines, switches and numbers of threads;
-//! [`Harness`] runs them interleaved. Engines are passed in as [`Candidate`]s: none is named here.
+//! Engines are passed in as [`Candidate`]s; [`Harness`] runs them interleaved.
 
 mod candidate;
 mod clock;

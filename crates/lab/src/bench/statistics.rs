@@ -6,7 +6,6 @@ use serde::Serialize;
 /// can only lengthen, `min` and `median` are better estimates than a mean.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Summary {
-    /// How many times there are.
     pub runs: usize,
     /// Least, milliseconds.
     pub min_ms: f64,
@@ -19,8 +18,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The statistics of some times in milliseconds; zeros for none.
-    #[must_use]
     pub fn of(times_ms: &[f64]) -> Self {
         let mut sorted = times_ms.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -55,14 +52,19 @@ mod tests {
 
     #[test]
     fn order_statistics() {
-        let odd = Summary::of(&[5.0, 1.0, 2.0]);
-        assert_eq!((odd.runs, odd.min_ms, odd.median_ms), (3, 1.0, 2.0));
-        // Deviations 3, 1, 0.
-        assert_eq!((odd.max_ms, odd.deviation_ms), (5.0, 1.0));
-        let even = Summary::of(&[10.0, 2.0, 4.0, 3.0]);
-        // Deviations 6.5, 1.5, 0.5, 0.5.
-        assert_eq!((even.median_ms, even.deviation_ms), (3.5, 1.0));
-        assert_eq!(Summary::of(&[7.0]).deviation_ms, 0.0);
-        assert_eq!(Summary::of(&[]), Summary::default());
+        for (times, expected) in [
+            // Deviations 3, 1, 0.
+            (&[5.0, 1.0, 2.0][..], [1.0, 2.0, 5.0, 1.0]),
+            // Deviations 6.5, 1.5, 0.5, 0.5.
+            (&[10.0, 2.0, 4.0, 3.0], [2.0, 3.5, 10.0, 1.0]),
+            (&[7.0], [7.0, 7.0, 7.0, 0.0]),
+            (&[], [0.0; 4]),
+        ] {
+            let of = Summary::of(times);
+            assert_eq!(
+                [of.min_ms, of.median_ms, of.max_ms, of.deviation_ms],
+                expected
+            );
+        }
     }
 }

@@ -13,22 +13,15 @@ use shiftvox::project::{Camera, Contents, FrameSetup, SetupOptions, Viewer};
 /// The variant of an engine with all of its techniques.
 pub const EVERYTHING_ON: &str = "everything on";
 
-/// A scene and its camera.
 #[derive(Debug)]
 pub struct Subject {
-    /// Its name in tables.
     pub name: String,
-    /// The scene.
     pub graph: Graph,
     /// The camera; its size in pixels is replaced.
     pub camera: Camera,
 }
 
 impl Subject {
-    /// The frame of a size.
-    ///
-    /// # Errors
-    /// When it cannot be set up.
     pub fn setup(
         &self,
         size: (u32, u32),
@@ -45,16 +38,13 @@ impl Subject {
     }
 }
 
-/// The contenders of each scene.
 #[derive(Debug, Clone, Copy)]
 pub struct TimePlan<'p> {
     /// Sizes of the picture, pixels across and down.
     pub sizes: &'p [(u32, u32)],
     /// Thread counts, each 1 or more. Engines that use one thread are measured on one.
     pub threads: &'p [usize],
-    /// Settings of the frames.
     pub options: SetupOptions,
-    /// The engines and their variants.
     pub families: &'p [Family],
     /// The engine whose picture is exact.
     pub reference: &'p Candidate,
@@ -62,9 +52,6 @@ pub struct TimePlan<'p> {
 
 /// Measures all contenders on all subjects in one race: a row for each. If sizes or subjects vary,
 /// the rows have the exponents of time and of work, in pixels or voxels.
-///
-/// # Errors
-/// When a frame cannot be set up or drawn, or there are no threads.
 pub fn measure(
     subjects: &[Subject],
     plan: &TimePlan<'_>,
@@ -256,8 +243,6 @@ fn add_exponents(rows: &mut [Row], growing: &'static str) {
     }
 }
 
-/// The most important columns, for people.
-#[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "scene size engine variant threads cpu_ms wall_ms wall_deviation_ms time_ratio exponent \
         voxels work work_unit work_exponent changed extra missing wrong_voxel";
@@ -266,7 +251,6 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
 
 /// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;
 /// other measurements are bars.
-#[must_use]
 pub fn panels(rows: &[Row]) -> Vec<Panel> {
     let is_one_plot = |a: &Row, b: &Row| {
         a.get("scene") == b.get("scene") || *a.get("growing") == Cell::from("voxels")
@@ -301,24 +285,20 @@ mod tests {
     fn exponents_are_those_of_each_contender() {
         let row = |(contender, side): (&str, u64)| {
             let mut row = Row::default();
-            let pixels = side * side;
             row.put("contender", contender);
-            row.put("pixels", pixels);
-            row.put("ms", if contender == "a" { pixels } else { 7 });
+            row.put("pixels", side * side);
+            row.put("ms", if contender == "a" { side * side } else { 7 });
             row.put("work", side);
             row
         };
-        let all = [("a", 64), ("b", 64), ("a", 128), ("b", 128), ("a", 256)];
-        let mut rows = all.map(row);
+        let mut rows = [("a", 64), ("b", 64), ("a", 128), ("b", 128), ("a", 256)].map(row);
         add_exponents(&mut rows, "pixels");
-        let exponents = |name: &str| rows.each_ref().map(|row| row.text(name));
-        assert_eq!(
-            exponents("exponent"),
-            ["1.000", "0.000", "1.000", "0.000", "1.000"]
-        );
-        assert_eq!(exponents("work_exponent"), ["0.500"; 5]);
         // Two points are on any law.
-        let squares = exponents("work_r_squared");
-        assert_eq!((squares[0].as_str(), squares[1].as_str()), ("1.0000", ""));
+        let found = rows.map(|row| {
+            let of = |name: &str| row.text(name);
+            [of("exponent"), of("work_exponent"), of("work_r_squared")]
+        });
+        let (a, b) = (["1.000", "0.500", "1.0000"], ["0.000", "0.500", ""]);
+        assert_eq!(found, [a, b, a, b, a]);
     }
 }

@@ -54,7 +54,6 @@ impl FloatStep {
     ];
 
     /// The kind in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::FloatAdd => "float add",

@@ -26,13 +26,11 @@ pub struct FloatRayCounts {
 
 impl FloatRayCounts {
     /// Steps of one kind.
-    #[must_use]
     pub fn of(&self, step: FloatStep) -> u64 {
         self.steps[step as usize]
     }
 
     /// Steps of one kind in the rays' longest chains.
-    #[must_use]
     pub fn waits(&self, step: FloatStep) -> u64 {
         self.waits[step as usize]
     }
@@ -44,7 +42,6 @@ impl FloatRayCounts {
     }
 
     /// All steps that are arithmetic, and not accesses to a memory.
-    #[must_use]
     pub fn arithmetic(&self) -> u64 {
         let of = |step: &FloatStep| self.of(*step);
         FloatStep::ALL[..=FloatStep::Shift as usize]
@@ -140,25 +137,41 @@ pub fn count(
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
     use crate::float_rays::FloatRays;
     use crate::measure::CoverageError;
+    use shiftvox::frame::NO_NODE;
     use shiftvox::graph::{Graph, Silent};
     use shiftvox::project::{Camera, Engine, SetupOptions};
+    use shiftvox::rays::Rays as Oracle;
     use shiftvox_mesh::open::{OpenOptions, open};
 
-    fn setup(spec: &str, camera: &Camera) -> (Graph, FrameSetup) {
-        let graph = open(spec, &OpenOptions::default(), &Silent).unwrap().graph;
+    /// Eye and target in sides of the object's cube.
+    fn scene(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, FrameSetup) {
+        let spec = format!("gen:{spec}");
+        let graph = open(&spec, &OpenOptions::default(), &Silent).unwrap().graph;
+        let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
+        let in_world = |at: [f64; 3]| low + DVec3::from_array(at) * f64::from(1u32 << graph.depth);
+        let camera = Camera {
+            eye: in_world(eye),
+            target: in_world(target),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: side,
+            height: side,
+        };
         let options = SetupOptions::default();
-        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap();
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
         (graph, setup)
     }
 
-    type Counted = (Frame, FloatRayCounts, Vec<RayRead>);
-
-    fn counted(graph: &Graph, setup: &FrameSetup, order: RayOrder, layout: NodeLayout) -> Counted {
+    fn counted(
+        (graph, setup): &(Graph, FrameSetup),
+        order: RayOrder,
+        layout: NodeLayout,
+    ) -> (Frame, FloatRayCounts, Vec<RayRead>) {
         let mut frame = Frame::new(setup.width, setup.height, false);
         let mut reads = Vec::new();
         let mut note = |read| reads.push(read);
@@ -166,26 +179,13 @@ mod tests {
         (frame, counts, reads)
     }
 
-    fn camera(eye: [f64; 3], target: [f64; 3], side: u32) -> Camera {
-        Camera {
-            eye: DVec3::from_array(eye),
-            target: DVec3::from_array(target),
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: side,
-            height: side,
-        }
-    }
-
     #[test]
     fn a_ray_that_misses_costs_its_set_up() {
         // All components of all four directions are below 0: nothing is mirrored.
-        let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
-        let (graph, setup) = setup("gen:sphere,depth=2", &camera);
-        let (frame, counts, _) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
+        let scene = scene("sphere,depth=2", [22.5, 20.0, 17.5], [17.5, 15.0, 12.5], 2);
+        let (frame, counts, _) = counted(&scene, RayOrder::Rows, NodeLayout::default());
         assert_eq!((frame.drawn(), counts.rays, counts.cells), (0, 4, 0));
-        let rays = 4;
-        // Steps, and those one after the other.
+        // Steps per ray, and those one after the other.
         for (step, steps, waits) in [
             // The inverse of three slopes.
             (FloatStep::FloatDivide, 3, 1),
@@ -200,49 +200,95 @@ mod tests {
             (FloatStep::AttributeRead, 0, 0),
         ] {
             let found = (counts.of(step), counts.waits(step));
-            assert_eq!(found, (steps * rays, waits * rays), "{step:?}");
+            assert_eq!(found, (steps * 4, waits * 4), "{step:?}");
         }
-        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
+        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * 4);
     }
 
     #[test]
-    fn it_draws_the_ray_caster_s_picture_and_tells_of_every_node() {
-        let camera = camera([100.0, -45.0, 80.0], [32.0, 32.0, 20.0], 128);
-        let (graph, setup) = setup("gen:terrain,depth=6", &camera);
-        let mut plain = Frame::new(128, 128, false);
-        let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
-        let (frame, counts, reads) = counted(&graph, &setup, RayOrder::Rows, NodeLayout::default());
-        let error = CoverageError::between(&frame.voxel, &plain.voxel);
-        assert!(error.covered > 1000 && error.differing() <= 8, "{error:?}");
-        let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
-        assert!(counts.cells.abs_diff(steps) * 100 < steps);
-        // Each ray that hits reads the attribute of its voxel.
-        let attributes = reads.iter().filter_map(|read| match read {
-            RayRead::Attribute(node) => Some(*node),
-            RayRead::Node(_) => None,
-        });
-        let shown = frame.node.iter().copied();
-        assert!(attributes.eq(shown.filter(|&node| node != shiftvox::frame::NO_NODE)));
-        let hits = frame.drawn() as u64;
-        assert_eq!(counts.of(FloatStep::AttributeRead), hits);
-        assert_eq!(counts.of(FloatStep::PixelWrite), hits);
-        let node_reads = counts.of(FloatStep::NodeRead);
-        assert_eq!(node_reads + hits, reads.len() as u64);
-        // A node that says which children are leaves saves each ray that hits the last read.
-        let masks = NodeLayout::new(&graph.view(), true, false);
-        let (same, with_masks, _) = counted(&graph, &setup, RayOrder::Rows, masks);
-        assert_eq!(same, frame);
-        assert_eq!(with_masks.of(FloatStep::NodeRead) + hits, node_reads);
-        // A chain is no longer than all steps of a kind.
-        for step in FloatStep::ALL {
-            assert!(counts.waits(step) <= counts.of(step), "{step:?}");
+    fn it_sees_what_the_oracle_sees() {
+        // All octants of direction, and far away.
+        let outside = [
+            ([1.6, -0.7, 1.25], [0.5, 0.5, 0.3]),
+            ([0.47, -0.95, 0.53], [0.475, 0.5, 0.475]),
+            ([-0.6, 1.4, -0.8], [0.5, 0.5, 0.5]),
+            ([1.3, 1.9, 0.6], [0.4, 0.5, 0.5]),
+            ([-1.3, -0.4, 1.6], [0.4, 0.5, 0.5]),
+            ([6.0, -14.0, 8.0], [0.5, 0.5, 0.4]),
+        ];
+        let inside = [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]].map(|eye| (eye, [0.9, 0.8, 0.3]));
+        // Odd sizes have a ray through the middle, here along an axis.
+        let along = [([0.7, -4.0, 0.6], [0.7, 0.0, 0.6])];
+        for (spec, side, views) in [
+            ("terrain,depth=8", 256, &outside[..]),
+            ("menger,depth=4", 256, &outside),
+            ("menger,depth=3", 256, &inside),
+            ("sierpinski,depth=9", 256, &inside),
+            ("sphere,depth=6", 256, &inside),
+            ("sphere,depth=1", 17, &along),
+        ] {
+            for &(eye, target) in views {
+                let scene = scene(spec, eye, target, side);
+                let (graph, setup) = &scene;
+                let mut exact = Frame::new(side, side, false);
+                let mut plain = exact.clone();
+                // It has no level of detail.
+                let whole = setup.without_detail();
+                Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+                let stats = FloatRays.render(&graph.view(), setup, &mut plain).unwrap();
+                let (frame, counts, _) = counted(&scene, RayOrder::Rows, NodeLayout::default());
+                for (drawn, one_of) in [(&plain, 5000), (&frame, 1500)] {
+                    let error = CoverageError::between(&drawn.voxel, &exact.voxel);
+                    let is_near = error.covered > 0 && error.differing() * one_of <= error.pixels;
+                    assert!(is_near, "{spec} from {eye:?}: {error:?}");
+                }
+                let mut samples = plain.voxel.iter().zip(&plain.node);
+                assert!(samples.all(|(voxel, node)| (voxel[3] < 0) == (*node == NO_NODE)));
+                assert_eq!(stats[1], ("samples_drawn", plain.drawn() as u64));
+                let steps = stats[2].1;
+                assert!(steps < 200 * u64::from(side * side), "{stats:?}");
+                assert!(counts.cells.abs_diff(steps) * 100 < steps);
+            }
         }
-        // The other orders draw the same, but for roundings.
-        for order in [RayOrder::Tiles, RayOrder::Morton] {
-            let (frame, other, _) = counted(&graph, &setup, order, NodeLayout::default());
-            assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
-            assert_eq!(other.rays, counts.rays);
-            assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());
+    }
+
+    #[test]
+    fn every_read_is_reported_in_every_order() {
+        let scene = scene("terrain,depth=6", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3], 128);
+        let masks = NodeLayout::new(&scene.0.view(), true, false);
+        let mut first: Option<(Frame, u64)> = None;
+        for order in RayOrder::ALL {
+            let (frame, counts, reads) = counted(&scene, order, NodeLayout::default());
+            // Each ray that hits reads the attribute of its voxel.
+            let attributes = reads.iter().filter_map(|read| match read {
+                RayRead::Attribute(node) => Some(*node),
+                RayRead::Node(_) => None,
+            });
+            let mut attributes: Vec<u32> = attributes.collect();
+            let shown = frame.node.iter().copied().filter(|&node| node != NO_NODE);
+            let mut shown: Vec<u32> = shown.collect();
+            attributes.sort_unstable();
+            shown.sort_unstable();
+            assert_eq!(attributes, shown);
+            let (hits, node_reads) = (shown.len() as u64, counts.of(FloatStep::NodeRead));
+            assert_eq!(counts.of(FloatStep::AttributeRead), hits);
+            assert_eq!(counts.of(FloatStep::PixelWrite), hits);
+            assert_eq!(
+                (counts.rays, node_reads + hits),
+                (128 * 128, reads.len() as u64)
+            );
+            // A node that says which children are leaves saves each ray that hits the last read.
+            let (same, with_masks, _) = counted(&scene, order, masks);
+            assert_eq!(same, frame);
+            assert_eq!(with_masks.of(FloatStep::NodeRead) + hits, node_reads);
+            // A chain is no longer than all steps of a kind.
+            let mut steps = FloatStep::ALL.into_iter();
+            assert!(steps.all(|step| counts.waits(step) <= counts.of(step)));
+            // All orders draw the same, but for roundings.
+            let (rows, all) = first.get_or_insert((frame.clone(), counts.arithmetic()));
+            let error = CoverageError::between(&frame.voxel, &rows.voxel);
+            assert!(error.covered > 1000 && error.differing() <= 8, "{error:?}");
+            assert!(counts.arithmetic().abs_diff(*all) * 100 < *all);
         }
     }
 }

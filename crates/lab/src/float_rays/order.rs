@@ -22,7 +22,6 @@ impl RayOrder {
     pub const ALL: [Self; 3] = [Self::Rows, Self::Tiles, Self::Morton];
 
     /// The order in words.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rows => "rows",
@@ -79,30 +78,23 @@ fn even_bits(number: u64) -> u32 {
 mod tests {
     use super::*;
 
-    fn order(of: RayOrder, width: u32, height: u32) -> Vec<(u32, u32)> {
-        let mut visited = Vec::new();
-        of.for_each(width, height, |i, j| visited.push((i, j)));
-        visited
-    }
-
     #[test]
     fn every_sample_once() {
-        let all = order(RayOrder::Rows, 19, 13);
-        for (at, &(i, j)) in all.iter().enumerate() {
-            assert_eq!((i + 19 * j) as usize, at);
-        }
-        assert_eq!(all.len(), 19 * 13);
+        let order = |of: RayOrder, width, height| {
+            let mut visited = Vec::new();
+            of.for_each(width, height, |i, j| visited.push((i, j)));
+            visited
+        };
+        let all: Vec<_> = (0..19 * 13).map(|at| (at % 19, at / 19)).collect();
+        assert_eq!(order(RayOrder::Rows, 19, 13), all);
         for of in [RayOrder::Tiles, RayOrder::Morton] {
             let mut visited = order(of, 19, 13);
             visited.sort_unstable_by_key(|&(i, j)| (j, i));
             assert_eq!(visited, all, "{of:?}");
         }
-        let at = |of, place: usize| order(of, 16, 16)[place];
-        assert_eq!(
-            [9, 64].map(|place| at(RayOrder::Tiles, place)),
-            [(1, 1), (8, 0)]
-        );
+        let tiles = order(RayOrder::Tiles, 16, 16);
+        assert_eq!((tiles[9], tiles[64]), ((1, 1), (8, 0)));
         // 13 is 0b1101: bits 0 and 2 are the column 0b11, bits 1 and 3 the row 0b10.
-        assert_eq!(at(RayOrder::Morton, 13), (3, 2));
+        assert_eq!(order(RayOrder::Morton, 16, 16)[13], (3, 2));
     }
 }

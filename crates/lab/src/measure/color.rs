@@ -9,12 +9,7 @@ pub type Colors<'p> = (u32, u32, &'p [[u8; 4]]);
 /// Two pictures of different sizes, which cannot be compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the pictures differ in size: {}x{} and {}x{}", .0.0, .0.1, .1.0, .1.1)]
-pub struct SizeError(
-    /// Width and height of the first.
-    pub (u32, u32),
-    /// Width and height of the second.
-    pub (u32, u32),
-);
+pub struct SizeError(pub (u32, u32), pub (u32, u32));
 
 /// How far the colours of two pictures are apart.
 ///
@@ -22,9 +17,7 @@ pub struct SizeError(
 /// black background: red, green and blue, each times alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColorError {
-    /// Pixels of a picture.
     pub pixels: u64,
-    /// Pixels with any difference.
     pub differing: u64,
     /// Largest difference of a channel, 0..=255.
     pub max_abs: u8,
@@ -44,9 +37,6 @@ pub struct ColorError {
 
 impl ColorError {
     /// Compares two pictures of the same size.
-    ///
-    /// # Errors
-    /// When the sizes differ.
     pub fn between(a: Colors<'_>, b: Colors<'_>) -> Result<Self, SizeError> {
         check_sizes(a, b)?;
         let linear = Linear::tables();
@@ -92,9 +82,6 @@ impl ColorError {
 
 /// A picture of where two pictures differ: each channel's absolute difference
 /// (alpha's is added to all three), four times as bright, on opaque black.
-///
-/// # Errors
-/// When the sizes differ.
 pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeError> {
     check_sizes(a, b)?;
     let pixel = |(p, q): (&[u8; 4], &[u8; 4])| {
@@ -106,8 +93,10 @@ pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeErro
 }
 
 fn check_sizes(a: Colors<'_>, b: Colors<'_>) -> Result<(), SizeError> {
-    let (a, b) = ((a.0, a.1), (b.0, b.1));
-    (a == b).then_some(()).ok_or(SizeError(a, b))
+    let are_same = (a.0, a.1, a.2.len()) == (b.0, b.1, b.2.len());
+    are_same
+        .then_some(())
+        .ok_or(SizeError((a.0, a.1), (b.0, b.1)))
 }
 
 fn decibel(mse: f64) -> f64 {
@@ -132,44 +121,32 @@ fn luma(rgba: &[[u8; 4]]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn grey() -> Vec<[u8; 4]> {
-        vec![[100, 100, 100, 255]; 4]
-    }
-
     #[test]
-    fn one_channel_of_one_pixel() {
-        let a = grey();
-        let same = ColorError::between((2, 2, &a), (2, 2, &a)).unwrap();
-        assert_eq!((same.differing, same.max_abs), (0, 0));
-        assert_eq!(
-            (same.psnr_srgb, same.psnr_linear),
-            (f64::INFINITY, f64::INFINITY)
-        );
-        let mut b = a.clone();
+    fn pictures_worked_out_by_hand() {
+        let a = [[100, 100, 100, 255]; 4];
+        let mut b = a;
         b[2][1] = 151;
-        let error = ColorError::between((2, 2, &a), (2, 2, &b)).unwrap();
+        let between = |a: &[_], b: &[_]| ColorError::between((2, 2, a), (2, 2, b));
+        let error = between(&a, &b).unwrap();
         assert_eq!((error.differing, error.max_abs), (1, 51));
-        assert!((error.mean_abs - 51.0 / 12.0).abs() < 1e-12);
-        assert!((error.mse_srgb - 0.04 / 12.0).abs() < 1e-12);
-        // -10 log10(0.04 / 12)
-        assert!((error.psnr_srgb - 24.771_212_547).abs() < 1e-8);
         // Linear light of 100 and 151 by the sRGB standard: 0.127438 and 0.309469.
-        let expected = (0.309_469f64 - 0.127_438).powi(2) / 12.0;
-        assert!((error.mse_linear / expected - 1.0).abs() < 1e-3);
-        assert!(error.ssim < 1.0);
+        let linear = (0.309_469f64 - 0.127_438).powi(2) / 12.0;
+        for (found, expected, off) in [
+            (error.mean_abs, 51.0 / 12.0, 1e-12),
+            (error.mse_srgb, 0.04 / 12.0, 1e-12),
+            // -10 log10(0.04 / 12)
+            (error.psnr_srgb, 24.771_212_547, 1e-8),
+            (error.mse_linear, linear, 1e-3 * linear),
+            (error.ssim, 0.5, 0.4999),
+        ] {
+            assert!((found - expected).abs() < off, "{found}, {expected}");
+        }
         let apart = difference((2, 2, &a), (2, 2, &b)).unwrap();
         assert_eq!((apart[2], apart[0]), ([0, 204, 0, 255], [0, 0, 0, 255]));
-        let error = ColorError::between((2, 2, &a), (4, 1, &a)).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "the pictures differ in size: 2x2 and 4x1"
-        );
-    }
-
-    #[test]
-    fn invisible_colours_count_as_differing_only() {
-        let error =
-            ColorError::between((1, 1, &[[9, 9, 9, 0]]), (1, 1, &[[200, 9, 9, 0]])).unwrap();
-        assert_eq!((error.differing, error.mse_srgb), (1, 0.0));
+        // Invisible colours count as differing only.
+        let error = between(&[[200, 9, 9, 0]; 4], &[[9, 9, 9, 0]; 4]).unwrap();
+        assert_eq!((error.differing, error.psnr_linear), (4, f64::INFINITY));
+        assert!(ColorError::between((2, 2, &a), (4, 1, &a)).is_err());
+        assert!(between(&a, &a[..3]).is_err());
     }
 }

@@ -2,16 +2,11 @@
 
 use serde::Serialize;
 
-/// How far a voxel buffer is from that of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct CoverageError {
-    /// Pixels of a picture.
     pub pixels: u64,
-    /// Pixels that show something in the reference.
     pub covered: u64,
-    /// Pixels that show something although the reference does not.
     pub extra: u64,
-    /// Pixels that show nothing although the reference does.
     pub missing: u64,
     /// Pixels that show something in both, but another voxel or level.
     pub wrong_voxel: u64,
@@ -20,7 +15,6 @@ pub struct CoverageError {
 impl CoverageError {
     /// Compares two voxel buffers: index and level of each pixel, level -1 for nothing.
     /// Buffers of different lengths are compared as far as both go.
-    #[must_use]
     pub fn between(test: &[[i32; 4]], reference: &[[i32; 4]]) -> Self {
         let mut error = Self::default();
         for (t, r) in test.iter().zip(reference) {
@@ -36,8 +30,6 @@ impl CoverageError {
         error
     }
 
-    /// Pixels that differ in any way.
-    #[must_use]
     pub fn differing(&self) -> u64 {
         self.extra + self.missing + self.wrong_voxel
     }
@@ -66,37 +58,25 @@ pub fn count_differing<T: PartialEq>(a: &[T], b: &[T]) -> u64 {
 mod tests {
     use super::*;
 
-    const NONE: [i32; 4] = [0, 0, 0, -1];
-
     #[test]
     fn each_kind_of_error() {
+        const NONE: [i32; 4] = [0, 0, 0, -1];
         let (v, w) = ([1, 2, 3, 4], [1, 2, 3, 5]);
-        let error = CoverageError::between(&[v, v, NONE, NONE, v], &[v, w, v, NONE, NONE]);
-        let expected = CoverageError {
-            pixels: 5,
-            covered: 3,
-            extra: 1,
-            missing: 1,
-            wrong_voxel: 1,
-        };
-        assert_eq!((error, error.differing()), (expected, 3));
+        let of = CoverageError::between(&[v, v, NONE, NONE, v], &[v, w, v, NONE, NONE]);
+        let found = [of.pixels, of.covered, of.extra, of.missing, of.wrong_voxel];
+        assert_eq!((found, of.differing()), ([5, 3, 1, 1, 1], 3));
         assert_eq!(count_differing(&[1, 2, 3], &[1, 5]), 2);
-    }
-
-    #[test]
-    fn a_coarser_voxel_in_its_place_is_not_elsewhere() {
-        let fine = [5, 6, 7, 3];
-        // Of a depth of 3: level 2 holds two voxels a side.
-        let reference = [fine, fine, fine, fine, NONE, fine, fine];
-        let test = [
-            fine,
+        // A coarser voxel in its place is not elsewhere. Of a depth of 3: level 2 holds two voxels a side.
+        let tests = [
+            [5, 6, 7, 3],
             [4, 6, 6, 2],
             [0, 6, 6, 2],
             [5, 6, 6, 3],
-            fine,
             [0; 4],
             NONE,
         ];
-        assert_eq!(count_elsewhere(&test, &reference, 3), 2);
+        let elsewhere = tests.map(|test| count_elsewhere(&[test], &[tests[0]], 3));
+        assert_eq!(elsewhere, [0, 0, 1, 1, 0, 0]);
+        assert_eq!(count_elsewhere(&[v], &[NONE], 3), 0);
     }
 }

@@ -16,8 +16,13 @@ pub(crate) fn light_of(rgba: &[[u8; 4]]) -> Light {
 /// Flicker of a film `T` against a reference film `R` of the same moments: the root of the mean
 /// square, over pixels, channels and frames, of `(T_t - T_(t-1)) - (R_t - R_(t-1))`. Also that of
 /// the worst step. A steady error does not flicker, and neither does what moves as the reference
-/// moves.
-pub(crate) fn flicker(film: &[Light], truth: &[Light]) -> (f64, f64) {
+/// moves. `None` for films of different lengths or sizes.
+pub(crate) fn flicker(film: &[Light], truth: &[Light]) -> Option<(f64, f64)> {
+    let pixels = truth.first().map_or(0, Vec::len);
+    let has_size = |picture: &Light| picture.len() == pixels;
+    if film.len() != truth.len() || !film.iter().chain(truth).all(has_size) {
+        return None;
+    }
     let steps: Vec<f64> = film
         .windows(2)
         .zip(truth.windows(2))
@@ -25,7 +30,7 @@ pub(crate) fn flicker(film: &[Light], truth: &[Light]) -> (f64, f64) {
         .collect();
     let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
     let worst = steps.into_iter().fold(0.0, f64::max);
-    (libm::sqrt(mean), libm::sqrt(worst))
+    Some((libm::sqrt(mean), libm::sqrt(worst)))
 }
 
 fn mean_square([test, reference]: [[&Light; 2]; 2]) -> f64 {
@@ -46,33 +51,33 @@ fn mean_square([test, reference]: [[&Light; 2]; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    fn film(frames: &[(f32, f32)]) -> (f64, f64) {
-        let grey = |value| vec![[value; 3]; 2];
-        let (test, truth): (Vec<_>, Vec<_>) =
-            frames.iter().map(|&(t, r)| (grey(t), grey(r))).unzip();
-        flicker(&test, &truth)
+    fn film<const N: usize>(frames: [f32; N]) -> Vec<Light> {
+        frames.map(|value| vec![[value; 3]; 2]).into()
     }
 
     #[test]
     fn what_changes_alone_flickers() {
-        let root_half = libm::sqrt(0.5);
-        for (frames, expected) in [
-            // Steady errors and true motion do not.
-            (&[(0.5, 0.25), (0.5, 0.25), (0.5, 0.25)][..], (0.0, 0.0)),
-            (&[(0.5, 0.25), (0.75, 0.5)], (0.0, 0.0)),
-            (&[(0.5, 0.0)], (0.0, 0.0)),
-            (&[(0.0, 0.5), (1.0, 0.5), (1.0, 0.5)], (root_half, 1.0)),
-            (&[(0.5, 0.0), (0.5, 1.0)], (1.0, 1.0)),
-        ] {
-            assert_eq!(film(frames), expected, "{frames:?}");
-        }
-        // One channel of two pixels, by a quarter.
+        let both = |value| Some((value, value));
         let black = vec![[0.0; 3]; 2];
-        let mut moved = black.clone();
-        moved[1][2] = 0.25;
-        let truth = [black.clone(), black.clone()];
-        let found = flicker(&[black, moved], &truth).0;
-        assert!((found - 0.25 / libm::sqrt(6.0)).abs() < 1e-12);
+        let one_channel = vec![[0.0; 3], [0.0, 0.0, 0.75]];
+        for (test, truth, expected) in [
+            // Steady errors and true motion do not.
+            (film([0.5, 0.5, 0.5]), film([0.25, 0.25, 0.25]), both(0.0)),
+            (film([0.5, 0.75]), film([0.25, 0.5]), both(0.0)),
+            (film([0.5]), film([0.0]), both(0.0)),
+            (film([0.5, 0.5]), film([0.0, 1.0]), both(1.0)),
+            (film([0., 1., 1., 1., 1.]), film([0.5; 5]), Some((0.5, 1.0))),
+            // A sixth of the numbers.
+            (
+                vec![black, one_channel],
+                film([0.0, 0.0]),
+                both(libm::sqrt(0.5625 / 6.0)),
+            ),
+            (film([0.5]), film([0.5, 0.5]), None),
+            (vec![vec![]; 2], film([0.5, 0.5]), None),
+        ] {
+            assert_eq!(flicker(&test, &truth), expected, "{test:?}");
+        }
     }
 
     #[test]

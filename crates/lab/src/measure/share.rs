@@ -19,7 +19,6 @@ impl ShareError {
         self.of_area(self.signed)
     }
 
-    /// Excess plus lack, as a part of the area.
     pub(crate) fn relative(&self) -> f64 {
         self.of_area(self.absolute)
     }
@@ -61,10 +60,8 @@ impl CoverageBias {
 /// Whether a pixel shows a thing that is thinner than a pixel: it is covered in part, and none of its
 /// eight neighbours is covered in full.
 ///
-/// A pixel on a straight outline has a fully covered neighbour on the inner side. So has a pixel at a
-/// corner of a right angle or more. A wire thinner than a pixel has none, wherever it lies. (Empty
-/// neighbours on both sides would be too strict: a wire can touch two rows.) Structures that are
-/// porous below a pixel count as thin, too.
+/// A pixel on an outline or at a corner has a fully covered neighbour on the inner side. A wire thinner
+/// than a pixel has none.
 fn is_thin((width, shares): Shares<'_>, at: usize) -> bool {
     let here = shares[at];
     if here <= 0.0 || here >= 1.0 {
@@ -90,28 +87,27 @@ mod tests {
             ([0.0; 4], -1.25, 1.25),
         ] {
             let all = CoverageBias::between(&test, (4, &reference)).all;
-            assert_eq!(
-                (all.area, all.signed, all.absolute),
-                (1.25, signed, absolute)
-            );
-            let expected = (signed / 1.25, absolute / 1.25);
-            assert_eq!((all.bias(), all.relative()), expected);
+            let found = (all.area, all.bias(), all.relative());
+            assert_eq!(found, (1.25, signed / 1.25, absolute / 1.25));
         }
         assert_eq!(ShareError::default().bias(), 0.0);
     }
 
     #[test]
     fn wires_are_thin_and_rims_are_not() {
-        // A wire down the second column, one across a border of columns, and a
-        // block from the eighth on with a rim covered by half.
+        let thin = |width: usize, shares: &[f32]| -> Vec<usize> {
+            let is = |at: &usize| is_thin((width, shares), *at);
+            (0..shares.len()).filter(is).collect()
+        };
+        // A wire down the second column, one across a border of columns, and a block from the eighth on
+        // with a rim covered by half.
         let row = [0.0, 0.3, 0.0, 0.6, 0.2, 0.0, 0.0, 0.5, 1.0, 1.0];
-        let shares: Vec<f32> = [[0.0; 10], row, row].concat();
-        let is = |at: &usize| is_thin((10, &shares), *at);
-        let thin: Vec<usize> = (0..shares.len()).filter(is).collect();
-        assert_eq!(thin, [11, 13, 14, 21, 23, 24]);
+        assert_eq!(
+            thin(10, &[[0.0; 10], row, row].concat()),
+            [11, 13, 14, 21, 23, 24]
+        );
         // The corner of a block is not thin: its inner neighbour is full.
-        let corner = [0.0, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0, 0.5, 1.0];
-        assert!((0..9).all(|at| !is_thin((3, &corner), at)));
+        assert!(thin(3, &[0.0, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0, 0.5, 1.0]).is_empty());
         // Errors on thin pixels are counted by themselves.
         let bias = CoverageBias::between(&[0., 1., 0., 0.5, 0.], (5, &[0., 0.25, 0., 0.5, 1.]));
         assert_eq!((bias.thin.bias(), bias.all.signed), (3.0, -0.25));

@@ -28,7 +28,6 @@ pub struct UnitDelay {
 }
 
 impl UnitDelay {
-    #[must_use]
     pub fn meets(&self) -> bool {
         self.depth >= self.depth_needed
     }
@@ -47,7 +46,6 @@ impl ClockCheck {
         self.units.iter().filter(|unit| !unit.meets())
     }
 
-    #[must_use]
     pub fn sentence(&self) -> String {
         let period = self.period_ps / 1e3;
         let told = |unit: &UnitDelay| {
@@ -129,39 +127,39 @@ fn compare(
 mod tests {
     use super::*;
 
-    fn of(clock_mhz: f64, latency: u32, width: u32) -> ClockCheck {
-        let mut hardware = Hardware::preset("paper").unwrap();
-        hardware.clock_mhz = clock_mhz;
-        hardware.stages.clear();
-        let add = hardware.units.get_mut(&OpClass::Add).unwrap();
-        (add.latency, add.width) = (latency, width);
-        let table = CostTable::load_shipped().unwrap();
-        let used = [
-            (Stage::Centre, OpClass::Add),
-            (Stage::Centre, OpClass::Shift),
-        ];
-        compare(used, &hardware, &table, Goal::Area).unwrap()
-    }
-
-    /// The row: an adder of 32 bits takes 4680.73 ps. Shifts are wires.
+    /// In the table, an adder of 32 bits takes 4680.73 ps. Shifts are wires.
     #[test]
-    fn by_hand() {
-        let slow = of(200.0, 0, 32);
-        assert_eq!((slow.period_ps, slow.units.len()), (5000.0, 1));
-        assert!(slow.units[0].meets());
-        assert!(slow.sentence().starts_with("no unit's gates are too slow"));
-        // 2 ns: three steps, 6 ns, hold it; two do not.
-        let fast = of(500.0, 1, 32);
-        assert_eq!((fast.units[0].depth, fast.units[0].depth_needed), (2, 3));
-        assert_eq!(
-            fast.sentence(),
-            "too slow, even without wires: add of 32 bits in centre \
-             (4.68 ns in 2 x 2.00 ns; a pipeline 3 deep would)"
-        );
-        assert!((fast.fastest_mhz - 2e6 / 4680.73).abs() < 1e-9);
-        assert_eq!(of(500.0, 2, 32).misses().count(), 0);
-        // Between two rows: 33 bits.
+    fn adders_by_hand() {
+        // Between two rows.
         let wide = 4680.73 + (6558.27 - 4680.73) / 16.0;
-        assert!((of(500.0, 2, 33).units[0].delay_ps - wide).abs() < 1e-9);
+        for (clock_mhz, latency, width, delay_ps, needed) in [
+            (200.0, 0, 32, 4680.73, 1),
+            // Three steps of 2 ns hold it, two do not.
+            (500.0, 1, 32, 4680.73, 3),
+            (500.0, 2, 32, 4680.73, 3),
+            (500.0, 2, 33, wide, 3),
+        ] {
+            let mut hardware = Hardware::preset("paper").unwrap();
+            hardware.clock_mhz = clock_mhz;
+            hardware.stages.clear();
+            let add = hardware.units.get_mut(&OpClass::Add).unwrap();
+            (add.latency, add.width) = (latency, width);
+            let table = CostTable::load_shipped().unwrap();
+            let used = [OpClass::Add, OpClass::Shift].map(|class| (Stage::Centre, class));
+            let check = compare(used, &hardware, &table, Goal::Area).unwrap();
+            let [unit] = &check.units[..] else {
+                panic!("{check:?}");
+            };
+            assert!((unit.delay_ps - delay_ps).abs() < 1e-9, "{unit:?}");
+            let depth = latency + 1;
+            assert_eq!((unit.depth, unit.depth_needed), (depth, needed));
+            assert_eq!(check.misses().count(), usize::from(depth < needed));
+            let says_slow = check
+                .sentence()
+                .contains("add of 32 bits in centre (4.68 ns");
+            assert_eq!(says_slow, depth < needed, "{}", check.sentence());
+            let fastest = f64::from(depth) * 1e6 / delay_ps;
+            assert!((check.fastest_mhz - fastest).abs() < 1e-9, "{check:?}");
+        }
     }
 }

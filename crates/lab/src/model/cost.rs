@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
+    Breakdown, CostError, CostTable, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
@@ -21,7 +21,7 @@ use shiftvox::project::FrameSetup;
 #[derive(Debug, Clone)]
 pub struct Prices {
     pub table: CostTable,
-    pub costing: Costing,
+    pub shifts: ShiftUnits,
     pub goal: Goal,
 }
 
@@ -30,13 +30,12 @@ impl Prices {
     pub fn shipped() -> Result<Self, CostError> {
         Ok(Self {
             table: CostTable::load_shipped()?,
-            costing: Costing::default(),
+            shifts: ShiftUnits::Wires,
             goal: Goal::Area,
         })
     }
 }
 
-/// The energy of a frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrameCost {
     pub operations: Breakdown,
@@ -46,7 +45,6 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    #[must_use]
     pub fn total(&self) -> Range {
         let parts = [&self.operations, &self.on_chip, &self.outer];
         let parts = parts.into_iter().map(Range::from);
@@ -54,13 +52,11 @@ impl FrameCost {
     }
 }
 
-#[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
 }
 
 /// Bits of the accumulators of a frame: none where no voxel is blended.
-#[must_use]
 pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
     if !setup.options.coverage.blends() {
         return 0;
@@ -79,7 +75,6 @@ pub struct OuterTraffic {
 }
 
 impl OuterTraffic {
-    #[must_use]
     pub fn bits(&self) -> u64 {
         self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
     }
@@ -182,8 +177,8 @@ pub fn operations_energy(
     shifts: &ShiftProbe,
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
-    let mut sum = energy_of(counter, &prices.table, prices.costing)?;
-    if prices.costing.shifts == ShiftUnits::Wires {
+    let mut sum = energy_of(counter, &prices.table, prices.shifts)?;
+    if prices.shifts == ShiftUnits::Wires {
         let mut by_bits = BTreeMap::<u32, u64>::new();
         for ((_, bits), times) in shifts.variable() {
             *by_bits.entry(bits).or_default() += times;
@@ -199,12 +194,12 @@ pub fn operations_energy(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwmodel::{Datapath, Format, OpClass, Overflow, Stage};
+    use hwmodel::memory::RecordBits;
+    use hwmodel::{Datapath, Format, Overflow, Probe, Stage, StageLevel};
 
     /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
     #[test]
     fn shifts_that_vary_are_billed_and_wires_are_not() {
-        let prices = Prices::shipped().unwrap();
         let mut probes = (Counter::new(), ShiftProbe::new());
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);
@@ -215,14 +210,12 @@ mod tests {
             dp.shr(word, places); // a shifter
         }
         dp.add(word, word);
-        let (counter, shifts) = probes;
-        assert_eq!(counter.ops_of(OpClass::Shift), 10);
-        for (shifts_are, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
+        for (shifts, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
             let prices = Prices {
-                costing: Costing { shifts: shifts_are },
-                ..prices.clone()
+                shifts,
+                ..Prices::shipped().unwrap()
             };
-            let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+            let sum = operations_energy(&probes.0, &probes.1, &prices).unwrap();
             let expected = 0.1 + billed * 0.1334;
             assert!((sum.total - expected).abs() < 1e-9, "{}", sum.total);
         }
@@ -231,16 +224,12 @@ mod tests {
     /// 64 bits from 8 KB are 10 pJ, and so is writing them.
     #[test]
     fn records_move_the_bits_that_they_hold() {
-        use hwmodel::memory::RecordBits;
-        use hwmodel::{Probe, StageLevel};
-        let table = CostTable::load_shipped().unwrap();
-        let bits = RecordBits {
+        let mut records = RecordProbe::new(RecordBits {
             clip: 640,
             screen: 320,
             finest: 64,
             finest_level: Some(1),
-        };
-        let mut records = RecordProbe::new(bits);
+        });
         let place = StageLevel {
             stage: Stage::Push,
             level: 0,
@@ -253,30 +242,8 @@ mod tests {
         }
         records.record(1, 1);
         records.read(Memory::Stack, 2, place);
-        let sum = stack_energy(&records, 8192, &table).unwrap();
+        let sum = stack_energy(&records, 8192, &CostTable::load_shipped().unwrap()).unwrap();
         // Of the object 100 pJ twice; of the voxels 10 pJ three times and once.
         assert!((sum.total - (200.0 + 40.0)).abs() < 1e-9, "{}", sum.total);
-    }
-
-    /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.
-    #[test]
-    fn a_spilled_record_is_written_and_read() {
-        let table = CostTable::load_shipped().unwrap();
-        let traffic = OuterTraffic {
-            node_bits: 512,
-            attribute_bits: 0,
-            spilled_bits: 936,
-            pixel_bits: 24,
-        };
-        // A line has 8 words, the spilled record 15 out and 15 back, the pixel 1.
-        let sum = outer_energy(&traffic, &table).unwrap();
-        assert!((sum.total - (8.0 + 15.0 + 15.0 + 1.0) * 1950.0).abs() < 1e-6);
-        assert!((sum.low - 39.0 * 1300.0).abs() < 1e-6);
-        assert_eq!(traffic.bits(), 512 + 2 * 936 + 24);
-        let of = |name: &str| -> u64 {
-            let lines = sum.lines.iter().filter(|line| line.name == name);
-            lines.map(|line| line.times).sum()
-        };
-        assert_eq!(of("spilled records"), 30);
     }
 }

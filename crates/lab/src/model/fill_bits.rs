@@ -16,7 +16,6 @@ fn fill_levels(setup: &FrameSetup, organisation: Organisation) -> (u32, bool) {
     (above, joined)
 }
 
-#[must_use]
 pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
     match fill_levels(setup, organisation).1 {
         true => JOINED_FILL_BITS,
@@ -26,7 +25,6 @@ pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
 
 /// Bits of the fill vectors on the chip: of the picture or, if it is drawn by tiles, of one tile per context. A context
 /// begins a tile only if no record of its lane is ready. Lanes that steal work may have a few more tiles in progress.
-#[must_use]
 pub fn fill_store_bits(setup: &FrameSetup, hardware: &Hardware) -> u64 {
     let (above, joined) = fill_levels(setup, hardware.organisation);
     let levels = setup.levels - above;

@@ -111,21 +111,18 @@ pub fn floor(
 mod tests {
     use super::*;
     use hwmodel::cycles::Organisation;
-
     use shiftvox::graph::{BuildOptions, Builder, Silent, Voxel};
 
     /// Two voxels of opposite corners, depth 2: the root, two nodes below it, two voxels.
     #[test]
     fn two_voxels_by_hand() {
         let mut builder = Builder::new(BuildOptions::default());
-        for at in [[0, 0, 0], [3, 3, 3]] {
-            builder.push(Voxel {
-                index: at,
-                ..Voxel::default()
-            });
-        }
+        builder.push(Voxel::default());
+        builder.push(Voxel {
+            index: [3; 3],
+            ..Voxel::default()
+        });
         let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
-        assert_eq!((graph.depth, graph.len()), (2, 5));
         let mut frame = Frame::new(2, 1, false);
         frame.node = vec![3, 4];
         frame.voxel = vec![[0, 0, 0, 2], [3, 3, 3, 2]];
@@ -134,30 +131,25 @@ mod tests {
             hardware.node_cache.line_bytes,
             hardware.attribute_cache.line_bytes,
         ) = (16, 8);
-        let table = CostTable::load_shipped().unwrap();
-        let of = |organisation: Organisation| {
-            let hardware = Hardware {
-                organisation,
-                ..hardware.clone()
+        for (leaf_masks, bricks, node_lines) in [
+            // Nodes 0 to 4 in lines of two.
+            (false, false, 3),
+            // Without the leaves: nodes 0, 1, 2.
+            (true, false, 2),
+            // The root is a brick of two words.
+            (true, true, 1),
+        ] {
+            hardware.organisation = Organisation {
+                leaf_masks,
+                bricks,
+                ..Organisation::default()
             };
-            floor(&graph, &frame, &hardware, &table).unwrap()
-        };
-        // Nodes 0 to 4 in lines of two; attributes 3 and 4 in lines of one; 48 bits.
-        let plain = of(Organisation::default());
-        assert_eq!((plain.node_lines, plain.attribute_lines), (3, 2));
-        let price = (3.0 * 2.0 + 2.0 + 1.0) * 1950.0;
-        assert!((plain.energy_pj.value - price).abs() < 1e-6);
-        // Without the leaves: nodes 0, 1, 2.
-        let masks = Organisation {
-            leaf_masks: true,
-            ..Organisation::default()
-        };
-        assert_eq!(of(masks).node_lines, 2);
-        // The root is a brick of two words.
-        let bricks = Organisation {
-            bricks: true,
-            ..masks
-        };
-        assert_eq!(of(bricks).node_lines, 1);
+            let table = CostTable::load_shipped().unwrap();
+            let found = floor(&graph, &frame, &hardware, &table).unwrap();
+            // Attributes 3 and 4 in lines of one; 48 bits of pixels are a word.
+            assert_eq!((found.node_lines, found.attribute_lines), (node_lines, 2));
+            let price = (node_lines as f64 * 2.0 + 2.0 + 1.0) * 1950.0;
+            assert!((found.energy_pj.value - price).abs() < 1e-6);
+        }
     }
 }

@@ -31,32 +31,27 @@ pub struct Counted {
 }
 
 impl Counted {
-    #[must_use]
     pub fn record_bits(&self) -> u32 {
         record_bits(&self.fields)
     }
 
     /// A counter of the machine by its name; 0 if it has none of that name.
-    #[must_use]
     pub fn stat(&self, name: &str) -> u64 {
         let found = self.stats.iter().find(|(n, _)| *n == name);
         found.map_or(0, |&(_, count)| count)
     }
 
-    #[must_use]
     pub fn differing(&self, other: &Frame) -> u64 {
         let pairs = self.frame.voxel.iter().zip(&other.voxel);
         pairs.filter(|(a, b)| a != b).count() as u64
     }
 
-    #[must_use]
     pub fn operations_per_record(&self) -> f64 {
         self.counter.ops() as f64 / self.counter.records().max(1) as f64
     }
 }
 
 /// Bits that an access of each memory moves.
-#[must_use]
 pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths {
     Widths {
         stack_bits: record_bits(&record_fields(setup, graph.len(), hardware.organisation)),
@@ -130,9 +125,6 @@ pub fn count_operations(
 }
 
 /// Simulates a frame on hardware, cycle by cycle.
-///
-/// # Errors
-/// When a word overflows under the trap policy, or a stack that does not spill.
 pub fn simulate(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
@@ -174,9 +166,6 @@ pub fn record_turns(
 }
 
 /// The cycles of a frame whose turns are recorded, as from [`simulate`], on hardware that is not sequential.
-///
-/// # Errors
-/// When a stack is full that does not spill.
 pub fn replay(
     turns: &Recording,
     graph: &GraphView<'_>,
@@ -209,7 +198,6 @@ pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, Eng
     Ok(frame)
 }
 
-#[must_use]
 pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
     CoverageError::between(&frame.voxel, &exact.voxel)
 }

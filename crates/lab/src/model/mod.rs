@@ -7,7 +7,6 @@
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
 //!
 //! Functions fail when the cost tables lack a figure, or a word overflows and traps.
-#![allow(missing_docs, reason = "the names of figures end with their units")]
 
 pub mod area;
 pub mod clock;

@@ -5,7 +5,6 @@ use hwmodel::OpClass;
 use super::report::Report;
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
-#[must_use]
 pub fn panels(report: &Report) -> Vec<Panel> {
     vec![roofline(report), miss_curve(report)]
 }

@@ -12,13 +12,11 @@ pub struct Range {
 }
 
 impl Range {
-    #[must_use]
     pub const fn new((value, low, high): (f64, f64, f64)) -> Self {
         Self { value, low, high }
     }
 
     /// The figure and its ends, times a number that is not negative.
-    #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
             value: self.value * factor,
@@ -57,7 +55,6 @@ pub enum Winner {
 
 impl Winner {
     /// The one whose high end is below the other's low end.
-    #[must_use]
     pub fn by_ranges(light: Range, ray_caster: Range) -> Self {
         if light.high < ray_caster.low {
             Self::Light
@@ -70,7 +67,6 @@ impl Winner {
 
     /// The one that needs less at the low end of all prices and at their high end. Both pay the same for a word of
     /// outer memory then.
-    #[must_use]
     pub fn at_equal_prices(light: Range, ray_caster: Range) -> Self {
         if light.low < ray_caster.low && light.high < ray_caster.high {
             Self::Light
@@ -81,7 +77,6 @@ impl Winner {
         }
     }
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Light => "light hardware",
@@ -97,20 +92,21 @@ mod tests {
 
     #[test]
     fn ranges_that_overlap_have_no_winner() {
-        let range = |low: f64, high: f64| Range::new((f64::midpoint(low, high), low, high));
-        let (a, b) = (range(1.0, 2.0), range(3.0, 4.0));
-        assert_eq!(Winner::by_ranges(a, b), Winner::Light);
-        assert_eq!(Winner::by_ranges(b, a), Winner::RayCaster);
-        let wide = range(1.5, 3.5);
-        assert_eq!(Winner::by_ranges(a, wide), Winner::Neither);
-        assert_eq!(Winner::at_equal_prices(a, wide), Winner::Light);
-        assert_eq!(Winner::at_equal_prices(b, wide), Winner::RayCaster);
-        // A range within another.
-        assert_eq!(
-            Winner::at_equal_prices(range(2.0, 3.0), wide),
-            Winner::Neither
-        );
-        // Touching is overlapping.
-        assert_eq!(Winner::by_ranges(a, range(2.0, 4.0)), Winner::Neither);
+        use Winner::{Light, Neither, RayCaster};
+        let range = |(low, high)| Range::new((f64::midpoint(low, high), low, high));
+        for (a, b, by_ranges, at_equal_prices) in [
+            ((1.0, 2.0), (3.0, 4.0), Light, Light),
+            ((3.0, 4.0), (1.0, 2.0), RayCaster, RayCaster),
+            ((1.0, 2.0), (1.5, 3.5), Neither, Light),
+            ((3.0, 4.0), (1.5, 3.5), Neither, RayCaster),
+            // A range within another.
+            ((2.0, 3.0), (1.5, 3.5), Neither, Neither),
+            // Touching is overlapping.
+            ((1.0, 2.0), (2.0, 4.0), Neither, Light),
+        ] {
+            let (a, b) = (range(a), range(b));
+            let found = (Winner::by_ranges(a, b), Winner::at_equal_prices(a, b));
+            assert_eq!(found, (by_ranges, at_equal_prices), "{a:?}, {b:?}");
+        }
     }
 }

@@ -1,15 +1,8 @@
 //! A lower bound on the cycles of the ray caster.
 //!
-//! Its hardware has lanes of pipelined units that rays in contexts share. The bound is the largest of these times:
-//!
-//! - operations of a kind of unit, times its interval, over the number of units;
-//! - accesses of a port over its width;
-//! - latencies of a cache's misses over the number of misses in flight;
-//! - bits from outer memory over its width, and the drain of pixels;
-//! - latencies of each ray's dependent steps, and of all node misses, over the contexts.
-//!
-//! A real frame is slower: rays wait for each other's units, and the last rays leave contexts idle. So the bound favours the
-//! ray caster. The light hardware is simulated cycle by cycle.
+//! Its hardware has lanes of pipelined units that rays in contexts share. The bound is the largest time that a kind of
+//! unit, a port, a cache's misses, outer memory, or the latencies of dependent steps over the contexts need. A real frame
+//! is slower, so the bound favours the ray caster.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +36,6 @@ pub struct RayStack {
 const SHIPPED: &str = include_str!("ray_hardware.toml");
 
 impl RayHardware {
-    #[must_use]
     pub fn shipped() -> Self {
         match toml::from_str(SHIPPED) {
             Ok(hardware) => hardware,
@@ -52,13 +44,11 @@ impl RayHardware {
     }
 
     /// The unit that does a step; `None` for accesses.
-    #[must_use]
     pub fn unit(&self, step: FloatStep) -> Option<&Unit> {
         self.units.get(&unit_of(step))
     }
 }
 
-#[must_use]
 pub fn unit_of(step: FloatStep) -> FloatStep {
     match step {
         FloatStep::FloatMinMax => FloatStep::FloatCompare,
@@ -79,7 +69,6 @@ pub struct RayMisses {
     pub attribute: u64,
 }
 
-#[must_use]
 pub fn cycles(
     counts: &FloatRayCounts,
     misses: RayMisses,
@@ -161,7 +150,6 @@ fn latency(step: FloatStep, rays: &RayHardware, hardware: &Hardware) -> u64 {
 }
 
 /// The operation of the cost tables that a step is, and its width.
-#[must_use]
 pub fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
     match step {
         FloatStep::FloatAdd => Some(("float_add", 32)),
@@ -181,7 +169,6 @@ pub fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
 }
 
 /// Bits of a lane's stacks: one for each context.
-#[must_use]
 pub fn stack_bits(rays: &RayHardware) -> u64 {
     u64::from(rays.contexts) * ASIDE_ENTRIES * u64::from(ASIDE_BITS)
 }
@@ -190,58 +177,49 @@ pub fn stack_bits(rays: &RayHardware) -> u64 {
 mod tests {
     use super::*;
 
-    /// Counts of one ray's steps, all of them in a chain.
-    fn counts(steps: &[(FloatStep, u64)]) -> FloatRayCounts {
-        let mut counts = FloatRayCounts::default();
-        for &(step, times) in steps {
-            counts.add(step, times, times);
-        }
-        counts
-    }
-
-    fn bound(report: &RayCycles, name: &str) -> u64 {
-        let found = report.bounds.iter().find(|bound| bound.resource == name);
-        found.unwrap().cycles
-    }
-
     #[test]
     fn bounds_by_hand() {
         let rays = RayHardware::shipped();
         let mut hardware = Hardware::preset("paper").unwrap();
         hardware.outer_memory.bytes_per_cycle = 8;
-        let steps = [
+        // Of one ray, all in a chain.
+        let mut counts = FloatRayCounts::default();
+        for (step, times) in [
             (FloatStep::FloatAdd, 1000),
             (FloatStep::FloatMinMax, 500),
             (FloatStep::FloatCompare, 100),
             (FloatStep::FloatDivide, 9),
             (FloatStep::NodeRead, 70),
-        ];
-        let counts = counts(&steps);
-        let misses = RayMisses {
-            node: 10,
-            attribute: 0,
-        };
+        ] {
+            counts.add(step, times, times);
+        }
+        let (node, attribute) = (10, 0);
         let traffic = OuterTraffic {
             node_bits: 10 * 512,
             ..OuterTraffic::default()
         };
-        let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name| bound(&report, name);
-        assert_eq!(of("float add units"), 250);
-        assert_eq!(of("float compare units"), 100);
-        assert_eq!(of("float divide units"), 9 * 26 / 3);
-        assert_eq!(of("node cache port"), 70);
-        // 61 cycles each, four at once.
-        assert_eq!(of("node cache misses"), 10 * 61 / 4);
-        assert_eq!(of("outer memory port"), 10 * 8);
         // 1000 x 3 + 600 x 1 + 9 x 27 + 70 x 1, and 10 misses of 60 more, on 16 contexts.
-        let chain: u64 = 3000 + 600 + 243 + 70 + 600;
-        assert_eq!(of("contexts"), chain.div_ceil(16));
-        assert_eq!(report.cycles, chain.div_ceil(16));
+        let chain = (3000 + 600 + 243 + 70 + 600u64).div_ceil(16);
         // Twice the lanes: the units' share halves, the caches' does not.
-        hardware.lanes = 2;
-        let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name| bound(&report, name);
-        assert_eq!((of("float add units"), of("node cache port")), (125, 70));
+        for (resource, one_lane, two_lanes) in [
+            ("float add units", 250, 125),
+            ("float compare units", 100, 50),
+            ("float divide units", 9 * 26 / 3, 9 * 26 / 6),
+            ("node cache port", 70, 70),
+            // 61 cycles each, four at once.
+            ("node cache misses", 10 * 61 / 4, 10 * 61 / 4),
+            ("outer memory port", 10 * 8, 10 * 8),
+            ("contexts", chain, chain.div_ceil(2)),
+        ] {
+            for (lanes, expected) in [(1, one_lane), (2, two_lanes)] {
+                hardware.lanes = lanes;
+                let misses = RayMisses { node, attribute };
+                let report = cycles(&counts, misses, &traffic, &rays, &hardware);
+                let mut bounds = report.bounds.iter();
+                let bound = bounds.find(|bound| bound.resource == resource).unwrap();
+                assert_eq!(bound.cycles, expected, "{resource}, {lanes}");
+                assert_eq!(report.cycles, [chain, 10 * 61 / 4][lanes as usize - 1]);
+            }
+        }
     }
 }

@@ -44,7 +44,6 @@ fn cage_parts(setup: &FrameSetup) -> (u32, u32) {
 }
 
 /// The fields of a frame's records, as an organisation stores them. `nodes`: of the graph.
-#[must_use]
 pub fn record_fields(
     setup: &FrameSetup,
     nodes: usize,
@@ -222,14 +221,12 @@ pub fn number_widths(
 }
 
 /// Bits of a stack's entry, which holds records of any kind.
-#[must_use]
 pub fn record_bits(fields: &[RecordField]) -> u32 {
     bits_held(fields, None).widest()
 }
 
 /// Bits of a context's registers: the record that it works on, and, where parents lie on the stack, the parent
 /// with its children's vertices.
-#[must_use]
 pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisation) -> u64 {
     let record = u64::from(record_bits);
     let word = u64::from(setup.format.bits());
@@ -257,7 +254,6 @@ pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisa
 
 /// Bits of a frame's records by kind. Under the rules that draw outlines, a finest voxel has no parts. Its turn only needs
 /// to know whether all vertices are before the eye.
-#[must_use]
 pub fn bits_by_kind(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> RecordBits {
     // A parent is never a finest voxel.
     let has_finest =
@@ -282,14 +278,13 @@ fn bits_held(fields: &[RecordField], finest_level: Option<u32>) -> RecordBits {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
     use shiftvox::graph::Placement;
-    use shiftvox::project::Coverage;
-    use shiftvox::project::{Camera, SetupOptions};
+    use shiftvox::project::{Camera, Coverage, SetupOptions};
 
-    fn setup(options: SetupOptions) -> FrameSetup {
+    fn setup(coverage: Coverage, cage: CageKind) -> FrameSetup {
         let camera = Camera {
             eye: DVec3::new(40.0, 30.0, 20.0),
             target: DVec3::splat(8.0),
@@ -298,54 +293,44 @@ mod tests {
             width: 200,
             height: 100,
         };
-        let setup = FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap();
-        assert_eq!(setup.levels, 8);
-        setup
-    }
-
-    fn bits(options: SetupOptions, nodes: usize) -> u32 {
-        let setup = setup(options);
-        record_bits(&record_fields(&setup, nodes, Organisation::default()))
-    }
-
-    #[test]
-    fn contexts_of_parents_hold_two_records_and_the_children_s_vertices() {
-        let frame = setup(SetupOptions::default());
-        let parents = Organisation {
-            stack: StackHolds::Parents,
-            ..Organisation::default()
-        };
-        assert_eq!(context_bits(&frame, 1000, Organisation::default()), 1000);
-        assert_eq!(context_bits(&frame, 1000, parents), 2000 + 3 * 4 * 64);
-    }
-
-    #[test]
-    fn bits_by_hand() {
-        let options = |coverage, cage| SetupOptions {
+        let options = SetupOptions {
             bits: 32,
             frac: Some(8),
             cage,
             ..SetupOptions::of(coverage)
         };
+        FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap()
+    }
+
+    #[test]
+    fn bits_by_hand() {
+        let plain = Organisation::default();
+        let exact = setup(Coverage::Exact, CageKind::Frame);
         // Node 10, level 3, flags 2, two corners of three times 0..=16, quadtree
         // level 0..=8 and 8 bits each way.
         let always = 10 + 3 + 2 + 2 * 3 * 5 + 4 + 16;
-        let exact = options(Coverage::Exact, CageKind::Frame);
-        let clip = 3 * 4 * 32 + 32 + 12 * 64;
-        assert_eq!(bits(exact, 1024), always + clip);
-        assert_eq!(bits(exact, 1025), always + clip + 1);
+        let clip = always + 3 * 4 * 32 + 32 + 12 * 64;
+        let bits = |setup, nodes| record_bits(&record_fields(setup, nodes, plain));
+        assert_eq!((bits(&exact, 1024), bits(&exact, 1025)), (clip, clip + 1));
         // A finest voxel: no vertices, and of the least W whether it is above 0.
-        let by_kind = bits_by_kind(&setup(exact), 1024, Organisation::default());
-        assert_eq!(by_kind.clip, always + clip);
-        assert_eq!(by_kind.finest, always + 12 * 64 + 1);
-        assert_eq!(by_kind.finest_level, Some(4));
-        let any = options(Coverage::Any, CageKind::Corners);
+        let by_kind = bits_by_kind(&exact, 1024, plain);
+        let finest = always + 12 * 64 + 1;
+        let found = (by_kind.clip, by_kind.finest, by_kind.finest_level);
+        assert_eq!(found, (clip, finest, Some(4)));
         // A third of the fraction's bits lies below the finest voxels: levels
         // to 6, of voxels to 4, places to 64.
+        let any = setup(Coverage::Any, CageKind::Corners);
         let always = 10 + 3 + 3 + 3 + 2 * 3 * 7 + 4 + 16;
-        assert_eq!(bits(any, 1024), always + 3 * 8 * 32 + 32);
-        let by_kind = bits_by_kind(&setup(any), 1024, Organisation::default());
-        assert_eq!(by_kind.screen, always + 2 * 8 * 32 + 4 * 32);
-        assert_eq!(by_kind.finest_level, None);
+        assert_eq!(bits(&any, 1024), always + 3 * 8 * 32 + 32);
+        let by_kind = bits_by_kind(&any, 1024, plain);
+        let screen = always + 2 * 8 * 32 + 4 * 32;
+        assert_eq!((by_kind.screen, by_kind.finest_level), (screen, None));
+        // Contexts of parents hold two records and the children's vertices.
+        let parents = Organisation {
+            stack: StackHolds::Parents,
+            ..plain
+        };
+        let contexts = [plain, parents].map(|of| context_bits(&exact, 1000, of));
+        assert_eq!(contexts, [1000, 2000 + 3 * 4 * 32]);
     }
 }

@@ -29,7 +29,6 @@ pub struct Format {
 }
 
 impl Format {
-    #[must_use]
     pub fn new(graph: &Graph, camera: &Camera, own: &FrameSetup) -> Self {
         let is_safe = |camera: &Camera, placement: &Placement, depth: u32| {
             let setup = FrameSetup::new(camera, placement, depth, &own.options).ok();
@@ -92,8 +91,7 @@ mod tests {
 
     #[test]
     fn the_largest_is_found() {
-        for (most, expected) in [(37, Some(37)), (200, Some(100)), (0, None), (1, Some(1))] {
-            assert_eq!(largest(100, |n| n <= most), expected, "{most}");
-        }
+        let found = [37, 200, 0, 1].map(|most| largest(100, |n| n <= most));
+        assert_eq!(found, [Some(37), Some(100), None, Some(1)]);
     }
 }

@@ -30,7 +30,6 @@ fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str])
 /// A mesh, whole or decimated, as a method draws it.
 #[derive(Debug, Clone, Copy)]
 pub struct Triangles<'m> {
-    /// The triangles.
     pub mesh: &'m Mesh,
     /// Original triangles per triangle: 1 if the mesh is whole.
     pub one_of: u32,
@@ -41,9 +40,6 @@ pub struct Triangles<'m> {
 }
 
 /// Triangles with `4^aa_log2` samples per pixel, in the middles of equal squares.
-///
-/// # Errors
-/// Without that many samples: `aa_log2` is 0, 1, 2 or 4.
 pub fn triangles(
     of: Triangles<'_>,
     aa_log2: u32,
@@ -76,7 +72,6 @@ pub fn triangles(
 
 /// A hybrid with voxels of at most so many pixels and `4^aa_log2` samples per pixel, made in so many
 /// milliseconds.
-#[must_use]
 pub fn hybrid(
     (file, build_ms): (&FarFile, f64),
     voxel_px: f64,
@@ -97,7 +92,6 @@ pub fn hybrid(
 
 /// Far voxels of at most so many pixels with `4^aa_log2` samples per pixel, made in so many
 /// milliseconds.
-#[must_use]
 pub fn far(
     (file, build_ms): (&FarFile, f64),
     opacity: Opacity,
@@ -157,7 +151,6 @@ pub fn far(
 
 /// Textured voxels at a level of detail with `4^aa_log2` samples per pixel, made in so many
 /// milliseconds.
-#[must_use]
 pub fn textured(
     (file, build_ms): (&TexturedFile, f64),
     erosion: Erosion,

@@ -1,7 +1,7 @@
 //! Distances of a picture from its reference.
 
 use super::reference::Reference;
-use crate::measure::{ColorError, CoverageBias, Flip, SizeError};
+use crate::measure::{ColorError, Colors, CoverageBias, Flip, SizeError};
 use crate::report::{Cell, Row};
 
 pub(super) struct Judge<'r> {
@@ -19,11 +19,10 @@ impl<'r> Judge<'r> {
     pub(super) fn put(
         &self,
         row: &mut Row,
-        rgba: &[[u8; 4]],
+        picture: Colors<'_>,
         shares: &[f32],
     ) -> Result<(), SizeError> {
         let (width, height) = (self.reference.width, self.reference.height);
-        let picture = (width, height, rgba);
         let color = ColorError::between(picture, (width, height, &self.reference.rgba))?;
         let flip = Flip::new(picture).mean_error(&self.flip);
         let right = (width as usize, self.reference.shares.as_slice());
@@ -49,30 +48,32 @@ mod tests {
 
     #[test]
     fn every_number_notices_another_picture() {
+        let pixel = |i: u32| [i as u8, (i * 7) as u8, 90, 255];
         let reference = Reference {
             width: 16,
             height: 16,
-            rgba: (0..256u32)
-                .map(|i| [i as u8, (i * 7 % 256) as u8, 90, 255])
-                .collect(),
+            rgba: (0..256).map(pixel).collect(),
             shares: (0..256).map(|i| (i % 5) as f32 / 4.0).collect(),
         };
         let judged = |rgba: &[[u8; 4]], shares: &[f32]| {
             let mut row = Row::default();
-            Judge::new(&reference).put(&mut row, rgba, shares).unwrap();
-            ["rms_linear", "flip", "ssim", "bias_percent", "psnr"].map(|name| row.number(name))
+            let judged = Judge::new(&reference).put(&mut row, (16, 16, rgba), shares);
+            judged.map(|()| {
+                ["rms_linear", "flip", "ssim", "bias_percent", "psnr"].map(|name| row.number(name))
+            })
         };
-        let [rms, flip, ssim, bias, psnr] = judged(&reference.rgba, &reference.shares);
-        assert_eq!((rms, flip, bias, psnr), (0.0, 0.0, 0.0, f64::INFINITY));
-        assert!((ssim - 1.0).abs() < 1e-12);
-        let darker: Vec<_> = reference
-            .rgba
-            .iter()
-            .map(|[r, g, b, a]| [r / 2, g / 2, b / 2, *a])
+        let same = judged(&reference.rgba, &reference.shares).unwrap();
+        assert_eq!(
+            same.map(|of| of.clamp(-1.0, 999.0)),
+            [0.0, 0.0, 1.0, 0.0, 999.0]
+        );
+        let darker: Vec<_> = (0..256)
+            .map(pixel)
+            .map(|[r, g, b, a]| [r / 2, g / 2, b / 2, a])
             .collect();
-        let [rms, flip, ssim, bias, psnr] = judged(&darker, &[0.0; 256]);
-        assert!(rms > 0.05 && flip > 0.05 && ssim < 0.95);
+        let [rms, flip, ssim, bias, psnr] = judged(&darker, &[0.0; 256]).unwrap();
+        assert!(rms > 0.05 && flip > 0.05 && ssim < 0.95 && bias == -100.0);
         assert!((psnr + 20.0 * libm::log10(rms)).abs() < 1e-9);
-        assert_eq!(bias, -100.0);
+        assert!(judged(&darker[1..], &[0.0; 255]).is_err());
     }
 }

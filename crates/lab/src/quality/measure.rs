@@ -14,15 +14,13 @@ use crate::report::plot::{Panel, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress, Silent};
-use shiftvox::picture::Background;
+use shiftvox::picture::{Background, Rows};
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupError, SetupOptions};
 use shiftvox::rays::Rays;
 use shiftvox_mesh::Surface;
 
-/// How methods are measured.
 #[derive(Debug, Clone)]
 pub struct QualityPlan {
-    /// How often each method draws.
     pub schedule: Schedule,
     /// Camera motions to film. Without any there is no flicker.
     pub motions: Vec<Motion>,
@@ -30,14 +28,11 @@ pub struct QualityPlan {
     pub frames: u32,
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
-    /// Shading and background.
     pub style: PixelStyle,
 }
 
-/// A scene and the truth about it.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
-    /// Its name in tables.
     pub name: &'s str,
     /// Its voxels, of which exact rays are the truth.
     pub graph: Option<&'s Graph>,
@@ -115,11 +110,14 @@ struct Exact<'m> {
 }
 
 impl<'m> Exact<'m> {
-    fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, Refused> {
-        let setup = truth(graph, camera, aa_log2).map_err(Refused::because)?;
+    fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, BenchError> {
+        let setup = truth(graph, camera, aa_log2)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn = Rays.render(&graph.view(), &setup, &mut frame);
-        drawn.map_err(Refused::because)?;
+        drawn.map_err(|source| BenchError::Engine {
+            who: "exact rays".to_owned(),
+            source,
+        })?;
         Ok(Self {
             graph,
             aa_log2,
@@ -127,7 +125,6 @@ impl<'m> Exact<'m> {
         })
     }
 
-    /// The errors of samples: false positives and negatives, voxels elsewhere, coarser voxels.
     fn put(&self, row: &mut Row, samples: &[[i32; 4]]) {
         let error = CoverageError::between(samples, &self.voxel);
         let elsewhere = count_elsewhere(samples, &self.voxel, self.graph.depth);
@@ -140,13 +137,19 @@ impl<'m> Exact<'m> {
     }
 }
 
+#[derive(Debug, thiserror::Error)]
+enum Unmeasured {
+    #[error(transparent)]
+    Refused(#[from] Refused),
+    /// The experiment itself failed.
+    #[error(transparent)]
+    Failed(#[from] BenchError),
+}
+
 /// Measures methods on a scene from cameras: a row for each camera and method, and one of the noise
 /// floor. A method without a picture has a row with the reason.
 ///
 /// Every picture is judged. Then all methods draw in turn, on one thread, and are timed.
-///
-/// # Errors
-/// When a camera cannot see, or there is no thread.
 pub fn measure(
     scene: Scene<'_>,
     cameras: &[Camera],
@@ -192,7 +195,8 @@ fn at(
     let second = scene.reference(camera, SEEDS[1], plan, progress)?;
     let judge = Judge::new(&reference);
     let mut floor = head(scene, camera, plan, [NOISE_FLOOR, "reference", "reference"]);
-    let judged = judge.put(&mut floor, &second.rgba, &second.shares);
+    let picture = (second.width, second.height, &second.rgba[..]);
+    let judged = judge.put(&mut floor, picture, &second.shares);
     judged.map_err(failed)?;
 
     let mut films: Vec<(&Motion, Vec<Camera>, Vec<Light>)> = Vec::new();
@@ -205,7 +209,10 @@ fn at(
         let truth = scene.film(&cameras, SEEDS[0], plan)?;
         progress.advance(1);
         let second = scene.film(&cameras, SEEDS[1], plan)?;
-        floor.put(motion.columns()[0], thousandths(flicker(&second, &truth).0));
+        floor.put(
+            motion.columns()[0],
+            thousandths(flickers(&second, &truth)?.0),
+        );
         films.push((motion, cameras, truth));
         progress.end();
     }
@@ -225,8 +232,10 @@ fn at(
                 film(&mut row, method, motion, cameras, truth)
             })
         });
-        if let Err(Refused(reason)) = filmed {
-            row.put("refused", reason);
+        match filmed {
+            Ok(()) => {}
+            Err(Unmeasured::Refused(Refused(reason))) => row.put("refused", reason),
+            Err(Unmeasured::Failed(error)) => return Err(error),
         }
         rows.push(row);
         progress.advance(1);
@@ -247,19 +256,23 @@ fn thousandths(light: f64) -> Cell {
     Cell::Number(1e3 * light, 2)
 }
 
+fn flickers(film: &[Light], truth: &[Light]) -> Result<(f64, f64), BenchError> {
+    flicker(film, truth).ok_or_else(|| failed("the pictures of a film differ in size"))
+}
+
 fn film(
     row: &mut Row,
     method: &Method<'_>,
     motion: &Motion,
     cameras: &[Camera],
     truth: &[Light],
-) -> Result<(), Refused> {
+) -> Result<(), Unmeasured> {
     let mut drawing = (method.drawing)();
     let film: Vec<Light> = cameras
         .iter()
         .map(|camera| Ok(light_of(&drawn(drawing.as_mut(), camera)?.pixels.rgba())))
         .collect::<Result<_, Refused>>()?;
-    let (whole, worst) = flicker(&film, truth);
+    let (whole, worst) = flickers(&film, truth)?;
     let columns = motion.columns();
     row.put(columns[0], thousandths(whole));
     row.put(columns[1], thousandths(worst));
@@ -272,7 +285,7 @@ fn judged_row<'m>(
     camera: &Camera,
     judge: &Judge<'_>,
     exact: &mut Vec<Exact<'m>>,
-) -> Result<(), Refused> {
+) -> Result<(), Unmeasured> {
     let mut drawing = (method.drawing)();
     let shown = drawn(drawing.as_mut(), camera)?;
     let Examined {
@@ -281,8 +294,9 @@ fn judged_row<'m>(
         counters,
         remark,
     } = (method.examine)(&shown, camera)?;
-    let judged = judge.put(row, &shown.pixels.rgba(), &shares);
-    judged.map_err(Refused::because)?;
+    let (width, height) = shown.buffers.size();
+    let judged = judge.put(row, (width, height, &shown.pixels.rgba()), &shares);
+    judged.map_err(failed)?;
     if let (Some(graph), Some((aa_log2, voxels))) = (method.graph, samples) {
         let is_same =
             |exact: &Exact<'_>| std::ptr::eq(exact.graph, graph) && exact.aa_log2 == aa_log2;
@@ -338,8 +352,6 @@ fn race(
     Ok(())
 }
 
-/// The most important columns of the rows of one scene and camera, for people.
-#[must_use]
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "method ms work psnr flip bias_percent flicker_turntable flicker_dolly flicker_pan extra \
         missing elsewhere read_bytes build_ms ahead beaten_by ssim remark refused";
@@ -348,7 +360,6 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
 
 /// Plots of the rows of one scene and camera: time and machine-independent work against errors and
 /// flicker.
-#[must_use]
 pub fn panels(rows: &[Row]) -> Vec<Panel> {
     let Some(first) = rows.first() else {
         return Vec::new();
@@ -388,4 +399,65 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
         }
     }
     panels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use shiftvox::machine::Machine;
+    use shiftvox_mesh::open::{OpenOptions, open};
+
+    use crate::bench::MakeEngine;
+    use crate::quality::voxel_method;
+
+    #[test]
+    fn methods_are_refused_and_experiments_fail() {
+        let opened = open("gen:sphere,depth=3", &OpenOptions::default(), &Silent);
+        let graph = opened.unwrap().graph;
+        let too_deep = Graph {
+            depth: 99,
+            ..graph.clone()
+        };
+        let camera = Camera {
+            eye: DVec3::new(20.0, -9.0, 12.0),
+            target: DVec3::splat(4.0),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 8,
+            height: 8,
+        };
+        let plan = QualityPlan {
+            schedule: Schedule { warmup: 0, runs: 1 },
+            motions: Vec::new(),
+            frames: 2,
+            strata_log2: 1,
+            style: PixelStyle::default(),
+        };
+        let run = |method: Method<'_>| {
+            let scene = Scene {
+                name: "sphere",
+                graph: Some(&graph),
+                mesh: None,
+            };
+            let rows = measure(scene, &[camera], &[method], &plan, &Silent);
+            rows.map(|rows| !rows[0].text("refused").is_empty()).ok()
+        };
+        let make: MakeEngine = |_| Box::new(Machine::default());
+        let method = |options| voxel_method(&graph, ("machine", make), options, plan.style);
+        let wide = SetupOptions::default();
+        assert_eq!(run(method(wide)), Some(false));
+        // The words do not hold the picture.
+        let narrow = SetupOptions {
+            bits: 16,
+            frac: Some(15),
+            ..wide
+        };
+        assert_eq!(run(method(narrow)), Some(true));
+        let unseen = Method {
+            graph: Some(&too_deep),
+            ..method(wide)
+        };
+        assert_eq!(run(unseen), None);
+    }
 }

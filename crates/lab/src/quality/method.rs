@@ -5,7 +5,6 @@ use shiftvox::drawing::{DrawError, Drawable, Figures, Shown};
 use shiftvox::graph::Graph;
 use shiftvox::project::{Camera, Stats};
 
-/// A way to draw a scene: an engine with its settings, or any other renderer.
 pub struct Method<'m> {
     /// Its family, such as `voxels`. Methods of a family have the same settings and counters.
     pub(super) family: &'static str,

@@ -2,7 +2,6 @@
 
 use shiftvox::project::{Camera, CameraError};
 
-/// How a camera moves from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
     /// Around its target, about its up direction, by so many degrees per frame.
@@ -26,10 +25,6 @@ impl Motion {
         }
     }
 
-    /// The camera after so many frames.
-    ///
-    /// # Errors
-    /// When the camera cannot see.
     pub fn after(&self, camera: &Camera, frames: u32) -> Result<Camera, CameraError> {
         let axes = camera.axes()?;
         let frames = f64::from(frames);
@@ -59,7 +54,6 @@ impl Motion {
 
 /// The camera so much farther from its target that its picture is so many pixels high: what is
 /// around the target, at the same pixels per unit of slope.
-#[must_use]
 pub fn at_distance(camera: &Camera, height: u32) -> Camera {
     let share = f64::from(height) / f64::from(camera.height);
     let tangent = libm::tan(camera.fov_degrees.to_radians() / 2.0);
@@ -75,76 +69,40 @@ pub fn at_distance(camera: &Camera, height: u32) -> Camera {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use glam::DVec3;
 
-    use super::*;
-
-    fn camera() -> Camera {
-        Camera {
-            eye: DVec3::new(0.0, -10.0, 0.0),
-            target: DVec3::ZERO,
-            up: DVec3::Z * 4.0,
-            fov_degrees: 90.0,
-            width: 100,
-            height: 100,
-        }
-    }
+    const CAMERA: Camera = Camera {
+        eye: DVec3::new(5.0, 1.0, 7.0),
+        target: DVec3::new(2.0, 1.0, 3.0),
+        up: DVec3::new(0.0, 0.0, 4.0),
+        fov_degrees: 90.0,
+        width: 100,
+        height: 100,
+    };
 
     #[test]
     fn motions_end_where_they_should() {
-        let tilted = Camera {
-            eye: DVec3::new(5.0, 1.0, 7.0),
-            target: DVec3::new(2.0, 1.0, 3.0),
-            ..camera()
-        };
-        // 90 degrees over 100 pixels from 10 away: a pixel is a fifth.
-        for (from, motion, frames, eye, target) in [
-            (
-                camera(),
-                Motion::Turntable(45.0),
-                2,
-                [10.0, 0.0, 0.0],
-                [0.0; 3],
-            ),
-            (
-                tilted,
-                Motion::Turntable(45.0),
-                2,
-                [2.0, 4.0, 7.0],
-                [2.0, 1.0, 3.0],
-            ),
-            (camera(), Motion::Dolly(0.5), 2, [0.0, -2.5, 0.0], [0.0; 3]),
-            (
-                camera(),
-                Motion::Pan(0.5),
-                3,
-                [0.3, -10.0, 0.0],
-                [0.3, 0.0, 0.0],
-            ),
+        // 90 degrees over 100 pixels from 5 away: a pixel is a tenth.
+        for (motion, frames, eye, target) in [
+            (Motion::Turntable(45.0), 2, [2.0, 4.0, 7.0], [2.0, 1.0, 3.0]),
+            (Motion::Dolly(0.5), 2, [2.75, 1.0, 4.0], [2.0, 1.0, 3.0]),
+            (Motion::Pan(0.5), 4, [5.0, 1.2, 7.0], [2.0, 1.2, 3.0]),
+            (Motion::Pan(0.5), 0, [5.0, 1.0, 7.0], [2.0, 1.0, 3.0]),
         ] {
-            let still = motion.after(&from, 0).unwrap();
-            assert!((still.eye - from.eye).length() < 1e-12, "{motion:?}");
-            let moved = motion.after(&from, frames).unwrap();
-            let off = (moved.eye - DVec3::from(eye)).length()
-                + (moved.target - DVec3::from(target)).length();
+            let moved = motion.after(&CAMERA, frames).unwrap();
+            let off = moved.eye.distance(eye.into()) + moved.target.distance(target.into());
             assert!(off < 1e-12, "{motion:?}: {moved:?}");
         }
     }
 
     #[test]
     fn a_pixel_stays_a_pixel_farther_off() {
-        let camera = Camera {
-            fov_degrees: 60.0,
-            width: 256,
-            height: 250,
-            ..camera()
-        };
-        let far = at_distance(&camera, 31);
-        assert_eq!((far.width, far.height), (32, 31));
-        assert!((far.eye.y + 10.0 * 250.0 / 31.0).abs() < 1e-9);
-        let focal = |camera: &Camera| camera.axes().unwrap().focal_px;
-        assert!((focal(&far) - focal(&camera)).abs() < 1e-9);
-        let same = at_distance(&camera, 250);
-        assert_eq!((same.width, same.eye), (256, camera.eye));
+        let far = at_distance(&CAMERA, 31);
+        assert_eq!((far.width, far.height), (31, 31));
+        let eye = CAMERA.target + DVec3::new(3.0, 0.0, 4.0) * 100.0 / 31.0;
+        assert!(far.eye.distance(eye) < 1e-9);
+        let [focal, far_focal] = [CAMERA, far].map(|of| of.axes().unwrap().focal_px);
+        assert!((focal - far_focal).abs() < 1e-9);
     }
 }

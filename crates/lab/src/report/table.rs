@@ -4,16 +4,12 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-/// One entry.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// Words.
     Text(String),
-    /// A whole number.
     Count(u64),
     /// A number, and how many digits after the point people see.
     Number(f64, usize),
-    /// Empty.
     None,
 }
 
@@ -50,7 +46,6 @@ impl Cell {
         }
     }
 
-    /// The cell for programs: all digits, and an empty string for no value.
     fn for_programs(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -101,7 +96,6 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 pub struct Row(Vec<(&'static str, Cell)>);
 
 impl Row {
-    /// Sets a cell.
     pub fn put(&mut self, name: &'static str, cell: impl Into<Cell>) {
         let cell = cell.into();
         match self.0.iter_mut().find(|(found, _)| *found == name) {
@@ -110,21 +104,16 @@ impl Row {
         }
     }
 
-    /// A cell; [`Cell::None`] if it was never set.
-    #[must_use]
     pub fn get(&self, name: &str) -> &Cell {
         let found = self.0.iter().find(|(found, _)| *found == name);
         found.map_or(&Cell::None, |(_, cell)| cell)
     }
 
-    /// A cell as a number; not a number if it is none.
-    #[must_use]
     pub fn number(&self, name: &str) -> f64 {
         self.get(name).number().unwrap_or(f64::NAN)
     }
 
     /// A cell as text; empty if it was never set.
-    #[must_use]
     pub fn text(&self, name: &str) -> String {
         match self.get(name) {
             Cell::None => String::new(),
@@ -132,8 +121,6 @@ impl Row {
         }
     }
 
-    /// The cells that are set, as a JSON object.
-    #[must_use]
     pub fn json(&self) -> Value {
         let set = self.0.iter().filter(|(_, cell)| *cell != Cell::None);
         set.map(|(name, cell)| ((*name).to_owned(), cell.json()))
@@ -144,11 +131,8 @@ impl Row {
 /// A table. Every row is as long as `columns`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
-    /// Its title.
     pub title: String,
-    /// The columns' names.
     pub columns: Vec<&'static str>,
-    /// The rows.
     pub rows: Vec<Vec<Cell>>,
 }
 
@@ -157,8 +141,6 @@ const CELL_WIDTH: usize = 40;
 const MOST_KEY_WIDTH: usize = 60;
 
 impl Table {
-    /// A table without rows.
-    #[must_use]
     pub fn new(title: impl Into<String>, columns: &[&'static str]) -> Self {
         Self {
             title: title.into(),
@@ -167,8 +149,6 @@ impl Table {
         }
     }
 
-    /// A table of measurements, with every column that any of them has.
-    #[must_use]
     pub fn collect(title: impl Into<String>, rows: &[Row]) -> Self {
         let mut columns: Vec<&'static str> = Vec::new();
         for (name, _) in rows.iter().flat_map(|row| &row.0) {
@@ -229,7 +209,6 @@ impl Table {
 
     /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
     /// Columns without room go to a second block, which begins with the first columns of words again.
-    #[must_use]
     pub fn text(&self) -> String {
         let column = |(column, name): (usize, &&'static str)| {
             let head = name.split('_').map(str::to_owned).collect();
@@ -264,8 +243,6 @@ impl Table {
         text + &of_block(&block)
     }
 
-    /// The table in CSV (RFC 4180): a line of names, then the rows.
-    #[must_use]
     pub fn csv(&self) -> String {
         let mut text = self.columns.join(",") + "\r\n";
         for row in &self.rows {
@@ -276,8 +253,6 @@ impl Table {
         text
     }
 
-    /// The table in Markdown under its title.
-    #[must_use]
     pub fn markdown(&self) -> String {
         let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
         for column in 0..self.columns.len() {
@@ -352,8 +327,6 @@ fn quoted(field: &str) -> String {
     }
 }
 
-/// A number with its digits in groups of three.
-#[must_use]
 pub fn grouped(number: impl Into<u128>) -> String {
     let digits = number.into().to_string();
     let mut text = String::new();
@@ -370,32 +343,30 @@ pub fn grouped(number: impl Into<u128>) -> String {
 mod tests {
     use super::*;
 
-    fn rows() -> [Row; 2] {
-        let row = |scene: &str, ms, records: Option<u64>| {
-            let mut row = Row::default();
-            row.put("scene", scene);
-            row.put("frame_ms", Cell::ms(ms));
-            row.put("size", 64u64);
-            if records.is_some() {
-                row.put("records", records);
-            }
-            row
-        };
-        [
-            row("gen:menger,depth=2", 12.345, Some(1_234_567)),
-            row("a \"b\" | c", 0.5, None),
-        ]
+    fn row(scene: &str, ms: f64, records: Option<u64>) -> Row {
+        let mut row = Row::default();
+        row.put("scene", scene);
+        row.put("frame_ms", Cell::ms(ms));
+        row.put("size", 64u64);
+        if records.is_some() {
+            row.put("records", records);
+        }
+        row
     }
 
     #[test]
     fn rows_in_every_form() {
-        let table = Table::collect("Two", &rows());
+        let rows = [
+            row("gen:menger,depth=2", 12.345, Some(1_234_567)),
+            row("a \"b\" | c", 0.5, None),
+        ];
+        let table = Table::collect("Two", &rows);
         assert_eq!(
             table.csv(),
             "scene,frame_ms,size,records\r\n\"gen:menger,depth=2\",12.345,64,1234567\r\n\
              \"a \"\"b\"\" | c\",0.5,64,\r\n"
         );
-        let less = Table::select("Two", &rows(), "scene frame_ms records");
+        let less = Table::select("Two", &rows, "scene frame_ms records");
         assert_eq!(
             less.markdown(),
             "**Two**\n\n| scene | frame_ms | records |\n|---|--:|--:|\n\
@@ -409,32 +380,27 @@ mod tests {
              gen:menger,depth=2   12.3  1,234,567\n\
              a \"b\" | c           0.500          -"
         );
-        assert_eq!(
-            rows()[1].json(),
-            serde_json::json!({ "scene": "a \"b\" | c", "frame_ms": 0.5, "size": 64 })
-        );
+        let json = r#"{"frame_ms":0.5,"scene":"a \"b\" | c","size":64}"#;
+        assert_eq!(rows[1].json().to_string(), json);
         assert_eq!(Cell::Number(f64::INFINITY, 1).json(), "inf");
+        let texts = [0u64, 999, 1000, 1_234_567].map(grouped);
+        assert_eq!(texts, ["0", "999", "1,000", "1,234,567"]);
     }
 
     #[test]
     fn wide_tables_fit_a_terminal() {
-        let long = "letters ".repeat(5);
-        let long = || Cell::from(long.as_str());
-        let table = |name: &'static str, cells: [Cell; 4]| Table {
-            rows: vec![cells.to_vec()],
-            ..Table::new("word ".repeat(40), &[name, "b", "c", "d"])
+        let long = || Cell::from("letters ".repeat(5));
+        let text = |name: &'static str, cells: [Cell; 4]| {
+            let table = Table {
+                rows: vec![cells.to_vec()],
+                ..Table::new("word ".repeat(40), &[name, "b", "c", "d"])
+            };
+            table.text()
         };
-        let wide = table("a_first", [long(), long(), long(), long()]);
-        let text = wide.text();
-        assert!(text.lines().all(|line| line.len() <= TEXT_WIDTH), "{text}");
-        assert_eq!(text.matches("first").count(), 3, "{text}");
-        let keyed = table("key", ["k".into(), long(), Cell::None, long()]).text();
+        let wide = text("a_first", [long(), long(), long(), long()]);
+        assert!(wide.lines().all(|line| line.len() <= TEXT_WIDTH), "{wide}");
+        assert_eq!(wide.matches("first").count(), 3, "{wide}");
+        let keyed = text("key", ["k".into(), long(), Cell::None, long()]);
         assert_eq!(keyed.matches("key").count(), 1, "{keyed}");
-    }
-
-    #[test]
-    fn groups_of_digits() {
-        let texts = [0u64, 999, 1000, 1_234_567].map(grouped);
-        assert_eq!(texts, ["0", "999", "1,000", "1,234,567"]);
     }
 }

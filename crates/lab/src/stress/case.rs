@@ -9,16 +9,13 @@ use super::scene::StressScene;
 use shiftvox::graph::{Graph, Placement};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupError, SetupOptions};
 
-/// A scene, a camera and settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// The scene.
     pub scene: StressScene,
     /// The camera, in finest voxels from the object's lowest corner.
     pub camera: Camera,
     /// Distance of object and camera from the world's origin, voxels along each axis.
     pub shift: i64,
-    /// Settings.
     pub options: SetupOptions,
 }
 
@@ -153,30 +150,5 @@ impl Case {
             graph.depth,
             &self.options,
         )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_case_comes_back_from_its_text() {
-        let text = "scene=gen:shell,depth=4;eye=1.5,-0.1,1e30;target=0,0,0.1;up=0,0,1;fov=0.5;size=40x30;shift=-7\
-                    ;bits=17;frac=3;cage=corners;tolerance=inf;coverage=any;lod=0.5";
-        let case: Case = text.parse().unwrap();
-        let again: Case = case.to_string().parse().unwrap();
-        assert_eq!(case, again);
-        assert_eq!(case.options.bits, 17);
-        assert!(case.options.tolerance_px.is_infinite());
-        for bad in [
-            "",
-            "eye=1,2,3",
-            "scene=solid:3;bits=x",
-            "scene=solid:3;what=1",
-            "scene=solid:3;eye=1,2",
-        ] {
-            assert!(bad.parse::<Case>().is_err(), "{bad}");
-        }
     }
 }

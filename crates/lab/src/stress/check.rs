@@ -21,7 +21,6 @@ const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;
 
-/// The oracle's last picture without level of detail, which cases with the same integers share.
 #[derive(Default)]
 pub(super) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
@@ -36,7 +35,6 @@ fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
 
 impl Oracle {
     fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
-        // The integers that the oracle uses.
         let same = |last: &FrameSetup| {
             last.origin_clip == setup.origin_clip
                 && last.edge_clip == setup.edge_clip
@@ -161,7 +159,6 @@ impl CheckedFrame<'_> {
         all.iter().all(|v| v[3] >= 0 && near(v)).then_some(all)
     }
 
-    /// A voxel's corners: lowest and highest, finest voxels.
     fn corners(&self, voxel: &Voxel) -> ([i64; 3], [i64; 3]) {
         let side = 1i64 << (self.setup.depth - (voxel[3] as u32).min(self.setup.depth));
         let low = [0, 1, 2].map(|k| i64::from(voxel[k]));

@@ -12,12 +12,9 @@ use super::sweep::{SweepPlan, TOLERANCES};
 use super::vertex::{Hold, Worst};
 use shiftvox::project::Coverage;
 
-/// The key by which outcomes are added up.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Key {
-    /// Place of the scene in the plan.
     pub scene: usize,
-    /// Word width.
     pub bits: u32,
     /// Place of the rule in [`Coverage::UNBLENDED`].
     pub coverage: usize,
@@ -25,30 +22,20 @@ pub struct Key {
     pub tolerance: usize,
 }
 
-/// Outcomes added up.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Tally {
-    /// Cases.
     pub cases: u64,
-    /// Cases with a picture.
     pub drawn: u64,
-    /// Cases that ended with an overflow.
     pub trapped: u64,
-    /// Cases that set-up refused.
     pub refused: u64,
     /// Cases given up after the most records: [`End::CutOff`].
     pub cut_off: u64,
-    /// Cases that violated a check.
     pub failed: u64,
-    /// Most records of a frame.
     pub most_records: u64,
     /// Samples inside closed surfaces.
     pub inside: u64,
-    /// Holes among them.
     pub holes: u64,
-    /// Samples that show an occluded voxel.
     pub order: u64,
-    /// Samples that the oracle covers.
     pub covered: u64,
     /// False positives.
     pub extra: u64,
@@ -105,33 +92,23 @@ impl Tally {
     }
 }
 
-/// A case that violated a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Failed {
-    /// The check.
     pub check: Check,
-    /// Place and kind of the violation.
     pub detail: String,
-    /// The case, for `--case`.
     pub case: String,
     /// A smaller case that violates the check, if it was shrunk.
     pub minimal: Option<String>,
-    /// The smaller case's details.
     pub minimal_detail: Option<String>,
 }
 
-/// The results of a sweep.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
-    /// Outcomes by scene, width and rule.
     pub tallies: BTreeMap<Key, Tally>,
     /// Worst vertices by [`Hold`] and word width.
     pub worst: BTreeMap<(Hold, u32), Worst>,
-    /// Traps by place, without the record.
     pub traps: BTreeMap<String, u64>,
-    /// Refusals by reason.
     pub refusals: BTreeMap<String, u64>,
-    /// Failures by check.
     pub failures: BTreeMap<Check, u64>,
     /// Some of the failures, shrunk ones first.
     pub failed: Vec<Failed>,
@@ -140,8 +117,6 @@ pub struct Findings {
 const TOLD: u64 = 3;
 
 impl Findings {
-    /// All outcomes.
-    #[must_use]
     pub fn total(&self) -> Tally {
         self.sum(|_| true)
     }
@@ -202,7 +177,6 @@ impl Findings {
     }
 
     /// The results as JSON: all rows, and sums by scene, rule, viewpoint, word width, and check.
-    #[must_use]
     pub fn document(&self, plan: &SweepPlan) -> Value {
         let named = |fields: Value, tally: &Tally| {
             let mut row = json!(tally);
@@ -276,7 +250,6 @@ impl Findings {
     }
 }
 
-/// The place of a trap without the record, which differs in every case.
 fn place_of(trap: &str) -> String {
     let place = trap.split(", record").next().unwrap_or(trap);
     let place = place.split_once("overflowed in ").map_or(place, |p| p.1);

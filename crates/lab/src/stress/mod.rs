@@ -4,8 +4,6 @@
 mod case;
 mod check;
 mod findings;
-#[cfg(test)]
-mod mutants;
 mod outcome;
 mod scene;
 mod shrink;
@@ -24,3 +22,6 @@ pub use scene::StressScene;
 pub use sweep::{SweepPlan, TOLERANCES, run_case, sweep};
 pub use tables::TABLES;
 pub use vertex::{Hold, Worst};
+
+#[cfg(test)]
+mod mutants;

@@ -5,7 +5,6 @@ use serde::Serialize;
 use super::vertex::Worst;
 use crate::measure::CoverageError;
 
-/// A property that every frame must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
@@ -46,27 +45,20 @@ impl Check {
         Self::Engines,
     ];
 
-    /// Its name.
-    #[must_use]
     pub fn name(self) -> String {
         format!("{self:?}").to_lowercase()
     }
 }
 
-/// A violation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Failure {
-    /// The violated property.
     pub check: Check,
-    /// Place and kind of the violation.
     pub detail: String,
 }
 
-/// The end of a frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum End {
-    /// With a picture.
     Drawn,
     /// With an overflow: operation, stage, level and record.
     Trapped(String),
@@ -77,14 +69,10 @@ pub enum End {
     CutOff,
 }
 
-/// The outcome of a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outcome {
-    /// The end of its frame.
     pub end: End,
-    /// Violations.
     pub failures: Vec<Failure>,
-    /// Records processed.
     pub records: u64,
     /// Samples inside a closed surface, as the oracle sees it.
     pub inside: u64,
@@ -94,7 +82,6 @@ pub struct Outcome {
     pub order: u64,
     /// The picture against the oracle's, without level of detail.
     pub coverage: CoverageError,
-    /// Vertices, by [`super::Hold`].
     pub worst: [Worst; 3],
 }
 
@@ -117,8 +104,6 @@ impl Outcome {
         self.failures.push(Failure { check, detail });
     }
 
-    /// Whether the case violates a property.
-    #[must_use]
     pub fn fails(&self, check: Check) -> bool {
         self.failures.iter().any(|failure| failure.check == check)
     }

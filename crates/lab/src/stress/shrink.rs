@@ -12,7 +12,6 @@ use shiftvox::scene::generate::Spec;
 
 const MOST_VOXELS: usize = 6000;
 
-/// Looks for smaller and plainer cases that fail one check, too.
 pub(super) struct Shrinker<'s> {
     pub(super) subject: &'s dyn Subject,
     pub(super) check: Check,

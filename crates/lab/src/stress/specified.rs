@@ -30,7 +30,6 @@ impl<'s> SpecifiedVertices<'s> {
         (corner, 1 << (bound - path.len() as u32))
     }
 
-    /// X, Y, W of the eight vertices of a path's voxel, exactly.
     fn clip(&self, path: &[u8]) -> [[Wide; 8]; 3] {
         let (corner, side) = self.cube(path);
         let setup = self.setup;

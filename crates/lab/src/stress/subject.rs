@@ -17,7 +17,6 @@ pub(super) trait Subject: Sync {
         most_records: u64,
     ) -> Result<Option<Stats>, EngineError>;
 
-    /// As [`machine::cages_along`].
     fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
 }
 

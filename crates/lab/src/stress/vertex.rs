@@ -12,20 +12,14 @@ use shiftvox::project::{CageKind, FrameSetup};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hold {
-    /// Clip space, either cage.
     Clip,
-    /// Screen space, eight corners.
     Corners,
-    /// Screen space, a corner and three edges.
     Frame,
 }
 
 impl Hold {
-    /// All, in order.
     pub const ALL: [Self; 3] = [Self::Clip, Self::Corners, Self::Frame];
 
-    /// Its name in tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Clip => "clip space, both cages",
@@ -35,14 +29,11 @@ impl Hold {
     }
 }
 
-/// The worst vertices of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Worst {
-    /// Vertices examined.
     pub vertices: u64,
     /// Largest error, samples, of those within the picture.
     pub error_px: f64,
-    /// The bound at that vertex.
     pub bound_px: f64,
     /// Largest quotient of error and bound, over all vertices before the eye.
     pub tightest: f64,
@@ -70,7 +61,6 @@ impl Worst {
 
 #[derive(Default)]
 pub(super) struct Vertices {
-    /// By [`Hold`].
     pub(super) worst: [Worst; 3],
     pub(super) differs: Option<String>,
     pub(super) beyond: Option<String>,

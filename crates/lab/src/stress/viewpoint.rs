@@ -7,7 +7,6 @@ use shiftvox::split_mix::SplitMix;
 
 pub(super) struct Viewpoint {
     pub(super) camera: Camera,
-    /// How far object and camera are from the world's origin, voxels.
     pub(super) shift: i64,
 }
 

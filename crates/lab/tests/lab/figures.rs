@@ -1,49 +1,34 @@
 //! Figures of the hardware model, computed again without the model. The tables are read as plain
 //! TOML, a probe of this file counts the machine's events, and the rest is arithmetic.
 
-use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
+use std::collections::BTreeMap;
+
+use hwmodel::cycles::{Hardware, NoObserver};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
 use shiftvox::machine::Machine;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
-use shiftvox_lab::model::compare::{self, Design};
+use shiftvox::project::{FrameSetup, SetupOptions};
 use shiftvox_lab::model::cost::{self, Prices};
-use shiftvox_lab::model::{area, clock, frame};
+use shiftvox_lab::model::{area, frame};
 
 use crate::scenes::*;
 
 #[derive(Default)]
 struct Log {
-    /// Class, bits, times.
-    operations: Vec<(OpClass, u32, u32)>,
-    /// Nodes that are read, in order.
-    nodes: Vec<u64>,
-    /// Attributes that are read, in order.
-    attributes: Vec<u64>,
+    /// Times of operations by class and bits.
+    operations: BTreeMap<(OpClass, u32), u64>,
+    /// Addresses that are read, in order.
+    reads: BTreeMap<Memory, Vec<u64>>,
     pixels: u64,
-}
-
-impl Log {
-    fn times(&self, class: OpClass, bits: u32) -> u64 {
-        let of = self.operations.iter();
-        of.filter(|(c, b, _)| (*c, *b) == (class, bits))
-            .map(|(_, _, times)| u64::from(*times))
-            .sum()
-    }
 }
 
 impl Probe for Log {
     fn op(&mut self, class: OpClass, bits: u32, _: StageLevel, times: u32) {
-        self.operations.push((class, bits, times));
+        *self.operations.entry((class, bits)).or_default() += u64::from(times);
     }
 
     fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
-        match memory {
-            Memory::Node => self.nodes.push(address),
-            Memory::Attribute => self.attributes.push(address),
-            _ => {}
-        }
+        self.reads.entry(memory).or_default().push(address);
     }
 
     fn write(&mut self, memory: Memory, _: u64, _: StageLevel) {
@@ -51,140 +36,38 @@ impl Probe for Log {
     }
 }
 
-fn logged(graph: &Graph, setup: &FrameSetup) -> Log {
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Log::default());
-    drawn.unwrap().1
-}
-
-/// One voxel, and a picture of `side` samples per side of the middle of its face, which no line
-/// through an edge crosses.
-fn one_voxel(side: u32) -> (Graph, FrameSetup) {
-    let mut builder = Builder::new(BuildOptions::default());
-    builder.push(Voxel::default());
-    let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
-    assert_eq!((graph.depth, graph.len()), (0, 1));
-    let camera = Camera {
-        eye: glam::DVec3::new(3.0, 1.7, 2.3),
-        target: glam::DVec3::new(1.0, 0.5, 0.5),
-        up: glam::DVec3::Z,
-        fov_degrees: 1.0,
-        width: side,
-        height: side,
-    };
-    let options = SetupOptions {
-        bits: 32,
-        ..SetupOptions::default()
-    };
-    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    assert_eq!(setup.levels, side.ilog2());
-    (graph, setup)
-}
-
-/// Figure 1: additions and subtractions of a frame of one voxel and one sample, by hand.
-///
-/// A span of four numbers takes six additions. Pushing: the span of W; against the picture's border, for x and y, four
-/// subtractions and two spans; against the bisector, for x and y, four subtractions and a span.
-/// Drawing, in wide words: nine of the twelve planes are their neighbour plus (six) or less (three) three coefficients;
-/// each plane has its least and greatest (two sums), and is compared with the sample (two sums).
-#[test]
-fn additions_of_a_frame_of_one_voxel() {
-    let (graph, setup) = one_voxel(1);
-    let log = logged(&graph, &setup);
-    assert_eq!(log.times(OpClass::Add, 32), 6 + 2 * 2 * 6 + 2 * 6);
-    assert_eq!(log.times(OpClass::Sub, 32), 2 * 4 + 2 * 4);
-    assert_eq!(log.times(OpClass::Add, 64), 6 * 3 + 12 * 2 + 12 * 2);
-    assert_eq!(log.times(OpClass::Sub, 64), 3 * 3);
-    assert_eq!((log.pixels, log.nodes.len()), (1, 1));
-}
-
-/// Figure 2: its cycles on a design with a unit for every operation.
-#[test]
-fn cycles_of_a_frame_of_one_voxel() {
-    // The only fill vector is cleared, and the object is made in three visits of a cycle. The record is taken and compared
-    // with its fill vector. It reads its node (a miss), is drawn (a miss of its attribute) and marks its sample.
-    let stored = 1 + 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1;
-    // With parents or the path on the stack the object is not stored, and its node is not read. The turn that makes it draws
-    // it: three visits of a cycle, the attribute's miss, and the sample's vector cleared and marked.
-    let never_stored = 3 + (1 + 20) + 2;
-    // Four by four samples: the attribute is read for each, and all wait for the first one's line. Then the joined word is
-    // written seventeen times, once a cycle: it is cleared, and marked.
-    let joined = 3 + (1 + 20) + 17;
-    let of = |stack, bricks, hidden_unread, joined_fill| Organisation {
-        stack,
-        leaf_masks: true,
-        bricks,
-        hidden_unread,
-        joined_fill,
-        ..Organisation::default()
-    };
-    for (side, organisation, cycles) in [
-        (1, Organisation::default(), stored),
-        (1, of(StackHolds::Parents, true, true, false), never_stored),
-        (1, of(StackHolds::Path, true, true, false), never_stored),
-        (4, of(StackHolds::Path, false, false, true), joined),
-    ] {
-        let found = cycles_of_one_voxel(side, organisation);
-        assert_eq!(found, cycles, "{organisation:?}");
-    }
-}
-
-fn cycles_of_one_voxel(side: u32, organisation: Organisation) -> u64 {
-    let (graph, setup) = one_voxel(side);
-    let mut hardware = Hardware::preset("tiny").unwrap();
-    hardware.organisation = organisation;
-    (hardware.pixels.buffer, hardware.pixels.drain_interval) = (16, 1);
-    for unit in hardware.units.values_mut() {
-        (unit.count, unit.latency, unit.interval, unit.width) = (1000, 0, 1, 64);
-    }
-    let (nodes, attributes) = (&mut hardware.node_cache, &mut hardware.attribute_cache);
-    (nodes.hit_latency, nodes.miss_latency) = (2, 30);
-    (attributes.hit_latency, attributes.miss_latency) = (1, 20);
-    let (view, observer) = (graph.view(), &mut NoObserver);
-    let simulated = frame::simulate(&view, &setup, &hardware, Overflow::Trap, observer);
-    simulated.unwrap().1.cycles.cycles
-}
-
 /// A cache as in a textbook: sets of lines, the one that was used last at the end.
 fn naive_misses(addresses: &[u64], entry: u64, (bytes, ways, line): (u64, usize, u64)) -> u64 {
-    let sets = bytes / (ways as u64 * line);
-    let mut lines = vec![Vec::<u64>::new(); sets as usize];
+    let mut sets = vec![Vec::<u64>::new(); (bytes / (ways as u64 * line)) as usize];
     let mut misses = 0;
     for address in addresses {
         let number = address * entry / line;
-        let set = &mut lines[(number % sets) as usize];
-        match set.iter().position(|held| *held == number) {
-            Some(at) => {
-                set.remove(at);
-            }
-            None => {
-                misses += 1;
-                if set.len() == ways {
-                    set.remove(0);
-                }
-            }
+        let at = number as usize % sets.len();
+        let set = &mut sets[at];
+        let before = set.len();
+        set.retain(|held| *held != number);
+        if set.len() == before {
+            misses += 1;
+            set.drain(..(before + 1).saturating_sub(ways));
         }
         set.push(number);
     }
     misses
 }
 
-/// The row of a table for an operation and a width, and optionally a goal, as the file has it.
-fn row(table: &str, operation: &str, width: i64, figure: &str) -> (f64, f64) {
+/// A figure of a table for an operation and a width: its low and high ends, as the file has them.
+fn row(table: &str, operation: &str, width: i64, figure: &str) -> [f64; 2] {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../hwmodel/tables");
     let text = std::fs::read_to_string(format!("{path}/{table}.toml")).unwrap();
     let table: toml::Table = text.parse().unwrap();
-    let rows = table["row"].as_array().unwrap();
-    let is = |row: &toml::Value, key: &str, value: &toml::Value| row.get(key) == Some(value);
-    let found = rows.iter().find(|row| {
-        is(row, "operation", &operation.into())
-            && is(row, "width", &width.into())
-            && (row.get("goal").is_none() || is(row, "goal", &"area".into()))
+    let mut rows = table["row"].as_array().unwrap().iter();
+    let found = rows.find(|row| {
+        let is = |key: &str, value: toml::Value| row.get(key).is_none_or(|of| *of == value);
+        is("operation", operation.into()) && is("width", width.into()) && is("goal", "area".into())
     });
-    let number = |value: &toml::Value| value.as_float().unwrap();
     match &found.unwrap()[figure] {
-        toml::Value::Array(ends) => (number(&ends[0]), number(&ends[1])),
-        value => (number(value), number(value)),
+        toml::Value::Array(ends) => [0, 1].map(|end| ends[end].as_float().unwrap()),
+        value => [value.as_float().unwrap(); 2],
     }
 }
 
@@ -192,7 +75,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// Figures 3 to 11, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
+/// Of a design with one context. Its units and memories have sizes of the tables.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");
@@ -203,93 +86,69 @@ fn figures_of_a_terrain() {
     };
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
     let mut hardware = Hardware::preset("tiny").unwrap();
-    let unit = |count, width| hwmodel::cycles::Unit {
-        count,
-        latency: 0,
-        interval: 1,
-        width,
-    };
-    hardware.units.insert(OpClass::Add, unit(3, 32));
+    let adders = hardware.units.get_mut(&OpClass::Add).unwrap();
+    (adders.count, adders.latency, adders.interval, adders.width) = (3, 0, 1, 32);
     (hardware.node_cache.bytes, hardware.node_cache.ways) = (1024, 2);
     hardware.stack.entries = 8;
     let prices = Prices::shipped().unwrap();
     let view = graph.view();
     let counted = frame::count(&graph, &setup, &hardware, Overflow::Trap).unwrap();
-    let (_, simulated) =
+    let simulated =
         frame::simulate(&view, &setup, &hardware, Overflow::Trap, &mut NoObserver).unwrap();
-    let cycles = &simulated.cycles;
+    let cycles = &simulated.1.cycles;
     let widths = frame::widths(&setup, &graph, &hardware);
     let cost = cost::frame_cost(&counted, cycles, &widths, &setup, &hardware, &prices).unwrap();
     let area = area::light(&counted, cycles, &setup, &hardware, &prices).unwrap();
-    let log = logged(&graph, &setup);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn = Machine::default().render_probed(&view, &setup, &mut frame, Log::default());
+    let log = drawn.unwrap().1;
 
-    // 3. Energy of the additions of 32 bits.
+    // 1. Energy of the additions of 32 bits.
     let mut lines = cost.operations.lines.iter();
     let line = lines.find(|line| (line.name.as_str(), line.width) == ("add", 32));
-    let (low, high) = row("energy", "add", 32, "energy_pj");
+    let [low, high] = row("energy", "add", 32, "energy_pj");
     assert_eq!(low, high);
-    let additions = log.times(OpClass::Add, 32) as f64;
+    let additions = log.operations[&(OpClass::Add, 32)] as f64;
     close(line.unwrap().total, additions * low);
 
-    // 4. Area of the three adders that find a child's span.
+    // 2. Area of the three adders that find a child's span.
     let mut lines = area.units.lines.iter();
     let line = lines.find(|line| line.name == "child box" && line.operation == "add");
-    let (nand2, _) = row("area", "add", 32, "nand2");
-    close(line.unwrap().total, 3.0 * nand2);
+    close(
+        line.unwrap().total,
+        3.0 * row("area", "add", 32, "nand2")[0],
+    );
 
-    // 5. Delay of such an adder.
-    let clock = clock::check(&counted.counter, &hardware, &prices).unwrap();
-    let adder = clock.units.iter().find(|unit| unit.class == OpClass::Add);
-    let (delay, _) = row("area", "add", 32, "delay_ps");
-    close(adder.unwrap().delay_ps, delay);
-
-    // 6. Misses of both caches.
-    let node_misses = naive_misses(&log.nodes, 8, (1024, 2, 32));
+    // 3. Misses of both caches.
+    let node_misses = naive_misses(&log.reads[&Memory::Node], 8, (1024, 2, 32));
     let of = hardware.attribute_cache;
     let line_bytes = u64::from(of.line_bytes);
     let shape = (u64::from(of.bytes), of.ways as usize, line_bytes);
-    let attribute_misses = naive_misses(&log.attributes, u64::from(of.entry_bytes), shape);
+    let read = &log.reads[&Memory::Attribute];
+    let attribute_misses = naive_misses(read, u64::from(of.entry_bytes), shape);
     assert_eq!(cycles.node_cache.misses, node_misses);
     assert_eq!(cycles.attribute_cache.misses, attribute_misses);
 
-    // 7. Bits of a record: node and level; solid, inside; two corners; quadtree level and place; four numbers of
-    // three coordinates and the least W; twelve plane coefficients.
+    // 4. Bits of a record: node, level, two flags, two corners, then the quadtree's level and place. Four numbers of three
+    // coordinates, the least W and twelve plane coefficients follow.
     let bits_of = |greatest: u64| 64 - greatest.leading_zeros();
     let always = bits_of(graph.len() as u64 - 1) + bits_of(6) + 2 + 2 * 3 * bits_of(64);
     let bits = always + bits_of(6) + 2 * 6 + 3 * 4 * 32 + 32 + 12 * 64;
     assert_eq!(counted.record_bits(), bits);
 
-    // 8. Bytes to and from outer memory: lines, pixels of three bytes, spilled records both ways.
+    // 5. Bits to and from outer memory: lines, pixels of three bytes, spilled records both ways.
     assert!(cycles.stack.spilled > 0);
     let moved = 8 * (32 * node_misses + line_bytes * attribute_misses)
         + 24 * log.pixels
         + 2 * cycles.stack.spilled_bits;
     assert_eq!(cost.traffic.bits(), moved);
 
-    // 9. Their energy, in words of 64 bits.
-    let (low, high) = row("energy", "dram_read", 64, "energy_pj");
+    // 6. Their energy, in words of 64 bits.
     let words = 4 * node_misses
         + line_bytes / 8 * attribute_misses
         + (24 * log.pixels).div_ceil(64)
         + 2 * cycles.stack.spilled_bits.div_ceil(64);
+    let [low, high] = row("energy", "dram_read", 64, "energy_pj");
     close(cost.outer.low, words as f64 * low);
     close(cost.outer.high, words as f64 * high);
-
-    // 10. Power, and 11. bandwidth.
-    let design = Design {
-        cost: &cost,
-        area: &area,
-        cycles: cycles.cycles,
-        frames_per_second: cycles.frames_per_second,
-    };
-    let lines = compare::lines(design, design);
-    let seconds = cycles.cycles as f64 / (hardware.clock_mhz * 1e6);
-    let joules = (cost.operations.total + cost.on_chip.total + cost.outer.total) * 1e-12;
-    for (what, expected) in [
-        ("power at its own speed, without leakage", joules / seconds),
-        ("bandwidth at its own speed", moved as f64 / 8e9 / seconds),
-    ] {
-        let line = lines.iter().find(|line| line.what == what);
-        close(line.unwrap().light.value, expected);
-    }
 }

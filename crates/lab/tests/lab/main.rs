@@ -1,10 +1,9 @@
-//! The laboratory: bounds, stress, figures, test vectors, models of the shared data.
+//! The laboratory: bounds, stress, figures, test vectors, vertex errors.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bounds;
 #[path = "../../../../tests/machine/common/mod.rs"]
 mod common;
-mod far_models;
 mod figures;
 #[path = "../../../../tests/machine/scenes/mod.rs"]
 mod scenes;

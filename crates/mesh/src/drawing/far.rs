@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::mesh_view::{light_of, picture_of_far};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
@@ -11,23 +11,18 @@ use shiftvox::drawing::Figures;
 use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
 
-/// Settings for drawing far voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarStyle {
     /// Largest voxel, pixels; above 0.
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// The opacities that are used.
     pub opacity: Opacity,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
 impl FarStyle {
-    /// The options of a viewer.
     pub fn options(&self, view: &RasterCamera) -> ViewOptions {
         ViewOptions {
             voxel_px: self.voxel_px,
@@ -48,11 +43,9 @@ pub struct FarMethod<'f> {
     style: FarStyle,
 }
 
-/// A file of far voxels that is drawn, once or from many cameras.
 pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
 
 impl<'f> FarDrawing<'f> {
-    /// Nothing is drawn yet.
     pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
         Self::of(FarMethod {
             file,
@@ -73,12 +66,17 @@ impl Method for FarMethod<'_> {
 
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = self.style.options(view);
-        let (mut drawn, counts) = self.viewer.draw(view, &options)?;
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_far(drawn),
-            counters: counters(&counts),
-        })
+        let (drawn, counts) = self.viewer.draw(view, &options)?;
+        let (size, nodes) = ((drawn.width, drawn.height), drawn.node);
+        let (coverage, counters) = (drawn.coverage, counters(&counts));
+        Ok(Drawn::new(
+            size,
+            drawn.rgba,
+            drawn.depth,
+            nodes,
+            coverage,
+            counters,
+        ))
     }
 
     fn details(&self) -> Figures {

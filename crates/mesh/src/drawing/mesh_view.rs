@@ -1,19 +1,15 @@
-//! Cameras, light and pictures of renderers of meshes.
+//! Cameras and light of renderers of meshes.
 
 use glam::DVec3;
 
-use crate::far::view::FarPicture;
-use crate::raster::{Light, NO_TRIANGLE, RasterCamera, RasterPicture};
-use shiftvox::picture::{AMBIENT, KEY_LIGHT, Picture, Shading};
+use crate::raster::{Light, RasterCamera};
+use shiftvox::picture::{AMBIENT, KEY_LIGHT, Shading};
 use shiftvox::project::{Camera, CameraError};
 
 /// Share of the distance to the farthest corner below which nothing is drawn.
 const NEAR: f64 = 1e-6;
 
 /// A camera's view of the contents of a box.
-///
-/// # Errors
-/// When the camera has no direction or a number that is not finite.
 pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<RasterCamera, CameraError> {
     let axes = camera.axes()?;
     let farthest = (camera.eye - low)
@@ -42,69 +38,5 @@ pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
     match shading {
         Shading::Lambert => Some(light),
         Shading::Flat => None,
-    }
-}
-
-/// A rasterised picture as those of other engines, without normals and voxels;
-/// its node is 0 where a triangle is seen, else -1.
-pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
-    let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
-    picture(
-        (drawn.width, drawn.height),
-        drawn.rgba,
-        drawn.depth,
-        drawn.triangle.iter().map(node).collect(),
-    )
-}
-
-/// A picture of far voxels as those of other engines, without normals and voxels.
-pub fn picture_of_far(drawn: FarPicture) -> Picture {
-    let size = (drawn.width, drawn.height);
-    picture(size, drawn.rgba, drawn.depth, drawn.node)
-}
-
-fn picture(
-    (width, height): (u32, u32),
-    rgba: Vec<[u8; 4]>,
-    depth: Vec<f32>,
-    node: Vec<i32>,
-) -> Picture {
-    let pixels = rgba.len();
-    Picture {
-        width,
-        height,
-        rgba,
-        depth,
-        normal: vec![[0.0; 3]; pixels],
-        voxel: vec![[0, 0, 0, -1]; pixels],
-        node,
-        records: None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_key_light_is_above_and_behind_the_camera() {
-        let camera = Camera {
-            eye: DVec3::new(0.0, -10.0, 0.0),
-            target: DVec3::ZERO,
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            width: 64,
-            height: 64,
-        };
-        let view = view_of(&camera, (DVec3::splat(-1.0), DVec3::ONE)).unwrap();
-        // The farthest corner is at y = 1.
-        let farthest = DVec3::new(1.0, 11.0, 1.0).length();
-        assert!((view.near - 1e-6 * farthest).abs() < 1e-12);
-        let light = light_of(&view, Shading::Lambert).unwrap();
-        // It looks along +y, with x to the right and z up.
-        let [right, up, behind] = KEY_LIGHT.normalize().to_array();
-        let expected = DVec3::new(right, -behind, up);
-        assert!((light.towards - expected).length() < 1e-12);
-        assert!(light_of(&view, Shading::Flat).is_none());
     }
 }

@@ -14,7 +14,7 @@ use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Picture, Pixels};
 use shiftvox::project::{Bounds, Camera, Up};
 
-use crate::raster::{RasterCamera, RasterError, SamplesError};
+use crate::raster::{NO_TRIANGLE, RasterCamera, RasterError, RasterPicture, SamplesError};
 use mesh_view::view_of;
 
 pub use far::{FarDrawing, FarMethod, FarStyle, resident};
@@ -24,24 +24,18 @@ pub use triangles::{TrianglesDrawing, TrianglesMethod, TrianglesStyle};
 /// Why a method of meshes did not draw a frame: the contents of [`DrawError::Method`].
 #[derive(Debug, thiserror::Error)]
 pub enum MethodError {
-    /// Far voxels cannot be drawn so.
     #[error(transparent)]
     Far(#[from] crate::far::view::ViewError),
-    /// Textured voxels cannot be drawn so.
     #[error(transparent)]
     Textured(#[from] crate::textured::view::ViewError),
-    /// A file of textured voxels has no grid with so many cells.
     #[error("the file has no grid of {cells} cells")]
     NoGrid {
-        /// The requested number.
         cells: u32,
         /// The numbers of cells of the file's grids.
         has: Vec<u32>,
     },
-    /// Triangles cannot be drawn so.
     #[error(transparent)]
     Raster(#[from] RasterError),
-    /// A pixel cannot have so many samples.
     #[error(transparent)]
     Samples(#[from] SamplesError),
 }
@@ -55,28 +49,55 @@ impl From<MethodError> for DrawError {
 /// Least memory of a sample, bytes: colour, depth, and the triangle or node that is seen.
 const MESH_SAMPLE_BYTES: u64 = 8;
 
-/// A picture that a method drew, with the covered share of each pixel.
 pub struct Drawn {
     picture: Picture,
     coverage: Vec<f32>,
     counters: Figures,
 }
 
-/// A method of drawing a mesh.
+impl Drawn {
+    /// A picture without normals and voxels. A node is -1 where nothing is seen.
+    fn new(
+        (width, height): (u32, u32),
+        rgba: Vec<[u8; 4]>,
+        depth: Vec<f32>,
+        node: Vec<i32>,
+        coverage: Vec<f32>,
+        counters: Figures,
+    ) -> Self {
+        let picture = Picture {
+            width,
+            height,
+            normal: vec![[0.0; 3]; rgba.len()],
+            voxel: vec![[0, 0, 0, -1]; rgba.len()],
+            rgba,
+            depth,
+            node,
+            records: None,
+        };
+        Self {
+            picture,
+            coverage,
+            counters,
+        }
+    }
+
+    fn of_triangles(drawn: RasterPicture, counters: Figures) -> Self {
+        let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
+        let nodes = drawn.triangle.iter().map(node).collect();
+        let (size, coverage) = ((drawn.width, drawn.height), drawn.coverage);
+        Self::new(size, drawn.rgba, drawn.depth, nodes, coverage, counters)
+    }
+}
+
 pub trait Method: Clone + Send {
-    /// The bounds for a fitted camera.
     fn mesh_box(&self) -> MeshBox;
 
     /// Samples per pixel and axis, as a power of two, that take memory at the same time.
     fn aa_log2(&self) -> u32;
 
-    /// Draws a frame.
-    ///
-    /// # Errors
-    /// See [`MethodError`].
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError>;
 
-    /// The method's name and other figures of it.
     fn details(&self) -> Figures;
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::mesh_view::{light_of, picture_of_triangles};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
@@ -15,44 +15,33 @@ use shiftvox::picture::{Background, Shading};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Erosion {
     /// The level of fewest faces, of all grids, whose texels are at most so many pixels; above 0.
-    Auto {
-        /// Pixels.
-        texel_px: f64,
-    },
+    Auto { texel_px: f64 },
     /// So often; beyond the last level primitives alone are left.
     Level {
-        /// Erosions.
         level: u32,
         /// The grid, by its number of cells; else the one that fits the view best.
         cells: Option<u32>,
     },
 }
 
-/// Settings for drawing textured voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedStyle {
-    /// Level of detail.
     pub erosion: Erosion,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
-/// A file of textured voxels and how it is drawn.
 #[derive(Clone)]
 pub struct TexturedMethod<'f> {
     file: &'f TexturedFile,
     style: TexturedStyle,
 }
 
-/// A file of textured voxels that is drawn, once or from many cameras.
 pub type TexturedDrawing<'f> = MethodDrawing<TexturedMethod<'f>>;
 
 impl<'f> TexturedDrawing<'f> {
-    /// Nothing is drawn yet.
     pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
         Self::of(TexturedMethod { file, style })
     }
@@ -64,7 +53,7 @@ impl TexturedMethod<'_> {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
             Erosion::Level { level, cells } => (level, cells),
         };
-        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells();
+        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells;
         let grid = match cells {
             None => choose_grid(self.file, view, level),
             Some(cells) => (0..self.file.grids())
@@ -96,12 +85,8 @@ impl Method for TexturedMethod<'_> {
                 background: self.style.background.color(),
             },
         };
-        let (mut drawn, counts) = draw(self.file, view, &options)?;
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_triangles(drawn),
-            counters: counters(self.file, &counts),
-        })
+        let (drawn, counts) = draw(self.file, view, &options)?;
+        Ok(Drawn::of_triangles(drawn, counters(self.file, &counts)))
     }
 
     fn details(&self) -> Figures {
@@ -111,7 +96,7 @@ impl Method for TexturedMethod<'_> {
 
 fn counters(file: &TexturedFile, counts: &TexturedCounts) -> Figures {
     let choice = &counts.choice;
-    let cells = file.grid(choice.grid).cell_grid().cells();
+    let cells = file.grid(choice.grid).cell_grid().cells;
     vec![
         ("grid", json!(cells)),
         ("erosion", json!(choice.level)),

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::mesh_view::{light_of, picture_of_triangles};
+use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::raster::{self, RasterCamera, RasterOptions, Samples};
 use crate::{Mesh, mesh_box};
@@ -11,18 +11,13 @@ use shiftvox::graph::{MeshBox, Progress};
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::Up;
 
-/// Settings for drawing triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrianglesStyle {
-    /// Samples of a pixel.
     pub samples: Samples,
-    /// Light.
     pub shading: Shading,
-    /// The background.
     pub background: Background,
 }
 
-/// A mesh, drawn with a depth buffer.
 #[derive(Clone)]
 pub struct TrianglesMethod<'m> {
     mesh: &'m Mesh,
@@ -31,11 +26,9 @@ pub struct TrianglesMethod<'m> {
     progress: &'m dyn Progress,
 }
 
-/// A mesh that is drawn with a depth buffer, once or from many cameras.
 pub type TrianglesDrawing<'m> = MethodDrawing<TrianglesMethod<'m>>;
 
 impl<'m> TrianglesDrawing<'m> {
-    /// Nothing is drawn yet.
     pub fn new(mesh: &'m Mesh, up: Up, style: TrianglesStyle, progress: &'m dyn Progress) -> Self {
         Self::of(TrianglesMethod {
             mesh,
@@ -52,7 +45,6 @@ impl Method for TrianglesMethod<'_> {
     }
 
     fn aa_log2(&self) -> u32 {
-        // Samples are held bin by bin.
         0
     }
 
@@ -63,16 +55,11 @@ impl Method for TrianglesMethod<'_> {
             light: light_of(view, self.style.shading),
             background: self.style.background.color(),
         };
-        let mut drawn = raster::draw(self.mesh, view, &options, self.progress)?;
+        let drawn = raster::draw(self.mesh, view, &options, self.progress)?;
         let samples = drawn.rgba.len() * samples.per_pixel();
-        Ok(Drawn {
-            coverage: std::mem::take(&mut drawn.coverage),
-            picture: picture_of_triangles(drawn),
-            counters: vec![
-                ("triangles", json!(self.mesh.triangles().len())),
-                ("samples", json!(samples)),
-            ],
-        })
+        let triangles = self.mesh.triangles().len();
+        let counters = vec![("triangles", json!(triangles)), ("samples", json!(samples))];
+        Ok(Drawn::of_triangles(drawn, counters))
     }
 
     fn details(&self) -> Figures {

@@ -21,12 +21,15 @@ fn shares(towards_eye: DVec3, raw: DVec3) -> Shares {
     let sum = raw.x + raw.y + raw.z;
     [0, 1, 2].map(|axis| {
         let number = 2 * axis + usize::from(towards_eye[axis] < 0.0);
-        let share = if sum > 0.0 {
-            raw[axis] / sum
-        } else {
-            1.0 / 3.0
-        };
-        (number, share)
+        let is_direction = sum > 0.0;
+        (
+            number,
+            if is_direction {
+                raw[axis] / sum
+            } else {
+                1.0 / 3.0
+            },
+        )
     })
 }
 
@@ -60,14 +63,11 @@ impl<const N: usize> Fit<N> {
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
-        let matrix = self.matrix.as_flattened_mut().iter_mut();
-        let right = self.right.as_flattened_mut().iter_mut();
-        let others = other.matrix.as_flattened().iter();
-        let others = others.chain(other.right.as_flattened());
-        matrix
-            .chain(right)
-            .zip(others)
-            .for_each(|(sum, v)| *sum += v);
+        let matrices = self.matrix.as_flattened_mut().iter_mut();
+        let matrices = matrices.zip(other.matrix.as_flattened());
+        let rights = self.right.as_flattened_mut().iter_mut();
+        let rights = rights.zip(other.right.as_flattened());
+        matrices.chain(rights).for_each(|(sum, v)| *sum += v);
     }
 
     pub(super) fn square_of(&self, values: &[f64; DIRECTIONS]) -> f64 {

@@ -17,7 +17,6 @@ pub use store::{FarError, FarFile};
 /// Far voxels in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarData {
-    /// The settings of all nodes.
     pub settings: FarSettings,
     /// The hierarchy, parents before children, a node's first child right after it.
     pub nodes: Vec<Node>,
@@ -43,7 +42,6 @@ pub struct FarSettings {
 }
 
 impl FarData {
-    /// Triangles of all leaves.
     pub fn triangles(&self) -> u64 {
         self.nodes.first().map_or(0, |root| root.triangles.into())
     }

@@ -1,4 +1,4 @@
-//! Records of voxels, triangles and nodes. Plain bytes, little-endian.
+//! Records of voxels, triangles and nodes (`spec/far.md`). Plain bytes, little-endian.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -8,19 +8,16 @@ use crate::geometry::point;
 use crate::{linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
 
-/// The shader of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ShaderKind {
-    /// One normal, two materials: one for each side.
+    /// One normal, and a colour for each side.
     Flat,
-    /// Six normals and six materials.
+    /// A normal and a colour for each main direction.
     Complex,
 }
 
-/// How a voxel's opacity is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum OpacityKind {
-    /// It hides what is behind it, from everywhere.
     Opaque,
     /// One number for each side of its surface.
     Scalar,
@@ -60,35 +57,31 @@ pub const OPACITY_BYTES: [usize; 6] = [0, 2, 5, 0, 2, 5];
 /// Area of a unit cube's outline, mean over all directions.
 const MEAN_OUTLINE: f64 = 1.5;
 
+const SCALAR_STEPS: f64 = 63.0;
 const SIX_STEPS: f64 = 15.0;
 
 /// Equal ranges of the cosine to a surface's normal.
 pub const STEEPNESSES: usize = 4;
 
-/// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
+/// The range of a cosine from 0 to 1, steepest last.
 pub fn steepness(cosine: f64) -> usize {
     ((cosine * STEEPNESSES as f64) as usize).min(STEEPNESSES - 1)
 }
 
-/// A voxel's colours and normals.
+/// Unit normals, and colours in linear light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(
     clippy::large_enum_variant,
     reason = "lives on the stack for one voxel at a time"
 )]
 pub enum Shader {
-    /// Colours are linear light.
     Flat {
-        /// Unit normal.
         normal: DVec3,
         /// In front, behind.
         colors: [DVec3; 2],
     },
-    /// For each main direction.
     Complex {
-        /// Unit normals.
         normals: [DVec3; DIRECTIONS],
-        /// Colours.
         colors: [DVec3; DIRECTIONS],
     },
 }
@@ -102,7 +95,7 @@ impl Shader {
         }
     }
 
-    /// Unit normal on the eye's side, and colour in linear light.
+    /// The normal on the eye's side, and the colour.
     pub fn seen_from(&self, towards_eye: DVec3) -> (DVec3, DVec3) {
         match self {
             Self::Flat { normal, colors } => {
@@ -134,7 +127,6 @@ pub struct SideOpacity {
 }
 
 impl SideOpacity {
-    /// Everywhere.
     pub const OPAQUE: Self = Self {
         scalar: 1.0,
         solid_from: 0,
@@ -162,18 +154,15 @@ impl SideOpacity {
     }
 }
 
-/// A voxel, decoded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Voxel {
     /// Place in the node's grid.
     pub place: [u8; 3],
-    /// Its colours and normals.
     pub shader: Shader,
     /// Opacity seen from each main direction, 0 to 1; 1 where it is not stored.
     pub opacity: [f64; DIRECTIONS],
     /// Opacity over all directions from before its surface, and behind it.
     pub sides: [SideOpacity; 2],
-    /// How they are stored.
     pub opacity_kind: OpacityKind,
 }
 
@@ -194,10 +183,7 @@ fn normal_of(bytes: &[u8]) -> DVec3 {
     packed.decode().unwrap_or(DVec3::Z)
 }
 
-const SCALAR_STEPS: f64 = 63.0;
-
-/// Six opacities in four bits each, rounded up or down by a lot drawn from the place, so that the mean over many voxels
-/// is kept: thin things do not vanish.
+/// Opacities are rounded up or down at random, so that the mean over many voxels is kept: thin things do not vanish.
 fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
     let [x, y, z] = place.map(u64::from);
     let mut bits = 0u32;
@@ -212,63 +198,49 @@ fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
 }
 
 impl Voxel {
-    /// The list that it belongs to.
+    /// The list of [`LISTS`] that it belongs to.
     pub fn list(&self) -> usize {
-        let shader = match self.shader {
-            Shader::Flat { .. } => 0,
-            Shader::Complex { .. } => 3,
-        };
-        shader
-            + match self.opacity_kind {
-                OpacityKind::Opaque => 0,
-                OpacityKind::Scalar => 1,
-                OpacityKind::Six => 2,
-            }
+        3 * usize::from(matches!(self.shader, Shader::Complex { .. })) + self.opacity_kind as usize
     }
 
-    /// Appends its record.
     pub fn write(&self, out: &mut Vec<u8>) {
         out.extend(self.place);
-        match &self.shader {
-            Shader::Flat { normal, colors } => {
-                out.extend(normal_bytes(*normal));
-                out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
-            }
-            Shader::Complex { normals, colors } => {
-                out.extend(normals.iter().flat_map(|&n| normal_bytes(n)));
-                out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
-            }
+        let (normals, colors) = match &self.shader {
+            Shader::Flat { normal, colors } => (std::slice::from_ref(normal), &colors[..]),
+            Shader::Complex { normals, colors } => (&normals[..], &colors[..]),
+        };
+        out.extend(normals.iter().flat_map(|&n| normal_bytes(n)));
+        out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
+        if self.opacity_kind != OpacityKind::Opaque {
+            out.extend(self.sides.map(SideOpacity::byte));
         }
-        match self.opacity_kind {
-            OpacityKind::Opaque => {}
-            OpacityKind::Scalar => out.extend(self.sides.map(SideOpacity::byte)),
-            OpacityKind::Six => {
-                out.extend(self.sides.map(SideOpacity::byte));
-                out.extend(six_bytes(&self.opacity, self.place));
-            }
+        if self.opacity_kind == OpacityKind::Six {
+            out.extend(six_bytes(&self.opacity, self.place));
         }
     }
 
-    /// Decodes a record of a list, of any bytes.
+    /// Reads a record of a list; its bytes may be any.
     pub fn read(list: usize, bytes: &[u8]) -> Self {
         let (kind, opacity_kind) = LISTS[list];
-        let (shader, end) = match kind {
-            ShaderKind::Flat => {
-                let shader = Shader::Flat {
-                    normal: normal_of(&bytes[3..5]),
-                    colors: [color_of(&bytes[5..8]), color_of(&bytes[8..11])],
-                };
-                (shader, 11)
-            }
-            ShaderKind::Complex => {
-                let shader = Shader::Complex {
-                    normals: std::array::from_fn(|k| normal_of(&bytes[3 + 2 * k..])),
-                    colors: std::array::from_fn(|k| color_of(&bytes[15 + 3 * k..])),
-                };
-                (shader, 33)
-            }
+        let shader = match kind {
+            ShaderKind::Flat => Shader::Flat {
+                normal: normal_of(&bytes[3..5]),
+                colors: [color_of(&bytes[5..8]), color_of(&bytes[8..11])],
+            },
+            ShaderKind::Complex => Shader::Complex {
+                normals: std::array::from_fn(|k| normal_of(&bytes[3 + 2 * k..])),
+                colors: std::array::from_fn(|k| color_of(&bytes[15 + 3 * k..])),
+            },
         };
-        let (sides, opacity) = opacity_of(opacity_kind, &bytes[end..]);
+        let bytes_of_opacity = &bytes[RECORD_BYTES[list] - OPACITY_BYTES[list]..];
+        let (mut sides, mut opacity) = ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]);
+        if opacity_kind != OpacityKind::Opaque {
+            sides = [0, 1].map(|side| SideOpacity::of(bytes_of_opacity[side]));
+        }
+        if opacity_kind == OpacityKind::Six {
+            let steps = |k: usize| bytes_of_opacity[2 + k / 2] >> (4 * (k % 2)) & 15;
+            opacity = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
+        }
         Self {
             place: [bytes[0], bytes[1], bytes[2]],
             shader,
@@ -278,7 +250,6 @@ impl Voxel {
         }
     }
 
-    /// Its opacity as seen from a direction.
     pub fn opacity_from(&self, towards_eye: DVec3, mode: Opacity) -> f64 {
         if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
             return 1.0;
@@ -305,65 +276,48 @@ impl Voxel {
     }
 }
 
-fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> ([SideOpacity; 2], [f64; DIRECTIONS]) {
-    let sides = || [0, 1].map(|side| SideOpacity::of(bytes[side]));
-    match kind {
-        OpacityKind::Opaque => ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]),
-        OpacityKind::Scalar => (sides(), [1.0; DIRECTIONS]),
-        OpacityKind::Six => {
-            let steps = |k: usize| bytes[2 + k / 2] >> (4 * (k % 2)) & 15;
-            let six = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
-            (sides(), six)
-        }
-    }
-}
-
 /// A triangle of a node, in memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeafTriangle {
-    /// Corners, relative to the file's centre.
+    /// Relative to the file's centre.
     pub corners: [[f32; 3]; 3],
-    /// Normals of the corners, packed.
+    /// Packed.
     pub normals: [u16; 3],
-    /// Colours of the corners, sRGB.
+    /// sRGB.
     pub colors: [[u8; 3]; 3],
 }
 
-/// A node of the hierarchy.
+/// A node of the hierarchy. Its box holds its triangles. Coordinates are relative to the file's centre.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
-    /// Lowest corner of its triangles, relative to the file's centre.
     pub low: [f32; 3],
-    /// Highest corner of its triangles.
     pub high: [f32; 3],
-    /// Lowest corner of its grid; zero in a leaf.
+    /// Lowest corner of its grid; zero without one, as `voxel` and `cells`.
     pub origin: [f32; 3],
-    /// Side of a voxel, world units; zero in a leaf.
+    /// Side of a voxel, world units.
     pub voxel: f32,
-    /// Voxels of the grid along each axis; zero in a leaf.
+    /// Voxels of the grid along each axis.
     pub cells: [u8; 3],
-    /// 1 for a leaf, 0 for an inner node.
+    /// 1 or 0.
     pub is_leaf: u8,
     /// Levels below the root.
     pub level: u32,
     /// Numbers of the children, or zeros.
     pub children: [u32; 2],
-    /// The first of its triangles.
     pub first_triangle: u32,
-    /// How many it has: those of all leaves below.
+    /// Those of all leaves below.
     pub triangles: u32,
     /// Where its data begins in its section, bytes.
     pub data_at: u64,
-    /// Voxels of each of the six lists; zero in a leaf.
+    /// Voxels of each of the six lists.
     pub counts: [u32; 6],
     /// Voxels that triangles touch.
     pub touched: u32,
     /// Kept voxels with too few rays to decide whether they are hidden.
     pub untested: u32,
-    /// Rays that were shot for it.
     pub rays: u32,
-    /// Those that hit one of its triangles.
+    /// Rays that hit one of its triangles.
     pub hits: u32,
     /// Rays through the voxels that are kept, summed over these.
     pub crossings: u32,
@@ -373,7 +327,7 @@ pub struct Node {
     pub checksum: u64,
     /// Corners of its surface that no other node has, and those that others share.
     pub vertices: [u32; 2],
-    /// Triangles of its surface: of an inner node decimated ones, if any.
+    /// Triangles of its surface: all of a leaf, decimated ones of an inner node.
     pub surface: u32,
     /// Colours in the table of its surface, or 0 where each vertex has its own.
     pub colors: u16,
@@ -383,14 +337,13 @@ pub struct Node {
     pub spare: u8,
 }
 
-/// Bytes of the position of a vertex of one node.
+/// Bytes of the position of a vertex of one node, and of one that nodes share.
 pub const OWN_BYTES: usize = 6;
-/// Bytes of the position of a vertex that nodes share.
 pub const SHARED_BYTES: usize = 12;
-/// Most colours of which vertices have the numbers.
+/// Most colours in the table of a surface.
 pub const MOST_COLORS: usize = 256;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Bytes per vertex or index.
 pub(in crate::far) struct SurfaceColumns {
     pub(in crate::far) normal: usize,
     pub(in crate::far) color: usize,
@@ -413,11 +366,9 @@ impl SurfaceColumns {
     }
 }
 
-/// Bytes of a [`Node`].
 pub const NODE_BYTES: usize = size_of::<Node>();
 
 impl Node {
-    /// Whether it has no children.
     pub fn is_leaf(&self) -> bool {
         self.is_leaf != 0
     }
@@ -436,7 +387,7 @@ impl Node {
             .map(|child| child as usize)
     }
 
-    /// Bytes of its surface, unpacked.
+    /// Unpacked.
     pub fn surface_bytes(&self) -> u64 {
         let columns = SurfaceColumns::of(self);
         let [own, shared] = self.vertices.map(u64::from);
@@ -448,23 +399,21 @@ impl Node {
             + u64::from(self.surface) * 3 * columns.index as u64
     }
 
-    /// Bytes of its voxels and its surface, unpacked.
     pub fn drawn_bytes(&self) -> u64 {
         self.voxel_bytes() + self.surface_bytes()
     }
 
-    /// Voxels that it keeps.
     pub fn voxels(&self) -> u64 {
         self.counts.iter().map(|&n| u64::from(n)).sum()
     }
 
-    /// Bytes of its voxels, unpacked.
+    /// Unpacked.
     pub fn voxel_bytes(&self) -> u64 {
         let lists = self.counts.iter().zip(RECORD_BYTES);
         lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
     }
 
-    /// Corners of its grid, or of its triangles, relative to the file's centre.
+    /// Corners of its grid, or of its triangles.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         if !self.has_grid() {
             return (point(self.low), point(self.high));

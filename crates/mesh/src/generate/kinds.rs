@@ -6,7 +6,6 @@ use glam::{DVec3, dvec3};
 
 use super::maker::Maker;
 
-/// A ball with bumps of many sizes and noise of a hundredth of its radius.
 pub(super) fn scan(maker: &mut Maker) {
     const SIZE: [u32; 2] = [96, 192];
     let lobes: Vec<(DVec3, f64, f64)> = (0..40)
@@ -46,7 +45,6 @@ pub(super) fn scan(maker: &mut Maker) {
     });
 }
 
-/// A base plate with blocks, pins and bent tubes.
 pub(super) fn machine(maker: &mut Maker) {
     let steel = maker.material([150, 155, 165]);
     let dark = maker.material([60, 64, 72]);
@@ -193,7 +191,6 @@ pub(super) fn stadium(maker: &mut Maker) {
     }
 }
 
-/// Walls with windows, a roof over them, a chimney.
 fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
     let shade = maker.between(-30.0, 30.0);
     let wall = maker.material([(205.0 + shade) as u8, (195.0 + shade) as u8, 175]);

@@ -10,7 +10,6 @@ pub(crate) struct Maker {
     pub(super) lot: SplitMix,
 }
 
-/// Corners around a circle.
 const TURN: f64 = core::f64::consts::TAU;
 
 impl Maker {
@@ -22,7 +21,6 @@ impl Maker {
     }
 
     pub(crate) fn finish(self) -> Mesh {
-        // Every kind has triangles.
         self.builder.finish("generated").unwrap_or_default()
     }
 
@@ -43,7 +41,6 @@ impl Maker {
     ) {
         let corners = points.map(|p| self.builder.position(p.as_vec3().to_array()));
         let normals = normals.map(|normals| normals.map(|n| n.as_vec3().to_array()));
-        // The positions were added just now.
         let _ = self.builder.triangle(corners, normals, material);
     }
 

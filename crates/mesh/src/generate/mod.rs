@@ -8,27 +8,18 @@ pub(crate) mod maker;
 use super::{Mesh, Surface, linear_to_srgb};
 use maker::Maker;
 
-/// A kind of mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A closed uneven surface, coloured by vertices, as scanners make them.
     Scan,
-    /// Plates, blocks and tubes, as designers of machines make them.
     Machine,
-    /// A wheel with spokes.
     Wheel,
-    /// A tree whose leaves are two triangles each.
     Tree,
-    /// Tiers of seats: many parts in few planes.
     Stadium,
-    /// Houses in rows.
     Village,
-    /// A house with trees and a fence: surfaces and thin parts.
     Garden,
 }
 
 impl Kind {
-    /// All kinds with their names.
     pub const ALL: [(&'static str, Self); 7] = [
         ("scan", Self::Scan),
         ("machine", Self::Machine),
@@ -40,13 +31,9 @@ impl Kind {
     ];
 }
 
-/// The prefix of every spec of a mesh.
 pub const PREFIX: &str = "mesh:";
 
 /// Reads `mesh:KIND` or `mesh:KIND,seed=N`.
-///
-/// # Errors
-/// With a sentence that says what there is.
 pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
     let body = spec.strip_prefix(PREFIX).unwrap_or(spec);
     let (name, seed) = match body.split_once(',') {
@@ -67,7 +54,6 @@ pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
     }
 }
 
-/// Makes a mesh.
 pub fn generate(kind: Kind, seed: u64) -> Mesh {
     let mut maker = Maker::new(seed);
     match kind {
@@ -121,14 +107,13 @@ mod tests {
     #[test]
     fn every_kind_is_small_follows_its_seed_and_survives_its_file() {
         for (name, kind) in Kind::ALL {
+            assert_eq!(parse(&format!("mesh:{name},seed=7")), Ok((kind, 7)));
             let mesh = generate(kind, 1);
-            let is_small = (1_000..60_000).contains(&mesh.len());
-            assert!(is_small, "{name}: {}", mesh.len());
-            assert!(mesh.warnings().is_empty(), "{name}: {:?}", mesh.warnings());
-            assert_eq!(mesh, generate(kind, 1), "{name}");
+            assert!((1_000..60_000).contains(&mesh.len()), "{name}");
             assert_ne!(mesh.positions(), generate(kind, 2).positions(), "{name}");
             let options = LoadOptions::default();
             let bytes = ply(&mesh);
+            assert!(bytes == ply(&generate(kind, 1)), "{name}");
             let again = read(&bytes, MeshFormat::Ply, name, &Nothing, &options, &Silent).unwrap();
             assert_eq!(again.len(), mesh.len(), "{name}");
             for number in (0..mesh.len()).step_by(97) {
@@ -138,14 +123,5 @@ mod tests {
                 assert!((a.normals[2] - b.normals[2]).length() < 1e-6, "{name}");
             }
         }
-    }
-
-    #[test]
-    fn specifications_are_read() {
-        assert_eq!(parse("mesh:tree"), Ok((Kind::Tree, 1)));
-        assert_eq!(parse("mesh:scan,seed=7"), Ok((Kind::Scan, 7)));
-        let error = |text| parse(text).unwrap_err();
-        assert!(error("mesh:bush").contains("there are scan, machine"));
-        assert!(error("mesh:tree,sed=7").contains("seed=N"));
     }
 }

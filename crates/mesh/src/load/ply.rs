@@ -18,7 +18,6 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
     };
     let positions = vertices.positions(file.offset())?;
     let (colors, normals_at) = (vertices.colors(), vertices.normals());
-    // 16 bits are the full range.
     let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let default = builder.material(Material::default_color());
     let white = builder.material(Material::of_srgb("vertex colours", [255; 3]));
@@ -86,7 +85,6 @@ fn add_face(
             let expected = format!("corners from 0 to {}", positions - 1);
             fault("face", row, expected, *number)
         })?;
-        // Below 2^32: positions are numbered so.
         corners.push(corner as u32);
     }
     let [first, rest @ ..] = &corners[..] else {

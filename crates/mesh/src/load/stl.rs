@@ -11,14 +11,11 @@ use shiftvox::scene::is_binary_stl;
 use super::{Fault, Place, Problem};
 use crate::{Material, MeshBuilder};
 
-/// Bytes before the first triangle of a binary file.
 const HEADER: usize = 84;
-/// Bytes of a triangle of a binary file.
 const TRIANGLE: usize = 50;
 
 type Corners = [[f32; 3]; 3];
 
-/// Equal corners become one position.
 pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
     builder.material(Material::default_color());
     let mut numbers = HashMap::new();
@@ -67,41 +64,28 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
     Ok(())
 }
 
+/// The words of a facet; `#` is a number.
+const FACET: &str =
+    "facet normal # # # outer loop vertex # # # vertex # # # vertex # # # endloop endfacet";
+
 /// The corners of the next facet, or `None` at the end of the solid. An error is the word that is wrong.
 fn facet<'t>(words: &mut SplitWhitespace<'t>) -> Result<Option<Corners>, Option<&'t str>> {
-    let number = |words: &mut SplitWhitespace<'t>| {
-        let word = words.next().ok_or(None)?;
-        word.parse::<f32>().map_err(|_| Some(word))
-    };
-    let expect = |words: &mut SplitWhitespace<'t>, expected: &[&str]| {
-        let mut expected = expected.iter();
-        expected.try_for_each(|&expected| match words.next() {
-            Some(word) if word == expected => Ok(()),
-            other => Err(other),
-        })
-    };
-    match words.next() {
-        Some("endsolid") => return Ok(None),
-        Some("facet") => {}
-        other => return Err(other),
-    }
-    expect(words, &["normal"])?;
-    for _ in 0..3 {
-        number(words)?;
-    }
-    expect(words, &["outer", "loop"])?;
-    let mut corners = Corners::default();
-    for corner in &mut corners {
-        expect(words, &["vertex"])?;
-        for coordinate in corner {
-            *coordinate = number(words)?;
+    let mut numbers = Vec::with_capacity(12);
+    for (place, expected) in FACET.split(' ').enumerate() {
+        match words.next() {
+            Some("endsolid") if place == 0 => return Ok(None),
+            Some(word) if expected == "#" => {
+                numbers.push(word.parse::<f32>().map_err(|_| Some(word))?);
+            }
+            Some(word) if word == expected => {}
+            other => return Err(other),
         }
     }
-    expect(words, &["endloop", "endfacet"])?;
-    Ok(Some(corners))
+    // The normal comes first.
+    let corners = numbers[3..].as_chunks::<3>().0;
+    Ok(corners.try_into().ok())
 }
 
-/// The fault of a file that is neither text nor as long as its header says.
 fn cut_binary(bytes: &[u8]) -> Box<Fault> {
     let count = bytes
         .get(80..HEADER)

@@ -5,6 +5,7 @@ use std::io::{self, Cursor};
 use std::rc::Rc;
 
 use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
@@ -13,11 +14,9 @@ use shiftvox::picture::png;
 use shiftvox::srgb::to_linear;
 
 const MOST_ACROSS: u32 = 16_384;
-/// Most bytes of all textures of a mesh once they are decoded.
 const MOST_BYTES: u64 = 1 << 30;
 const MOST_SAMPLES: u32 = 48;
 
-/// A decoded picture, repeated in all directions.
 #[derive(Debug)]
 pub(super) struct Texture {
     width: u32,
@@ -28,33 +27,29 @@ pub(super) struct Texture {
 
 impl Texture {
     fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
-        if let Some((width, height)) = png::size(bytes) {
+        let (width, height, texels);
+        if let Some(size) = png::size(bytes) {
+            (width, height) = size;
             check_size(width, height, most_bytes)?;
             let image = png::decode(bytes).map_err(|error| error.to_string())?;
-            return Ok(Self {
-                width,
-                height,
-                texels: image.rgba.into_flattened(),
-            });
-        }
-        if !bytes.starts_with(b"\xff\xd8") {
+            texels = image.rgba.into_flattened();
+        } else if bytes.starts_with(b"\xff\xd8") {
+            let failed = |error: DecodeErrors| error.to_string();
+            let options = DecoderOptions::default()
+                .jpeg_set_out_colorspace(ColorSpace::RGBA)
+                .set_max_width(MOST_ACROSS as usize)
+                .set_max_height(MOST_ACROSS as usize);
+            let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
+            decoder.decode_headers().map_err(failed)?;
+            let size = decoder.dimensions().unwrap_or_default();
+            (width, height) = (size.0 as u32, size.1 as u32);
+            check_size(width, height, most_bytes)?;
+            texels = decoder.decode().map_err(failed)?;
+            if texels.len() != 4 * size.0 * size.1 {
+                return Err("its colours are not supported".to_owned());
+            }
+        } else {
             return Err("it is neither PNG nor JPEG".to_owned());
-        }
-        let options = DecoderOptions::default()
-            .jpeg_set_out_colorspace(ColorSpace::RGBA)
-            .set_max_width(MOST_ACROSS as usize)
-            .set_max_height(MOST_ACROSS as usize);
-        let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
-        decoder
-            .decode_headers()
-            .map_err(|error| error.to_string())?;
-        let (width, height) = decoder.dimensions().unwrap_or_default();
-        // Both are at most 65,535 in a JPEG.
-        let (width, height) = (width as u32, height as u32);
-        check_size(width, height, most_bytes)?;
-        let texels = decoder.decode().map_err(|error| error.to_string())?;
-        if texels.len() != 4 * width as usize * height as usize {
-            return Err("its colours are not supported".to_owned());
         }
         Ok(Self {
             width,
@@ -78,10 +73,7 @@ impl Texture {
         // The middles of equal small triangles: `steps * steps` of them, half of which stand on their heads.
         for i in 0..steps {
             for j in 0..steps - i {
-                for third in 1..=2 {
-                    if third == 2 && i + j + 1 == steps {
-                        continue;
-                    }
+                for third in 1..=if i + j + 1 < steps { 2 } else { 1 } {
                     let part = |n: u32| (f64::from(n) + f64::from(third) / 3.0) / f64::from(steps);
                     let (b, c) = (part(i), part(j));
                     let shares = [1.0 - b - c, b, c];
@@ -118,17 +110,14 @@ fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The textures of a mesh, each read once.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     known: HashMap<String, Option<Rc<Texture>>>,
     bytes: u64,
-    /// Names and reasons.
     failed: Vec<(String, String)>,
 }
 
 impl Textures {
-    /// The texture of a name, read where it was not read before.
     pub(super) fn get(
         &mut self,
         name: &str,
@@ -139,16 +128,10 @@ impl Textures {
         }
         let left = MOST_BYTES.saturating_sub(self.bytes);
         let file = read().map_err(|error| error.to_string());
-        let texture = match file.and_then(|bytes| Texture::decode(&bytes, left)) {
-            Ok(texture) => {
-                self.bytes += texture.texels.len() as u64;
-                Some(Rc::new(texture))
-            }
-            Err(reason) => {
-                self.failed.push((name.to_owned(), reason));
-                None
-            }
-        };
+        let texture = file.and_then(|bytes| Texture::decode(&bytes, left));
+        let texture = texture.map_err(|reason| self.failed.push((name.to_owned(), reason)));
+        let texture = texture.ok().map(Rc::new);
+        self.bytes += texture.as_ref().map_or(0, |t| t.texels.len() as u64);
         self.known.insert(name.to_owned(), texture.clone());
         texture
     }
@@ -159,43 +142,5 @@ impl Textures {
                 "the texture {name} cannot be read ({reason}); what has it keeps its plain colour"
             ));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Left half black, right half white; the lower right quarter is transparent.
-    fn halves() -> Texture {
-        let texel = |i: u32| match (i % 8 < 4, i / 8 < 4) {
-            (true, _) => [0, 0, 0, 255],
-            (false, true) => [255; 4],
-            (false, false) => [255, 255, 255, 0],
-        };
-        Texture {
-            width: 8,
-            height: 8,
-            texels: (0..64).flat_map(texel).collect(),
-        }
-    }
-
-    #[test]
-    fn means_are_of_light_and_by_area_and_opacity() {
-        let mean = |corners| {
-            halves()
-                .mean(corners)
-                .map(|[r, ..]| (r * 1000.0).round() / 1000.0)
-        };
-        // The upper left of the picture, cut from corner to corner: three quarters of it black.
-        let upper = mean([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
-        assert!((upper - 0.25).abs() < 0.02, "{upper}");
-        assert_eq!(mean([[0.6, 0.1], [0.9, 0.1], [0.6, 0.4]]), Some(1.0));
-        assert_eq!(mean([[0.1, 0.1], [0.4, 0.1], [0.1, 0.4]]), Some(0.0));
-        // It repeats, also to the left.
-        assert_eq!(mean([[-3.4, 5.1], [-3.1, 5.1], [-3.4, 5.4]]), Some(1.0));
-        // Nothing but transparent.
-        assert_eq!(mean([[0.6, 0.6], [0.9, 0.6], [0.6, 0.9]]), None);
-        assert_eq!(mean([[f64::NAN, 0.6], [0.9, 0.6], [0.6, 0.9]]), None);
     }
 }

@@ -25,7 +25,6 @@ pub(super) struct Bin {
     pixels: Vec<Pixel>,
 }
 
-/// The samples of a bin that is being drawn, pixel by pixel.
 struct Buffer<'b> {
     view: &'b RasterCamera,
     options: &'b RasterOptions,
@@ -85,7 +84,6 @@ impl Bin {
 }
 
 impl Buffer<'_> {
-    /// Draws a triangle, cut into a fan where the view has cut corners off.
     fn triangle<S: Surface + ?Sized>(&mut self, surface: &S, number: u32) {
         let corners = surface.corners(number as usize);
         let Some(outline) = Outline::of(self.view, &corners) else {
@@ -123,7 +121,6 @@ impl Buffer<'_> {
                 if cover == Cover::Nothing {
                     continue;
                 }
-                // Within the bin: not negative.
                 let pixel = ((y - corner[1]) * size[0] + (x - corner[0])) as usize;
                 let at = pixel * per_pixel;
                 for (sample, place) in self.places.of(pixel).iter().enumerate() {
@@ -157,7 +154,6 @@ impl Buffer<'_> {
             .background
             .map(|color| DVec3::from_array(color.map(|c| f64::from(srgb_to_linear(c)))));
         let per_pixel = self.options.samples.per_pixel();
-        // Neighbouring samples mostly see the same triangle.
         let mut last: Option<(u32, Paint)> = None;
         let middle = self.options.samples.middle();
         (0..(self.columns * self.rows) as usize)
@@ -205,7 +201,6 @@ impl Buffer<'_> {
     }
 }
 
-/// The colour of a pixel of which so many samples see something.
 fn mixed(sum: DVec3, seen: usize, samples: usize, background: Option<DVec3>) -> [u8; 4] {
     let (mean, alpha) = match background {
         Some(background) => {

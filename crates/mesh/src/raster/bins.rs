@@ -6,16 +6,12 @@ use super::RasterCamera;
 use super::clip::Outline;
 use crate::Surface;
 
-/// Pixels along a bin's side.
 pub(super) const BIN: u32 = 32;
-/// Triangles that are sorted at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The triangles of each bin, in their order.
 pub(super) struct Bins {
     columns: u32,
     rows: u32,
-    /// One after the other; each a list for each bin.
     chunks: Vec<Vec<Vec<u32>>>,
 }
 
@@ -33,20 +29,12 @@ impl Bins {
                     let Some(outline) = Outline::of(view, &surface.corners(number)) else {
                         continue;
                     };
-                    let [low, high] = outline
-                        .pixels()
-                        .map(|p| p.map(|c| c.div_euclid(i64::from(BIN))));
-                    let clamp = |c: i64, most: u32| c.clamp(0, i64::from(most) - 1) as u32;
-                    let misses = high[0] < 0
-                        || high[1] < 0
-                        || low[0] >= i64::from(columns)
-                        || low[1] >= i64::from(rows);
-                    if misses {
-                        continue;
-                    }
-                    for row in clamp(low[1], rows)..=clamp(high[1], rows) {
-                        for column in clamp(low[0], columns)..=clamp(high[0], columns) {
-                            lists[(row * columns + column) as usize].push(number as u32);
+                    let bins = |p: [i64; 2]| p.map(|c| c.div_euclid(i64::from(BIN)));
+                    let [low, high] = outline.pixels().map(bins);
+                    for row in low[1].max(0)..=high[1].min(i64::from(rows) - 1) {
+                        for column in low[0].max(0)..=high[0].min(i64::from(columns) - 1) {
+                            let bin = row * i64::from(columns) + column;
+                            lists[bin as usize].push(number as u32);
                         }
                     }
                 }

@@ -13,7 +13,6 @@ use crate::geometry::Polygon;
 
 /// Pixels from the middle of the picture that coordinates may reach.
 const GUARD_PX: f64 = 65536.0;
-/// Three corners, and one more for each of five planes.
 const MOST: usize = 8;
 
 /// A convex polygon in 1/4096 pixel from the picture's top left corner.
@@ -24,8 +23,6 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// The part of a triangle that lies before the eye, on the picture's plane.
-    /// `None` where there is none.
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Option<Self> {
         let mut seen = Polygon::of(&corners.map(|corner| view.seen(corner)));
         let guard = GUARD_PX / view.focal_px;

@@ -16,11 +16,9 @@ struct Edge {
     down: i64,
 }
 
-/// A triangle of the picture's plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Edges([Edge; 3]);
 
-/// A triangle's coverage of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     Nothing,
@@ -29,7 +27,6 @@ pub(super) enum Cover {
 }
 
 impl Edges {
-    /// Two edges and the line between their ends; `None` without area.
     pub(crate) fn new(points: [[i64; 2]; 3]) -> Option<Self> {
         let [a, b, c] = points;
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -51,7 +48,6 @@ impl Edges {
         })))
     }
 
-    /// The edges as seen from a pixel's corner.
     #[inline]
     pub(super) fn seen_from(&self, pixel: [i64; 2]) -> Self {
         Self(self.0.map(|edge| Edge {
@@ -60,7 +56,6 @@ impl Edges {
         }))
     }
 
-    /// How much of the pixel at step (0, 0) is covered, as far as its corners decide it.
     #[inline]
     pub(super) fn cover(&self) -> Cover {
         let mut all = true;
@@ -74,7 +69,6 @@ impl Edges {
         if all { Cover::All } else { Cover::Part }
     }
 
-    /// Whether a sample so many steps from the corner is covered.
     #[inline]
     pub(crate) fn covers(&self, [x, y]: [i64; 2]) -> bool {
         self.0
@@ -86,16 +80,6 @@ impl Edges {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn pixels_are_told_from_their_corners() {
-        let far = SUBPIXELS * 10;
-        let edges = Edges::new([[0, 0], [far, 0], [0, far]]).unwrap();
-        assert_eq!(edges.seen_from([1, 1]).cover(), Cover::All);
-        assert_eq!(edges.seen_from([5, 4]).cover(), Cover::Part);
-        assert_eq!(edges.seen_from([20, 4]).cover(), Cover::Nothing);
-        assert!(Edges::new([[0, 0], [3, 3], [5, 5]]).is_none());
-    }
 
     #[test]
     fn the_largest_triangles_fit() {

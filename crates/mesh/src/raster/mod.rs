@@ -51,7 +51,6 @@ pub struct RasterCamera {
 }
 
 impl RasterCamera {
-    /// Right, up and depth of a point.
     pub(crate) fn seen(&self, point: DVec3) -> DVec3 {
         let offset = point - self.eye;
         let axes = [self.right, self.up, self.forward];

@@ -75,10 +75,8 @@ impl Samples {
     }
 }
 
-/// Where the samples of a rectangle of pixels lie.
 pub(super) struct Places {
     per_pixel: usize,
-    /// Of each pixel, or once where all pixels have the same.
     table: Vec<[i32; 2]>,
 }
 
@@ -92,7 +90,6 @@ impl Places {
         let table = (0..pixels)
             .flat_map(|i| {
                 let pixel = [corner[0] + i % columns, corner[1] + i / columns];
-                // Below 4096.
                 (0..per_pixel).map(move |number| samples.place(pixel, number).map(|c| c as i32))
             })
             .collect();
@@ -117,16 +114,22 @@ mod tests {
             for pattern in [Pattern::Regular, Pattern::Stratified { seed: 7 }] {
                 let samples = Samples::new(per_pixel, pattern).unwrap();
                 let square = SUBPIXELS / i64::from(samples.side);
-                let mut seen = vec![false; per_pixel as usize];
                 for number in 0..samples.per_pixel() {
-                    let [x, y] = samples.place([3, 900], number);
-                    let at = y / square * i64::from(samples.side) + x / square;
-                    assert!(!std::mem::replace(&mut seen[at as usize], true));
+                    let [x, y] = samples.place([3, 900], number).map(|c| c / square);
+                    assert_eq!(y * i64::from(samples.side) + x, number as i64);
                 }
             }
         }
-        assert!(Samples::new(2, Pattern::Regular).is_err());
-        let one = Samples::new(1, Pattern::Regular).unwrap();
-        assert_eq!(one.place([0, 0], 0), [SUBPIXELS / 2; 2]);
+        let [a, b] = [1, 2].map(|seed| {
+            let samples = Samples::new(16, Pattern::Stratified { seed }).unwrap();
+            [[3, 900], [4, 900], [3, 901]].map(|pixel| [0, 1].map(|n| samples.place(pixel, n)))
+        });
+        let mut places = [a, b].as_flattened().to_vec();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 6, "seeds and pixels differ");
+        let regular = |per_pixel| Samples::new(per_pixel, Pattern::Regular);
+        assert!(regular(2).is_err());
+        assert_eq!([1, 4, 16].map(|n| regular(n).unwrap().middle()), [0, 3, 10]);
     }
 }

@@ -40,7 +40,6 @@ pub(super) struct Nearness {
 impl Nearness {
     pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| view.seen(corner));
-        // Nearer parts were cut off.
         let nearest = a.z.min(b.z).min(c.z).max(view.near);
         let farthest = a.z.max(b.z).max(c.z).max(view.near);
         let normal = (b - a).cross(c - a);
@@ -77,7 +76,6 @@ pub(super) fn point_seen(view: &RasterCamera, x: f64, y: f64, depth: f64) -> DVe
     view.eye + view.forward * depth + view.right * (across * scale) + view.up * (upwards * scale)
 }
 
-/// Linear light of a point with a colour and a normal, turned to the eye.
 pub(super) fn light_of(
     view: &RasterCamera,
     light: Option<&Light>,
@@ -89,12 +87,10 @@ pub(super) fn light_of(
     color * light.on(if is_front { normal } else { -normal })
 }
 
-/// A triangle's colours as light, ready for any point of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
     triangle: Triangle,
     face: DVec3,
-    /// The one colour of a triangle that has one.
     flat: Option<DVec3>,
 }
 
@@ -115,7 +111,6 @@ impl Paint {
         paint
     }
 
-    /// Linear light at a place of the picture, where the depth is known.
     pub(super) fn light(
         &self,
         view: &RasterCamera,

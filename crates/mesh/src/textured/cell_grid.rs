@@ -15,12 +15,12 @@ const BITS: u32 = 29;
 /// A mesh thinner than a cell's longest side along an axis gets that extent, with the mesh in its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellGrid {
-    cells: u32,
-    texels: u32,
+    pub cells: u32,
+    pub texels: u32,
     origin: DVec3,
     span: DVec3,
     /// Lattice steps of a texel: even.
-    texel: i64,
+    pub texel_steps: i64,
 }
 
 impl CellGrid {
@@ -36,7 +36,7 @@ impl CellGrid {
             texels,
             origin,
             span,
-            texel: 2 * ((1 << BITS) / across),
+            texel_steps: 2 * ((1 << BITS) / across),
         }
     }
 
@@ -45,14 +45,6 @@ impl CellGrid {
             && cells.is_multiple_of(2)
             && (1..=MOST_TEXELS).contains(&texels)
             && cells * texels <= MOST_ACROSS
-    }
-
-    pub fn cells(&self) -> u32 {
-        self.cells
-    }
-
-    pub fn texels(&self) -> u32 {
-        self.texels
     }
 
     pub fn cell_size(&self) -> DVec3 {
@@ -68,12 +60,8 @@ impl CellGrid {
         self.world(cell.map(|c| i64::from(c) * self.cell_steps()))
     }
 
-    pub fn texel_steps(&self) -> i64 {
-        self.texel
-    }
-
     pub fn cell_steps(&self) -> i64 {
-        self.texel * i64::from(self.texels)
+        self.texel_steps * i64::from(self.texels)
     }
 
     /// Lattice steps along the side of the box, at most 2^29.
@@ -83,9 +71,8 @@ impl CellGrid {
 
     pub fn point(&self, world: DVec3) -> [i64; 3] {
         let most = self.steps() as f64;
-        let at = (world - self.origin) / self.span * most;
-        at.to_array()
-            .map(|c| libm::round(c.clamp(0.0, most)) as i64)
+        let at = ((world - self.origin) / self.span * most).to_array();
+        at.map(|c| libm::round(c.clamp(0.0, most)) as i64)
     }
 
     pub fn world(&self, point: [i64; 3]) -> DVec3 {

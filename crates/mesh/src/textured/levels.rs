@@ -1,7 +1,5 @@
-//! Levels of detail: what each shows, by erosion depths alone.
-//!
-//! Each erosion replaces the voxels of the next depth by their primitives, down to primitives alone. Voxels are sorted
-//! by depth and primitives by their first level, so a level has a tail of the former and a beginning of the latter.
+//! Levels of detail: each erosion replaces the voxels of the next depth by their primitives, down to primitives alone.
+//! Voxels are sorted by depth and primitives by their first level: a level has a tail of these and a beginning of those.
 
 use super::record::{CLEAR, VoxelRecord, list_of};
 use crate::voxelize::OTHERS;
@@ -29,11 +27,7 @@ pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
             .map(|(number, voxel)| {
                 let slice = voxel.cell[axis];
                 let is_positive = slice >= cells / 2;
-                let from_outside = if is_positive {
-                    cells - 1 - slice
-                } else {
-                    slice
-                };
+                let from_outside = slice.min(cells - 1 - slice);
                 let column = (voxel.cell[down], voxel.cell[across], is_positive);
                 (column, from_outside, number)
             })
@@ -103,16 +97,12 @@ impl Levels {
         let mut is_shown = vec![false; primitives];
         let mut eroded = 0;
         for level in 0..=deepest + 1 {
-            while voxels
-                .get(eroded)
-                .is_some_and(|v| u32::from(v.depth) < level)
-            {
-                for &primitive in list_of(voxels, lists, eroded) {
-                    if !std::mem::replace(&mut is_shown[primitive as usize], true) {
-                        levels.order.push(primitive);
-                    }
+            let before = eroded;
+            eroded = voxels.partition_point(|v| u32::from(v.depth) < level);
+            for &primitive in (before..eroded).flat_map(|voxel| list_of(voxels, lists, voxel)) {
+                if !std::mem::replace(&mut is_shown[primitive as usize], true) {
+                    levels.order.push(primitive);
                 }
-                eroded += 1;
             }
             let mut row = LevelRow {
                 level,

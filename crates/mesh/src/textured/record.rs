@@ -20,12 +20,10 @@ pub struct Primitive {
 impl Primitive {
     pub fn of(triangle: &Triangle) -> Self {
         let plane = plane_normal(triangle.corners);
-        let normal = |n: DVec3| {
-            // Normals of a file are in single precision.
-            match n.distance_squared(plane) < 1e-12 {
-                true => PackedNormal::NONE.0,
-                false => PackedNormal::encode(n).0,
-            }
+        // Normals of a file are in single precision.
+        let normal = |n: DVec3| match n.distance_squared(plane) < 1e-12 {
+            true => PackedNormal::NONE.0,
+            false => PackedNormal::encode(n).0,
         };
         Self {
             corners: triangle.corners.map(|p| p.as_vec3().to_array()),
@@ -42,12 +40,11 @@ impl Primitive {
     pub fn triangle(&self) -> Triangle {
         let corners = self.positions();
         let plane = plane_normal(corners);
+        let normal = |n: u16| PackedNormal(n).decode().unwrap_or(plane);
         let color = |c: [u8; 3]| point(c.map(srgb_to_linear));
         Triangle {
             corners,
-            normals: self
-                .normals
-                .map(|n| PackedNormal(n).decode().unwrap_or(plane)),
+            normals: self.normals.map(normal),
             colors: self.colors.map(color),
             alpha: 1.0,
         }

@@ -8,7 +8,6 @@ const POINTS: usize = 8;
 /// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
-/// A number that looks random, of the masks of a node.
 pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)
@@ -116,60 +115,4 @@ pub(super) fn joined(children: &[Masks]) -> Masks {
         }
     }
     masks
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SIDE: i64 = 1 << 10;
-
-    #[test]
-    fn a_wall_covers_its_face_and_no_other() {
-        let covered = |low: i64, high: i64, x: i64| {
-            let corners = [
-                [500, low, -100],
-                [500, high, -100],
-                [500, high, 3000],
-                [500, low, 3000],
-            ];
-            let mut masks = Masks::default();
-            for [b, c] in [[1, 2], [2, 3]] {
-                let triangle = Prepared::new([corners[0], corners[b], corners[c]]);
-                cover(&triangle, [x, 0, 0], SIDE, &mut masks);
-            }
-            masks.map(u64::count_ones)
-        };
-        assert_eq!(covered(-9, 3000, 0), [64, 0, 0]);
-        assert_eq!(covered(-9, 512, 0), [32, 0, 0]);
-        for low in (0..896).step_by(37) {
-            let [points, ..] = covered(low, low + 128, 0);
-            assert!((7..=9).contains(&points), "{low}: {points}");
-        }
-        assert_eq!(covered(-9, 3000, -SIDE), [0; 3]);
-    }
-
-    #[test]
-    fn opacities_are_shares_without_bias() {
-        for points in 0..=64u32 {
-            let opacity =
-                |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
-            let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
-            let error = mean - f64::from(points) / 4.0;
-            assert!(error.abs() < 0.13, "{points}: {mean}");
-        }
-        assert!((0..256).all(|dither| opacity_of(64, dither) == 15));
-        assert!((0..256).all(|dither| opacity_of(0, dither) == 0));
-    }
-
-    #[test]
-    fn four_points_become_one_without_bias() {
-        for covered in 0..=4u32 {
-            let points = (1u64 << covered) - 1;
-            let block = points & 3 | (points >> 2) << 8;
-            let all = (0..16).fold(0u64, |all, at| all | block << (at / 4 * 16 + at % 4 * 2));
-            let joined = joined(&[[all; 3]; 8]);
-            assert_eq!(joined[0].count_ones(), 16 * covered, "{covered}");
-        }
-    }
 }

@@ -7,30 +7,21 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Grid;
-use crate::Surface;
+use crate::{Surface, Triangle};
 use shiftvox::split_mix::mix;
 
 type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
 
-/// The sum of equal triangles.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Repeated {
-    pub(super) times: u32,
-    pub(super) colors: [DVec3; 3],
-    pub(super) alpha: f64,
-}
-
-#[derive(Debug)]
 pub(super) struct Distinct {
     /// Numbers of all triangles that repeat no earlier one, rising.
     pub(super) numbers: Vec<u32>,
-    pub(super) repeated: HashMap<u32, Repeated>,
+    /// The sum of equal triangles and their count, by the number of the first.
+    pub(super) repeated: HashMap<u32, (Triangle, u32)>,
 }
 
 impl Distinct {
     /// Takes 9 bytes per triangle in addition to the numbers.
     pub(super) fn of<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> Self {
-        // Fewer than 2^32: the grid made sure.
         let count = surface.len() as u32;
         let hash = |number: u32| {
             let corners = grid.corners(surface, number);
@@ -47,22 +38,16 @@ impl Distinct {
             let mut firsts: HashMap<Key, u32> = HashMap::new();
             for number in alike.iter().map(|&hash| hash as u32) {
                 let triangle = surface.triangle(number as usize);
-                // Zeros without their sign.
                 let bits = |n: DVec3| n.to_array().map(|c| (c + 0.0).to_bits());
                 let key = (grid.corners(surface, number), triangle.normals.map(bits));
                 let first = *firsts.entry(key).or_insert(number);
                 if first == number {
                     continue;
                 }
-                let all: &mut Repeated = repeated.entry(first).or_insert_with(|| {
-                    let triangle = surface.triangle(first as usize);
-                    Repeated {
-                        times: 1,
-                        colors: triangle.colors,
-                        alpha: triangle.alpha,
-                    }
-                });
-                all.times += 1;
+                let (all, times): &mut (Triangle, u32) = repeated
+                    .entry(first)
+                    .or_insert_with(|| (surface.triangle(first as usize), 1));
+                *times += 1;
                 all.alpha += triangle.alpha;
                 let share = triangle.alpha / all.alpha;
                 for (color, other) in all.colors.iter_mut().zip(triangle.colors) {
@@ -71,10 +56,9 @@ impl Distinct {
                 is_later[number as usize] = true;
             }
         }
+        let numbers = (0..count).filter(|&number| !is_later[number as usize]);
         Self {
-            numbers: (0..count)
-                .filter(|&number| !is_later[number as usize])
-                .collect(),
+            numbers: numbers.collect(),
             repeated,
         }
     }

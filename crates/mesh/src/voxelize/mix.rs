@@ -5,36 +5,14 @@
 
 use glam::DVec3;
 
-use super::distinct::Repeated;
 use super::touch::Prepared;
 use crate::Triangle;
 use crate::geometry::{Polygon, barycentric, blend};
 use crate::material::linear_to_srgb;
 use shiftvox::graph::PackedNormal;
 
-/// Weight of a touch alone, in faces of the voxel.
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
-/// Share of the weight below which opposite normals have cancelled.
 const CANCELLED: f64 = 0.25;
-
-#[derive(Debug)]
-pub(super) struct Painted {
-    colors: [DVec3; 3],
-    normals: [DVec3; 3],
-    alpha: f64,
-    pub(super) times: u32,
-}
-
-impl Painted {
-    pub(super) fn new(triangle: &Triangle, repeated: Option<&Repeated>) -> Self {
-        Self {
-            colors: repeated.map_or(triangle.colors, |all| all.colors),
-            normals: triangle.normals,
-            alpha: repeated.map_or(triangle.alpha, |all| all.alpha),
-            times: repeated.map_or(1, |all| all.times),
-        }
-    }
-}
 
 #[derive(Debug, Default)]
 pub(super) struct Mix {
@@ -49,7 +27,7 @@ impl Mix {
     /// Adds the part of a triangle that lies in the cube. The order of adding counts, in the last bit.
     pub(super) fn add(
         &mut self,
-        painted: &Painted,
+        triangle: &Triangle,
         prepared: &Prepared,
         corner: [i64; 3],
         side: i64,
@@ -64,11 +42,11 @@ impl Mix {
         } else {
             part_in_unit_cube(&points)
         };
-        let weight = (area + TOUCH) * painted.alpha;
+        let weight = (area + TOUCH) * triangle.alpha;
         let share = barycentric(&points, centre);
-        let normal = blend(&painted.normals, share).normalize_or(painted.normals[0]) * weight;
+        let normal = blend(&triangle.normals, share).normalize_or(triangle.normals[0]) * weight;
         self.weight += weight;
-        self.light += blend(&painted.colors, share) * weight;
+        self.light += blend(&triangle.colors, share) * weight;
         self.normal += normal;
         let is_turned = self.turned.dot(normal) < 0.0;
         self.turned += if is_turned { -normal } else { normal };
@@ -109,38 +87,4 @@ fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
     }
     let mean = corners.iter().copied().sum::<DVec3>() / corners.len() as f64;
     (area_of(corners), mean)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_within_a_cube_have_their_area_and_middle() {
-        let half = DVec3::splat(0.5);
-        for (triangle, area, middle) in [
-            // A plane through the middle, far larger than the cube.
-            (
-                [[-9.0, -9.0, 0.5], [20.0, -9.0, 0.5], [-9.0, 20.0, 0.5]],
-                1.0,
-                half,
-            ),
-            // The regular hexagon across the diagonal: side sqrt(1/2).
-            (
-                [[4.5, -1.5, -1.5], [-1.5, 4.5, -1.5], [-1.5, -1.5, 4.5]],
-                0.75 * 3f64.sqrt(),
-                half,
-            ),
-            // A triangle that touches in a corner.
-            (
-                [[1.0, 1.0, 1.0], [2.0, 1.0, 1.0], [1.0, 2.0, 1.0]],
-                0.0,
-                DVec3::ONE,
-            ),
-        ] {
-            let found = part_in_unit_cube(&triangle.map(DVec3::from_array));
-            assert!((found.0 - area).abs() < 1e-12, "{found:?}");
-            assert!((found.1 - middle).length() < 1e-12, "{found:?}");
-        }
-    }
 }

@@ -17,9 +17,9 @@ use rayon::prelude::*;
 pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH, MOST_LOOKED_AT};
 pub use opacity::opacities;
 
-use super::Surface;
+use super::{Surface, Triangle};
 use distinct::Distinct;
-use mix::{Mix, Painted};
+use mix::Mix;
 use shiftvox::graph::{Progress, Voxel};
 pub(crate) use touch::{OTHERS, Prepared, child};
 use walk::{Subtree, walk};
@@ -45,19 +45,19 @@ pub fn voxelize<S: Surface + ?Sized>(
     let cube = grid.cube();
     let voxels = |subtree: Subtree<'_>| {
         let painted = |&number: &u32| {
-            let triangle = surface.triangle(number as usize);
-            Painted::new(&triangle, repeated.get(&number))
+            let repeated = repeated.get(&number).copied();
+            repeated.unwrap_or_else(|| (surface.triangle(number as usize), 1))
         };
-        let painted: Vec<Painted> = subtree.numbers.iter().map(painted).collect();
+        let painted: Vec<(Triangle, u32)> = subtree.numbers.iter().map(painted).collect();
         let mut voxels = Vec::new();
         let mut report = VoxelizeReport::default();
         subtree.leaves(cube, |triangles, corner| {
             let mut mix = Mix::default();
             for &triangle in triangles {
-                let painted = &painted[triangle as usize];
                 let prepared = &subtree.prepared[triangle as usize];
-                mix.add(painted, prepared, corner, cube.voxel);
-                report.touches += u64::from(painted.times);
+                let (triangle, times) = &painted[triangle as usize];
+                mix.add(triangle, prepared, corner, cube.voxel);
+                report.touches += u64::from(*times);
             }
             report.looked_at += triangles.len() as u64;
             report.voxels += 1;

@@ -26,7 +26,6 @@ const LEAST_POINTS: u32 = 16;
 #[derive(Clone, Copy)]
 struct Inside {
     masks: Masks,
-    /// The coarsest level at which a large object is in it.
     large_from: u8,
 }
 
@@ -52,7 +51,6 @@ pub fn opacities<S: Surface + ?Sized>(
         voxel,
         depth: graph.depth,
     };
-    // Equal triangles cover what one of them covers.
     let numbers = Distinct::of(surface, grid).numbers;
     let large_from = parts::coarsest_levels(surface, grid, &numbers, cube);
     let leaves = |subtree: Subtree<'_>| {
@@ -73,7 +71,6 @@ pub fn opacities<S: Surface + ?Sized>(
         });
         leaves
     };
-    // The finest nodes are in Morton order too.
     let mut inside = Vec::with_capacity(graph.len());
     inside.resize(graph.mask.len(), NOTHING);
     let mut take = |leaves: Vec<Inside>| inside.extend(leaves);
@@ -155,7 +152,6 @@ impl Columns<'_> {
             });
     }
 
-    /// The closed columns of a node; its children are settled.
     fn close(&self, node: u32, level: u32) -> [u8; 3] {
         if level == self.graph.depth {
             let masks = self.inside[node as usize].masks;
@@ -176,7 +172,6 @@ impl Columns<'_> {
         closed
     }
 
-    /// A node's opacities; the columns of its level are known.
     fn settle(&self, node: u32, level: u32) -> Opacity {
         let is_large = self.is_large(node, level);
         let dither = dither(&self.inside[node as usize].masks);
@@ -243,7 +238,6 @@ impl Columns<'_> {
 
 #[derive(Clone, Copy, Default)]
 struct Column {
-    /// Points of their faces.
     covered: u64,
     /// Columns of their children that are closed.
     closed: u8,

@@ -58,7 +58,6 @@ pub(super) fn coarsest_levels<S: Surface + ?Sized>(
     levels
 }
 
-/// The corners of triangles as numbers that are equal where the corners are.
 fn joined_corners<S: Surface + ?Sized>(surface: &S, grid: &Grid, numbers: &[u32]) -> Vec<[u32; 3]> {
     let mut corners: Vec<(u64, u64)> = numbers
         .par_iter()

@@ -6,11 +6,9 @@
 //! Coordinates and edges are below 2^30 in size, so a product of an edge and an axis dotted with a corner is below 2^61,
 //! as the normal is. Dotted with a corner that is below 2^93: `i128`.
 
-/// A direction that lies in the plane of two axes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Flat {
     parts: [i64; 2],
-    /// Least and greatest value over the triangle.
     low: i64,
     high: i64,
 }
@@ -41,13 +39,11 @@ pub(crate) struct Prepared {
     pub(crate) low: [i64; 3],
     pub(crate) high: [i64; 3],
     pub(crate) normal: [i64; 3],
-    /// The normal dotted with any corner.
     pub(crate) offset: i128,
     /// For each axis the directions of the three edges in the plane of the others.
     flats: [[Flat; 3]; 3],
 }
 
-/// The other two axes, so that the three are in cyclic order.
 pub(crate) const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 impl Prepared {
@@ -125,23 +121,6 @@ fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn segments_and_points_touch_the_cubes_that_they_meet() {
-        let segment = [[0, 0, 0], [8, 8, 0], [4, 4, 0]];
-        let point = [[3; 3]; 3];
-        for (triangle, corner, touches) in [
-            (segment, [5, 5, 0], true),
-            (segment, [5, 3, 0], false),
-            (segment, [5, 4, 0], true),
-            (point, [3, 3, 3], true),
-            (point, [2, 2, 2], true),
-            (point, [4, 3, 3], false),
-        ] {
-            let found = Prepared::new(triangle).touches(corner, 1);
-            assert_eq!(found, touches, "{triangle:?} {corner:?}");
-        }
-    }
 
     #[test]
     fn the_largest_numbers_fit() {

@@ -8,12 +8,10 @@ use crate::Surface;
 use shiftvox::graph::Progress;
 
 const SUBTREE_LEVELS: u32 = 5;
-/// Subtrees, and triangles of them together, that are done between two calls of the sink.
 const BATCH_SUBTREES: usize = 512;
 const BATCH_TRIANGLES: usize = 1 << 18;
 const PROGRESS_LEVEL: u32 = 4;
 
-/// A cube of `2^depth` voxels a side on the lattice.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cube {
     pub(super) corner: [i64; 3],
@@ -27,7 +25,6 @@ impl Cube {
     }
 }
 
-/// A node with the triangles that touch it, in their order.
 pub(super) struct Subtree<'w> {
     pub(super) numbers: &'w [u32],
     pub(super) prepared: Vec<Prepared>,

@@ -1,97 +1,85 @@
-//! Building: threads, ray budgets, scales, clusters.
+//! Splits, ray budgets, refused options.
 
-use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
-use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, build};
-use shiftvox_mesh::generate::{Kind, generate};
+use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
+use shiftvox_mesh::far::{BuildError, BuildOptions, build};
 
-use super::city::{city, draw, far, file_of, lit, options, view, with_rays};
-use super::hybrid::hybrid;
-use super::shared::{difference, on_any_threads};
-
-fn sum(data: &FarData, of: fn(&Node) -> u64) -> u64 {
-    data.nodes.iter().map(of).sum()
-}
+use super::city::{city, far, file_of, options, view};
+use super::shared::mesh_of;
 
 #[test]
-fn files_have_the_same_bytes_on_any_number_of_threads() {
-    on_any_threads(|| encode(&far()).unwrap());
-    let wheel = generate(Kind::Wheel, 3);
-    on_any_threads(|| encode(&hybrid(&wheel, 300)).unwrap());
+fn equal_triangles_are_split_by_number() {
+    let mesh = mesh_of([[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 100]);
+    let options = BuildOptions {
+        leaf_triangles: 2,
+        ..options()
+    };
+    let data = build(&mesh, &options, &Silent).unwrap();
+    let leaves = data.nodes.iter().filter(|node| node.is_leaf());
+    let triangles: Vec<u32> = leaves.map(|leaf| leaf.triangles).collect();
+    assert_eq!(triangles, [1; 100]);
 }
 
 #[test]
 fn a_ray_budget_is_kept() {
-    let [few, more, enough] = [20_000, 40_000, 4_000_000].map(with_rays);
-    for (data, budget) in [(&few, 20_000), (&more, 40_000)] {
-        let shot = sum(data, |n| u64::from(n.rays));
-        assert!(shot <= budget && shot > budget - 1000, "{shot}");
-    }
+    let [few, more, enough] = [20_000, 40_000, 4_000_000].map(|rays| {
+        let rays = Some(rays);
+        let data = build(&city(false), &BuildOptions { rays, ..options() }, &Silent).unwrap();
+        let sum = |of: fn(&Node) -> u64| -> u64 { data.nodes.iter().map(of).sum() };
+        (
+            sum(|n| n.rays.into()),
+            sum(|n| n.untested.into()),
+            sum(|n| n.touched.into()),
+            sum(Node::voxels),
+        )
+    });
+    assert!((19_000..=20_000).contains(&few.0) && (39_000..=40_000).contains(&more.0));
     // A voxel that no ray reached is kept and not regarded as hidden.
-    let untested = [&few, &more, &enough].map(|data| sum(data, |n| u64::from(n.untested)));
-    assert!(untested[0] > untested[1] && untested[1] > 0 && untested[2] == 0);
-    let touched = [&few, &enough].map(|data| sum(data, |n| u64::from(n.touched)));
-    assert_eq!(touched[0], touched[1]);
-    let kept = [&few, &enough].map(|data| sum(data, Node::voxels));
-    assert!(kept[0] > kept[1], "{kept:?}");
-    assert!(few.nodes.iter().all(|n| n.voxels() <= u64::from(n.touched)));
+    assert!(few.1 > more.1 && more.1 > 0 && enough.1 == 0);
+    assert!(few.2 == enough.2 && few.3 > enough.3, "{few:?} {enough:?}");
 }
 
 #[test]
 fn invalid_options_are_refused() {
-    let faults: [fn(&mut BuildOptions); 4] = [
-        |options| options.grid = 1,
-        |options| options.grid = 256,
-        |options| options.leaf_triangles = 1,
-        |options| options.distance_voxels = f64::NAN,
-    ];
-    for fault in faults {
-        let mut options = options();
-        fault(&mut options);
-        let refused = build(&city(), &options, &Silent);
+    for (grid, leaf_triangles, distance_voxels) in [
+        (1, 2, 1.0),
+        (256, 2, 1.0),
+        (2, 1, 1.0),
+        (2, 2, 0.9),
+        (2, 2, f64::NAN),
+    ] {
+        let options = BuildOptions {
+            grid,
+            leaf_triangles,
+            distance_voxels,
+            ..options()
+        };
+        let refused = build(&city(false), &options, &Silent);
         assert!(matches!(refused, Err(BuildError::Option(_))), "{options:?}");
     }
-}
-
-/// From 10^-12 to 10^12.
-#[test]
-fn a_mesh_scaled_by_a_power_of_two_has_the_same_picture() {
-    let usual = far();
-    let picture = |data: &FarData, scale: f64| {
-        let mut view = view(30.0, 0.6, 150.0, 192);
-        view.eye *= scale;
-        view.near *= scale;
-        draw(&file_of(data), &view, &lit(&view, 2.0)).0.rgba
-    };
-    let expected = picture(&usual, 1.0);
-    for scale in [-40, -17, 40].map(|power| 2f64.powi(power)) {
-        let place = DAffine3::from_scale(DVec3::splat(scale));
-        let scaled = Instances::new(city(), vec![place]);
-        let data = build(&scaled, &options(), &Silent).unwrap();
-        let voxels = [&data, &usual].map(|data| sum(data, Node::voxels));
-        assert_eq!(voxels[0], voxels[1], "{scale}");
-        // Rounding differs, and so some rays end elsewhere.
-        let error = difference(&picture(&data, scale), &expected, f64::from);
-        assert!(error < 2.0, "{scale}: {error}");
+    let nothing = Instances::new(city(false), Vec::new());
+    let refused = build(&nothing, &options(), &Silent);
+    assert_eq!(refused.err(), Some(BuildError::Empty));
+    let file = file_of(&far(false));
+    for (voxel_px, samples_across, width) in [
+        (1.0, 0, 8),
+        (1.0, 17, 8),
+        (0.0, 1, 8),
+        (-1.0, 1, 8),
+        (f64::NAN, 1, 8),
+        (f64::INFINITY, 1, 8),
+        (1.0, 1, 0),
+    ] {
+        let mut view = view(0.0, 0.5, 60.0, 8);
+        view.width = width;
+        let options = ViewOptions {
+            voxel_px,
+            samples_across,
+            ..ViewOptions::default()
+        };
+        let drawn = FarViewer::new(&file).draw(&view, &options);
+        assert!(drawn.is_err(), "{options:?}");
     }
-}
-
-/// A cluster of the ray hierarchy has at most 2^17 triangles.
-#[test]
-fn a_mesh_of_several_clusters_is_built() {
-    let mesh = city();
-    let copies = 140_000usize.div_ceil(mesh.triangles().len());
-    let places = (0..copies).map(|n| DAffine3::from_translation(DVec3::X * 50.0 * n as f64));
-    let options = BuildOptions {
-        rays: Some(20_000),
-        leaf_triangles: 50_000,
-        ..options()
-    };
-    let many = Instances::new(mesh, places.collect());
-    let data = build(&many, &options, &Silent).unwrap();
-    assert!(data.triangles() > 1 << 17, "{}", data.triangles());
-    assert!(data.nodes[0].voxels() > 0);
 }

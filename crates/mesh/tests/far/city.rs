@@ -10,13 +10,8 @@ use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::shared::{cuboid, looking, sheet};
 
-/// About 4000 triangles, 40 units wide.
-pub(crate) fn city() -> Mesh {
-    blocks(false, false)
-}
-
-/// The city, on a ground or not, behind a high wall or not.
-fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
+/// About 4000 triangles, 40 units wide: alone, or on a ground behind a high wall.
+pub(crate) fn city(is_walled: bool) -> Mesh {
     let mut builder = MeshBuilder::new();
     for color in [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]] {
         builder.material(Material::of_srgb("a colour", color));
@@ -40,18 +35,17 @@ fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
         let high = [low[0] + 2.0, low[1] + 1.5, 42.1];
         cuboid(&mut builder, low, high, (i / 4 + i % 4) % 4);
     }
-    if has_ground {
+    if is_walled {
         let at = |i, j| DVec3::new(f64::from(i) * 3.0, -0.2, f64::from(j) * 3.0);
         sheet(&mut builder, [14, 14], 1, at);
-    }
-    for i in 0..if has_wall { 400 } else { 0 } {
-        let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
-        cuboid(&mut builder, [x, y, 70.0], [x + 4.0, y + 2.0, 70.5], 2);
+        for i in 0..400 {
+            let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
+            cuboid(&mut builder, [x, y, 70.0], [x + 4.0, y + 2.0, 70.5], 2);
+        }
     }
     builder.finish("city").unwrap()
 }
 
-/// Small nodes, used from near.
 pub(crate) fn options() -> BuildOptions {
     BuildOptions {
         rays: Some(150_000),
@@ -62,28 +56,14 @@ pub(crate) fn options() -> BuildOptions {
     }
 }
 
-/// The city as far voxels, on a ground or not, behind a high wall or not.
-pub(crate) fn far_of(has_ground: bool, has_wall: bool) -> FarData {
-    build(&blocks(has_ground, has_wall), &options(), &Silent).unwrap()
+pub(crate) fn far(is_walled: bool) -> FarData {
+    build(&city(is_walled), &options(), &Silent).unwrap()
 }
 
-/// The city as far voxels, built with so many rays.
-pub(crate) fn with_rays(rays: u64) -> FarData {
-    let rays = Some(rays);
-    build(&city(), &BuildOptions { rays, ..options() }, &Silent).unwrap()
-}
-
-/// The city as far voxels.
-pub(crate) fn far() -> FarData {
-    far_of(false, false)
-}
-
-/// The built data as a file.
 pub(crate) fn file_of(data: &FarData) -> FarFile {
     FarFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
 
-/// A view of the city from an angle around it and a distance.
 pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> RasterCamera {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let target = DVec3::new(20.0, 2.0, 21.0);
@@ -103,7 +83,6 @@ pub(crate) fn lit(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
     }
 }
 
-/// Draws with a new viewer.
 pub(crate) fn draw(
     file: &FarFile,
     view: &RasterCamera,

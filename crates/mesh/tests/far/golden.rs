@@ -1,6 +1,4 @@
-//! Hashes of built files, of their pictures and of the counts of work: any change to the build or the view shows here.
-//!
-//! The order of additions in a vector product differs between processors, and with it the last bit.
+//! Hashes of files, pictures and counts of work. The last bit of a vector product differs between processors.
 #![cfg(target_arch = "x86_64")]
 
 use shiftvox::graph::Silent;
@@ -9,13 +7,13 @@ use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_mesh::generate::{Kind, generate};
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::city::{city, draw, lit, options, view};
+use super::shared::{hash, on_threads};
 
 type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 
-/// Whether it is hybrid, rays, grid and leaf triangles; hashes of the files of the city and a village.
+/// Hybrid, rays, grid, leaf triangles; hashes of the city and a village.
 const FILES: [Build; 4] = [
     (false, Some(60_000), 24, 60, [0x317a_3d04, 0x3fee_026a]),
     (false, None, 16, 300, [0x1f88_6761, 0xa6a5_e7d3]),
@@ -23,7 +21,7 @@ const FILES: [Build; 4] = [
     (true, None, 16, 300, [0xbe9c_9872, 0xaa66_dac3]),
 ];
 
-/// Distance, height of the eye, voxel size, samples across, opacities, and the hash of pictures and counts.
+/// Distance, height, voxel size, samples across, opacities, hash.
 const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
     (60.0, 0.02, 1.0, 1, Opacity::Six, 0x9b46_8999),
     (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x3937_0096),
@@ -33,16 +31,13 @@ const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
     (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0xcf1c_a60c),
 ];
 
-fn hash(bytes: &[u8]) -> u32 {
-    (xxh3_64(bytes) >> 32) as u32
-}
-
 #[test]
-fn files_and_pictures_have_their_hashes() {
-    let meshes = [city(), generate(Kind::Village, 3)];
+fn files_and_pictures_have_their_hashes_on_any_number_of_threads() {
+    let meshes = [city(false), generate(Kind::Village, 3)];
     let mut counts = [0; LISTS.len()];
     let mut files = Vec::new();
-    for (hybrid, rays, grid, leaf_triangles, expected) in FILES {
+    for (number, row) in FILES.into_iter().enumerate() {
+        let (hybrid, rays, grid, leaf_triangles, expected) = row;
         let options = BuildOptions {
             hybrid,
             rays,
@@ -51,7 +46,9 @@ fn files_and_pictures_have_their_hashes() {
             ..options()
         };
         let built = meshes.each_ref().map(|mesh| {
-            let data = build(mesh, &options, &Silent).unwrap();
+            let data = on_threads(1 + 2 * (number % 2), || {
+                build(mesh, &options, &Silent).unwrap()
+            });
             for node in &data.nodes {
                 for (sum, count) in counts.iter_mut().zip(node.counts) {
                     *sum += count;
@@ -77,13 +74,8 @@ fn files_and_pictures_have_their_hashes() {
             for file in &files {
                 let (picture, counts) = draw(file, &view, &options);
                 bytes.extend(picture.rgba.as_flattened());
-                bytes.extend(picture.depth.iter().flat_map(|depth| depth.to_le_bytes()));
-                bytes.extend(
-                    picture
-                        .coverage
-                        .iter()
-                        .flat_map(|share| share.to_le_bytes()),
-                );
+                let reals = picture.depth.iter().chain(&picture.coverage);
+                bytes.extend(reals.flat_map(|real| real.to_le_bytes()));
                 bytes.extend(picture.node.iter().flat_map(|node| node.to_le_bytes()));
                 bytes.extend(format!("{counts:?}").bytes());
             }

@@ -5,8 +5,6 @@ mod build;
 mod city;
 mod file;
 mod golden;
-mod hybrid;
-mod samples;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod solid;

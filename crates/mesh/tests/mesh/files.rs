@@ -8,26 +8,26 @@ use shiftvox_mesh::{Beside, ColorSpace, LoadOptions, Mesh, MeshFormat, SameFolde
 use super::shapes::{load, squares};
 use super::shared::{has, soup};
 
-/// The library `a b.mtl`, and no other file.
-struct Library<'l>(&'l str);
+/// Files by a function of their name.
+pub(super) struct Files<F>(pub(super) F);
 
-impl Beside for Library<'_> {
+impl<F: Fn(&str) -> Option<Vec<u8>>> Beside for Files<F> {
     fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        match name {
-            "a b.mtl" => Ok(self.0.into()),
-            _ => Err(io::ErrorKind::NotFound.into()),
-        }
+        self.0(name).ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 }
 
+/// Reads a mesh beside the library `a b.mtl`.
 fn obj(text: &str, mtl: &str, mtl_colors: ColorSpace) -> Mesh {
     let options = LoadOptions { mtl_colors };
-    let (text, beside) = (text.as_bytes(), Library(mtl));
-    read(text, MeshFormat::Obj, "a file", &beside, &options, &Silent).unwrap()
+    let library = Files(|name: &str| (name == "a b.mtl").then(|| mtl.into()));
+    let text = text.as_bytes();
+    read(text, MeshFormat::Obj, "a file", &library, &options, &Silent).unwrap()
 }
 
-fn material(mesh: &Mesh, triangle: usize) -> &str {
-    &mesh.materials()[mesh.material_of()[triangle] as usize].name
+fn materials(mesh: &Mesh) -> Vec<&str> {
+    let name = |&m: &u32| &mesh.materials()[m as usize].name[..];
+    mesh.material_of().iter().map(name).collect()
 }
 
 #[test]
@@ -57,19 +57,21 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 2 0\nv 0 1 0\nusemtl red one\n\
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
-    let mtl = "newmtl red one\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\nd 0.5\nmap_Kd a.png\nnewmtl gone\nd 0\n";
+    let mtl = "# c\nKd 1 1 1\nnewmtl red one\n Kd 0.5 0 0\nTr 0.25\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
+        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nnewmtl \u{fc}\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
         let names = ["red one", "red one", "red one", "blue", "no material"];
-        assert_eq!([0, 1, 2, 3, 4].map(|n| material(&mesh, n)), names);
-        assert_eq!(mesh.triangles().len(), 5);
+        assert_eq!(materials(&mesh), names);
         assert_eq!(mesh.corner_normals().len(), 0);
         let [first, blue] = [0, 3].map(|n| &mesh.materials()[mesh.material_of()[n] as usize]);
         assert!((first.diffuse[0] - red).abs() < 1e-4);
         assert_eq!(first.diffuse[1..], [0.0; 2]);
-        assert_eq!(blue.alpha, 0.5);
+        assert_eq!((first.alpha, blue.alpha), (0.75, 0.5));
+        assert_eq!(blue.diffuse, [0.0, 0.0, 1.0]);
         let warnings = [
+            "a b.mtl: line 11 is not understood",
             "a.png cannot be read",
             "none.mtl cannot be read",
             "1 triangles have no material",
@@ -90,8 +92,22 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let mtl = "\u{feff}newmtl red\nKd 0.5 \\\n0 0\n";
     let mesh = obj(text, mtl, ColorSpace::Srgb);
     assert_eq!(soup(&mesh), [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
-    assert_eq!(material(&mesh, 0), "red");
+    assert_eq!(materials(&mesh), ["red"]);
     assert_eq!(mesh.warnings(), [""; 0]);
+}
+
+/// An exporter wrote `Tr 1` for opaque materials until 2023.
+#[test]
+fn a_model_is_opaque_if_all_of_it_would_vanish() {
+    let text =
+        "mtllib a b.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nusemtl glass\nf 3 2 1\n";
+    let glass = "newmtl red\nTr 1\nnewmtl glass\nTr 1\n";
+    let mesh = obj(text, glass, ColorSpace::Srgb);
+    has(mesh.warnings(), &["drawn opaque"]);
+    assert_eq!(mesh.materials()[1].alpha, 1.0);
+    assert_eq!(materials(&mesh), ["red", "glass"]);
+    let mesh = obj(text, &glass.replacen("Tr 1", "Tr 0", 1), ColorSpace::Srgb);
+    assert_eq!(materials(&mesh), ["red"]);
 }
 
 #[test]
@@ -102,13 +118,7 @@ fn only_the_folder_of_the_mesh_is_searched() {
     std::fs::write(folder.path().join("secret.mtl"), b"outside").unwrap();
     std::fs::write(inside.join("a.mtl"), b"inside").unwrap();
     let beside = SameFolder::new(&inside);
-    for name in [
-        "a.mtl",
-        "./a.mtl",
-        "../elsewhere/a.mtl",
-        "/tmp/a.mtl",
-        "C:\\models\\a.mtl",
-    ] {
+    for name in "a.mtl ./a.mtl ../elsewhere/a.mtl /tmp/a.mtl C:\\models\\a.mtl".split(' ') {
         assert_eq!(beside.read(name).unwrap(), b"inside", "{name}");
     }
     for name in ["../secret.mtl", "..", "", "/"] {

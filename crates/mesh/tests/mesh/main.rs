@@ -3,13 +3,9 @@
 
 mod bad_files;
 mod files;
-mod gltf_bytes;
-mod gltf_document;
-mod gltf_scenes;
-mod models;
+mod gltf;
 mod opacities;
 mod raster;
-mod scale;
 mod shapes;
 #[path = "../shared/mod.rs"]
 mod shared;

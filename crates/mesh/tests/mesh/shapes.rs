@@ -1,11 +1,14 @@
 //! Files by hand: one square in every format.
-#![expect(unreachable_pub, reason = "a module of test crates")]
+#![allow(
+    unreachable_pub,
+    reason = "a module of test crates, and of a fuzz target"
+)]
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{self, LoadOptions, Mesh, MeshFormat, Nothing, SceneError};
-
-pub(crate) use super::gltf_bytes::{data_uri, glb};
 
 /// Reads a mesh without other files.
 pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
@@ -13,7 +16,7 @@ pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, SceneError> {
     shiftvox_mesh::read(bytes, format, "a file", &Nothing, &options, &Silent)
 }
 
-const CORNERS: [[f32; 3]; 4] = [
+pub const CORNERS: [[f32; 3]; 4] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
     [1.0, 1.0, 0.0],
@@ -28,13 +31,21 @@ pub fn squares() -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
         VERTEX 0 1 0\n  ENDLOOP\n ENDFACET\nendsolid s\n";
     let ply = ply_header("ascii", 4, "", "int vertex_indices")
         + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
-    let gltf = gltf_json(&data_uri(&square_buffer())).to_string();
+    let gltf = square_json().to_string();
     let in_glb = glb(&gltf_json("").to_string(), &square_buffer());
     vec![
         ("obj", MeshFormat::Obj, obj.into()),
         ("ply text", MeshFormat::Ply, ply.into_bytes()),
-        ("ply little", MeshFormat::Ply, binary_ply(false)),
-        ("ply big", MeshFormat::Ply, binary_ply(true)),
+        (
+            "ply little",
+            MeshFormat::Ply,
+            binary_ply("binary_little_endian", f32::to_le_bytes, u32::to_le_bytes),
+        ),
+        (
+            "ply big",
+            MeshFormat::Ply,
+            binary_ply("binary_big_endian", f32::to_be_bytes, u32::to_be_bytes),
+        ),
         ("stl text", MeshFormat::Stl, stl.into()),
         ("stl binary", MeshFormat::Stl, binary_stl()),
         ("gltf", MeshFormat::Gltf, gltf.into_bytes()),
@@ -50,22 +61,15 @@ pub fn ply_header(encoding: &str, vertices: u64, colors: &str, list: &str) -> St
     )
 }
 
-fn binary_ply(is_big: bool) -> Vec<u8> {
-    let ordered = |mut bytes: [u8; 4]| {
-        if is_big {
-            bytes.reverse();
-        }
-        bytes
-    };
-    let encoding = format!("binary_{}_endian", if is_big { "big" } else { "little" });
+fn binary_ply(encoding: &str, real: fn(f32) -> [u8; 4], whole: fn(u32) -> [u8; 4]) -> Vec<u8> {
     let colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-    let mut bytes = ply_header(&encoding, 4, colors, "uint vertex_index").into_bytes();
+    let mut bytes = ply_header(encoding, 4, colors, "uint vertex_index").into_bytes();
     for corner in CORNERS {
-        bytes.extend(corner.map(|c| ordered(c.to_le_bytes())).as_flattened());
+        bytes.extend(corner.map(real).as_flattened());
         bytes.extend([255, 0, 10]);
     }
     bytes.push(4);
-    bytes.extend((0..4u32).flat_map(|i| ordered(i.to_le_bytes())));
+    bytes.extend([0, 1, 2, 3].map(whole).as_flattened());
     bytes
 }
 
@@ -85,11 +89,9 @@ fn binary_stl() -> Vec<u8> {
 
 /// Four positions, then six indices of 16 bits.
 pub fn square_buffer() -> Vec<u8> {
-    let positions = CORNERS.iter().flatten().flat_map(|c| c.to_le_bytes());
-    let indices = [0u16, 1, 2, 0, 2, 3];
-    positions
-        .chain(indices.iter().flat_map(|i| i.to_le_bytes()))
-        .collect()
+    let positions = CORNERS.map(|corner| corner.map(f32::to_le_bytes).concat());
+    let indices = [0, 1, 2, 0, 2, 3].map(u16::to_le_bytes);
+    [positions.concat(), indices.concat()].concat()
 }
 
 /// A document of the square. Its buffer is at an address, or in the file where that is empty.
@@ -115,4 +117,27 @@ pub fn gltf_json(uri: &str) -> Value {
         json["buffers"][0]["uri"] = uri.into();
     }
     json
+}
+
+pub fn square_json() -> Value {
+    gltf_json(&data_uri(&square_buffer()))
+}
+
+/// Bytes as an address.
+pub fn data_uri(bytes: &[u8]) -> String {
+    "data:application/octet-stream;base64,".to_owned() + &STANDARD.encode(bytes)
+}
+
+/// A binary file of a document and its buffer.
+pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
+    let json = json.to_owned() + &" ".repeat(json.len().wrapping_neg() % 4);
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let length = word(12 + 8 + json.len() + 8 + buffer.len());
+    let mut bytes = [*b"glTF", word(2), length].concat();
+    for (kind, content) in [(b"JSON", json.as_bytes()), (b"BIN\0", buffer)] {
+        bytes.extend(word(content.len()));
+        bytes.extend(kind);
+        bytes.extend(content);
+    }
+    bytes
 }

@@ -3,20 +3,15 @@
 use std::fmt::Write as _;
 
 use glam::{DQuat, DVec3, EulerRot};
-use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading, View};
+use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading};
 use shiftvox_mesh::{Mesh, SceneOptions, Surface};
 
-use super::shared::{ball, one_box, shape, turned};
-
-fn scene_of(text: &str, depth: u32) -> Scene {
-    let options = SceneOptions::new().mesh_depth(depth).opacities(true);
-    options.from_bytes(text.as_bytes(), "nested.obj").unwrap()
-}
+use super::shared::{ball, one_box};
 
 /// A white shell around the same shape in red, smaller.
-fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> Scene {
+fn nested(mesh: &Mesh, turn: DQuat) -> Scene {
     let mut text = String::new();
-    for (scale, color) in [(1.0, "1 1 1"), (inner, "1 0 0")] {
+    for (scale, color) in [(1.0, "1 1 1"), (0.9, "1 0 0")] {
         for number in 0..mesh.len() {
             for corner in Surface::corners(mesh, number) {
                 let DVec3 { x, y, z } = turn * corner * scale;
@@ -25,63 +20,44 @@ fn nested(mesh: &Mesh, inner: f64, turn: DQuat) -> Scene {
             text += "f -3 -2 -1\n";
         }
     }
-    scene_of(&text, 8)
-}
-
-/// The largest difference of red and green in any pixel, and its mean over the covered pixels.
-fn redness(scene: &Scene, camera: &impl View, coverage: Coverage) -> (i32, f64) {
-    let renderer = Renderer::new()
-        .coverage(coverage)
-        .shading(Shading::Flat)
-        .background(Background::Color([0; 3]));
-    let picture = renderer.render(scene, camera, 160, 160).unwrap();
-    let seen = picture.rgba().iter().filter(|pixel| pixel[0] > 0);
-    let excess = seen.map(|[r, g, ..]| i32::from(*r) - i32::from(*g));
-    let excess: Vec<i32> = excess.collect();
-    let mean = f64::from(excess.iter().sum::<i32>()) / excess.len().max(1) as f64;
-    (excess.into_iter().fold(0, i32::max), mean)
+    let options = SceneOptions::new().mesh_depth(8).opacities(true);
+    options.from_bytes(text.as_bytes(), "nested.obj").unwrap()
 }
 
 #[test]
 fn a_closed_surface_hides_everything_inside() {
     let tilted = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.2);
-    let upright = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
-    let profile = [(1.0, 0.0), (1.0, 0.4), (-1.0, 0.4), (-1.0, 0.0)];
-    let can = shape(|builder| turned(builder, DVec3::ZERO, &profile, 48, 0));
     let cube = one_box([-1.0; 3], [1.0; 3]);
-    for (name, scene) in [
-        ("ball", nested(&ball(48), 0.9, DQuat::IDENTITY)),
-        ("cube", nested(&cube, 0.9, DQuat::IDENTITY)),
-        ("tilted cube", nested(&cube, 0.9, tilted)),
-        ("tilted can", nested(&can, 0.85, tilted * upright)),
+    let renderer = Renderer::new()
+        .coverage(Coverage::Alpha)
+        .shading(Shading::Flat)
+        .background(Background::Color([0; 3]));
+    for scene in [
+        nested(&ball(48), DQuat::IDENTITY),
+        nested(&cube, DQuat::IDENTITY),
+        nested(&cube, tilted),
     ] {
         // From more than a pixel per voxel to the whole scene in a few pixels.
-        for zoom in [1.6, 0.8, 0.4, 0.2] {
-            for (azimuth, elevation) in [
-                (0.0, 0.0),
-                (2.0, 3.0),
-                (45.0, 35.26),
-                (140.0, -50.0),
-                (200.0, 85.0),
-                (310.0, 60.0),
-            ] {
-                let fitted = Camera::fit(&scene).zoom(zoom);
-                let camera = fitted.azimuth(azimuth).elevation(elevation);
-                let (exact, _) = redness(&scene, &camera, Coverage::Exact);
-                let (alpha, mean) = redness(&scene, &camera, Coverage::Alpha);
-                assert!(
-                    alpha <= exact.max(8) && mean < 0.1,
-                    "{name}, zoom {zoom}, {azimuth}, {elevation}: {alpha} of 255, mean {mean}; exact {exact}"
-                );
-            }
+        for (zoom, azimuth, elevation) in [
+            (1.6, 45.0, 35.26),
+            (0.8, 2.0, 3.0),
+            (0.8, 140.0, -50.0),
+            (0.4, 200.0, 85.0),
+            (0.2, 310.0, 60.0),
+        ] {
+            let fitted = Camera::fit(&scene).zoom(zoom);
+            let camera = fitted.azimuth(azimuth).elevation(elevation);
+            let picture = renderer.render(&scene, &camera, 160, 160).unwrap();
+            let seen = picture.rgba().iter().filter(|pixel| pixel[0] > 0);
+            let excess: Vec<i32> = seen
+                .map(|[r, g, ..]| i32::from(*r) - i32::from(*g))
+                .collect();
+            let (most, sum) = (excess.iter().max(), excess.iter().sum::<i32>());
+            let is_white = most <= Some(&8) && sum * 10 < excess.len() as i32;
+            assert!(
+                is_white,
+                "zoom {zoom}, {azimuth}, {elevation}: {most:?} {sum}"
+            );
         }
     }
-}
-
-#[test]
-fn a_scene_keeps_the_warnings_of_its_mesh() {
-    let text = "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    let scene = scene_of(text, 3);
-    assert!(scene.warnings()[0].contains("missing.mtl"));
-    assert!(scene.is_verified());
 }

@@ -1,10 +1,11 @@
 //! The mean colour of each triangle's part of a texture.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
+use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
@@ -13,10 +14,16 @@ use shiftvox_mesh::{Mesh, Surface};
 use super::shapes::{data_uri, gltf_json, square_buffer};
 use super::shared::has;
 
-/// A picture with halves of two colours.
+/// A picture with halves of two colours. The lower quarter is transparent, where the format has opacity.
 fn halves(left: [u8; 3], right: [u8; 3], format: ImageFormat) -> Vec<u8> {
-    let color = |x, _| Rgb(if x < 32 { left } else { right });
-    let picture = DynamicImage::from(RgbImage::from_fn(64, 64, color));
+    let color = |x, y| {
+        let [r, g, b] = if x < 32 { left } else { right };
+        Rgba([r, g, b, if y < 48 { 255 } else { 0 }])
+    };
+    let mut picture = DynamicImage::from(RgbaImage::from_fn(64, 64, color));
+    if format == ImageFormat::Jpeg {
+        picture = picture.to_rgb8().into();
+    }
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, format).unwrap();
     bytes.into_inner()
@@ -26,25 +33,22 @@ fn halves(left: [u8; 3], right: [u8; 3], format: ImageFormat) -> Vec<u8> {
 fn check(mesh: &Mesh, triangle: usize, expected: [f64; 3], within: f64) {
     let color = Surface::triangle(mesh, triangle).colors[0].to_array();
     let is_near = (0..3).all(|k| (color[k] - expected[k]).abs() <= within);
-    assert!(is_near, "{color:?}, expected {expected:?}");
+    assert!(is_near, "{triangle}: {color:?}, expected {expected:?}");
 }
 
 fn read(path: &Path) -> Mesh {
     read_mesh(path, &Default::default(), &Silent).unwrap().0
 }
 
-/// A square on the left half of a picture, and one on all of it.
-const OBJ: &str = "mtllib a.mtl\nusemtl wood\n\
-    v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n\
-    vt 0.02 0.02\nvt 0.45 0.02\nvt 0.45 0.98\nvt 0.02 0.98\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
-    f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n";
-
-/// Writes and reads a `.obj` file and its library.
-fn obj(folder: &Path, obj: &str, mtl: &str) -> Mesh {
-    fs::write(folder.join("a.obj"), obj).unwrap();
-    fs::write(folder.join("a.mtl"), mtl).unwrap();
-    read(&folder.join("a.obj"))
-}
+/// Six triangles on a picture. They lie in its left half, over both halves, and in the right half. The others lie in a
+/// repetition of the left half, in the transparent part, and nowhere.
+const OBJ: &str = "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 1 1 0\n\
+    vt 0.02 0.98\nvt 0.45 0.98\nvt 0.02 0.3\nf 1/1 2/2 3/3\n\
+    vt 0 1\nvt 1 1\nvt 0 0.25\nf 1/4 2/5 3/6\n\
+    vt 0.6 0.1\nvt 0.9 0.1\nvt 0.6 0.9\nf 1/7 2/8 3/9\n\
+    vt -3.9 5.3\nvt -3.6 5.3\nvt -3.9 5.9\nf 1/10 2/11 3/12\n\
+    vt 0.1 0.1\nvt 0.4 0.1\nvt 0.4 0.2\nf 1/13 2/14 3/15\n\
+    vt nan 0.1\nf 1/16 2/14 3/15\n";
 
 #[test]
 fn textures_of_obj_files_are_averaged_over_triangles() {
@@ -52,31 +56,30 @@ fn textures_of_obj_files_are_averaged_over_triangles() {
     let at = folder.path();
     let materials = at.join("materials");
     fs::create_dir_all(materials.join("pictures")).unwrap();
-    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -s 1 1 1 pictures/wood grain.png\n";
+    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 pictures/wood grain.png\n";
     fs::write(materials.join("a.mtl"), mtl).unwrap();
     fs::write(at.join("a.obj"), OBJ.replace("a.mtl", "materials/a.mtl")).unwrap();
     let picture = materials.join("pictures/wood grain.png");
-    for format in [ImageFormat::Png, ImageFormat::Jpeg] {
+    // sRGB 0.5 is 0.214 of the light.
+    let (left, right, plain) = ([1.0, 0.214, 0.0], [0.0, 0.0, 1.0], [1.0, 0.214, 1.0]);
+    let mixed = [0.75, 0.161, 0.25];
+    for (format, within, transparent) in [
+        (ImageFormat::Png, 0.01, plain),
+        (ImageFormat::Jpeg, 0.02, left),
+    ] {
         fs::write(&picture, halves([255, 255, 0], [0, 0, 255], format)).unwrap();
         let mesh = read(&at.join("a.obj"));
         assert_eq!(mesh.warnings(), [""; 0]);
-        // sRGB 0.5 is 0.214 of the light.
-        check(&mesh, 0, [1.0, 0.214, 0.0], 0.02);
-        // The triangles of the whole picture have a quarter of one half and three quarters of the other.
-        let colors = [2, 3].map(|n| Surface::triangle(&mesh, n).colors[0]);
-        let mean = (colors[0] + colors[1]) / 2.0;
-        assert!((mean - glam::DVec3::new(0.5, 0.107, 0.5)).length() < 0.03);
+        let expected = [left, mixed, right, left, transparent, plain];
+        for (triangle, expected) in expected.into_iter().enumerate() {
+            check(&mesh, triangle, expected, within);
+        }
     }
     // A warning names an unreadable texture, and the plain colour is kept.
     fs::write(&picture, "no picture").unwrap();
     let mesh = read(&at.join("a.obj"));
     has(mesh.warnings(), &["wood grain.png cannot be read"]);
-    check(&mesh, 2, [1.0, 0.214, 1.0], 0.001);
-    // Nothing outside the mesh's folder is read.
-    let secret = halves([9; 3], [9; 3], ImageFormat::Png);
-    fs::write(at.join("secret.png"), secret).unwrap();
-    let mesh = obj(&materials, OBJ, "newmtl wood\nmap_Kd ../secret.png\n");
-    has(mesh.warnings(), &["cannot be read"]);
+    check(&mesh, 2, plain, 0.001);
 }
 
 #[test]
@@ -85,29 +88,25 @@ fn textures_of_gltf_files_are_averaged_over_triangles() {
     let path = folder.path().join("a.gltf");
     let png = halves([255, 0, 0], [0, 255, 0], ImageFormat::Png);
     fs::write(folder.path().join("a picture.png"), &png).unwrap();
-    // Corners on the right half of the picture, then the picture.
-    let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.9], [0.6, 0.9]];
-    let mut buffer = square_buffer();
-    buffer.extend(corners.as_flattened().iter().flat_map(|c| c.to_le_bytes()));
-    buffer.extend(&png);
-    let mut json = gltf_json(&data_uri(&buffer));
-    let mut push = |list: &str, value| json[list].as_array_mut().unwrap().push(value);
-    push(
-        "bufferViews",
-        json!({"buffer": 0, "byteOffset": 60, "byteLength": 32}),
-    );
-    push(
-        "bufferViews",
-        json!({"buffer": 0, "byteOffset": 92, "byteLength": png.len()}),
-    );
-    push(
-        "accessors",
-        json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}),
-    );
-    json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);
+    // Corners on the right half of the picture.
+    let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.7], [0.6, 0.7]];
+    let corners = corners
+        .map(|corner| corner.map(f32::to_le_bytes).concat())
+        .concat();
+    let bytes = [square_buffer(), corners, png.clone()].concat();
+    let mut json = gltf_json(&data_uri(&bytes));
+    json["buffers"][0]["byteLength"] = bytes.len().into();
+    let views = json["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": 60, "byteLength": 32}));
+    views.push(json!({"buffer": 0, "byteOffset": 92, "byteLength": png.len()}));
+    let uvs = json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"});
+    json["accessors"].as_array_mut().unwrap().push(uvs);
+    json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(2);
     json["textures"] = json!([{"source": 0}]);
-    json["buffers"][0]["byteLength"] = json!(buffer.len());
-    let mut mesh = |image: Value, texture: Value| {
+    let mut mesh = |image: Value, transform: Value| {
+        let texture = json!({
+            "index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": transform},
+        });
         json["materials"][0]["pbrMetallicRoughness"] =
             json!({"baseColorFactor": [1, 0.5, 1, 1], "baseColorTexture": texture});
         json["images"] = json!([image]);
@@ -115,34 +114,23 @@ fn textures_of_gltf_files_are_averaged_over_triangles() {
         read(&path)
     };
     let (green, red) = ([0.0, 0.5, 0.0], [1.0, 0.0, 0.0]);
-    let texture = json!({"index": 0});
-    let moved = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}});
     let in_buffer = json!({"bufferView": 3, "mimeType": "image/png"});
-    for (image, texture, color) in [
-        (json!({"uri": "a%20picture.png"}), &texture, green),
-        (in_buffer, &texture, green),
-        (json!({"uri": data_uri(&png)}), &moved, red),
+    let in_address = json!({"uri": data_uri(&png)});
+    let moved = json!({"offset": [0.5, 0]});
+    // (u, v) becomes (v, -u), less than the transparent part.
+    let turned = json!({"rotation": PI / 2.0, "scale": [0.3, 0.7], "offset": [0, 0.6]});
+    for (image, transform, color) in [
+        (json!({"uri": "a%20picture.png"}), json!({}), green),
+        (in_buffer.clone(), json!({}), green),
+        (in_address, moved, red),
+        (in_buffer.clone(), json!({"scale": [0.5, 1]}), red),
+        (in_buffer, turned, red),
     ] {
-        let mesh = mesh(image, texture.clone());
+        let mesh = mesh(image, transform);
         assert_eq!(mesh.warnings(), [""; 0]);
         check(&mesh, 0, color, 0.001);
     }
-    let mesh = mesh(json!({"uri": "none.png"}), texture);
+    let mesh = mesh(json!({"uri": "none.png"}), json!({}));
     has(mesh.warnings(), &["none.png cannot be read"]);
     check(&mesh, 1, [1.0, 0.5, 1.0], 0.001);
-}
-
-/// An exporter wrote `Tr 1` for opaque materials until 2023.
-#[test]
-fn a_model_is_opaque_if_all_of_it_would_vanish() {
-    let folder = tempfile::tempdir().unwrap();
-    let mesh = obj(folder.path(), OBJ, "newmtl wood\nTr 1\n");
-    assert_eq!(mesh.triangles().len(), 4);
-    has(mesh.warnings(), &["drawn opaque"]);
-    assert_eq!(Surface::triangle(&mesh, 0).alpha, 1.0);
-    // A transparent part is left out.
-    let two = OBJ.replace("f 2/5", "usemtl glass\nf 2/5");
-    let mesh = obj(folder.path(), &two, "newmtl wood\nnewmtl glass\nTr 1\n");
-    assert_eq!(mesh.triangles().len(), 2);
-    has(mesh.warnings(), &["opacity 0"]);
 }

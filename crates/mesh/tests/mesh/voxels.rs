@@ -1,16 +1,19 @@
-//! Triangles to voxels: known answers, and an oracle over all cubes in exact integers.
+//! Triangles to voxels: an oracle over all cubes in exact integers, recorded colours and normals, known answers.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
 
-use glam::{DAffine3, DMat3, DVec3, EulerRot};
+use glam::{DAffine3, DMat3};
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
+use shiftvox::split_mix::SplitMix;
+use shiftvox_mesh::textured::{BuildOptions, build};
 use shiftvox_mesh::voxelize::{Grid, GridError, voxelize};
-use shiftvox_mesh::{Instances, Material, Mesh, Surface};
+use shiftvox_mesh::{ColorSpace, Instances, Material, Mesh, MeshBuilder, MeshFormat, Surface};
+use xxhash_rust::xxh3::xxh3_64;
 
-use super::shared::{
-    Corners, ball, indexed, on_any_threads, one_box, quad, shape, sheet, triangle, turned,
-};
+use super::shapes::load;
+use super::shared::{ball, mesh_of, on_threads, soup};
 
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
@@ -20,97 +23,106 @@ pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel>
     found
 }
 
-fn rectangle([left, right]: [f32; 2]) -> [[f32; 3]; 4] {
-    [[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]].map(|[x, y]| [x, y, 5.0])
-}
-
-#[test]
-fn voxels_have_the_normals_of_their_surface() {
-    let square = shape(|builder| quad(builder, rectangle([0.0, 1.0]), 0));
-    // A flat mesh lies in the middle of its layer.
-    let (origin, voxel_size) = Grid::around(&square, 4).unwrap().placement();
-    let layer = (5.0 - origin[2]) / voxel_size;
-    assert!((layer - 0.5).abs() < 1e-9);
-    let wall = indexed(
-        &rectangle([0.0, 1.0]),
-        &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]],
-    );
-    let outwards = |index: [i32; 3]| {
-        let side = |c| f64::from(i32::from(c == 31) - i32::from(c == 0));
-        DVec3::from_array(index.map(side))
-    };
-    let from_middle =
-        |index: [i32; 3]| DVec3::from_array(index.map(f64::from)) - DVec3::splat(31.5);
-    // Mesh, depth, a direction along the normal and its least cosine.
-    type Normal<'n> = &'n dyn Fn([i32; 3]) -> DVec3;
-    let cases: [(Mesh, u32, Normal<'_>, f64); 4] = [
-        (square, 7, &|_| DVec3::Z, 1.0 - 1e-9),
-        // Of two sides one is kept.
-        (wall, 3, &|_| DVec3::Z, 1.0 - 1e-9),
-        (one_box([-1.0; 3], [1.0; 3]), 5, &outwards, 0.999),
-        (ball(24), 6, &from_middle, 0.97),
-    ];
-    for (mesh, depth, normal, least) in cases {
-        for voxel in voxels(&mesh, depth) {
-            assert_eq!(voxel.color, [90, 120, 150]);
-            let found = voxel.normal.unwrap().decode().unwrap();
-            let cosine = found.dot(normal(voxel.index).normalize());
-            assert!(cosine > least, "{voxel:?}: {found}");
-        }
+/// Random triangles with colours, normals and opacities.
+pub(super) fn random(seed: u64, count: usize) -> Mesh {
+    let mut dice = SplitMix::new(seed);
+    let mut builder = MeshBuilder::new();
+    for alpha in [1.0, 0.3] {
+        let color = [0.9, 0.5, 0.7];
+        builder.material(Material::of_numbers("m", color, ColorSpace::Linear, alpha));
     }
+    for number in 0..count as u32 {
+        let mut three = || [0; 3].map(|_| dice.unit() as f32);
+        let corners = [0; 3].map(|_| {
+            let color = three().map(|c| (c * 256.0) as u8);
+            builder.colored_position(three(), color)
+        });
+        let normals = [0; 3].map(|_| three().map(|c| c - 0.3));
+        let normals = (number % 4 > 0).then_some(normals);
+        builder.triangle(corners, normals, number % 2).unwrap();
+    }
+    builder.finish("random").unwrap()
 }
 
 #[test]
-fn colours_are_weighted_by_area_in_linear_light() {
-    // Three quarters of the square are white, the rest is black.
-    let mesh = shape(|builder| {
-        for (byte, range) in [(255, [0.0, 0.75]), (0, [0.75, 1.0])] {
-            let material = builder.material(Material::of_srgb("m", [byte; 3]));
-            quad(builder, rectangle(range), material);
-        }
-    });
-    let found = voxels(&mesh, 1);
-    let colors: HashMap<[i32; 3], [u8; 3]> = found.iter().map(|v| (v.index, v.color)).collect();
-    // Voxel 0 holds x from 0 to 0.5, which is white. Voxel 1 holds half of each.
-    assert_eq!(colors[&[0, 0, 0]], [255; 3]);
-    assert_eq!(colors[&[1, 1, 0]], [188; 3]);
+fn colours_and_normals_are_as_recorded() {
+    let skew = DMat3::from_cols_array(&[1.0, 0.2, 0.0, 0.0, -2.0, 0.5, 0.3, 0.0, 1.0]);
+    let places = [DMat3::IDENTITY, skew].map(DAffine3::from_mat3);
+    let recorded = [
+        voxels(&random(12, 12), 2),
+        voxels(&random(40, 40), 4),
+        voxels(&random(7, 7), 6),
+        voxels(&Instances::new(random(9, 9), places.to_vec()), 5),
+    ]
+    .map(|found| xxh3_64(format!("{found:?}").as_bytes()));
+    let expected = [
+        0x8d37_7528_aa34_aee9,
+        0xed23_f6bb_ff3e_1f95,
+        0x5e35_dacd_6a8a_a056,
+        0x4725_1bc9_47c9_848d,
+    ];
+    assert_eq!(recorded, expected, "{recorded:#x?}");
+    let [one, three] = [1, 3].map(|threads| on_threads(threads, || voxels(&ball(12), 7)));
+    assert!(one == three);
 }
 
 #[test]
-fn threads_change_nothing_and_instances_are_moved_meshes() {
-    let mesh = ball(12);
-    on_any_threads(|| voxels(&mesh, 7));
-    let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 1.1, -0.7);
-    let places = [1.0, 2.0].map(|x| DAffine3::from_mat3_translation(turn * x, DVec3::X * x));
-    let instances = Instances::new(mesh.clone(), places.to_vec());
-    let moved = |place: DAffine3| {
-        let corners = (0..mesh.len()).map(|number| Surface::corners(&mesh, number));
-        corners.map(move |corners| corners.map(|corner| place.transform_point3(corner)))
-    };
-    let expected = places.into_iter().flat_map(moved);
-    let found = (0..instances.len()).map(|number| Surface::corners(&instances, number));
-    assert!(found.eq(expected));
-}
-
-#[test]
-fn invalid_grids_are_refused() {
+fn flat_meshes_lie_in_the_middle_of_a_layer_and_invalid_grids_are_refused() {
+    let flat = mesh_of([[[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]]]);
+    let (origin, voxel_size) = Grid::around(&flat, 4).unwrap().placement();
+    assert!(((5.0 - origin[2]) / voxel_size - 0.5).abs() < 1e-9);
     let mesh = ball(4);
     for depth in [0, 21, 1000] {
         assert_eq!(Grid::around(&mesh, depth), Err(GridError::Depth(depth)));
     }
     let nowhere = Instances::new(mesh, Vec::new());
     assert_eq!(Grid::around(&nowhere, 4), Err(GridError::Empty));
-    let corners = [[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]];
-    let far = shape(|builder| triangle(builder, corners, 0));
+    let far = mesh_of([[[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]]]);
     let refused = Grid::around(&far, 4);
     assert!(matches!(refused, Err(GridError::Coordinates { .. })));
 }
 
-type Exact = [i128; 3];
-
-fn subtract(a: Exact, b: Exact) -> Exact {
-    [0, 1, 2].map(|k| a[k] - b[k])
+/// A ball read from a text in whole thousandths, which loses no digits.
+fn scaled(scale: f64, moved: f64) -> Mesh {
+    let mut text = String::new();
+    for corners in soup(&ball(20)) {
+        for [x, y, z] in corners.map(|p| p.map(|c| (f64::from(c) * 1000.0).round())) {
+            let [x, y, z] = [x, y * 0.7, z * 0.4].map(|c| c.round() * 0.015 * scale + moved);
+            writeln!(text, "v {x} {y} {z}").unwrap();
+        }
+        text += "f -3 -2 -1\n";
+    }
+    load(text.as_bytes(), MeshFormat::Obj).unwrap()
 }
+
+#[test]
+fn meshes_of_any_size_anywhere_have_the_same_voxels() {
+    let textured = |mesh: &Mesh| {
+        let data = build(mesh, &BuildOptions::default(), &Silent).unwrap();
+        let voxels = data.grids[0].voxels.iter();
+        voxels.map(|v| (v.cell, v.depth)).collect::<Vec<_>>()
+    };
+    let mesh = scaled(1.0, 0.0);
+    let expected = (voxels(&mesh, 6), textured(&mesh));
+    assert!(expected.0.len() > 3000 && expected.1.len() > 300);
+    for scale in [1e-12, 1e-5, 1e6] {
+        let mesh = scaled(scale, 0.0);
+        assert!(voxels(&mesh, 6) == expected.0, "{scale}");
+        assert!(scale < 1e-5 || textured(&mesh) == expected.1, "{scale}");
+    }
+    // 30 m at the coordinates of a country's grid, and 1 m at 1000 km. Single precision has steps of 50 and 6 cm there,
+    // doubles of a billionth of a metre: two voxels in a thousand may differ.
+    for (scale, moved) in [(1.0, 5.4e6), (1.0 / 30.0, 1e6)] {
+        let [near, far] = [0.0, moved].map(|moved| {
+            let found = voxels(&scaled(scale, moved), 6);
+            found.iter().map(|v| v.index).collect::<BTreeSet<_>>()
+        });
+        let differing = far.symmetric_difference(&near).count();
+        assert!(differing * 500 <= near.len(), "{moved}: {differing}");
+    }
+}
+
+type Exact = [i128; 3];
 
 fn cross(a: Exact, b: Exact) -> Exact {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i])
@@ -118,7 +130,8 @@ fn cross(a: Exact, b: Exact) -> Exact {
 
 /// The directions of which one separates a triangle from any cube apart from it.
 fn directions(corners: [Exact; 3]) -> Vec<Exact> {
-    let edges = [0, 1, 2].map(|i| subtract(corners[(i + 1) % 3], corners[i]));
+    let edge = |i: usize| [0, 1, 2].map(|k| corners[(i + 1) % 3][k] - corners[i][k]);
+    let edges = [0, 1, 2].map(edge);
     let axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
     let between = edges.map(|edge| axes.map(|axis| cross(edge, axis)));
     let normal = cross(edges[0], edges[1]);
@@ -140,7 +153,7 @@ fn add(
     directions: &[Exact],
     index: [i32; 3],
     levels: u32,
-    found: &mut HashSet<[i32; 3]>,
+    found: &mut BTreeSet<[i32; 3]>,
     depth: u32,
 ) {
     let side = 1i128 << (30 - depth + levels);
@@ -150,56 +163,29 @@ fn add(
         let [a, b] = [&corners[..], &cube].map(|points| range(points, direction));
         a[1] < b[0] || b[1] < a[0]
     });
-    if is_apart {
-        return;
-    }
-    if levels == 0 {
-        found.insert(index);
-        return;
-    }
-    for octant in 0..8 {
-        let child = [0, 1, 2].map(|k| 2 * index[k] + (octant >> k & 1));
-        add(corners, directions, child, levels - 1, found, depth);
+    match levels {
+        _ if is_apart => {}
+        0 => drop(found.insert(index)),
+        _ => (0..8).for_each(|octant| {
+            let child = [0, 1, 2].map(|k| 2 * index[k] + (octant >> k & 1));
+            add(corners, directions, child, levels - 1, found, depth);
+        }),
     }
 }
 
 /// Compares the voxels of a surface with those of the oracle.
 fn check<S: Surface>(surface: &S, depth: u32) {
     let grid = Grid::around(surface, depth).unwrap();
-    let mut expected = HashSet::new();
+    let mut expected = BTreeSet::new();
     for number in 0..surface.len() as u32 {
         let corners = grid.corners(surface, number).map(|p| p.map(i128::from));
         let directions = directions(corners);
         add(corners, &directions, [0; 3], depth, &mut expected, depth);
     }
     let voxels = voxels(surface, depth);
-    let found: HashSet<[i32; 3]> = voxels.iter().map(|voxel| voxel.index).collect();
+    let found: BTreeSet<[i32; 3]> = voxels.iter().map(|voxel| voxel.index).collect();
     assert_eq!(found.len(), voxels.len(), "each voxel once");
     assert_eq!(found, expected, "depth {depth}");
-}
-
-#[test]
-fn voxels_of_large_surfaces_are_exact() {
-    check(&one_box([0.0; 3], [1.0; 3]), 4);
-    // A turned body with a waist, in a skew place.
-    let profile = [
-        (2.0, 0.0),
-        (1.5, 1.0),
-        (0.0, 0.45),
-        (-1.0, 1.3),
-        (-1.3, 0.0),
-    ];
-    let vase = shape(|builder| turned(builder, DVec3::ZERO, &profile, 7, 0));
-    let skew = DAffine3::from_mat3(DMat3::from_euler(EulerRot::XYZ, 0.3, 1.1, -0.7));
-    check(&Instances::new(vase, vec![skew]), 6);
-    // A surface that bends across all octants.
-    let bent = shape(|builder| {
-        sheet(builder, [12, 12], 0, |i, j| {
-            let [x, y] = [i, j].map(|c| f64::from(c) / 12.0);
-            DVec3::new(x, y, 0.5 + (5.0 * x).sin() * (4.0 * y).cos() / 3.0)
-        });
-    });
-    check(&bent, 6);
 }
 
 /// Corners in a voxel's quarters at depth 3, so that faces, edges and corners of cubes are met exactly; or anywhere.
@@ -209,14 +195,6 @@ fn corners() -> impl Strategy<Value = Vec<[f32; 3]>> {
         prop::collection::vec(prop::array::uniform3(coordinate), 3..9)
     };
     prop_oneof![list(quarters.boxed()), list((0f32..=7.0).boxed())]
-}
-
-fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
-    shape(|builder| {
-        for corners in triangles {
-            triangle(builder, corners, 0);
-        }
-    })
 }
 
 proptest! {
@@ -230,7 +208,7 @@ proptest! {
         check(&mesh_of([outer].into_iter().chain(strip)), 3);
     }
 
-    /// A triangle of almost no width loses no voxel.
+    /// Triangles of almost no width, or a segment or a point on the lattice, lose no voxel.
     #[test]
     fn voxels_of_needles_are_exact(
         [a, b, off] in prop::array::uniform3(prop::array::uniform3(0f32..1.0)),
@@ -240,6 +218,9 @@ proptest! {
         // Two far corners hold the box.
         let low = [[0.0; 3], [0.0, 1e-4, 0.0], a];
         let high = [[1.0; 3], [1.0, 1.0, 0.999], a];
-        check(&mesh_of([low, high, [a, b, c]]), depth);
+        let [x, y, _] = a;
+        let segment = [[x, 0.0, 0.0], [x, y, 0.0], [x, 0.0, 1e-20]];
+        let point = [[1e-20, 0.0, 0.0], [0.0, 1e-20, 0.0], [0.0, 0.0, 1e-20]];
+        check(&mesh_of([low, high, segment, point, [a, b, c]]), depth);
     }
 }

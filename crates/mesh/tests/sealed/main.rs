@@ -1,9 +1,6 @@
-//! Files that were edited and whose lengths and checksums are right all the same: refused, or drawn, in little memory.
-//!
-//! A test crate of its own, for its allocator refuses what is too much. The fuzz target `edited` does the same.
+//! Edited files with right lengths and checksums are refused or drawn, in little memory: the allocator refuses more.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
-mod edit;
 mod exercise;
 mod seal;
 
@@ -12,10 +9,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shiftvox::split_mix::SplitMix;
 
-/// Most bytes in use; files are of 2 to 20 kB.
+/// Files are of 2 to 20 kB.
 const MOST: usize = 256 << 20;
 
-/// The system's allocator, which refuses more than [`MOST`] bytes in all.
+/// The system's allocator, but for at most [`MOST`] bytes in use.
 struct Limited(AtomicUsize);
 
 #[global_allocator]
@@ -35,8 +32,22 @@ unsafe impl GlobalAlloc for Limited {
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         self.0.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: as in `alloc`; the pointer came from there.
+        // SAFETY: the pointer came from `alloc`.
         unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[test]
+fn truncated_and_damaged_files_are_refused() {
+    for (format, sound, _) in exercise::sound_files() {
+        let is_sound = |bytes: &[u8]| exercise::is_sound(format, bytes);
+        assert!(is_sound(&sound) && !is_sound(&[&sound[..], &[0]].concat()));
+        for at in 0..sound.len() {
+            let mut damaged = sound.clone();
+            damaged[at] ^= 1 << (at % 8);
+            let is_refused = !is_sound(&damaged) && !is_sound(&sound[..at]);
+            assert!(is_refused, "{format:?}, byte {at}");
+        }
     }
 }
 
@@ -47,21 +58,17 @@ fn edited_files_are_refused_or_drawn() {
     let mut found = [[0u32; 2]; 3];
     for seed in 0..1500 {
         let mut random = SplitMix::new(seed);
-        // The file, and 0 to 4 edits.
         let edits = random.below(5);
         let choices = (0..=edits).map(|_| random.bits());
         let Some((format, bytes)) = exercise::edited(choices) else {
             continue;
         };
         let path = folder.path().join("edited.vxg");
-        // Shown where the test fails.
         println!("seed {seed}");
         let is_sound = exercise::exercise(format, &bytes, &path);
         found[format as usize][usize::from(is_sound)] += 1;
-        assert!(
-            is_sound || edits > 0,
-            "putting a sound file right changes nothing"
-        );
+        // Putting a sound file right changes nothing.
+        assert!(is_sound || edits > 0);
     }
     // Neither all nor none: what is behind the checksums is reached.
     assert!(found.iter().flatten().all(|&files| files > 50), "{found:?}");

@@ -6,18 +6,16 @@
 )]
 
 use std::fmt::Debug;
-use std::path::PathBuf;
 
 use glam::DVec3;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::raster::{
-    self, Light, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
-};
+use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
+use xxhash_rust::xxh3::xxh3_64;
 
 pub type Corners = [[f32; 3]; 3];
 
-/// A camera at `eye`, turned to `target`; a length of 1 at a distance of 1 is `focal_px` pixels.
+/// A length of 1 at a distance of 1 is `focal_px` pixels.
 pub fn looking(
     eye: DVec3,
     target: DVec3,
@@ -25,10 +23,7 @@ pub fn looking(
     focal_px: f64,
 ) -> RasterCamera {
     let forward = (target - eye).normalize();
-    let helper = match forward.y.abs() > 0.99 {
-        true => DVec3::X,
-        false => DVec3::Y,
-    };
+    let helper = [DVec3::Y, DVec3::X][usize::from(forward.y.abs() > 0.99)];
     let right = forward.cross(helper).normalize();
     RasterCamera {
         eye,
@@ -42,7 +37,7 @@ pub fn looking(
     }
 }
 
-/// A view in which the bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
+/// The bounds of a mesh fill about `size` pixels, from `distance` of its sizes away.
 pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
     let (low, high) = Surface::bounds(mesh);
     let (middle, side) = ((low + high) / 2.0, (high - low).length());
@@ -50,7 +45,6 @@ pub fn around(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCa
     looking(eye, middle, [size; 2], f64::from(size) * distance)
 }
 
-/// Directions spread over the sphere.
 pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
@@ -60,7 +54,7 @@ pub fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Triangles with a regular pattern of samples, unlit, without a background.
+/// Unlit, with a regular pattern of samples, without a background.
 pub fn plain(samples: u32) -> RasterOptions {
     RasterOptions {
         samples: Samples::new(samples, Pattern::Regular).unwrap(),
@@ -69,16 +63,13 @@ pub fn plain(samples: u32) -> RasterOptions {
     }
 }
 
-/// The triangles of a surface, drawn with a regular pattern of samples.
 pub fn triangles<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,
     samples: u32,
-    light: Option<Light>,
     background: Option<[u8; 3]>,
 ) -> RasterPicture {
     let options = RasterOptions {
-        light,
         background,
         ..plain(samples)
     };
@@ -89,16 +80,19 @@ pub fn area(coverage: &[f32]) -> f64 {
     coverage.iter().map(|&share| f64::from(share)).sum()
 }
 
-/// Root mean square difference of the red, green and blue bytes of two pictures, after a conversion of each byte.
-pub fn difference(a: &[[u8; 4]], b: &[[u8; 4]], value: impl Fn(u8) -> f64) -> f64 {
-    let square = |(a, b): (&[u8; 4], &[u8; 4])| -> f64 {
-        (0..3).map(|k| (value(a[k]) - value(b[k])).powi(2)).sum()
-    };
-    let sum: f64 = a.iter().zip(b).map(square).sum();
-    (sum / (3 * a.len()) as f64).sqrt()
+/// The first half of a checksum.
+pub fn hash(bytes: &[u8]) -> u32 {
+    (xxh3_64(bytes) >> 32) as u32
 }
 
-/// A mesh whose material 0 is grey.
+/// Colours, depths and coverage.
+pub fn bytes_of(picture: &RasterPicture) -> Vec<u8> {
+    let reals = picture.depth.iter().chain(&picture.coverage);
+    let mut bytes: Vec<u8> = reals.flat_map(|real| real.to_le_bytes()).collect();
+    bytes.extend(picture.rgba.as_flattened());
+    bytes
+}
+
 pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     let mut builder = MeshBuilder::new();
     builder.material(Material::of_srgb("grey", [90, 120, 150]));
@@ -106,14 +100,10 @@ pub fn shape(fill: impl FnOnce(&mut MeshBuilder)) -> Mesh {
     builder.finish("a shape").unwrap()
 }
 
-/// A grey mesh of positions and their numbers.
-pub fn indexed(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
+pub fn mesh_of(triangles: impl IntoIterator<Item = Corners>) -> Mesh {
     shape(|builder| {
-        for &position in positions {
-            builder.position(position);
-        }
-        for &triangle in triangles {
-            builder.triangle(triangle, None, 0).unwrap();
+        for corners in triangles {
+            triangle(builder, corners, 0);
         }
     })
 }
@@ -133,7 +123,6 @@ pub fn quad(builder: &mut MeshBuilder, [a, b, c, d]: [[f32; 3]; 4], material: u3
     triangle(builder, [a, c, d], material);
 }
 
-/// Adds a box, whose faces are two triangles each.
 pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
     let corner = |i: usize| [0, 1, 2].map(|k| [low[k], high[k]][i >> k & 1]);
     for face in [
@@ -148,7 +137,7 @@ pub fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material
     }
 }
 
-/// Adds a surface of rows and columns of quads.
+/// Rows and columns of quads.
 pub fn sheet(
     builder: &mut MeshBuilder,
     [rows, columns]: [u32; 2],
@@ -164,24 +153,7 @@ pub fn sheet(
     }
 }
 
-/// Adds a surface of revolution around a line along y, through heights and radii from top to bottom.
-pub fn turned(
-    builder: &mut MeshBuilder,
-    middle: DVec3,
-    profile: &[(f64, f64)],
-    columns: u32,
-    material: u32,
-) {
-    let rows = profile.len() as u32 - 1;
-    sheet(builder, [rows, columns], material, |i, j| {
-        let (height, radius) = profile[i as usize];
-        // The last column is the first, so that the surface is closed to the last bit.
-        let turn = f64::from(j % columns) / f64::from(columns);
-        let (sin, cos) = libm::sincos(turn * std::f64::consts::TAU);
-        middle + DVec3::new(radius * cos, height, radius * sin)
-    });
-}
-
+/// Closed to the last bit.
 pub fn sphere(
     builder: &mut MeshBuilder,
     middle: DVec3,
@@ -189,16 +161,15 @@ pub fn sphere(
     [rows, columns]: [u32; 2],
     material: u32,
 ) {
-    let ring = |i: u32| {
+    sheet(builder, [rows, columns], material, |i, j| {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(rows));
-        let is_pole = i == 0 || i == rows;
-        (radius * cos, if is_pole { 0.0 } else { radius * sin })
-    };
-    let profile: Vec<(f64, f64)> = (0..=rows).map(ring).collect();
-    turned(builder, middle, &profile, columns, material);
+        let ring = if i == rows { 0.0 } else { radius * sin };
+        let turn = f64::from(j % columns) / f64::from(columns);
+        let (east, north) = libm::sincos(turn * std::f64::consts::TAU);
+        middle + DVec3::new(ring * north, radius * cos, ring * east)
+    });
 }
 
-/// A ball of radius 1 around the origin.
 pub fn ball(rows: u32) -> Mesh {
     shape(|builder| sphere(builder, DVec3::ZERO, 1.0, [rows, 2 * rows], 0))
 }
@@ -207,14 +178,9 @@ pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
 
-/// The result of work that gives the same on one and three threads.
-pub fn on_any_threads<T: Send + PartialEq>(work: impl Fn() -> T + Sync) -> T {
-    let [one, three] = [1, 3].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().unwrap().install(&work)
-    });
-    assert!(one == three, "threads change the result");
-    one
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap().install(work)
 }
 
 #[track_caller]
@@ -223,10 +189,4 @@ pub fn has(text: impl Debug, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "expected {part}\n   found {text}");
     }
-}
-
-/// A model of the shared data, which `SHIFTVOX_DATA` names.
-pub fn model(name: &str) -> PathBuf {
-    let folder = std::env::var_os("SHIFTVOX_DATA").expect("SHIFTVOX_DATA names the shared data");
-    PathBuf::from(folder).join("mesh").join(name)
 }

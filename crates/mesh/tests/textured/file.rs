@@ -1,9 +1,6 @@
-//! `.tvx` files: round trips, truncation, damage, inconsistent contents.
-
-use std::fs;
+//! Refused contents of `.tvx` files, and refused options.
 
 use shiftvox::graph::Silent;
-use shiftvox::scene::{FileKind, detect};
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER};
 use shiftvox_mesh::textured::store::encode;
@@ -12,7 +9,6 @@ use shiftvox_mesh::textured::{
 };
 
 use super::scenes::{balls, file_of, mesh_of, options, rectangle};
-use super::shared::on_any_threads;
 
 fn small() -> TexturedData {
     let mesh = mesh_of(&[
@@ -23,114 +19,55 @@ fn small() -> TexturedData {
     build(&mesh.unwrap(), &options(&[4, 2], 2, Element::Cube), &Silent).unwrap()
 }
 
-fn verified(bytes: &[u8]) -> Result<(), TexturedError> {
-    TexturedFile::from_bytes(bytes).and_then(|file| file.verify())
-}
-
-#[test]
-fn files_hold_the_data_that_was_built_on_any_number_of_threads() {
-    let grids = options(&[4, 10, 16], 5, Element::Cube);
-    on_any_threads(|| encode(&build(&balls(), &grids, &Silent).unwrap()).unwrap());
-    let data = small();
-    let file = file_of(&data);
-    file.verify().unwrap();
-    assert_eq!(file.bounds(), (data.low, data.high));
-    assert_eq!(file.primitives(), data.primitives);
-    assert_eq!(file.grids(), 2);
-    for (number, built) in data.grids.iter().enumerate() {
-        let grid = file.grid(number);
-        assert_eq!(grid.voxels(), built.voxels);
-        assert_eq!(grid.cell_grid().cells(), [2, 4][number]);
-        let projected = [grid.entry().projected, grid.entry().projected_afresh];
-        assert_eq!(projected, [built.projected, built.projected_afresh]);
-        let textures = (0..grid.entry().textures).flat_map(|texture| grid.texture(texture as u32));
-        assert!(textures.eq(&built.textures));
-    }
-    // Mapped into memory.
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.tvx");
-    fs::write(&path, encode(&data).unwrap()).unwrap();
-    let mapped = TexturedFile::open(&path).unwrap();
-    assert_eq!(mapped.len(), fs::metadata(&path).unwrap().len());
-    mapped.verify().unwrap();
-    fs::write(&path, b"").unwrap();
-    for path in [&path, folder.path(), &folder.path().join("none.tvx")] {
-        assert!(TexturedFile::open(path).is_err(), "{}", path.display());
+fn is_refused(bytes: &[u8]) -> bool {
+    match TexturedFile::from_bytes(bytes).and_then(|file| file.verify()) {
+        Ok(()) => false,
+        Err(TexturedError::Malformed { .. }) => true,
+        Err(other) => panic!("{other}"),
     }
 }
 
-#[test]
-fn truncated_and_damaged_files_are_refused() {
-    let bytes = encode(&small()).unwrap();
-    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Tvx));
-    for length in 0..bytes.len() {
-        let error = TexturedFile::from_bytes(&bytes[..length]).unwrap_err();
-        let is_placed = matches!(error, TexturedError::Malformed { .. });
-        assert!(is_placed, "{length}: {error}");
-    }
-    assert!(TexturedFile::from_bytes(&[&bytes[..], &[0]].concat()).is_err());
-    for at in 0..bytes.len() {
-        for flip in [1, 0x80] {
-            let mut damaged = bytes.clone();
-            damaged[at] ^= flip;
-            let error =
-                verified(&damaged).map_or_else(|error| error.to_string(), |()| "none".into());
-            assert!(error.contains("byte"), "byte {at}: {error}");
-        }
-    }
+/// The first sub-texture of a face with a number below another.
+fn face(data: &mut TexturedData, below: u32) -> &mut u32 {
+    let faces = data.grids[0].voxels.iter_mut();
+    let mut faces = faces.flat_map(|v| &mut v.textures);
+    faces.find(|texture| **texture < below).unwrap()
 }
 
-/// Faulty contents with right checksums.
 #[test]
 fn inconsistent_contents_are_refused() {
     type Harm = fn(&mut TexturedData);
-    let harms: [(&str, Harm); 18] = [
-        ("a missing primitive", |d| d.grids[0].lists[0] = 99),
-        ("lists that do not rise", |d| d.grids[1].lists.reverse()),
-        ("a primitive in no list", |d| {
-            d.primitives.extend_from_within(..1)
-        }),
-        ("a cell outside", |d| d.grids[1].voxels[0].cell[2] = 4),
-        ("a voxel twice", |d| {
-            d.grids[1].voxels[1] = d.grids[1].voxels[0]
-        }),
-        ("voxels out of order", |d| d.grids[1].voxels.swap(0, 1)),
-        ("a list beyond the end", |d| {
-            d.grids[0].voxels[1].first = u32::MAX
-        }),
-        ("a first list that is not the first", |d| {
-            d.grids[0].voxels[0].first = 1
-        }),
-        ("a missing sub-texture", |d| {
-            let mut faces = d.grids[0].voxels.iter_mut().flat_map(|v| &mut v.textures);
-            *faces.find(|t| **t < CLEAR).unwrap() = 1000;
-        }),
-        ("a face without sub-texture", |d| {
-            let mut faces = d.grids[0].voxels.iter_mut().flat_map(|v| &mut v.textures);
-            *faces.find(|t| **t != NEVER).unwrap() = NEVER;
-        }),
-        ("a texel half transparent", |d| {
-            d.grids[0].textures[0].opacity = 7
-        }),
-        ("a texel without normal", |d| {
+    let harms: [Harm; 18] = [
+        // Primitives: missing, falling, in no list, no number, and a larger box.
+        |d| d.grids[0].lists[0] = 99,
+        |d| d.grids[1].lists.reverse(),
+        |d| d.primitives.extend_from_within(..1),
+        |d| d.primitives[0].corners[1][2] = f32::NAN,
+        |d| d.high.x += 1.0,
+        // Voxels: outside, twice, out of order, of another depth, with lists that end or begin late.
+        |d| d.grids[1].voxels[0].cell[2] = 4,
+        |d| d.grids[1].voxels[1] = d.grids[1].voxels[0],
+        |d| d.grids[1].voxels.swap(0, 1),
+        |d| d.grids[1].voxels.last_mut().unwrap().depth += 1,
+        |d| d.grids[0].voxels[1].first = u32::MAX,
+        |d| d.grids[0].voxels[0].first = 1,
+        // A sub-texture that is missing, or none. A texel that is half transparent, or without a normal.
+        |d| *face(d, CLEAR) = 1000,
+        |d| *face(d, NEVER) = NEVER,
+        |d| d.grids[0].textures[0].opacity = 7,
+        |d| {
             let mut texels = d.grids[0].textures.iter_mut();
             texels.find(|t| t.opacity == 255).unwrap().normal = 0;
-        }),
-        ("another depth", |d| {
-            d.grids[1].voxels.last_mut().unwrap().depth += 1
-        }),
-        ("a corner that is no number", |d| {
-            d.primitives[0].corners[1][2] = f32::NAN
-        }),
-        ("a larger box", |d| d.high.x += 1.0),
-        ("an odd grid", |d| d.grids[1].cells = 5),
-        ("grids from fine to coarse", |d| d.grids.reverse()),
-        ("no grids", |d| d.grids.clear()),
+        },
+        // Grids: odd, from fine to coarse, none.
+        |d| d.grids[1].cells = 5,
+        |d| d.grids.reverse(),
+        |d| d.grids.clear(),
     ];
-    for (name, harm) in harms {
+    for (number, harm) in harms.into_iter().enumerate() {
         let mut data = small();
         harm(&mut data);
-        assert!(verified(&encode(&data).unwrap()).is_err(), "{name}");
+        assert!(is_refused(&encode(&data).unwrap()), "{number}");
     }
 }
 
@@ -140,14 +77,10 @@ fn invalid_options_are_refused() {
     let grid = |cells, texels| BuildError::Grid { cells, texels };
     for (grids, texels, error) in [
         (&[0][..], 16, grid(0, 16)),
-        (&[15], 16, grid(15, 16)),
         (&[130], 16, grid(130, 16)),
-        (&[u32::MAX], 16, grid(u32::MAX, 16)),
         (&[4], 0, grid(4, 0)),
         (&[4], 65, grid(4, 65)),
-        (&[128], 64, grid(128, 64)),
         (&[], 4, BuildError::Grids),
-        (&[4, 4], 4, BuildError::Grids),
     ] {
         let refused = build(&mesh, &options(grids, texels, Element::Cube), &Silent);
         assert_eq!(refused.err(), Some(error));
@@ -163,7 +96,7 @@ fn flat_and_distant_meshes_are_built() {
         let mesh = mesh_of(&rectangle(at, [at; 2], [at + size; 2])).unwrap();
         let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
         file.verify().unwrap();
-        let row = &file.grid(0).levels().rows()[0];
+        let row = file.grid(0).levels().row(0);
         // The sheet lies on the middle plane, in cells on both sides of it.
         assert_eq!((row.voxels, row.surfels), (512, 256), "{at} {size}");
     }

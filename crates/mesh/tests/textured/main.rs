@@ -1,10 +1,9 @@
-//! Textured voxels: build, levels, file, view, command line.
+//! Textured voxels: build, levels, file, view.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
-mod auto;
 mod file;
+mod golden;
 mod levels;
-mod models;
 mod scenes;
 #[path = "../shared/mod.rs"]
 mod shared;

@@ -4,13 +4,14 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
+use shiftvox_mesh::raster::RasterCamera;
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedData, TexturedFile, build};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
-use super::shared::{self, Corners, shape, soup};
+use super::shared::{self, Corners, looking, shape, soup};
 
-/// Triangles, each with the colour [`color_of`] its number. Triangles without area are left out.
+/// Without triangles that have no area.
 pub fn mesh_of(triangles: &[Corners]) -> Option<Mesh> {
     let mut builder = MeshBuilder::new();
     let has_area = |corners: &&Corners| {
@@ -25,21 +26,18 @@ pub fn mesh_of(triangles: &[Corners]) -> Option<Mesh> {
     builder.finish("a random mesh").ok()
 }
 
-/// The colour of triangle `number`.
 pub fn color_of(number: u32) -> [u8; 3] {
     let [r, g, b, _] = (number * 77 + 5).to_le_bytes();
     [r, g, b]
 }
 
-/// The two triangles of a rectangle at a height z.
 pub fn rectangle(z: f32, low: [f32; 2], high: [f32; 2]) -> [Corners; 2] {
     let [a, b] = [[low[0], low[1], z], [high[0], low[1], z]];
     let [c, d] = [[high[0], high[1], z], [low[0], high[1], z]];
     [[a, b, c], [a, c, d]]
 }
 
-/// Triangles with most corners on a coarse lattice, so that many lie on the borders of cells and through the middles of
-/// texels.
+/// Many corners lie on borders of cells and on middles of texels.
 pub fn random_triangles() -> impl Strategy<Value = Vec<Corners>> {
     let coarse = (0u8..=16).prop_map(|n| f32::from(n) * 0.5);
     let any = (0u32..1 << 20).prop_map(|n| n as f32 / 131_072.0);
@@ -48,7 +46,6 @@ pub fn random_triangles() -> impl Strategy<Value = Vec<Corners>> {
     prop::collection::vec(prop::array::uniform3(corner), 1..24)
 }
 
-/// Cells and texels of a small grid.
 pub fn small_grids() -> impl Strategy<Value = (u32, u32, Element)> {
     let cells = prop::sample::select(vec![2u32, 4, 6, 8]);
     let element = prop::sample::select(vec![Element::Cube, Element::Sides]);
@@ -63,12 +60,10 @@ pub fn options(grids: &[u32], texels: u32, element: Element) -> BuildOptions {
     }
 }
 
-/// Builds with one grid.
 pub fn built(mesh: &Mesh, cells: u32, texels: u32, element: Element) -> TexturedData {
     build(mesh, &options(&[cells], texels, element), &Silent).unwrap()
 }
 
-/// The built data as a file.
 pub fn file_of(data: &TexturedData) -> TexturedFile {
     TexturedFile::from_bytes(&encode(data).unwrap()).unwrap()
 }
@@ -88,4 +83,17 @@ pub fn balls() -> Mesh {
         }
     });
     mesh_of(&soup(&balls)).unwrap()
+}
+
+pub fn middle(file: &TexturedFile) -> DVec3 {
+    let (low, high) = file.bounds();
+    (low + high) * 0.5
+}
+
+pub fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
+    let focal_px = f64::from(side) / 2.0 / libm::tan(fov_degrees.to_radians() / 2.0);
+    RasterCamera {
+        near: 1e-4,
+        ..looking(eye, target, [side; 2], focal_px)
+    }
 }

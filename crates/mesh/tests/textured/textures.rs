@@ -2,24 +2,21 @@
 
 use proptest::prelude::*;
 use shiftvox::graph::PackedNormal;
-use shiftvox_mesh::Mesh;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER, Texel};
-use shiftvox_mesh::textured::{CellGrid, Element, TexturedData};
+use shiftvox_mesh::textured::{CellGrid, TexturedData};
 
-use super::scenes::{balls, built, color_of, mesh_of, random_triangles, rectangle, small_grids};
+use super::levels::check;
+use super::scenes::{built, color_of, file_of, mesh_of, random_triangles, small_grids};
 
-/// A point on a face.
 type Point = [i128; 2];
 
-/// The axes across and down a face that stands on an axis.
 const FACE: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 fn area([a, b, c]: [Point; 3]) -> i128 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a triangle covers a point of the plane, as if the point were moved to the right by almost nothing, and down
-/// by almost nothing of that.
+/// As if the point were moved to the right by almost nothing, and down by almost nothing of that.
 fn covers(points: [Point; 3], p: Point) -> bool {
     let sides = [0, 1, 2].map(|i| {
         let (a, b) = (points[i], points[(i + 1) % 3]);
@@ -45,7 +42,7 @@ fn seen(
     slice: u32,
     texel: [u32; 2],
 ) -> Option<usize> {
-    let (step, half) = (lattice.texel_steps() as i128, lattice.cells() / 2);
+    let (step, half) = (lattice.texel_steps as i128, lattice.cells / 2);
     let outwards = if slice >= half { 1 } else { -1 };
     let volume = slice.min(half)..=slice.max(half - 1);
     let p = texel.map(|t| i128::from(t) * step + step / 2);
@@ -56,29 +53,23 @@ fn seen(
         }
         let depth = along(points, corners.map(|c| i128::from(c[axis])), p);
         let at = (depth / i128::from(lattice.cell_steps())) as u32;
-        let is_there = volume.contains(&at.min(lattice.cells() - 1));
+        let is_there = volume.contains(&at.min(lattice.cells - 1));
         is_there.then_some((depth * outwards, number))
     });
-    // The farthest out; of several the first.
     let best = depths.max_by_key(|&(depth, number)| (depth, std::cmp::Reverse(number)));
     best.map(|(_, number)| number)
 }
 
-/// Compares all sub-textures of a grid with volumes projected afresh. Returns the number of texels, and of those that
-/// see something.
-fn compare(mesh: &Mesh, data: &TexturedData) -> [u64; 2] {
+/// Compares all sub-textures of a grid with volumes projected afresh.
+fn compare(data: &TexturedData) {
     let grid = &data.grids[0];
     let lattice = CellGrid::around(data.low, data.high, grid.cells, grid.texels);
     let primitives = data.primitives.iter();
     let corners = primitives.map(|p| p.positions().map(|p| lattice.point(p)));
     let corners: Vec<[[i64; 3]; 3]> = corners.collect();
-    assert_eq!(corners.len(), mesh.triangles().len());
     let side = grid.texels;
-    let mut compared = [0; 2];
-    let faces = grid
-        .voxels
-        .iter()
-        .flat_map(|v| [0, 1, 2].map(|axis| (v, axis)));
+    let voxels = grid.voxels.iter();
+    let faces = voxels.flat_map(|v| [0, 1, 2].map(|axis| (v, axis)));
     for (voxel, axis) in faces.filter(|(voxel, axis)| voxel.textures[*axis] != NEVER) {
         let number = voxel.textures[axis];
         let slice = u32::from(voxel.cell[axis]);
@@ -89,15 +80,11 @@ fn compare(mesh: &Mesh, data: &TexturedData) -> [u64; 2] {
                 CLEAR => Texel::default(),
                 _ => grid.textures[(number * side * side + texel) as usize],
             };
-            compared[0] += 1;
-            let Some(primitive) = seen(&corners, &lattice, axis, slice, place) else {
-                assert!(found.is_clear(), "{voxel:?} axis {axis} texel {texel}");
-                continue;
-            };
-            compared[1] += 1;
-            let expected = (color_of(primitive as u32), 255);
+            let primitive = seen(&corners, &lattice, axis, slice, place);
+            let expected = primitive.map_or(([0; 3], 0), |p| (color_of(p as u32), 255));
             let values = (found.color, found.opacity);
             assert_eq!(values, expected, "{voxel:?} axis {axis} texel {texel}");
+            let Some(primitive) = primitive else { continue };
             let normal = PackedNormal(found.normal).decode().unwrap();
             let outwards = if slice >= grid.cells / 2 { 1.0 } else { -1.0 };
             assert!(normal[axis] * outwards > -0.02, "{normal} on axis {axis}");
@@ -106,45 +93,21 @@ fn compare(mesh: &Mesh, data: &TexturedData) -> [u64; 2] {
             assert!(normal.dot(plane).abs() > 0.999, "{normal} {plane}");
         }
     }
-    compared
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
-    fn slice_by_slice_is_the_same_as_projected_afresh(
+    fn textures_are_the_same_as_projected_afresh_and_levels_the_rest_after_erosions(
         triangles in random_triangles(),
         (cells, texels, element) in small_grids(),
     ) {
         if let Some(mesh) = mesh_of(&triangles) {
-            compare(&mesh, &built(&mesh, cells, texels, element));
+            let data = built(&mesh, cells, texels, element);
+            assert_eq!(data.primitives.len(), mesh.triangles().len());
+            compare(&data);
+            check(&file_of(&data));
         }
     }
-}
-
-#[test]
-fn slices_save_most_projections_of_a_cloud_of_balls() {
-    let mesh = balls();
-    let data = built(&mesh, 8, 3, Element::Cube);
-    let [compared, seeing] = compare(&mesh, &data);
-    assert!(
-        compared > 2000 && seeing > compared / 3,
-        "{compared} {seeing}"
-    );
-    let grid = &data.grids[0];
-    assert!(grid.projected_afresh > 2 * grid.projected);
-}
-
-#[test]
-fn equal_sub_textures_are_stored_once() {
-    // Most faces of a wall of two colours are alike.
-    let wall = mesh_of(&rectangle(0.0, [0.0; 2], [8.0; 2])).unwrap();
-    let data = built(&wall, 16, 4, Element::Cube);
-    let grid = &data.grids[0];
-    let shown = grid.voxels.iter().flat_map(|v| v.textures);
-    let shown = shown.filter(|&t| t < CLEAR).count();
-    let stored = grid.textures.len() / 16;
-    // One of each triangle, and those along the line between them.
-    assert!(shown >= 256 && stored <= 4, "{shown} {stored}");
 }

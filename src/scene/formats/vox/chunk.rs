@@ -1,8 +1,7 @@
 //! Iterates over the chunks of a `.vox` file, and reads the fields of a chunk.
 //!
-//! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the size of
-//! its content, the size of its children, the content, and the children. Numbers are little endian. Every size is
-//! compared with the bytes left before use: no allocation depends on a number alone.
+//! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the sizes of
+//! content and children, the content, and the children. Every size is compared with the bytes left before use.
 
 use super::DAMAGED;
 use crate::scene::fault::{Fault, printable};
@@ -11,6 +10,8 @@ const HEADER: usize = 12;
 
 const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
 
+type Fallible<T> = Result<T, Box<Fault>>;
+
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub id: [u8; 4],
@@ -18,16 +19,9 @@ pub(super) struct Chunk<'a> {
     pub content: &'a [u8],
 }
 
-/// The children of `MAIN`, one after another; ends after the first error.
-pub(super) struct Chunks<'a> {
-    bytes: &'a [u8],
-    next: usize,
-    end: usize,
-    broken: bool,
-}
-
-/// Checks the file's head and goes to the first child of `MAIN`.
-pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
+/// Checks the file's head. Returns the children of `MAIN`, which end after the first error, and the number of bytes after
+/// them.
+pub(super) fn chunks(bytes: &[u8]) -> Fallible<(impl Iterator<Item = Fallible<Chunk<'_>>>, usize)> {
     if bytes.len() < 8 || &bytes[..4] != b"VOX " {
         return Err(Fault::new(
             "file header",
@@ -47,45 +41,29 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
             DAMAGED,
         ));
     }
-    let first = 8 + HEADER + content;
-    Ok(Chunks {
-        bytes,
-        next: first,
-        end: first + children,
-        broken: false,
-    })
-}
-
-impl Chunks<'_> {
-    pub(super) fn left_over(&self) -> usize {
-        self.bytes.len() - self.end
-    }
-}
-
-impl<'a> Iterator for Chunks<'a> {
-    type Item = Result<Chunk<'a>, Box<Fault>>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.broken || self.next == self.end {
+    let mut offset = 8 + HEADER + content;
+    let end = offset + children;
+    let next = move || {
+        if offset == end {
             return None;
         }
-        let offset = self.next;
-        Some(match header(self.bytes, offset, self.end, "MAIN") {
-            Ok((id, content, children)) => {
-                let begin = offset + HEADER;
-                self.next = begin + content + children;
-                Ok(Chunk {
-                    id,
-                    offset,
-                    content: &self.bytes[begin..begin + content],
-                })
-            }
+        let (id, content, children) = match header(bytes, offset, end, "MAIN") {
+            Ok(header) => header,
             Err(fault) => {
-                self.broken = true;
-                Err(fault)
+                offset = end;
+                return Some(Err(fault));
             }
-        })
-    }
+        };
+        let begin = offset + HEADER;
+        let chunk = Chunk {
+            id,
+            offset,
+            content: &bytes[begin..begin + content],
+        };
+        offset = begin + content + children;
+        Some(Ok(chunk))
+    };
+    Ok((std::iter::from_fn(next), bytes.len() - end))
 }
 
 /// A chunk's id and its two sizes, which together end no later than `end`.
@@ -121,16 +99,13 @@ fn header(
     Ok((id, content as usize, children as usize))
 }
 
-/// Attributes of scene nodes, as bytes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Dict<'a> {
     entries: Vec<(&'a [u8], &'a [u8])>,
-    /// Where it begins in the file.
     pub offset: u64,
 }
 
 impl<'a> Dict<'a> {
-    /// The value of a key; of the last one where it is repeated.
     pub(super) fn get(&self, key: &str) -> Option<&'a [u8]> {
         let found = self
             .entries
@@ -140,7 +115,6 @@ impl<'a> Dict<'a> {
         found.map(|(_, value)| *value)
     }
 
-    /// Whether a switch is on: present with the value 1.
     pub(super) fn is_set(&self, key: &str) -> bool {
         self.get(key)
             .is_some_and(|value| value.trim_ascii() == b"1")
@@ -204,7 +178,6 @@ impl<'a> Fields<'a> {
         &self.part
     }
 
-    /// Byte offset of the next field in the file.
     pub(super) fn offset(&self) -> u64 {
         (self.base + self.at) as u64
     }

@@ -1,18 +1,17 @@
 //! The scene graph: transform, group and shape nodes, layers, and the placements of models that they make.
 //!
-//! A file of some kilobytes can place a model a million times, by nodes with many parents. So placements are found
-//! before any voxel is passed on: their number is known, and a repeated placement costs nothing. Of an animation the
-//! first key frame is read.
+//! A small file can place a model a million times, by nodes with many parents. So placements are found before any voxel
+//! is passed on, and a repeated one costs nothing. Of an animation the first key frame is read.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::chunk::{Chunk, Dict, Fields};
-use super::transform::{Transform, bad_rotation};
+use super::transform::Transform;
 use super::{AGAIN, DAMAGED};
 use crate::scene::SceneInfo;
 use crate::scene::fault::{Fault, Problem};
 
-/// Most visits of nodes and models, which the file's length does not bound: many nodes may name one as their child.
+/// Most visits of nodes and models, which the file's length does not bound.
 const MAX_VISITS: u64 = 1 << 20;
 
 struct Node {
@@ -79,14 +78,21 @@ impl SceneGraph {
                 NodeKind::Group(children.collect::<Result<_, _>>()?)
             }
             _ => {
-                let mut keys = FirstKeyFrame::default();
+                let (mut first, mut shown) = (u32::MAX, Vec::new());
                 for _ in 0..fields.count("models", 8)? {
                     let model = fields.u32("model number")?;
                     let attributes = fields.dict()?;
                     // Models without a key frame of their own are all shown together.
-                    keys.offer(frame_of(&attributes, &part)?.unwrap_or(0), model);
+                    let frame = frame_of(&attributes, &part)?.unwrap_or(0);
+                    if frame < first {
+                        shown.clear();
+                        first = frame;
+                    }
+                    if frame == first {
+                        shown.push(model);
+                    }
                 }
-                NodeKind::Shape(keys.items)
+                NodeKind::Shape(shown)
             }
         };
         let offset = chunk.offset as u64;
@@ -152,8 +158,6 @@ impl SceneGraph {
         Ok(placed.into_iter().map(|(placement, _)| placement).collect())
     }
 
-    /// Visits each placement of a model, with its shape node, its transform and whether it is hidden, in the order of
-    /// the file's lists.
     fn walk<'g>(
         &'g self,
         mut visit: impl FnMut(&'g Node, u32, Transform, bool) -> Result<(), Box<Fault>>,
@@ -244,19 +248,26 @@ fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<F
     let child = fields.u32("child id")?;
     fields.u32("reserved field")?;
     let layer = fields.u32("layer id")?;
-    let mut keys = FirstKeyFrame::default();
+    let mut first: Option<(u32, Dict<'_>)> = None;
     for i in 0..fields.count("frames", 4)? {
         let attributes = fields.dict()?;
-        keys.offer(frame_of(&attributes, part)?.unwrap_or(i), attributes);
+        let frame = frame_of(&attributes, part)?.unwrap_or(i);
+        if first.as_ref().is_none_or(|(least, _)| frame < *least) {
+            first = Some((frame, attributes));
+        }
     }
     let mut transform = Transform::IDENTITY;
-    if let Some(attributes) = keys.items.first() {
+    if let Some((_, attributes)) = first {
         let rotation = "a rotation: one number from 0 to 127";
         if let Some([value]) = attributes.numbers("_r", part, rotation)? {
             transform = u8::try_from(value)
                 .ok()
                 .and_then(Transform::from_rotation_byte)
-                .ok_or_else(|| bad_rotation(part, attributes.offset, value))?;
+                .ok_or_else(|| {
+                    let part = format!("{part}, attribute _r");
+                    let expected = "a rotation: bits 0-1 and 2-3 two different axes of 0, 1, 2, bits 4-6 signs";
+                    Fault::new(part, attributes.offset, expected, value.to_string(), DAMAGED)
+                })?;
         }
         let translation = "a translation: three whole numbers of 32 bits";
         if let Some(translation) = attributes.numbers("_t", part, translation)? {
@@ -265,7 +276,6 @@ fn transform_node(fields: &mut Fields<'_>, part: &str) -> Result<NodeKind, Box<F
     }
     Ok(NodeKind::Transform {
         child,
-        // -1: on no layer.
         layer: (layer != u32::MAX).then_some(layer),
         transform,
     })
@@ -275,30 +285,4 @@ fn frame_of(attributes: &Dict<'_>, part: &str) -> Result<Option<u32>, Box<Fault>
     let frame = attributes.numbers::<1>("_f", part, "a frame number")?;
     // Frames before the first count as the first.
     Ok(frame.map(|[frame]| u32::try_from(frame).unwrap_or(0)))
-}
-
-struct FirstKeyFrame<T> {
-    key: u32,
-    items: Vec<T>,
-}
-
-impl<T> Default for FirstKeyFrame<T> {
-    fn default() -> Self {
-        Self {
-            key: u32::MAX,
-            items: Vec::new(),
-        }
-    }
-}
-
-impl<T> FirstKeyFrame<T> {
-    fn offer(&mut self, key: u32, item: T) {
-        if key < self.key {
-            self.items.clear();
-            self.key = key;
-        }
-        if key == self.key {
-            self.items.push(item);
-        }
-    }
 }

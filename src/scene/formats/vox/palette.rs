@@ -1,14 +1,12 @@
 //! The colours of colour indices.
 //!
-//! Index 0 is no voxel. Index `i` is entry `i - 1` of the file's palette, so its 256th entry is never used, and some
-//! exporters omit it. Alpha is ignored, because MagicaVoxel keeps transparency in its materials and exporters write
-//! 255 or 0 arbitrarily. `IMAP` is the order in which the editor shows the palette and changes no colour.
+//! Index 0 is no voxel. Index `i` is entry `i - 1` of the file's palette, whose 256th entry some exporters omit. Alpha
+//! is ignored: exporters write 255 or 0 arbitrarily. `IMAP` changes no colour.
 
 use super::AGAIN;
 use super::chunk::Chunk;
 use crate::scene::fault::Fault;
 
-/// Colours by index, 1 to 255; entry 0 is never asked for.
 #[derive(Debug, Clone)]
 pub(super) struct Palette {
     rgba: [[u8; 4]; 256],
@@ -17,8 +15,7 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    /// MagicaVoxel's own palette, for files without one: the cube of six steps
-    /// without black, brightest first, then ten shades each of red, green, blue and grey.
+    /// MagicaVoxel's own: the cube of six steps without black, brightest first, then shades of red, green, blue and grey.
     pub(super) fn default_colors() -> Self {
         const SHADES: [u8; 10] = [0xee, 0xdd, 0xbb, 0xaa, 0x88, 0x77, 0x55, 0x44, 0x22, 0x11];
         let mut rgba = [[0, 0, 0, 0]; 256];

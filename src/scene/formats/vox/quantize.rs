@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 
-/// Colours that a `.vox` palette can hold: index 0 means empty.
 pub(super) const MAX_COLORS: usize = 255;
 
 type Counted = ([u8; 3], u64);
@@ -25,7 +24,6 @@ pub(super) fn palette(histogram: &BTreeMap<[u8; 3], u64>) -> (Vec<[u8; 3]>, BTre
             .collect();
     } else {
         while boxes.len() < MAX_COLORS {
-            // More colours than boxes, so some box still has two.
             let Some(widest) = (0..boxes.len()).rev().max_by_key(|i| width(&boxes[*i]).0) else {
                 break;
             };
@@ -47,7 +45,6 @@ pub(super) fn palette(histogram: &BTreeMap<[u8; 3], u64>) -> (Vec<[u8; 3]>, BTre
     (means.into_iter().map(|(mean, _)| mean).collect(), index_of)
 }
 
-/// The largest range of a channel in a box, and that channel.
 fn width(colors: &[Counted]) -> (u8, usize) {
     let ranges = (0..3).map(|channel| {
         let values = colors.iter().map(|(color, _)| color[channel]);

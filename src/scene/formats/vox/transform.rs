@@ -1,14 +1,10 @@
 //! Rotations in one byte, and the index of a transformed voxel.
 
-use super::DAMAGED;
-use crate::scene::fault::Fault;
-
 /// A signed permutation of the axes and a translation, applied in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Transform {
     /// `source[row]`: the axis whose coordinate goes to axis `row`.
     source: [u8; 3],
-    /// 1 or -1 for each row.
     sign: [i64; 3],
     translation: [i64; 3],
 }
@@ -70,10 +66,8 @@ impl Transform {
 
     /// The index of a transformed voxel of a model of this size.
     ///
-    /// MagicaVoxel rotates a model about the lattice point `floor(size / 2)`, so a
-    /// voxel's centre stays half a voxel off the axes. In units of half a voxel all
-    /// numbers are integers: the centre is `2 (p - floor(size / 2)) + 1`, which is odd.
-    /// Rotation permutes and negates. Half of the result, rounded down, is the index.
+    /// MagicaVoxel rotates a model about the lattice point `floor(size / 2)`. In units of half a voxel, a voxel's centre
+    /// is `2 (p - floor(size / 2)) + 1`. Half of the rotated centre, rounded down, is the index.
     #[inline]
     pub(super) fn place(&self, position: [i64; 3], size: [u32; 3]) -> [i64; 3] {
         let center: [i64; 3] =
@@ -81,14 +75,4 @@ impl Transform {
         let turned = self.rotate(center);
         std::array::from_fn(|axis| (turned[axis] >> 1) + self.translation[axis])
     }
-}
-
-pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
-    Fault::new(
-        format!("{part}, attribute _r"),
-        offset,
-        "a rotation: bits 0-1 and 2-3 two different axes of 0, 1, 2, bits 4-6 signs",
-        value.to_string(),
-        DAMAGED,
-    )
 }

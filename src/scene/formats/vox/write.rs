@@ -6,19 +6,15 @@ use std::io::{self, Write};
 use super::quantize;
 use crate::graph::Voxel;
 
-/// Largest side of a model; a voxel's coordinate is one byte.
 const MODEL_SIDE: i32 = 256;
 
 type Stored = ([u8; 3], [u8; 3]);
 
-/// Collects voxels and writes them as `.vox`.
+/// Collects voxels and writes them as `.vox`, 6 bytes per voxel and the size of the file.
 ///
-/// Space is cut into blocks of 256 voxels per side at multiples of 256. Each block with a voxel becomes a model as
-/// small as its voxels allow. The scene graph places it so that every voxel keeps its index, also a negative one. Of
-/// several voxels at one index the last one is kept. Up to 255 colours are kept exactly; more are reduced by median
-/// cut. The format has no normals.
-///
-/// Memory: 6 bytes per voxel and the size of the file.
+/// Each block of 256 voxels per side becomes a model as small as its voxels allow, which the scene graph puts in its
+/// place. Of several voxels at one index the last is kept. Up to 255 colours are kept exactly; more are reduced by
+/// median cut.
 #[derive(Debug, Default)]
 pub struct VoxWriter {
     blocks: BTreeMap<[i32; 3], Vec<Stored>>,
@@ -29,7 +25,6 @@ pub struct VoxWritten {
     pub voxels: u64,
     pub models: u32,
     pub colors_given: usize,
-    /// Colours in the palette, at most 255.
     pub colors_kept: usize,
 }
 
@@ -107,7 +102,6 @@ fn keep_last(stored: &mut Vec<Stored>) {
     stored.dedup_by_key(|(position, _)| *position);
 }
 
-/// Lowest position, and the size from there; 1 without voxels.
 fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
     let mut low = [u8::MAX; 3];
     let mut high = [0u8; 3];
@@ -126,72 +120,28 @@ fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
     )
 }
 
-/// A root, a group under it, and a transform and a shape for every model.
+/// A root on no layer, a group under it, and a transform and a shape for every model.
 fn scene_graph(out: &mut Vec<u8>, translations: &[[i64; 3]]) -> io::Result<()> {
     let models = count(translations.len())?;
-    transform_node(out, 0, 1, None)?;
-    let mut group = Node::new(1);
-    group.number(models);
-    for model in 0..models {
-        group.number(2 + 2 * model);
-    }
-    chunk(out, b"nGRP", &group.content)?;
-    for (model, translation) in (0..models).zip(translations) {
-        transform_node(out, 2 + 2 * model, 3 + 2 * model, Some(*translation))?;
-        let mut shape = Node::new(3 + 2 * model);
-        shape.number(1);
-        shape.number(model);
-        shape.number(0);
-        chunk(out, b"nSHP", &shape.content)?;
+    chunk(out, b"nTRN", &numbers(&[0, 0, 1, u32::MAX, u32::MAX, 1, 0]))?;
+    let mut group = vec![1, 0, models];
+    group.extend((0..models).map(|model| 2 + 2 * model));
+    chunk(out, b"nGRP", &numbers(&group))?;
+    for (model, [x, y, z]) in (0..models).zip(translations) {
+        let [transform, shape] = [2 + 2 * model, 3 + 2 * model];
+        let mut moved = numbers(&[transform, 0, shape, u32::MAX, 0, 1, 1]);
+        for text in ["_t", &format!("{x} {y} {z}")] {
+            moved.extend(numbers(&[text.len() as u32]));
+            moved.extend(text.bytes());
+        }
+        chunk(out, b"nTRN", &moved)?;
+        chunk(out, b"nSHP", &numbers(&[shape, 0, 1, model, 0]))?;
     }
     Ok(())
 }
 
-fn transform_node(
-    out: &mut Vec<u8>,
-    id: u32,
-    child: u32,
-    translation: Option<[i64; 3]>,
-) -> io::Result<()> {
-    let mut node = Node::new(id);
-    node.number(child);
-    node.number(u32::MAX);
-    // The root is on no layer.
-    node.number(if translation.is_some() { 0 } else { u32::MAX });
-    node.number(1);
-    match translation {
-        None => node.number(0),
-        Some([x, y, z]) => {
-            node.number(1);
-            node.string("_t");
-            node.string(&format!("{x} {y} {z}"));
-        }
-    }
-    chunk(out, b"nTRN", &node.content)
-}
-
-struct Node {
-    content: Vec<u8>,
-}
-
-impl Node {
-    fn new(id: u32) -> Self {
-        let mut node = Self {
-            content: Vec::new(),
-        };
-        node.number(id);
-        node.number(0);
-        node
-    }
-
-    fn number(&mut self, number: u32) {
-        self.content.extend(number.to_le_bytes());
-    }
-
-    fn string(&mut self, text: &str) {
-        self.number(text.len() as u32);
-        self.content.extend(text.as_bytes());
-    }
+fn numbers(numbers: &[u32]) -> Vec<u8> {
+    numbers.iter().flat_map(|n| n.to_le_bytes()).collect()
 }
 
 fn chunk(out: &mut Vec<u8>, id: &[u8; 4], content: &[u8]) -> io::Result<()> {

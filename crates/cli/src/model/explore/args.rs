@@ -40,17 +40,3 @@ impl FromStr for Points {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_by_number() {
-        assert_eq!("7".parse(), Ok(Points(7..=7)));
-        assert_eq!("7..12".parse(), Ok(Points(7..=12)));
-        for bad in ["", "12..7", "..", "1..", "-1", "1..2..3"] {
-            assert!(bad.parse::<Points>().is_err(), "{bad}");
-        }
-    }
-}

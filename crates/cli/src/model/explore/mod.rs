@@ -194,7 +194,6 @@ struct Asked<'a> {
     console: &'a Console,
 }
 
-/// Measures the picked points of a scene that are not known, and returns all known points.
 fn measure(
     asked: &Asked<'_>,
     subject: &Subject,
@@ -234,7 +233,6 @@ fn measure(
         order: args.hardware.ray_order,
         prices,
     };
-    // Old and new lines are printed in the points' order.
     let mut next = picked.start;
     let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {
         for line in known.range(next..end).map(|(_, line)| line) {

@@ -124,7 +124,6 @@ fn drawn(of: &Explorations) -> impl Iterator<Item = &PointLine> {
     of.points.iter().filter(|line| line.figures().is_some())
 }
 
-/// Points that draw the frame, but whose units miss their clock.
 fn too_slow(of: &Explorations) -> usize {
     let figures = of.points.iter().filter_map(PointLine::figures);
     figures.filter(|figures| !figures.meets_clock).count()

@@ -34,7 +34,6 @@ impl ResultsFile {
             Err(TryLockError::WouldBlock) => {
                 return Err(at(Kind::Run)(&"another run writes to it"));
             }
-            // Where files cannot be locked there is no harm in one run.
             Err(TryLockError::Error(_)) => {}
         }
         let text = bounded::read(path, u64::MAX).map_err(|error| at(Kind::Run)(&error))?;

@@ -30,7 +30,6 @@ fn measures(figures: &PointFigures) -> [f64; 4] {
 
 /// The front of a scene's points, fastest first. Points whose units miss the clock are excluded. Of equal points only the
 /// first is on the front.
-#[must_use]
 pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     let able = points.iter().filter_map(|line| {
         let figures = line.figures().filter(|of| of.meets_clock)?;

@@ -18,7 +18,6 @@ pub struct PointLine {
 }
 
 impl PointLine {
-    #[must_use]
     pub fn new(scene: &str, point: &Point, outcome: PointOutcome) -> Self {
         let values = point.values.iter();
         let values = values.map(|(key, value)| (key.clone(), in_json(value)));
@@ -30,7 +29,6 @@ impl PointLine {
         }
     }
 
-    #[must_use]
     pub fn figures(&self) -> Option<&PointFigures> {
         match &self.outcome {
             PointOutcome::Drawn(figures) => Some(figures),
@@ -38,7 +36,6 @@ impl PointLine {
         }
     }
 
-    #[must_use]
     pub fn to_json(&self) -> String {
         kind_first("point", &serde_json::json!(self))
     }
@@ -52,7 +49,6 @@ fn in_json(value: &toml::Value) -> Value {
     }
 }
 
-#[must_use]
 pub fn kind_first(kind: &str, fields: &Value) -> String {
     let fields = fields.to_string();
     format!(r#"{{"kind":"{kind}",{}"#, &fields[1..])
@@ -74,9 +70,6 @@ pub struct Recorded {
 }
 
 /// Reads lines. `asked` has the headers of this run, one per scene. A last line without an end is ignored.
-///
-/// # Errors
-/// When a line is none, or of another space, scene, size or version.
 pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
     let end = text.iter().rposition(|&byte| byte == b'\n');
     let mut recorded = Recorded {

@@ -1,17 +1,10 @@
 //! Many hardware designs for one frame, measured in parallel.
 //!
-//! [`space`] describes the designs, [`explore`] measures them, and [`mod@front`] finds the Pareto-optimal ones in time,
-//! area, energy and wrong samples. [`lines`] is the format of results, one point per line of JSON.
+//! [`space`] describes the designs, and [`mod@front`] finds the Pareto-optimal ones. [`lines`] is the format of results.
 //!
-//! Points share results that depend on a part of them only:
-//!
-//! - the exact picture depends on its size;
-//! - the machine's counts depend on drawing settings and organisation;
-//! - the rays depend on drawing settings, node format and cache lines, and are cast for caches of all sizes at once;
-//! - cycles depend on everything except name and clock.
-//!
-//! Where parents lie on the stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only
-//! their cycles are simulated per point.
+//! Points share results that depend on a part of them only: see `machine_key` and `ray_key`. Where parents lie on the
+//! stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only their cycles are
+//! simulated per point.
 
 pub mod front;
 pub mod lines;
@@ -59,10 +52,7 @@ pub struct Explored<'a> {
 #[serde(tag = "outcome", rename_all = "snake_case")]
 pub enum PointOutcome {
     Drawn(Box<PointFigures>),
-    Refused {
-        /// The reason: an impossible frame, or a word or a stack that overflows.
-        reason: String,
-    },
+    Refused { reason: String },
 }
 
 /// The figures of a point. They equal those of `shiftvox model` for the same hardware.
@@ -148,9 +138,6 @@ struct Shared<'a> {
 }
 
 /// Measures points. `sink` receives them in order, each as soon as all points before it are measured.
-///
-/// # Errors
-/// When the camera sees nothing, the cost tables lack a figure, or the sink fails.
 pub fn explore<E: From<ModelError> + Send>(
     of: Explored<'_>,
     points: &[Point],

@@ -62,7 +62,6 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    #[must_use]
     pub fn options(&self, base: &SetupOptions) -> SetupOptions {
         SetupOptions {
             bits: self.bits.unwrap_or(base.bits),
@@ -86,7 +85,6 @@ pub struct Space {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Its number, from 0.
     pub number: usize,
     pub values: Vec<(String, Value)>,
     pub drawing: Drawing,
@@ -107,9 +105,6 @@ fn in_words(values: &[(String, Value)]) -> String {
 impl Space {
     /// Reads a space and checks every point. `open` finds a description by its name; `hardware` replaces the descriptions
     /// of the space.
-    ///
-    /// # Errors
-    /// With the key or the point to blame.
     pub fn from_toml(
         text: &str,
         hardware: Option<&str>,
@@ -162,21 +157,16 @@ impl Space {
         Ok(space)
     }
 
-    #[must_use]
     pub fn len(&self) -> usize {
         let sizes = self.axes.iter().map(|axis| axis.values.len());
         sizes.fold(1, usize::saturating_mul)
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// A point.
-    ///
-    /// # Errors
-    /// When no hardware can be like that; [`Self::from_toml`] rejects such a space.
     pub fn point(&self, number: usize) -> Result<Point, SpaceError> {
         let mut rest = number;
         let mut values = Vec::new();
@@ -206,7 +196,7 @@ impl Space {
         });
         let impossible =
             |error: HardwareError| wrong(&format!("point {number}, {}", in_words(&values)), error);
-        let syntax = |error: toml::de::Error| HardwareError::Syntax(error.message().to_owned());
+        let syntax = |error: toml::de::Error| HardwareError(error.message().to_owned());
         let drawing: Drawing = drawing
             .try_into()
             .map_err(|error| impossible(syntax(error)))?;

@@ -46,13 +46,11 @@ impl Descriptions {
     }
 }
 
-#[must_use]
 pub(super) fn describe(block: Block) -> &'static Description {
     &Descriptions::shipped().block[block as usize]
 }
 
 /// The reason why a frame has no rows of a block, if its rules exclude it.
-#[must_use]
 pub(super) fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
     const NOT_EXACT: &str = "only coverages exact and alpha have it";
     const IS_EXACT: &str = "coverages exact and alpha do not have it";
@@ -93,28 +91,5 @@ pub(super) fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> 
             (setup.grow_shift.is_none()).then_some("at this tolerance boxes are not widened")
         }
         _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::ports::Ports;
-    use super::*;
-    use shiftvox::project::CageKind;
-
-    /// Blocks have the names of their variants, and every port has a meaning.
-    #[test]
-    fn every_block_and_port_is_described() {
-        let all = Descriptions::shipped();
-        assert_eq!(all.block.len(), Block::ALL.len());
-        for block in Block::ALL {
-            let of = describe(block);
-            let name = of.name.replace('_', "");
-            assert_eq!(name, format!("{block:?}").to_lowercase());
-            for port in [&of.inputs, &of.outputs].map(|side| Ports::new(side, CageKind::Frame)) {
-                let described = |name: &str| !all.meaning(&of.name, name).is_empty();
-                assert!(port.0.iter().all(|port| described(&port.name)), "{name}");
-            }
-        }
     }
 }

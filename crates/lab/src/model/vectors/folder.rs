@@ -95,62 +95,13 @@ pub(super) fn write<T>(
 mod tests {
     use super::*;
 
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name());
-        let mut names: Vec<String> = entries.map(|name| name.into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    fn put(path: &Path, overwrite: bool, name: &str) -> Result<(), VectorsError> {
-        write(path, overwrite, |folder| {
-            fs::write(folder.join(MANIFEST), b"{}").map_err(|e| failed(folder, e))?;
-            fs::write(folder.join(name), b"").map_err(|e| failed(folder, e))
-        })
-    }
-
     #[test]
-    fn whole_or_not_at_all() {
-        let shelter = tempfile::tempdir().unwrap();
-        let path = shelter.path().join("new/vectors");
-        put(&path, false, "one.jsonl").unwrap();
-        assert_eq!(names(&path), [MANIFEST, "one.jsonl"]);
-        let again = put(&path, false, "two.jsonl");
-        assert!(matches!(
-            again,
-            Err(VectorsError::Store(WholeError::Exists(_)))
-        ));
-        put(&path, true, "two.jsonl").unwrap();
-        assert_eq!(names(&path), [MANIFEST, "two.jsonl"]);
-        let power_cut = |folder: &Path| Err::<(), _>(failed(folder, io::Error::other("power cut")));
-        assert!(write(&path, true, power_cut).is_err());
-        assert_eq!(names(&path), [MANIFEST, "two.jsonl"]);
-        assert_eq!(names(&shelter.path().join("new")), ["vectors"]);
-    }
-
-    #[test]
-    fn other_things_are_never_replaced() {
-        let shelter = tempfile::tempdir().unwrap();
-        let path = shelter.path().join("home");
-        fs::create_dir(&path).unwrap();
-        put(&path, false, "one.jsonl").unwrap();
-        let is_foreign = || {
-            matches!(
-                put(&path, true, "two.hex"),
-                Err(VectorsError::Foreign { .. })
-            )
-        };
-        fs::write(path.join("thesis.tex"), b"mine").unwrap();
-        assert!(is_foreign());
-        assert_eq!(fs::read(path.join("thesis.tex")).unwrap(), b"mine");
-        fs::remove_file(path.join("thesis.tex")).unwrap();
-        fs::remove_file(path.join(MANIFEST)).unwrap();
-        assert!(is_foreign());
-        let file = shelter.path().join("file");
-        fs::write(&file, b"mine").unwrap();
-        assert!(put(&file, true, "two.hex").is_err());
-        assert_eq!(fs::read(&file).unwrap(), b"mine");
+    fn only_folders_with_a_manifest_are_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("centre.jsonl"), b"mine").unwrap();
+        let refused = check_free(folder.path(), true);
+        assert!(matches!(refused, Err(VectorsError::Foreign { .. })));
+        fs::write(folder.path().join(MANIFEST), b"{}").unwrap();
+        check_free(folder.path(), true).unwrap();
     }
 }

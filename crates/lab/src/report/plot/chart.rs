@@ -7,7 +7,6 @@ use super::{COLORS, GREY, TITLE_HEIGHT, WIDTH, in_short};
 
 pub(super) const HEIGHT: f64 = 540.0;
 
-/// How values lie along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps; from zero, if all values are above it.
@@ -16,23 +15,16 @@ pub enum Scale {
     Log,
 }
 
-/// An axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// Its label.
     pub label: String,
-    /// How values lie along it.
     pub scale: Scale,
 }
 
-/// A point of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Along the axis across.
     pub x: f64,
-    /// Along the axis up.
     pub y: f64,
-    /// Its label.
     pub label: Option<String>,
 }
 
@@ -42,26 +34,18 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-/// Points of one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
     pub name: String,
-    /// The points, in the order in which they are joined.
     pub points: Vec<Point>,
-    /// Whether they are joined by a line.
     pub line: bool,
-    /// Whether each is a dot.
     pub dots: bool,
-    /// Whether it is grey: there for comparison.
     pub grey: bool,
     /// Half the lengths of the points' error bars, in their order, or empty.
     pub deviations: Vec<f64>,
 }
 
 impl Series {
-    /// Dots joined by a line.
-    #[must_use]
     pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
             line: true,
@@ -69,8 +53,6 @@ impl Series {
         }
     }
 
-    /// Dots alone.
-    #[must_use]
     pub fn dots(name: impl Into<String>, points: Vec<Point>) -> Self {
         Self {
             name: name.into(),
@@ -83,24 +65,17 @@ impl Series {
     }
 }
 
-/// A chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Its title.
     pub title: String,
-    /// The axis across.
     pub x: Axis,
-    /// The axis up.
     pub y: Axis,
-    /// Its series.
     pub series: Vec<Series>,
     /// A level to compare with, such as a noise floor: a broken line, and its name.
     pub level: Option<(f64, String)>,
 }
 
 impl Chart {
-    /// Curves over two logarithmic axes.
-    #[must_use]
     pub fn growth(title: &str, x: &str, y: &str, series: Vec<Series>) -> Self {
         let axis = |label: &str| Axis {
             label: label.to_owned(),
@@ -202,7 +177,6 @@ impl Scaled {
     }
 }
 
-/// Draws a chart. Returns the names and colours of its legend.
 pub(super) fn draw<'c>(canvas: &mut Canvas, chart: &'c Chart) -> Vec<(&'c str, Color)> {
     let level = chart.level.as_ref();
     let level = level.filter(|level| chart.y.scale == Scale::Linear || level.0 > 0.0);
@@ -293,7 +267,6 @@ fn has_place(chart: &Chart, point: &Point) -> bool {
     on(&chart.x, point.x) && on(&chart.y, point.y)
 }
 
-/// A rectangle, pixels: left, right, top, bottom.
 type Room = [f64; 4];
 
 /// Width of a label's letter, and its height, pixels.
@@ -336,50 +309,46 @@ mod tests {
     #[test]
     fn labels_move_aside_for_each_other_and_for_dots() {
         let mut labels = Labels {
-            dots: vec![[97.0, 103.0, 97.0, 103.0], [117.0, 123.0, 95.0, 101.0]],
+            dots: [(97.0, 97.0), (117.0, 95.0), (860.0, 298.0)]
+                .map(|(x, y)| [x, x + 6.0, y, y + 6.0])
+                .into(),
             placed: Vec::new(),
         };
-        // A dot is on its right: the label goes left. The plot's left end is too near for most others.
-        assert_eq!(labels.place((200.0, 100.0), 3), Some((206.0, 94.0)));
-        let places: Vec<_> = (0..9).map(|_| labels.place((120.0, 98.0), 3)).collect();
+        let places = [(); 9].map(|()| labels.place((120.0, 98.0), 3));
         assert_eq!((places[0], places[8]), (Some((126.0, 92.0)), None));
         assert!(places.iter().flatten().count() >= 4, "{places:?}");
         for (i, a) in labels.placed.iter().enumerate() {
-            for b in &labels.placed[..i] {
-                assert!(a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2]);
-            }
+            let is_apart = |b: &Room| a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2];
+            assert!(labels.placed[..i].iter().all(is_apart), "{a:?}");
         }
         // At the end of the plot there is room on the left alone, and a dot there sends it up.
-        labels.dots.push([860.0, 866.0, 298.0, 304.0]);
         assert_eq!(labels.place((879.0, 400.0), 3), Some((854.0, 394.0)));
         assert_eq!(labels.place((879.0, 300.0), 3), Some((854.0, 280.0)));
     }
 
     #[test]
-    fn axes_end_at_powers_of_ten() {
-        assert_eq!(decades([3.0, 40.0].into_iter()), 1.0..100.0);
-        assert_eq!(decades([10.0].into_iter()), 10.0..100.0);
-        assert_eq!(decades(std::iter::empty()), 1.0..10.0);
-    }
-
-    #[test]
-    fn ticks_are_round() {
-        let ticks = |scale, ends: Range<f64>| Scaled { scale, ends }.ticks();
-        assert_eq!(
-            ticks(Scale::Linear, 0.0..34.0),
-            [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
-        );
-        assert_eq!(
-            ticks(Scale::Log, 1.0..100.0),
-            [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
-        );
-        assert_eq!(ticks(Scale::Log, 1.0..1e5).len(), 6);
-    }
-
-    #[test]
-    fn plain_axes_begin_at_zero() {
-        assert_eq!(around([16.0, 32.0].into_iter()), 0.0..34.0);
-        assert_eq!(around([-1.0, 15.0].into_iter()), -2.0..16.0);
-        assert_eq!(around(std::iter::empty()), 0.0..1.0);
+    fn axes_have_round_ends_and_ticks() {
+        let (log, linear) = (Scale::Log, Scale::Linear);
+        for (scale, values, ends, ticks) in [
+            (
+                log,
+                &[3., 40.][..],
+                1.0..100.0,
+                &[1., 2., 5., 10., 20., 50., 100.][..],
+            ),
+            (log, &[10., 1e5], 10.0..1e5, &[1e1, 1e2, 1e3, 1e4, 1e5]),
+            (log, &[10.], 10.0..100.0, &[10., 20., 50., 100.]),
+            (log, &[], 1.0..10.0, &[1., 2., 5., 10.]),
+            (
+                linear,
+                &[16., 32.],
+                0.0..34.0,
+                &[0., 5., 10., 15., 20., 25., 30.],
+            ),
+            (linear, &[-1., 15.], -2.0..16.0, &[0., 5., 10., 15.]),
+        ] {
+            let scaled = Scaled::new(scale, values.iter().copied());
+            assert_eq!((&scaled.ticks()[..], scaled.ends), (ticks, ends));
+        }
     }
 }

@@ -7,33 +7,16 @@ mod of_rows;
 
 use canvas::{Anchor, Canvas, Color};
 
-pub use bars::{Bar, Stack};
+pub use bars::Bar;
 pub use chart::{Axis, Chart, Point, Scale, Series};
 pub use of_rows::RowPlot;
 
 pub(crate) use of_rows::dominates;
 
-/// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Panel {
-    /// Curves and points over two axes.
     Chart(Chart),
-    /// Bars from zero.
-    Bars {
-        /// Its title.
-        title: String,
-        /// The bars, from the top.
-        bars: Vec<Bar>,
-    },
-    /// Bars made of parts.
-    Stacked {
-        /// Its title.
-        title: String,
-        /// The names of the parts, in their order.
-        parts: Vec<String>,
-        /// The bars, from the top.
-        stacks: Vec<Stack>,
-    },
+    Bars(String, Vec<Bar>),
 }
 
 const WIDTH: f64 = 900.0;
@@ -45,44 +28,18 @@ const COLORS: [Color; 9] = [
 ];
 const GREY: Color = 0xa8_a8a8;
 
-/// Draws panels below each other.
-#[must_use]
 pub fn svg(panels: &[Panel]) -> String {
     let mut canvas = Canvas::default();
     for panel in panels {
-        let (height, names) = draw(&mut canvas, panel);
+        let (height, names) = match panel {
+            Panel::Chart(chart) => (chart::HEIGHT, chart::draw(&mut canvas, chart)),
+            Panel::Bars(title, bars) => (bars::draw(&mut canvas, title, bars), Vec::new()),
+        };
         canvas.top += height;
         canvas.top += legend(&mut canvas, &names);
     }
     let height = canvas.top.max(1.0);
     canvas.finish(WIDTH, height)
-}
-
-/// Draws a panel. Returns its height, and the names and colours of its legend.
-fn draw<'p>(canvas: &mut Canvas, panel: &'p Panel) -> (f64, Vec<(&'p str, Color)>) {
-    match panel {
-        Panel::Chart(chart) => (chart::HEIGHT, chart::draw(canvas, chart)),
-        Panel::Bars { title, bars } => {
-            let whole = |(place, bar): (usize, &Bar)| {
-                let (name, values) = (bar.name.clone(), vec![bar.value]);
-                (place, Stack { name, values }, bar.deviation)
-            };
-            let bars: Vec<_> = bars.iter().enumerate().map(whole).collect();
-            bars::draw(canvas, title, &bars);
-            (bars::height(bars.len()), Vec::new())
-        }
-        Panel::Stacked {
-            title,
-            parts,
-            stacks,
-        } => {
-            let bars: Vec<_> = stacks.iter().map(|of| (0, of.clone(), 0.0)).collect();
-            bars::draw(canvas, title, &bars);
-            let names = parts.iter().map(String::as_str);
-            let names = names.zip(COLORS.into_iter().cycle()).collect();
-            (bars::height(bars.len()), names)
-        }
-    }
 }
 
 fn legend(canvas: &mut Canvas, names: &[(&str, Color)]) -> f64 {
@@ -123,72 +80,37 @@ mod tests {
 
     #[test]
     fn a_picture_has_all_names_and_points() {
-        let point = |x, y, label: &str| Point {
-            x,
-            y,
-            label: Some(label.to_owned()),
-        };
-        let points = vec![
-            (64.0, 1.5).into(),
-            (128.0, 0.0).into(),
-            point(64.0, f64::INFINITY, "gone"),
-            point(90.0, 4.0, "here"),
-        ];
-        let chart = Chart {
-            level: Some((0.5, "noise".to_owned())),
-            ..Chart::growth("Growth", "pixels", "ms", vec![Series::dots("one", points)])
-        };
-        let text = svg(&[
-            Panel::Chart(chart),
-            Panel::Bars {
-                title: "Length <1>".to_owned(),
-                bars: vec![Bar {
-                    name: "a & b".to_owned(),
-                    value: 12.5,
-                    deviation: 1.0,
-                }],
-            },
-            Panel::Stacked {
-                title: "Parts".to_owned(),
-                parts: vec!["first part".to_owned(), "second part".to_owned()],
-                stacks: vec![Stack {
-                    name: "pile".to_owned(),
-                    values: vec![1.0, 3.0],
-                }],
-            },
-        ]);
-        assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
-        let parts = "Growth:pixels:one:here:noise:Length &lt;1&gt;:a &amp; b:12.5:second part:pile";
-        for part in parts.split(':') {
-            assert!(text.contains(part), "{part}");
-        }
         // Points that are not above zero, or not finite, have no place.
-        assert_eq!(text.matches("<circle").count(), 2);
-        assert!(!text.contains("gone"));
-        // The parts of the stack are a quarter and three of the longest bar; 92 percent of a bar is
-        // its least with its error.
-        for length in ["width=\"125.0\"", "width=\"375.0\"", "760.0,", "840.0,"] {
-            assert!(text.contains(length), "{length}");
-        }
-        assert!(svg(&[]).contains("</svg>"));
+        let points = [
+            (64.0, 1.5, "first"),
+            (128.0, 0.0, "gone"),
+            (f64::INFINITY, 1.0, "gone"),
+        ];
+        let points = points.map(|(x, y, label)| {
+            let label = Some(label.to_owned());
+            Point { x, y, label }
+        });
+        let dots = Series::dots("one", points.into());
+        let mut chart = Chart::growth("Growth", "pixels", "ms", vec![dots]);
+        chart.level = Some((0.5, "noise".to_owned()));
+        let bar = Bar {
+            name: "a & b".to_owned(),
+            value: 12.5,
+            deviation: 1.0,
+        };
+        let bars = Panel::Bars("Length <1>".to_owned(), vec![bar]);
+        let text = svg(&[Panel::Chart(chart), bars]);
+        // The longest bar is 500 long; 92 percent of it is its least with its error.
+        let parts =
+            "Growth:pixels:one:first:noise:Length &lt;1&gt;:a &amp; b:12.5:\"500.0\":760.0,:840.0,";
+        assert!(parts.split(':').all(|part| text.contains(part)), "{text}");
+        assert!(text.matches("<circle").count() == 1 && !text.contains("gone"));
     }
 
     #[test]
     fn numbers_are_short() {
-        let numbers = [
-            0.25,
-            10.0,
-            1e6,
-            0.0,
-            -0.5,
-            8e4,
-            1e5,
-            1.2e5,
-            0.1 * 12e5 + 2e4,
-        ];
-        let texts = [
-            "0.25", "10", "1e6", "0", "-0.5", "8e4", "1e5", "1.2e5", "1.4e5",
-        ];
+        let numbers = [0.25, 10.0, 1e6, 0.0, -0.5, 8e4, 1.2e5, 0.1 * 12e5 + 2e4];
+        let texts = ["0.25", "10", "1e6", "0", "-0.5", "8e4", "1.2e5", "1.4e5"];
         assert_eq!(numbers.map(in_short), texts);
     }
 }

@@ -3,23 +3,16 @@
 use super::{Bar, Chart, Panel, Point, Series};
 use crate::report::Row;
 
-/// The columns of a plot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RowPlot<'a> {
-    /// Above the plot.
     pub title: &'a str,
-    /// Across: column and label.
     pub x: (&'a str, &'a str),
-    /// Up.
     pub y: (&'a str, &'a str),
-    /// The column by which points make series.
     pub series: &'a str,
-    /// The column with half the length of error bars.
     pub deviation: Option<&'a str>,
     /// The column that names points. Points that others dominate are then grey and without name,
     /// and a line joins the Pareto front.
     pub front: Option<&'a str>,
-    /// A level to compare with.
     pub level: Option<(f64, &'a str)>,
 }
 
@@ -32,7 +25,6 @@ pub(crate) fn dominates<const N: usize>(q: &[f64; N], p: &[f64; N]) -> bool {
 
 impl RowPlot<'_> {
     /// A chart over two logarithmic axes; `None` if no row has a place on it.
-    #[must_use]
     pub fn chart<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Option<Panel> {
         let place = |row: &Row| [row.number(self.x.0), row.number(self.y.0)];
         let rows: Vec<&Row> = rows
@@ -80,18 +72,14 @@ impl RowPlot<'_> {
         }))
     }
 
-    /// A bar for each row.
-    #[must_use]
     pub fn bars<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Panel {
         let bar = |row: &Row| Bar {
             name: row.text(self.series),
             value: row.number(self.y.0),
             deviation: self.deviation.map_or(0.0, |name| row.number(name)),
         };
-        Panel::Bars {
-            title: format!("{}, {}", self.title, self.y.1),
-            bars: rows.into_iter().map(bar).collect(),
-        }
+        let title = format!("{}, {}", self.title, self.y.1);
+        Panel::Bars(title, rows.into_iter().map(bar).collect())
     }
 }
 
@@ -100,55 +88,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn domination() {
-        let points = [
-            [1., 5.],
-            [2., 2.],
-            [2., 3.],
-            [5., 1.],
-            [6., 1.],
-            [f64::NAN, 0.],
-        ];
-        let is_dominated = points.map(|p| points.iter().any(|q| dominates(q, &p)));
-        assert_eq!(is_dominated, [false, false, true, false, true, false]);
-        assert!(!dominates(&points[1], &points[1]));
-    }
-
-    #[test]
     fn rows_become_series_with_error_bars_and_a_front() {
-        let row = |(name, x, y): &(&'static str, u64, u64)| {
-            let mut row = Row::default();
-            row.put("name", *name);
-            row.put("x", *x);
-            row.put("y", *y);
-            row.put("d", 1);
-            row
-        };
-        let points = [("a", 1, 8), ("b", 2, 4), ("a", 4, 8), ("b", 8, 0)];
-        let rows: Vec<Row> = points.iter().map(row).collect();
-        let mut plot = RowPlot {
-            title: "T",
-            x: ("x", "across"),
-            y: ("y", "up"),
-            series: "name",
-            deviation: Some("d"),
-            ..RowPlot::default()
-        };
-        let chart = |plot: &RowPlot<'_>| match plot.chart(&rows) {
-            Some(Panel::Chart(chart)) => chart,
-            other => panic!("{other:?}"),
-        };
-        let curves = chart(&plot).series;
         // The point at 0 has no place on a logarithmic axis.
-        assert_eq!(curves.len(), 2);
-        assert_eq!((curves[0].points.len(), curves[1].points.len()), (2, 1));
-        assert_eq!(curves[0].deviations, [1.0, 1.0]);
-        plot.front = Some("name");
-        let [grey, line, ..] = &chart(&plot).series[..] else {
-            panic!("a front");
+        let points = [("a", 1, 8), ("b", 2, 4), ("a", 4, 8), ("b", 8, 0)];
+        let rows = points.map(|(name, x, y)| {
+            let mut row = Row::default();
+            row.put("name", name);
+            row.put("x", x);
+            row.put("y", y);
+            row
+        });
+        let series = |front| {
+            let plot = RowPlot {
+                x: ("x", "across"),
+                y: ("y", "up"),
+                series: "name",
+                deviation: Some("x"),
+                front,
+                ..RowPlot::default()
+            };
+            match plot.chart(&rows) {
+                Some(Panel::Chart(chart)) => chart.series.into_iter(),
+                other => panic!("{other:?}"),
+            }
         };
-        assert_eq!((grey.points.len(), line.points.len()), (1, 2));
-        plot.x.0 = "nothing";
-        assert_eq!(plot.chart(&rows), None);
+        let deviations = series(None).map(|of| of.deviations).collect::<Vec<_>>();
+        assert_eq!(deviations, [vec![1.0, 4.0], vec![2.0]]);
+        // Dominated points, the line, and the series.
+        let lengths = series(Some("name"))
+            .map(|of| of.points.len())
+            .collect::<Vec<_>>();
+        assert_eq!(lengths, [1, 2, 1, 1]);
+        assert_eq!(RowPlot::default().chart(&rows), None);
+        // Equal points dominate nothing, and neither does NaN.
+        assert!(!dominates(&[1.0, 2.0], &[1.0, 2.0]) && !dominates(&[f64::NAN, 0.0], &[6.0, 1.0]));
     }
 }

@@ -10,15 +10,13 @@ use serde_json::Value;
 /// The ports of a row: name, first number, count.
 type Names = Rc<BTreeMap<String, (usize, usize)>>;
 
-/// A row: the numbers of its ports, in order.
-#[derive(Clone)]
+/// The numbers of the ports, in order.
 pub(super) struct Row {
-    pub(super) names: Names,
+    names: Names,
     pub(super) values: Vec<i128>,
 }
 
 impl Row {
-    /// All numbers of a port.
     pub(super) fn of(&self, name: &str) -> &[i128] {
         let (first, count) = self.names[name];
         &self.values[first..first + count]
@@ -26,10 +24,10 @@ impl Row {
 
     /// The number of a port that has one.
     pub(super) fn get(&self, name: &str) -> i128 {
-        match self.of(name) {
-            &[one] => one,
-            several => panic!("{name}: {several:?}"),
-        }
+        let [one] = *self.of(name) else {
+            panic!("{name} has several numbers");
+        };
+        one
     }
 
     pub(super) fn flag(&self, name: &str) -> bool {
@@ -41,112 +39,21 @@ impl Row {
         self.of(name).try_into().unwrap()
     }
 
-    pub(super) fn cage(&self, name: &str) -> Cage {
-        Cage(self.of(name).to_vec())
-    }
-
-    pub(super) fn map(&self, name: &str, mut change: impl FnMut(i128) -> i128) -> Self {
-        let (first, count) = self.names[name];
-        let mut changed = self.clone();
-        for value in &mut changed.values[first..first + count] {
-            *value = change(*value);
-        }
-        changed
-    }
-}
-
-/// One coordinate of eight vertices: themselves, or a corner and three edges.
-#[derive(Clone, PartialEq, Debug)]
-pub(super) struct Cage(pub(super) Vec<i128>);
-
-impl Cage {
-    fn vertices(&self) -> Vec<i128> {
-        match self.0[..] {
-            [corner, x, y, z] => (0..8)
-                .map(|i| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z)
-                .collect(),
-            _ => self.0.clone(),
-        }
-    }
-
-    pub(super) fn least(&self) -> i128 {
-        *self.vertices().iter().min().unwrap()
-    }
-
-    pub(super) fn greatest(&self) -> i128 {
-        *self.vertices().iter().max().unwrap()
-    }
-
-    pub(super) fn each(&self, f: impl Fn(i128) -> i128) -> Self {
-        Self(self.0.iter().map(|&v| f(v)).collect())
-    }
-
-    /// `self * a + other * b`.
-    pub(super) fn with(&self, a: i128, other: &Self, b: i128) -> Self {
-        let numbers = self.0.iter().zip(&other.0);
-        Self(numbers.map(|(&v, &w)| a * v + b * w).collect())
-    }
-
-    pub(super) fn children(&self) -> Vec<Self> {
-        if let [corner, x, y, z] = self.0[..] {
-            // Towards zero, as `/` does.
-            let [x, y, z] = [x / 2, y / 2, z / 2];
-            let child = |c: i128| {
-                let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
-                Self(vec![moved, x, y, z])
-            };
-            return (0..8).map(child).collect();
-        }
-        // The 27 points. A coordinate of 1 is the midpoint of 0 and 2; z is resolved last, so it is the outermost midpoint.
-        fn point(corners: &[i128], at: [usize; 3]) -> i128 {
-            for k in [2, 1, 0] {
-                if at[k] == 1 {
-                    let (mut low, mut high) = (at, at);
-                    (low[k], high[k]) = (0, 2);
-                    let sum = point(corners, low) + point(corners, high);
-                    return sum.div_euclid(2);
-                }
-            }
-            corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2]
-        }
-        let child = |c: usize| {
-            let corner = |v: usize| {
-                let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
-                point(&self.0, at)
-            };
-            Self((0..8).map(corner).collect())
+    /// One coordinate of eight vertices, which are given themselves or as a corner and three edges.
+    pub(super) fn vertices(&self, name: &str) -> Vec<i128> {
+        let [corner, x, y, z] = *self.of(name) else {
+            return self.of(name).to_vec();
         };
-        (0..8).map(child).collect()
+        let vertex = |i: i128| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z;
+        (0..8).map(vertex).collect()
     }
 }
-
-/// `a * 2^places`, rounded down.
-pub(super) fn scaled(a: i128, places: i128) -> i128 {
-    match places >= 0 {
-        true => a << places,
-        false => a.div_euclid(1 << (-places).min(100)),
-    }
-}
-
-pub(super) struct Constants {
-    pub(super) fraction: i128,
-    shifts: Vec<i128>,
-}
-
-impl Constants {
-    /// The extent that `size_limit` allows.
-    pub(super) fn share(&self, a: i128, below: i128) -> i128 {
-        self.shifts.iter().map(|s| scaled(a, -(s + below))).sum()
-    }
-}
-
-/// A number of a row: its port's name, bits, sign.
-pub(super) type Number = (String, u32, bool);
 
 /// Inputs or outputs as the manifest describes them.
 pub(super) struct Ports {
     names: Names,
-    pub(super) numbers: Vec<Number>,
+    /// Bits and sign.
+    numbers: Vec<(u32, bool)>,
 }
 
 impl Ports {
@@ -161,7 +68,7 @@ impl Ports {
             // Ports lie side by side.
             assert_eq!(number("lowest_bit") + count * bits, end, "{name}");
             end = number("lowest_bit");
-            let one = (name.clone(), bits as u32, port["signed"] == true);
+            let one = (bits as u32, port["signed"] == true);
             let place = (numbers.len(), count as usize);
             assert_eq!(names.insert(name, place), None);
             numbers.extend(vec![one; count as usize]);
@@ -176,10 +83,10 @@ impl Ports {
         let digits = text.chars().map(|digit| digit.to_digit(16).unwrap());
         let bits = digits.flat_map(|digit| (0..4).rev().map(move |bit| digit >> bit & 1));
         let bits: Vec<i128> = bits.map(i128::from).collect();
-        let width: u32 = self.numbers.iter().map(|(_, bits, _)| bits).sum();
+        let width: u32 = self.numbers.iter().map(|(bits, _)| bits).sum();
         let (padding, mut rest) = bits.split_at(bits.len() - width as usize);
         assert!(padding.len() < 4 && !padding.contains(&1), "{text}");
-        let number = |(_, bits, signed): &Number| {
+        let number = |(bits, signed): &(u32, bool)| {
             let (part, after) = rest.split_at(*bits as usize);
             rest = after;
             let value = part.iter().fold(0, |v, bit| v << 1 | bit);
@@ -192,43 +99,19 @@ impl Ports {
     }
 }
 
-pub(super) struct BlockRows {
-    pub(super) name: String,
-    pub(super) ports: [Ports; 2],
-    pub(super) rows: Vec<[Row; 2]>,
-}
-
 pub(super) fn manifest_of(folder: &Path) -> Value {
     serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap()
 }
 
-/// The lines of a file, each an object of JSON.
-pub(super) fn lines(folder: &Path, file: &Value) -> Vec<Value> {
-    let text = fs::read_to_string(folder.join(file.as_str().unwrap())).unwrap();
-    text.lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect()
-}
-
-pub(super) fn constants_of(manifest: &Value) -> Constants {
-    let constants = &manifest["constants"];
-    let number = |value: &Value| i128::from(value.as_i64().unwrap());
-    let shifts = constants["size_shifts"].as_array().unwrap();
-    Constants {
-        fraction: number(&constants["screen_fraction_bits"]),
-        shifts: shifts.iter().map(number).collect(),
-    }
-}
-
-pub(super) fn rows_of(folder: &Path, block: &Value) -> BlockRows {
-    let ports = ["in", "out"].map(|side| Ports::new(&block[side]));
+/// The rows of a block: inputs and outputs.
+pub(super) fn rows_of(folder: &Path, block: &Value) -> Vec<[Row; 2]> {
+    let ports = ["in", "out"].map(|side| (side, Ports::new(&block[side])));
     let row = |line: Value| {
-        let of = |at: usize| ports[at].row(line[["in", "out"][at]].as_str().unwrap());
-        [of(0), of(1)]
+        ports
+            .each_ref()
+            .map(|(side, ports)| ports.row(line[side].as_str().unwrap()))
     };
-    BlockRows {
-        name: block["name"].as_str().unwrap().to_owned(),
-        rows: lines(folder, &block["file"]).into_iter().map(row).collect(),
-        ports,
-    }
+    let text = fs::read_to_string(folder.join(block["file"].as_str().unwrap())).unwrap();
+    let lines = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    lines.map(row).collect()
 }

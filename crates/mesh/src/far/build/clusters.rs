@@ -17,13 +17,8 @@ pub(super) const MAKING: u64 = 320;
 pub(super) const MADE: u64 = 80;
 
 pub(super) struct Occluders {
-    places: Vec<Place>,
+    parts: Vec<Part>,
     held: Held,
-}
-
-struct Place {
-    around: Around,
-    first: u32,
 }
 
 enum Held {
@@ -48,7 +43,7 @@ pub(super) struct Part {
 impl Occluders {
     /// `within`: a file, and the most bytes in memory beside a cluster per thread.
     pub(super) fn new<C, I>(
-        parts: &[Part],
+        parts: Vec<Part>,
         corners: C,
         within: Option<(File, u64)>,
     ) -> io::Result<Self>
@@ -56,10 +51,6 @@ impl Occluders {
         C: Fn(Range<usize>) -> I + Sync,
         I: Iterator<Item = [glam::DVec3; 3]>,
     {
-        let place = |part: &Part| Place {
-            around: part.around,
-            first: part.triangles.start as u32,
-        };
         let make = |part: &Part| Cluster::new(corners(part.triangles.clone()));
         let held = match within {
             None => Held::All(parts.par_iter().map(|part| Arc::new(make(part))).collect()),
@@ -71,16 +62,13 @@ impl Occluders {
                     bytes: 0,
                     here: VecDeque::new(),
                 };
-                for part in parts {
+                for part in &parts {
                     cache.put(make(part))?;
                 }
                 Held::Some(Mutex::new(cache))
             }
         };
-        Ok(Self {
-            places: parts.iter().map(place).collect(),
-            held,
-        })
+        Ok(Self { parts, held })
     }
 
     /// The triangles that stop rays, which begin within a box.
@@ -93,16 +81,15 @@ impl Occluders {
         meetings.clear();
         meetings.resize(queries.len(), Meeting::NONE);
         // The nearest first: what is met there hides what is behind.
-        let mut near: Vec<(f32, usize)> = Vec::new();
-        for (number, place) in self.places.iter().enumerate() {
-            near.push((place.around.square_from(within), number));
-        }
+        let parts = self.parts.iter().enumerate();
+        let near = parts.map(|(number, part)| (part.around.square_from(within), number));
+        let mut near: Vec<(f32, usize)> = near.collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, number) in near {
-            let Place { around, first } = &self.places[number];
+            let Part { around, triangles } = &self.parts[number];
             if is_any_entered(around, queries, meetings) {
                 let cluster = self.get(number)?;
-                cluster.meet_all(around, *first, queries, meetings);
+                cluster.meet_all(around, triangles.start as u32, queries, meetings);
             }
         }
         Ok(())
@@ -111,10 +98,10 @@ impl Occluders {
     fn get(&self, number: usize) -> io::Result<Arc<Cluster>> {
         match &self.held {
             Held::All(all) => Ok(all[number].clone()),
-            Held::Some(cache) => {
-                let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
-                cache.get(number)
-            }
+            Held::Some(cache) => cache
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .get(number),
         }
     }
 }
@@ -162,61 +149,5 @@ impl Cache {
         let cluster = Arc::new(Cluster::read(&mut self.file, lengths)?);
         self.keep(number, cluster.clone());
         Ok(cluster)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use shiftvox::split_mix::SplitMix;
-
-    use super::*;
-
-    #[test]
-    fn meetings_depend_neither_on_clusters_nor_on_memory() {
-        let mut chance = SplitMix::new(5);
-        let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit());
-        let mut triangles: Vec<[DVec3; 3]> = Vec::new();
-        for _ in 0..2000 {
-            let corner = random();
-            triangles.push([corner, corner + random() * 0.1, corner + random() * 0.1]);
-        }
-        triangles.extend_from_within(..1000);
-        let mut query = || {
-            let (from, to) = (random() * 4.0 - DVec3::splat(1.5), random());
-            Query {
-                origin: from.as_vec3(),
-                direction: (to - from).normalize().as_vec3(),
-                most: 3.0,
-            }
-        };
-        let queries: Vec<Query> = (0..4000).map(|_| query()).collect();
-        let around = Around::of(DVec3::splat(-0.1), DVec3::splat(1.2));
-        let met = |size: usize, within: Option<u64>| {
-            let part = |part| Part {
-                triangles: part * size..(part + 1) * size,
-                around,
-            };
-            let parts: Vec<Part> = (0..3000 / size).map(part).collect();
-            let corners = |own: Range<usize>| triangles[own].iter().copied();
-            let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
-            let occluders = Occluders::new(&parts, corners, within).unwrap();
-            let mut meetings = Vec::new();
-            occluders.nearest(&around, &queries, &mut meetings).unwrap();
-            meetings
-        };
-        let one = met(3000, None);
-        let hits: Vec<_> = one.iter().filter(|m| **m != Meeting::NONE).collect();
-        assert!(hits.len() > 2000);
-        assert!(hits.iter().all(|meeting| meeting.triangle < 2000));
-        for (size, within) in [
-            (500, None),
-            (500, Some(1)),
-            (500, Some(60_000)),
-            (50, Some(9000)),
-        ] {
-            assert!(met(size, within) == one, "{size} {within:?}");
-        }
     }
 }

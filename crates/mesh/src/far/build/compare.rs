@@ -1,5 +1,4 @@
-//! The choice among several representations of a node's triangles, by error and bytes. Each is drawn from four sides
-//! with the largest pixels for which it is used. Light and coverage are compared with those of the triangles.
+//! The choice among several representations of a node's triangles, by error and bytes (`spec/far.md`, Hybrid).
 
 use glam::{DVec3, DVec4};
 use xxhash_rust::xxh3::xxh3_64;
@@ -8,7 +7,7 @@ use super::{BuildError, BuildOptions};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::{encode, surface};
-use crate::far::view::{FarPicture, FarViewer, ViewOptions};
+use crate::far::view::{FarViewer, ViewOptions};
 use crate::far::{FarData, FarFile};
 use crate::geometry::point;
 use crate::raster::{Light, RasterCamera};
@@ -97,8 +96,8 @@ impl<'o> Comparison<'o> {
                 towards: (towards + up * 0.7 + right * 0.4).normalize_or(up),
                 ambient: AMBIENT,
             };
-            let right = draw(&truth, &view, light, SAMPLES_ACROSS[0], NO_VOXEL)?;
-            of.views.push((view, light, right));
+            let expected = draw(&truth, &view, light, SAMPLES_ACROSS[0], NO_VOXEL)?;
+            of.views.push((view, light, expected));
         }
         Ok(of)
     }
@@ -116,11 +115,11 @@ impl<'o> Comparison<'o> {
 
     fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
         let mut sum = 0.0;
-        for (view, light, right) in &self.views {
+        for (view, light, expected) in &self.views {
             let seen = draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?;
-            let both = seen.iter().zip(right);
+            let both = seen.iter().zip(expected);
             let errors: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
-            sum += errors / right.len().max(1) as f64;
+            sum += errors / expected.len().max(1) as f64;
         }
         Ok(sum / self.views.len() as f64)
     }
@@ -157,21 +156,23 @@ fn failed(error: impl std::fmt::Display) -> BuildError {
     BuildError::Surface(error.to_string())
 }
 
+fn near(position: [f32; 3], middle: DVec3) -> [f32; 3] {
+    (point(position) - middle).as_vec3().to_array()
+}
+
 fn around(node: &Node, middle: DVec3) -> Node {
-    let moved = |p| (point(p) - middle).as_vec3().to_array();
     Node {
-        low: moved(node.low),
-        high: moved(node.high),
-        origin: moved(node.origin),
+        low: near(node.low, middle),
+        high: near(node.high, middle),
+        origin: near(node.origin, middle),
         data_at: 0,
         ..*node
     }
 }
 
 fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
-    let moved = |p| (point(p) - middle).as_vec3().to_array();
     let triangle = |triangle: &LeafTriangle| LeafTriangle {
-        corners: triangle.corners.map(moved),
+        corners: triangle.corners.map(|p| near(p, middle)),
         ..*triangle
     };
     triangles.iter().map(triangle).collect()
@@ -181,6 +182,7 @@ fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
 const NO_VOXEL: f64 = f64::MIN_POSITIVE;
 const ANY_VOXEL: f64 = 1e150;
 
+/// Light and coverage.
 fn draw(
     file: &FarFile,
     view: &RasterCamera,
@@ -196,16 +198,11 @@ fn draw(
         ..ViewOptions::default()
     };
     let drawn = FarViewer::new(file).draw(view, &options);
-    drawn
-        .map(|(picture, _)| light_and_cover(&picture))
-        .map_err(failed)
-}
-
-fn light_and_cover(picture: &FarPicture) -> Vec<DVec4> {
+    let (picture, _) = drawn.map_err(failed)?;
     let pixels = picture.rgba.iter().zip(&picture.coverage);
     let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {
         let [r, g, b] = [r, g, b].map(|byte| f64::from(srgb_to_linear(byte)));
         DVec4::new(r, g, b, f64::from(cover))
     };
-    pixels.map(pixel).collect()
+    Ok(pixels.map(pixel).collect())
 }

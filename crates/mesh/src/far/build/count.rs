@@ -1,9 +1,4 @@
-//! Hits and passes. A probe *hits* the voxel where it ends at one of the node's own triangles, and *passes* every kept voxel that it
-//! leaves before. Its weight is one over the number of probes aimed at the voxels on its line, so that lines through a
-//! voxel are spread evenly. A voxel is opaque from where all probes onto its surface, at a steepness, are stopped in it
-//! or right behind: it is part of a large object.
-
-use std::ops::ControlFlow;
+//! Hits and passes of probes, and solid parts (`spec/far.md`).
 
 use glam::DVec3;
 
@@ -35,13 +30,6 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn begin(&mut self, place: [u8; 3], unseen_opacity: f64) {
-        self.place = place;
-        self.unseen_opacity = unseen_opacity;
-        self.crossings = 0;
-        self.found = Default::default();
-    }
-
     pub(super) fn counted_below(&self, side: usize, steepness: usize) -> Counted {
         let found = self.found[side][..steepness].iter();
         found.fold(Counted::default(), |all, found| all.with(&found.counted))
@@ -94,10 +82,9 @@ impl Counted {
     }
 
     pub(super) fn scalar(&self) -> f64 {
-        if self.weight > 0.0 {
-            (self.hits / self.weight).min(1.0)
-        } else {
-            1.0
+        match self.weight > 0.0 {
+            true => (self.hits / self.weight).min(1.0),
+            false => 1.0,
         }
     }
 
@@ -113,10 +100,9 @@ impl Counted {
     }
 
     pub(super) fn independent(&self) -> f64 {
-        if self.square_weight > 0.0 {
-            self.weight * self.weight / self.square_weight
-        } else {
-            0.0
+        match self.square_weight > 0.0 {
+            true => self.weight * self.weight / self.square_weight,
+            false => 0.0,
         }
     }
 
@@ -191,7 +177,7 @@ impl<'p> Probes<'p> {
                     }
                     is_over |= is_end || leave > end;
                 }
-                ControlFlow::Continue(())
+                true
             });
             weights.push(1.0 / aims.max(1) as f32);
         }
@@ -207,18 +193,16 @@ impl<'p> Probes<'p> {
             let probe = crossing.probe();
             let towards_eye = -self.shots[probe].direction.as_dvec3();
             let weight = f64::from(self.weights[probe]);
-            let cosine = shader.cosine(towards_eye);
+            let signed = shader.cosine(towards_eye);
+            let cosine = signed.abs();
             seen.crossings += 1;
-            let side = usize::from(cosine < 0.0);
-            let cosine = cosine.abs();
-            let found = &mut seen.found[side][steepness(cosine)];
+            let found = &mut seen.found[usize::from(signed < 0.0)][steepness(cosine)];
             found.probes += 1;
             let reach = RIGHT_BEHIND[0] / cosine.max(LEAST_COSINE) + RIGHT_BEHIND[1];
             let past = crossing.past();
-            if past.is_none_or(|past| past < reach) {
-                found.stopped += weight;
-            } else {
-                found.passed += weight;
+            match past.is_none_or(|past| past < reach) {
+                true => found.stopped += weight,
+                false => found.passed += weight,
             }
             let shares = by_cosines(towards_eye);
             found.counted.add(&shares, past.is_none(), weight);

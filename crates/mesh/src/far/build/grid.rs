@@ -1,7 +1,5 @@
 //! The uniform grid of a node: which voxels there are, which a ray crosses.
 
-use std::ops::ControlFlow;
-
 use glam::DVec3;
 
 use crate::geometry::point;
@@ -19,20 +17,13 @@ impl Grid {
         let extent = high - low;
         let steps = f64::from(side.clamp(2, 255) - 1);
         // As stored: so that the viewer's voxels are those that were sampled.
-        let voxel = f64::from((extent.max_element() / steps) as f32);
-        let voxel = if voxel > 0.0 {
-            voxel
-        } else {
-            f64::from(f32::MIN_POSITIVE)
-        };
+        let voxel = f64::from(((extent.max_element() / steps) as f32).max(f32::MIN_POSITIVE));
         let origin = (low - DVec3::splat(voxel / 2.0)).as_vec3().as_dvec3();
-        let cells = (extent / voxel)
-            .to_array()
-            .map(|steps| (steps + 0.5) as u32 as f64 + 1.0);
+        let cells = (extent / voxel).to_array();
         Self {
             origin,
             voxel,
-            cells: cells.map(|c| c.min(255.0) as u8),
+            cells: cells.map(|c| ((c + 0.5).floor() + 1.0).min(255.0) as u8),
         }
     }
 
@@ -76,14 +67,14 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Visits each voxel along a line, with the distance (in voxels) at which the line leaves it. Distances are whole numbers
-    /// of 2^-32 voxels, so that steps are exact and need no branch.
+    /// Visits voxels along a line while `visit` returns true, with the distance (in voxels) at which the line leaves each.
+    /// Distances are whole numbers of 2^-32 voxels, so that steps are exact and need no branch.
     #[inline]
     pub(super) fn along(
         &self,
         from: DVec3,
         direction: DVec3,
-        mut visit: impl FnMut(usize, f64) -> ControlFlow<()>,
+        mut visit: impl FnMut(usize, f64) -> bool,
     ) {
         let cells = point(self.cells);
         let per_cell = direction.recip();
@@ -124,7 +115,7 @@ impl Grid {
         let ([mut x, mut y, mut z], [of_x, of_y, of_z]) = (next, size);
         loop {
             let nearest = x.min(y).min(z);
-            if visit(number as usize, nearest as f64 / UNITS).is_break() || nearest >= end {
+            if !visit(number as usize, nearest as f64 / UNITS) || nearest >= end {
                 return;
             }
             // All ones where that plane is crossed; where several are, through an edge or corner.

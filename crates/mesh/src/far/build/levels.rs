@@ -1,12 +1,10 @@
-//! Coarser nodes above the root, for pictures smaller than its grid, and the choice of nodes that have voxels.
-//!
-//! A node almost as long as the one above has none, nor one whose triangles each cover many voxels and take fewer bytes.
+//! Coarser nodes above the root, and the choice of nodes that have voxels (`spec/far.md`, Grid).
 
 use super::split::Branch;
 
-/// A node has voxels if its side is at most this share of that of the next node above that has.
+/// Of the side of the next node above that has voxels.
 const STEP: f64 = 0.7;
-/// Most voxels of a node for each of its triangles. So many take 180 bytes or more, a triangle 15 to 35.
+/// Most voxels of a node per triangle. So many take 180 bytes or more, a triangle 15 to 35.
 const MOST_VOXELS: usize = 16;
 
 pub(super) fn is_dense(touched: usize, triangles: usize) -> bool {
@@ -23,13 +21,12 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
         };
         let side = (branch.high - branch.low).max_element();
         has_voxels[number] = number <= coarser || side <= STEP * above[number];
-        let nearest = if has_voxels[number] {
-            side
-        } else {
-            above[number]
-        };
         for child in children.into_iter().filter(|&child| child > 0) {
-            above[child] = nearest;
+            above[child] = if has_voxels[number] {
+                side
+            } else {
+                above[number]
+            };
         }
     }
     has_voxels
@@ -50,7 +47,7 @@ pub(super) fn leave_out_dense(
 /// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
 const LEAST: [u32; 2] = [32, 16];
 
-/// Puts nodes of half the voxels along a side, and so on, above a root with children. Gives how many.
+/// Puts nodes of half the voxels along a side, and so on, above a root with children. Returns how many.
 pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
     let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
         return 0;

@@ -19,11 +19,9 @@ mod spool;
 mod surface;
 mod touch;
 
-#[cfg(test)]
-mod known;
-
 use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -35,7 +33,7 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::geometry::{barycentric, blend, plane_normal};
+use crate::geometry::plane_normal;
 use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
@@ -45,12 +43,11 @@ use room::{Room, shares};
 use sample::Rays;
 use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
-use shot::{Own, Target};
+use shot::Target;
 use split::{Branch, split};
-use spool::Spool;
+use spool::{Done, Spool};
 use surface::{MOST_TRIANGLES, Surfaces};
 
-/// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
     /// Rays of all nodes together. `None`: as many as needed.
@@ -61,18 +58,18 @@ pub struct BuildOptions {
     pub grid: u32,
     /// Least distance from which a node is used, in its voxels.
     pub distance_voxels: f64,
-    /// The opacities to store.
     pub opacity: Opacity,
     /// Whether what is wider than a voxel stays a decimated surface.
     pub hybrid: bool,
 }
 
 /// Rays for each kept voxel, if no number is given.
-pub const RAYS_PER_VOXEL: u32 = 24;
+const RAYS_PER_VOXEL: u32 = 24;
 const MOST_RAYS: u32 = 1 << 22;
 /// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
 const RAY_BYTES: u64 = 160;
 const RAYS_AT_VOXEL: u64 = 32;
+
 impl Default for BuildOptions {
     fn default() -> Self {
         Self {
@@ -99,53 +96,30 @@ impl BuildOptions {
     }
 }
 
-/// Why nothing was built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
-    /// No triangles.
     #[error("there are no triangles to build far voxels of")]
     Empty,
-    /// More triangles or voxels than 32 bits number.
     #[error("{0} are more than 32 bits can number")]
     TooMany(String),
-    /// An option out of its range.
     #[error("{0}")]
     Option(&'static str),
-    /// The surface of a node.
     #[error("the surface of a node could not be made: {0}")]
     Surface(String),
-    /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
-    /// Too far from the origin for its size.
     #[error(
         "the mesh spans {extent} units {distance} units from the origin: too little for its coordinates; \
          move it to the origin"
     )]
-    FarAway {
-        /// Its longest side, world units.
-        extent: f64,
-        /// Of its farthest coordinate.
-        distance: f64,
-    },
-    /// A budget that is too small.
+    FarAway { extent: f64, distance: f64 },
     #[error(
         "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
     )]
-    Memory {
-        /// Bytes that it takes.
-        needed: u64,
-        /// Bytes that it was given.
-        given: u64,
-    },
-    /// A temporary file.
+    Memory { needed: u64, given: u64 },
+    /// A temporary file, or its folder.
     #[error("{}: {problem}", file.display())]
-    File {
-        /// It, or the folder that it is in.
-        file: PathBuf,
-        /// The problem.
-        problem: String,
-    },
+    File { file: PathBuf, problem: String },
 }
 
 /// Where a build keeps what is not in memory.
@@ -167,49 +141,39 @@ pub struct Spooled {
 
 impl Spooled {
     /// Writes a `.far` file.
-    ///
-    /// # Errors
-    /// As [`write_to`](super::store::write_to).
     pub fn write_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
-        let bytes = self.spool.nodes().map(|done| done.bytes).sum();
+        let bytes = self.spool.bytes;
         write_parts(&self.data, bytes, out, |out| self.spool.copy_to(out))
     }
 }
 
-/// Builds far voxels of a surface.
-///
-/// # Errors
-/// See [`BuildError`].
 pub fn build(
     surface: &dyn Surface,
     options: &BuildOptions,
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
-    check(surface, options)?;
     let memory = Cursor::new(Vec::new());
     let (mut data, mut spool) = fill(surface, options, None, memory, progress)?;
-    let bytes: u64 = spool.nodes().map(|done| done.bytes).sum();
-    data.packed.reserve_exact(bytes as usize);
+    data.packed.reserve_exact(spool.bytes as usize);
     let copied = spool.copy_to(&mut data.packed);
     copied.map_err(|e| failed(Path::new("memory"), &e))?;
     Ok(data)
 }
 
-/// Builds far voxels of a surface, the same as [`build()`], outside of memory.
-///
-/// # Errors
-/// See [`BuildError`].
+/// The same as [`build()`], outside of memory.
 pub fn build_outside(
     surface: &dyn Surface,
     options: &BuildOptions,
     outside: &Outside<'_>,
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
-    check(surface, options)?;
-    let file = tempfile::tempfile_in(outside.folder);
-    let file = file.map_err(|e| failed(outside.folder, &e))?;
+    let file = temporary_file(outside.folder)?;
     let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
     Ok(Spooled { data, spool })
+}
+
+fn temporary_file(folder: &Path) -> Result<File, BuildError> {
+    tempfile::tempfile_in(folder).map_err(|e| failed(folder, &e))
 }
 
 fn failed(file: &Path, problem: &io::Error) -> BuildError {
@@ -244,7 +208,12 @@ impl Ordered<'_> {
     fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
         let mut triangle = self.surface.triangle(self.order[number] as usize);
         triangle.corners = triangle.corners.map(|p| self.place(p));
-        surface_sample(&triangle, point, towards_eye)
+        let (normal, color) = triangle.seen_from(point, towards_eye);
+        SurfaceSample {
+            towards_eye,
+            normal,
+            color,
+        }
     }
 }
 
@@ -255,6 +224,7 @@ fn fill<F: Read + Write + Seek + Send>(
     file: F,
     progress: &dyn Progress,
 ) -> Result<(FarData, Spool<F>), BuildError> {
+    check(surface, options)?;
     let (centre, scale) = centre(surface)?;
     let folder = outside.map_or(Path::new("memory"), |outside| outside.folder);
     let memory = outside.and_then(|outside| outside.memory);
@@ -279,45 +249,35 @@ fn fill<F: Read + Write + Seek + Send>(
         scale,
     };
     progress.begin("prepare rays", 0);
-    let within = match shares.clusters {
-        None => None,
-        Some(most) => {
-            let file = tempfile::tempfile_in(folder).map_err(|e| failed(folder, &e))?;
-            Some((file, most))
-        }
-    };
-    let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
+    let within = shares
+        .clusters
+        .map(|most| Ok((temporary_file(folder)?, most)));
+    let within = within.transpose()?;
+    let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
     let parts = parts(&branches, |point| triangles.place(point));
-    let occluders = Occluders::new(&parts, corners, within).map_err(|e| failed(folder, &e))?;
+    let occluders = Occluders::new(parts, corners, within).map_err(|e| failed(folder, &e))?;
     progress.end();
-    let hybrid = options.hybrid;
-    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
+    let surfaces = options
+        .hybrid
+        .then(|| Surfaces::new(surface, &order, centre, options, &branches));
     let grid = |number: usize, branch: &Branch| {
         let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
         Grid::around(low, high, levels::grid_of(number, coarser, options.grid))
     };
-    let target = |number: usize, branch: &Branch| Target {
-        occluders: &occluders,
-        grid: grid(number, branch),
-        own: Own::all(branch.triangles()),
-        distance: options.distance_voxels,
-    };
     progress.begin("find voxels", order.len() as u64);
-    let touched: Vec<Option<u32>> = branches
-        .par_iter()
-        .enumerate()
-        .map(|(number, branch)| {
-            if branch.children.is_none() {
-                progress.advance(branch.count as u64);
-                return None;
-            }
-            let grid = has_voxels[number].then(|| grid(number, branch))?;
-            let may_be_left = !options.hybrid && number > coarser;
-            let is_of_use =
-                options.rays.is_some() || may_be_left && levels::is_dense(grid.len(), branch.count);
-            is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
-        })
-        .collect();
+    let touched = |(number, branch): (usize, &Branch)| {
+        if branch.children.is_none() {
+            progress.advance(branch.count as u64);
+            return None;
+        }
+        let grid = has_voxels[number].then(|| grid(number, branch))?;
+        let may_be_left = !options.hybrid && number > coarser;
+        let is_of_use =
+            options.rays.is_some() || may_be_left && levels::is_dense(grid.len(), branch.count);
+        is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
+    };
+    let numbered = || branches.par_iter().enumerate();
+    let touched: Vec<Option<u32>> = numbered().map(touched).collect();
     if !options.hybrid {
         levels::leave_out_dense(&mut has_voxels, &branches, &touched, coarser);
     }
@@ -349,40 +309,44 @@ fn fill<F: Read + Write + Seek + Send>(
         if !has_voxels[number] {
             return Ok((node, pack(&Default::default(), &[])));
         }
-        let target = target(number, branch);
-        set_grid(&mut node, &target.grid, scale);
+        let grid = grid(number, branch);
+        set_grid(&mut node, &grid, scale);
         // The root has seed 0, whatever its number.
         let seed = (number as u64).wrapping_sub(coarser as u64);
-        let voxels = |node: &mut Node, target: &Target<'_>| {
+        let voxels = |node: &mut Node, taken: Option<&[bool]>| {
+            let target = Target {
+                occluders: &occluders,
+                grid,
+                own: branch.triangles(),
+                taken,
+                distance: options.distance_voxels,
+            };
             let rays = rays[number];
-            let lists = fit(node, target, rays, seed, &triangles, &room, options);
+            let lists = fit(node, &target, rays, seed, &triangles, &room, options);
             lists.map_err(|e| failed(folder, &e))
         };
         match &surfaces {
             Some(surfaces) if branch.count <= MOST_TRIANGLES => {
-                let thin = |node: &mut Node, thin: &[bool]| voxels(node, &target.of(thin));
+                let thin = |node: &mut Node, thin: &[bool]| voxels(node, Some(thin));
                 surfaces.inner(&node, branch.triangles(), thin)
             }
             _ => {
-                let lists = voxels(&mut node, &target)?;
+                let lists = voxels(&mut node, None)?;
                 Ok((node, pack(&lists, &[])))
             }
         }
     };
     let spool = Mutex::new(Spool::new(file, branches.len()));
-    branches
-        .par_iter()
-        .enumerate()
-        .try_for_each(|(number, branch)| {
-            let (node, data) = make(number, branch)?;
-            let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-            let added = spool.add(number, node, &data);
-            added.map_err(|e| failed(folder, &e))?;
-            if branch.children.is_none() {
-                progress.advance(branch.count as u64);
-            }
-            Ok(())
-        })?;
+    numbered().try_for_each(|(number, branch)| {
+        let (node, data) = make(number, branch)?;
+        let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+        let added = spool.add(number, node, &data);
+        added.map_err(|e| failed(folder, &e))?;
+        if branch.children.is_none() {
+            progress.advance(branch.count as u64);
+        }
+        Ok(())
+    })?;
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
@@ -415,20 +379,25 @@ fn check(surface: &dyn Surface, options: &BuildOptions) -> Result<(), BuildError
     if u32::try_from(surface.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} triangles", surface.len())));
     }
-    if !(2..=255).contains(&options.grid) {
-        return Err(BuildError::Option("a grid has 2 to 255 voxels a side"));
-    }
-    if options.leaf_triangles < 2 {
-        return Err(BuildError::Option(
+    for (holds, expected) in [
+        (
+            (2..=255).contains(&options.grid),
+            "a grid has 2 to 255 voxels a side",
+        ),
+        (
+            options.leaf_triangles >= 2,
             "leaves have fewer than 2 triangles or more",
-        ));
-    }
-    if !(options.distance_voxels >= 1.0 && options.distance_voxels <= 1e6) {
-        return Err(BuildError::Option(
+        ),
+        (
+            (1.0..=1e6).contains(&options.distance_voxels),
             "the least distance is 1 to 1,000,000 voxels",
-        ));
+        ),
+    ] {
+        if !holds {
+            return Err(BuildError::Option(expected));
+        }
     }
-    centre(surface).map(drop)
+    Ok(())
 }
 
 fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
@@ -440,8 +409,10 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     }
     let finest = 0.99 * extent / place::MOST_PARTS;
     if !place::can_be_seen(low.to_array(), high.to_array(), finest) {
-        let distance = farthest;
-        return Err(BuildError::FarAway { extent, distance });
+        return Err(BuildError::FarAway {
+            extent,
+            distance: farthest,
+        });
     }
     let centre = place::centre(low.to_array(), high.to_array()).into();
     let (_, power) = libm::frexp(extent);
@@ -450,34 +421,11 @@ fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
 
 fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
     let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
-    touched
-        .iter()
-        .map(|&n| {
-            let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
-            let share = share.clamp(u128::from(n > 0), u128::from(MOST_RAYS));
-            Rays::InAll(share as u32)
-        })
-        .collect()
-}
-
-fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
-    let plane = plane_normal(triangle.corners);
-    let shares = barycentric(&triangle.corners, point);
-    let face = if plane.dot(towards_eye) >= 0.0 {
-        plane
-    } else {
-        -plane
+    let share = |&n: &u32| {
+        let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
+        Rays::InAll(share.clamp(u128::from(n > 0), u128::from(MOST_RAYS)) as u32)
     };
-    let normal = blend(&triangle.normals, shares).normalize_or(face);
-    SurfaceSample {
-        towards_eye,
-        normal: if normal.dot(face) < 0.0 {
-            -normal
-        } else {
-            normal
-        },
-        color: blend(&triangle.colors, shares),
-    }
+    touched.iter().map(share).collect()
 }
 
 fn outline(branch: &Branch, centre: DVec3) -> Node {
@@ -539,17 +487,15 @@ fn fit(
 }
 
 fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<LeafTriangle> {
-    order
-        .iter()
-        .map(|&number| {
-            let triangle = surface.triangle(number as usize);
-            LeafTriangle {
-                corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
-                normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-                colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
-            }
-        })
-        .collect()
+    let leaf = |&number: &u32| {
+        let triangle = surface.triangle(number as usize);
+        LeafTriangle {
+            corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
+            normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
+            colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+        }
+    };
+    order.iter().map(leaf).collect()
 }
 
 fn assemble<F: Read + Write + Seek>(
@@ -557,24 +503,21 @@ fn assemble<F: Read + Write + Seek>(
     centre: DVec3,
     options: &BuildOptions,
 ) -> Result<FarData, BuildError> {
-    let items = |done: spool::Done| done.node.voxels() + u64::from(done.node.surface);
+    let items = |done: Done| done.node.voxels() + u64::from(done.node.surface);
     let numbered: u64 = spool.nodes().map(items).sum();
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
         return Err(BuildError::TooMany(what));
     }
-    let mut nodes = Vec::new();
-    let mut data_at = 0;
-    for done in spool.nodes() {
-        nodes.push(Node {
-            data_at,
-            ..done.node
-        });
-        data_at += done.bytes;
-    }
-    Ok(FarData {
+    let mut data = FarData {
         settings: options.settings(centre),
-        nodes,
+        nodes: Vec::new(),
         packed: Vec::new(),
-    })
+    };
+    let mut data_at = 0;
+    for Done { node, bytes, .. } in spool.nodes() {
+        data.nodes.push(Node { data_at, ..node });
+        data_at += bytes;
+    }
+    Ok(data)
 }

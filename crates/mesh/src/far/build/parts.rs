@@ -91,8 +91,7 @@ impl Parts {
         self.sizes[triangle]
     }
 
-    /// The normals of all triangles at a position that a node, of a range of triangles, shares with others; else
-    /// `None`.
+    /// The normals of all triangles at a position that a node, of a range of triangles, shares with others.
     pub(super) fn shared(&self, range: &Range<usize>, position: [f32; 3]) -> Option<&[DVec3]> {
         let vertex = self.vertices.get(&bits(position))?;
         let [first, last] = self.spans[*vertex as usize].map(|number| number as usize);

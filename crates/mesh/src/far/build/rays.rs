@@ -1,5 +1,4 @@
-//! The first triangle on each ray; of equally near ones the lowest number. Triangles are held in *clusters*, subtrees of
-//! the hierarchy with a ray hierarchy each.
+//! The first triangle on each ray; of equally near ones the lowest number.
 
 use std::io::{self, Read};
 
@@ -18,6 +17,15 @@ pub(super) struct Query {
     pub(super) origin: Vec3,
     pub(super) direction: Vec3,
     pub(super) most: f32,
+}
+
+impl Query {
+    fn ray(&self) -> Ray {
+        Ray {
+            origin: self.origin.into(),
+            direction: self.direction.into(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,10 +61,7 @@ impl Around {
     fn is_entered(&self, query: &Query, before: f32) -> bool {
         let per_unit = Vec3A::from(query.direction).recip();
         let origin = Vec3A::from(query.origin);
-        let (a, b) = (
-            (self.low - origin) * per_unit,
-            (self.high - origin) * per_unit,
-        );
+        let [a, b] = [self.low, self.high].map(|corner| (corner - origin) * per_unit);
         // A ray within a plane of the box gives what is not a number there, which counts as within.
         let enter = a.min(b).to_array().into_iter().fold(0.0, f32::max);
         let leave = a.max(b).to_array().into_iter().fold(before, f32::min);
@@ -64,10 +69,8 @@ impl Around {
     }
 
     pub(super) fn square_from(&self, other: &Self) -> f32 {
-        let apart = (self.low - other.high)
-            .max(other.low - self.high)
-            .max(Vec3A::ZERO);
-        apart.length_squared()
+        let apart = (self.low - other.high).max(other.low - self.high);
+        apart.max(Vec3A::ZERO).length_squared()
     }
 }
 
@@ -122,10 +125,7 @@ impl Cluster {
 
     fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
-        let ray = Ray {
-            origin: query.origin.into(),
-            direction: query.direction.into(),
-        };
+        let ray = query.ray();
         bvh::traverse(&self.nodes, &ray, most, |place| {
             let distance = meet(&self.triangles[place], &ray);
             if distance.is_infinite() || distance > meeting.distance.min(query.most) {
@@ -186,14 +186,15 @@ fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::ops::Range;
+
     use shiftvox::split_mix::SplitMix;
 
+    use super::super::clusters::{Occluders, Part};
+    use super::*;
+
     fn nearest_of_all(triangles: &[[DVec3; 3]], query: &Query, size: f32) -> Meeting {
-        let ray = Ray {
-            origin: query.origin.into(),
-            direction: query.direction.into(),
-        };
+        let ray = query.ray();
         let mut nearest = Meeting::NONE;
         for (number, corners) in triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|corner| corner.as_vec3a());
@@ -211,40 +212,54 @@ mod tests {
     }
 
     #[test]
-    fn rays_meet_the_nearest_triangle() {
+    fn rays_meet_the_nearest_triangle_whatever_the_clusters_and_the_memory() {
         let mut dice = SplitMix::new(7);
         let mut met = 0;
         for round in 0..200 {
             let size = [1.0, 8.0, 1e4][round % 3];
-            let count = 1 + dice.below(300) as usize;
+            let count = 1 + dice.below(300);
             let mut place = |around: DVec3, size: f64| {
                 let coordinate = |_| (dice.below(17) as f64 - 8.0) * size / 8.0;
                 around + DVec3::from_array([0; 3].map(coordinate))
             };
-            let mut triangles: Vec<[DVec3; 3]> = Vec::new();
-            for _ in 0..count {
+            let triangle = |_| {
                 let around = place(DVec3::ZERO, size);
-                let [a, b, c] = [0; 3].map(|_| place(around, 1.0));
-                // The test of a triangle is too coarse for slivers.
-                if (b - a).cross(c - a).length() > 0.02 {
-                    triangles.push([a, b, c]);
-                }
-            }
-            let cluster = Cluster::new(triangles.iter().copied());
-            for _ in 0..100 {
+                [0; 3].map(|_| place(around, 1.0))
+            };
+            let mut triangles: Vec<[DVec3; 3]> = (0..count).map(triangle).collect();
+            // The test of a triangle is too coarse for slivers.
+            triangles.retain(|[a, b, c]| (b - a).cross(c - a).length() > 0.02);
+            triangles.extend_from_within(..triangles.len() / 3);
+            let query = |_| {
                 let (from, to) = (place(DVec3::ZERO, 2.0 * size), place(DVec3::ZERO, size));
-                let Some(direction) = (to - from).try_normalize() else {
-                    continue;
-                };
-                let query = Query {
+                Some(Query {
                     origin: from.as_vec3(),
-                    direction: direction.as_vec3(),
+                    direction: (to - from).try_normalize()?.as_vec3(),
                     most: [f32::INFINITY, size as f32][round % 2],
+                })
+            };
+            let queries: Vec<Query> = (0..100).filter_map(query).collect();
+            let nearest = |query: &Query| nearest_of_all(&triangles, query, size as f32);
+            let expected: Vec<Meeting> = queries.iter().map(nearest).collect();
+            met += expected.iter().filter(|&m| *m != Meeting::NONE).count();
+            let half = DVec3::splat(2.0 * size);
+            let around = Around::of(-half, half);
+            for (parts, within) in [(1, None), (4, None), (5, Some(1)), (9, Some(9000))] {
+                let part = |part: usize| Part {
+                    triangles: triangles.len() * part / parts..triangles.len() * (part + 1) / parts,
+                    around,
                 };
-                let mut found = Meeting::NONE;
-                cluster.nearest(&query, 0, &mut found);
-                assert_eq!(found, nearest_of_all(&triangles, &query, size as f32));
-                met += u32::from(found != Meeting::NONE);
+                let corners = |own: Range<usize>| triangles[own].iter().copied();
+                let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
+                let parts = (0..parts).map(part).collect();
+                let occluders = Occluders::new(parts, corners, within).unwrap();
+                let mut found = Vec::new();
+                occluders.nearest(&around, &queries, &mut found).unwrap();
+                for (found, expected) in found.iter().zip(&expected) {
+                    // Of a ray that begins in a triangle's plane the test is too coarse.
+                    let begins_there = found.distance.min(expected.distance) == 0.0;
+                    assert!(begins_there || found == expected, "{found:?} {expected:?}");
+                }
             }
         }
         assert!(met > 3000, "{met}");

@@ -1,9 +1,6 @@
-//! Rays at a node. *Visibility rays* are aimed at each voxel's contents, from random directions and from where a neighbour
-//! was seen, until one ends in the voxel. Then *probes* are aimed at random points of the outlines of the voxels that
-//! were seen: the share that ends in a voxel is its opacity (`count.rs`).
+//! Visibility rays and probes at a node (`spec/far.md`).
 
 use std::io;
-use std::ops::ControlFlow;
 
 use glam::DVec3;
 
@@ -25,7 +22,6 @@ const FIRST_PROBES: u32 = 4;
 const LEAST_PROBES: u32 = 8;
 const AIM_WITHIN: f64 = 0.5;
 
-#[derive(Debug, Clone, Copy)]
 pub(super) struct Sampled {
     pub(super) touched: u32,
     pub(super) untested: u32,
@@ -54,8 +50,9 @@ impl Target<'_> {
         admit: impl FnOnce(usize) -> A,
         mut keep: impl FnMut(&Seen, &ShaderFit, usize),
     ) -> io::Result<Sampled> {
-        let mut chance = chance(seed);
-        let own = self.own.numbers();
+        let seed = seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15;
+        let mut chance = SplitMix::new(seed);
+        let own = self.own.clone().filter(|&number| self.has(number));
         let own = own.map(|number| (number, triangles.corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
         let _admitted = admit(touched.len());
@@ -67,21 +64,34 @@ impl Target<'_> {
             Rays::PerVoxel(_) => most / 2,
             Rays::InAll(rays) => rays.min(most).div_ceil(2),
         };
-        let mut found = Found::new(&touched, &slot, most_visibility_rays);
+        let mut found = Found {
+            touched: &touched,
+            slot: &slot,
+            shots: Vec::new(),
+            most: most_visibility_rays as usize,
+            is_seen: vec![false; touched.len()],
+            tests: vec![0; touched.len()],
+            followed: vec![0; touched.len()],
+        };
         found.find_visible(self, &mut chance)?;
         let visibility_rays = found.shots.len();
-        let aims = numbers(&found.is_seen);
+        let aims = (0..touched.len() as u32).filter(|&number| found.is_seen[number as usize]);
+        let aims: Vec<u32> = aims.collect();
         let left = most - visibility_rays as u32;
         let mut aimed = vec![0; touched.len()];
-        let mut prober = Prober::new(self, &aims, &mut chance);
+        let mut prober = Prober {
+            target: self,
+            aims: &aims,
+            directions: aims.iter().map(|_| Directions::new(&mut chance)).collect(),
+            chance: &mut chance,
+        };
         match rays {
             Rays::PerVoxel(probes) => {
                 let first = FIRST_PROBES.min(probes);
-                let wanted = |_| first;
-                prober.probe(wanted, left, &mut aimed, &mut found)?;
-                let crossings =
-                    self.crossings(&found.shots[visibility_rays..], &slot, touched.len());
-                let shot = (found.shots.len() - visibility_rays) as u32;
+                prober.probe(|_| first, left, &mut aimed, &mut found)?;
+                let probed = &found.shots[visibility_rays..];
+                let crossings = self.crossings(probed, &slot, touched.len());
+                let shot = probed.len() as u32;
                 let wanted = |number: usize| {
                     let needed = (probes * first).div_ceil(crossings[number].max(1));
                     needed.clamp(LEAST_PROBES.min(probes), probes)
@@ -117,17 +127,14 @@ impl Target<'_> {
             aimed: &aimed_of_grid,
         };
         let probes = Probes::new(&self.grid, &shots[visibility_rays..], &marks, count);
-        let ends = shots
-            .iter()
-            .enumerate()
-            .filter(|(_, shot)| shot.touched != NOWHERE);
-        let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number as u32));
+        let ends = (0u32..).zip(&shots);
+        let ends = ends.filter(|(_, shot)| shot.touched != NOWHERE);
+        let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number));
         let ends: Vec<(u32, u32)> = ends.collect();
         let hits = ends.len() as u32;
         let ends = Groups::new(count, &ends);
         let mut untested = 0;
         let mut samples = Vec::new();
-        let mut seen = Seen::default();
         for (number, voxel) in touched.iter().enumerate() {
             let place = kept[number] as usize;
             if place == NOWHERE as usize {
@@ -150,7 +157,11 @@ impl Target<'_> {
                 triangles.sample(shot.triangle as usize, point, towards_eye)
             }));
             let fit = fit_shader(&samples, main_normal(&samples));
-            seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
+            let mut seen = Seen {
+                place: self.grid.place(voxel.number as usize),
+                unseen_opacity: voxel.area.min(1.0),
+                ..Seen::default()
+            };
             probes.count(place, &fit.shader, &mut seen);
             keep(&seen, &fit, samples.len());
         }
@@ -173,11 +184,7 @@ impl Target<'_> {
                 if touched != NOWHERE && (is_before || touched == shot.touched) {
                     crossings[touched as usize] += 1;
                 }
-                if is_before {
-                    ControlFlow::Continue(())
-                } else {
-                    ControlFlow::Break(())
-                }
+                is_before
             });
         }
         crossings
@@ -189,21 +196,9 @@ struct Prober<'p> {
     aims: &'p [u32],
     directions: Vec<Directions>,
     chance: &'p mut SplitMix,
-    beyond: f64,
 }
 
-impl<'p> Prober<'p> {
-    fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut SplitMix) -> Self {
-        let cells = point(target.grid.cells);
-        Self {
-            target,
-            aims,
-            directions: aims.iter().map(|_| Directions::new(chance)).collect(),
-            chance,
-            beyond: cells.length() + FOLLOWED,
-        }
-    }
-
+impl Prober<'_> {
     fn probe(
         &mut self,
         wanted: impl Fn(usize) -> u32,
@@ -234,8 +229,9 @@ impl<'p> Prober<'p> {
             }
         }
         let begin = found.shots.len();
+        let beyond = point(self.target.grid.cells).length() + FOLLOWED;
         self.target
-            .shoot(&rays, self.beyond, found.slot, &mut found.shots)?;
+            .shoot(&rays, beyond, found.slot, &mut found.shots)?;
         for shot in &found.shots[begin..] {
             if shot.touched != NOWHERE {
                 found.is_seen[shot.touched as usize] = true;
@@ -258,19 +254,7 @@ struct Found<'s> {
 
 type Look = (u32, Aim);
 
-impl<'s> Found<'s> {
-    fn new(touched: &'s [Touched], slot: &'s [u32], most: u32) -> Self {
-        Self {
-            touched,
-            slot,
-            shots: Vec::new(),
-            most: most as usize,
-            is_seen: vec![false; touched.len()],
-            tests: vec![0; touched.len()],
-            followed: vec![0; touched.len()],
-        }
-    }
-
+impl Found<'_> {
     fn find_visible(&mut self, target: &Target<'_>, chance: &mut SplitMix) -> io::Result<()> {
         let touched = self.touched;
         let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
@@ -294,7 +278,7 @@ impl<'s> Found<'s> {
         Ok(())
     }
 
-    /// Gives the voxels newly seen, and along which direction.
+    /// Returns the voxels newly seen, and along which direction.
     fn look(&mut self, target: &Target<'_>, mut looks: Vec<Look>) -> io::Result<Vec<Look>> {
         looks.truncate(self.most - self.shots.len());
         for (number, _) in &looks {
@@ -304,8 +288,7 @@ impl<'s> Found<'s> {
         let begin = self.shots.len();
         let aims: Vec<Aim> = looks.iter().map(|(_, aim)| *aim).collect();
         target.shoot(&aims, AIM_WITHIN, self.slot, &mut self.shots)?;
-        let mut fresh = looks;
-        fresh.clear();
+        let mut fresh = Vec::new();
         for (shot, aim) in self.shots[begin..].iter().zip(aims) {
             if shot.touched != NOWHERE
                 && !std::mem::replace(&mut self.is_seen[shot.touched as usize], true)
@@ -319,14 +302,10 @@ impl<'s> Found<'s> {
     /// Aims at neighbours of voxels that were just seen, along the same directions.
     fn follow(&mut self, target: &Target<'_>, mut fresh: Vec<Look>) -> io::Result<()> {
         let mut waiting: Vec<Look> = Vec::new();
-        let mut batch_of = vec![
-            u32::MAX;
-            if fresh.is_empty() {
-                0
-            } else {
-                self.touched.len()
-            }
-        ];
+        if fresh.is_empty() {
+            return Ok(());
+        }
+        let mut batch_of = vec![u32::MAX; self.touched.len()];
         let mut batch = 0;
         while !fresh.is_empty() || !waiting.is_empty() {
             for (number, aim) in fresh {
@@ -361,10 +340,6 @@ impl<'s> Found<'s> {
     }
 }
 
-fn chance(seed: u64) -> SplitMix {
-    SplitMix::new(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15)
-}
-
 /// Spread by the sequence R2.
 struct Directions([f64; 2]);
 
@@ -382,11 +357,6 @@ impl Directions {
         let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
         DVec3::new(ring * cos, ring * sin, z)
     }
-}
-
-fn numbers(marks: &[bool]) -> Vec<u32> {
-    let marked = marks.iter().enumerate().filter(|(_, mark)| **mark);
-    marked.map(|(number, _)| number as u32).collect()
 }
 
 /// A random point where a ray of a direction enters a voxel.

@@ -9,7 +9,7 @@ use crate::far::record::{Opacity, OpacityKind, STEEPNESSES, Shader, SideOpacity,
 /// Beside a colour's error: both are 0 to 1.
 const NORMAL_WEIGHT: f64 = 0.25;
 const GOOD_ENOUGH: f64 = 5e-4;
-/// A complex shader, three times as large, must be better by this factor.
+/// For a complex shader, which takes three times as many bytes.
 const WORTH_IT: f64 = 0.7;
 const LEAST_SAMPLES: usize = 6;
 const OPAQUE_FROM: f64 = 0.97;
@@ -20,9 +20,8 @@ const NOISE: f64 = 5.0;
 /// Added hits and passes, so that a few rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A voxel is solid seen at a steepness if no more than this share of the probes passes, by weight, ...
+/// A side is solid if at most this share of its rays passes, and at least so many are stopped.
 const MOST_PASSED: f64 = 0.05;
-/// ... and so many or more were stopped there and above.
 const LEAST_STOPPED: u32 = 4;
 
 #[derive(Debug, Clone, Copy)]
@@ -32,23 +31,19 @@ pub(super) struct ShaderFit {
 }
 
 pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3) -> ShaderFit {
+    let fit = |shader| ShaderFit {
+        square_error: error(&shader, samples),
+        shader,
+    };
     let count = samples.len().max(1) as f64;
-    let flat = flat(samples, normal);
-    let square_error = error(&flat, samples);
-    if square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
-        let complex = complex(samples);
-        let complex_error = error(&complex, samples);
-        if complex_error < WORTH_IT * square_error {
-            return ShaderFit {
-                shader: complex,
-                square_error: complex_error,
-            };
+    let flat = fit(flat(samples, normal));
+    if flat.square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
+        let complex = fit(complex(samples));
+        if complex.square_error < WORTH_IT * flat.square_error {
+            return complex;
         }
     }
-    ShaderFit {
-        shader: flat,
-        square_error,
-    }
+    flat
 }
 
 /// A side that nothing looks upon is solid: it is hidden.
@@ -125,11 +120,8 @@ fn flat(samples: &[SurfaceSample], normal: DVec3) -> Shader {
         sums[side].1 += 1.0;
     }
     let colors = [0, 1].map(|side| {
-        let (sum, count) = if sums[side].1 > 0.0 {
-            sums[side]
-        } else {
-            sums[1 - side]
-        };
+        let is_seen = sums[side].1 > 0.0;
+        let (sum, count) = sums[if is_seen { side } else { 1 - side }];
         sum / f64::max(count, 1.0)
     });
     Shader::Flat { normal, colors }
@@ -150,7 +142,8 @@ fn complex(samples: &[SurfaceSample]) -> Shader {
     Shader::Complex {
         normals: std::array::from_fn(|k| {
             let [.., x, y, z] = values[k];
-            DVec3::new(x, y, z).normalize_or(main_direction(k))
+            let main = DVec3::AXES[k / 2] * [1.0, -1.0][k % 2];
+            DVec3::new(x, y, z).normalize_or(main)
         }),
         colors: std::array::from_fn(|k| {
             let [r, g, b, ..] = values[k];
@@ -159,23 +152,12 @@ fn complex(samples: &[SurfaceSample]) -> Shader {
     }
 }
 
-fn main_direction(number: usize) -> DVec3 {
-    let axis = [DVec3::X, DVec3::Y, DVec3::Z][number / 2];
-    if number.is_multiple_of(2) {
-        axis
-    } else {
-        -axis
-    }
-}
-
 fn error(shader: &Shader, samples: &[SurfaceSample]) -> f64 {
-    samples
-        .iter()
-        .map(|sample| {
-            let (normal, color) = shader.seen_from(sample.towards_eye);
-            let of_color = (color - sample.color).length_squared() / 3.0;
-            let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
-            of_color + NORMAL_WEIGHT * of_normal
-        })
-        .sum()
+    let error = |sample: &SurfaceSample| {
+        let (normal, color) = shader.seen_from(sample.towards_eye);
+        let of_color = (color - sample.color).length_squared() / 3.0;
+        let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
+        of_color + NORMAL_WEIGHT * of_normal
+    };
+    samples.iter().map(error).sum()
 }

@@ -15,47 +15,10 @@ const STEPS_TO_S: u32 = 2;
 pub(super) struct Target<'t> {
     pub(super) occluders: &'t Occluders,
     pub(super) grid: Grid,
-    pub(super) own: Own<'t>,
+    pub(super) own: Range<usize>,
+    /// Its own triangles that count, or `None` for all.
+    pub(super) taken: Option<&'t [bool]>,
     pub(super) distance: f64,
-}
-
-#[derive(Debug, Clone)]
-pub(super) struct Own<'t> {
-    range: Range<usize>,
-    is_taken: Option<&'t [bool]>,
-}
-
-impl<'t> Own<'t> {
-    pub(super) fn all(range: Range<usize>) -> Self {
-        Self {
-            range,
-            is_taken: None,
-        }
-    }
-
-    pub(super) fn contains(&self, triangle: usize) -> bool {
-        let is_taken = |taken: &[bool]| taken[triangle - self.range.start];
-        self.range.contains(&triangle) && self.is_taken.is_none_or(is_taken)
-    }
-
-    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, 't> {
-        self.range.clone().filter(|&number| self.contains(number))
-    }
-}
-
-impl<'t> Target<'t> {
-    pub(super) fn of<'s>(&self, is_taken: &'s [bool]) -> Target<'s>
-    where
-        't: 's,
-    {
-        Target {
-            own: Own {
-                range: self.own.range.clone(),
-                is_taken: Some(is_taken),
-            },
-            ..*self
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -93,14 +56,12 @@ fn cell(direction: Vec3) -> usize {
     (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
 }
 
-/// Similar rays, which visit the same boxes, follow one another.
-fn in_order(aims: &[Aim]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..aims.len() as u32).collect();
-    order.sort_by_cached_key(|&number| cell(aims[number as usize].direction));
-    order
-}
-
 impl Target<'_> {
+    pub(super) fn has(&self, triangle: usize) -> bool {
+        let is_taken = |taken: &[bool]| taken[triangle - self.own.start];
+        self.own.contains(&triangle) && self.taken.is_none_or(is_taken)
+    }
+
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
         let number = |at: DVec3| {
@@ -111,11 +72,10 @@ impl Target<'_> {
         if here != NOWHERE {
             return here;
         }
-        let near = (0..27).map(|step| {
+        let mut near = (0..27).map(|step| {
             let step = point([step % 3, step / 3 % 3, step / 9]);
             number(end + (step - DVec3::ONE) * END_WITHIN)
         });
-        let mut near = near.into_iter();
         near.find(|&slot| slot != NOWHERE).unwrap_or(NOWHERE)
     }
 
@@ -132,7 +92,9 @@ impl Target<'_> {
         let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
         let (mut queries, mut meetings) = (Vec::new(), Vec::new());
         for batch in aims.chunks(BATCH) {
-            let order = in_order(batch);
+            // Similar rays, which visit the same boxes, follow one another.
+            let mut order: Vec<u32> = (0..batch.len() as u32).collect();
+            order.sort_by_cached_key(|&number| cell(batch[number as usize].direction));
             let begin = shots.len();
             queries.clear();
             shots.extend(batch.iter().map(|aim| Shot {
@@ -154,27 +116,19 @@ impl Target<'_> {
             }));
             self.occluders.nearest(&around, &queries, &mut meetings)?;
             for ((&number, query), meeting) in order.iter().zip(&queries).zip(&meetings) {
-                if *meeting != Meeting::NONE {
-                    self.end(
-                        &mut shots[begin + number as usize],
-                        query,
-                        meeting,
-                        slot,
-                        beyond,
-                    );
+                if *meeting == Meeting::NONE {
+                    continue;
+                }
+                let shot = &mut shots[begin + number as usize];
+                let length = f64::from(query.most) / self.grid.voxel;
+                shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
+                shot.triangle = meeting.triangle;
+                if self.has(meeting.triangle as usize) {
+                    shot.touched = self.voxel_at(shot.end_point(), slot);
                 }
             }
         }
         Ok(())
-    }
-
-    fn end(&self, shot: &mut Shot, query: &Query, meeting: &Meeting, slot: &[u32], beyond: f64) {
-        let length = f64::from(query.most) / self.grid.voxel;
-        shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
-        shot.triangle = meeting.triangle;
-        if self.own.contains(meeting.triangle as usize) {
-            shot.touched = self.voxel_at(shot.end_point(), slot);
-        }
     }
 
     #[inline]

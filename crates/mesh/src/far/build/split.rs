@@ -1,9 +1,10 @@
-//! The hierarchy: triangles split in two by the surface area heuristic, at the best plane between 32 slices along each
-//! axis. A node's triangles are a range.
+//! The hierarchy, by the surface area heuristic. A node's triangles are a range.
 
 use std::ops::Range;
 
 use glam::DVec3;
+
+use crate::geometry::bounds;
 
 const SLICES: usize = 32;
 pub(super) const MOST_LEVELS: u32 = 64;
@@ -47,7 +48,7 @@ struct Tree {
     halves: Option<Box<[Tree; 2]>>,
 }
 
-/// Splits until a node has fewer triangles than `leaf_triangles` (or one). Gives the nodes, parents first, and the
+/// Splits until a node has fewer triangles than `leaf_triangles` (or one). Returns the nodes, parents first, and the
 /// triangles' numbers in their order.
 pub(super) fn split(
     count: usize,
@@ -110,26 +111,18 @@ fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) ->
     place
 }
 
-fn bounds<T>(items: &[T], item_of: impl Fn(&T) -> Item) -> (DVec3, DVec3) {
-    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    items.iter().map(item_of).fold(start, |(low, high), item| {
-        (low.min(item.low), high.max(item.high))
-    })
-}
-
 fn tree<T, F, B>(items: &mut [T], item_of: &F, leaf_triangles: usize, level: u32, below: &B) -> Tree
 where
     T: Copy + Send,
     F: Fn(&T) -> Item + Sync,
     B: Fn(&mut [T], u32) -> Tree + Sync,
 {
-    let (low, high) = bounds(items, item_of);
-    let count = items.len();
+    let all = items.iter().map(item_of).map(Slice::of);
+    let Slice { low, high, count } = all.fold(Slice::NONE, Slice::with);
     let halves = (count >= leaf_triangles && count > 1).then(|| {
-        let middle = if level < MOST_LEVELS {
-            partition(items, item_of)
-        } else {
-            count / 2
+        let middle = match level < MOST_LEVELS {
+            true => partition(items, item_of),
+            false => count / 2,
         };
         let (near, far) = items.split_at_mut(middle);
         let next = level + 1;
@@ -148,11 +141,6 @@ where
     }
 }
 
-fn half_area(low: DVec3, high: DVec3) -> f64 {
-    let side = (high - low).max(DVec3::ZERO);
-    side.x * side.y + side.y * side.z + side.z * side.x
-}
-
 #[derive(Clone, Copy)]
 struct Slice {
     low: DVec3,
@@ -167,6 +155,14 @@ impl Slice {
         count: 0,
     };
 
+    fn of(item: Item) -> Self {
+        Self {
+            low: item.low,
+            high: item.high,
+            count: 1,
+        }
+    }
+
     fn with(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -175,25 +171,20 @@ impl Slice {
         }
     }
 
+    /// Half of the area of the box, times the number of triangles.
     fn cost(&self) -> f64 {
-        half_area(self.low, self.high) * self.count as f64
+        let side = (self.high - self.low).max(DVec3::ZERO);
+        (side.x * side.y + side.y * side.z + side.z * side.x) * self.count as f64
     }
 }
 
 fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
-    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = items.iter().map(item_of).fold(start, |(low, high), item| {
-        (low.min(item.middle()), high.max(item.middle()))
-    });
+    let (low, high) = bounds(items.iter().map(|item| item_of(item).middle()));
     let mut all = [[Slice::NONE; SLICES]; 3];
     for item in items.iter().map(item_of) {
         for (axis, slices) in all.iter_mut().enumerate() {
             let slice = &mut slices[slice_of(axis, low, high, &item)];
-            *slice = slice.with(Slice {
-                low: item.low,
-                high: item.high,
-                count: 1,
-            });
+            *slice = slice.with(Slice::of(item));
         }
     }
     let mut best: Option<(f64, usize, usize)> = None;
@@ -234,16 +225,4 @@ fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
     let scale = SLICES as f64 / (high[axis] - low[axis]);
     let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
     slice.min(SLICES - 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn equal_triangles_are_split_by_number() {
-        let (branches, _) = split(100, |_| [DVec3::ZERO, DVec3::X, DVec3::Y], 2);
-        let leaves = branches.iter().filter(|b| b.children.is_none());
-        assert_eq!(leaves.count(), 100);
-    }
 }

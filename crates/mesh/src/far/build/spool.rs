@@ -16,7 +16,7 @@ pub(super) struct Done {
 #[derive(Debug)]
 pub(super) struct Spool<F> {
     file: F,
-    end: u64,
+    pub(super) bytes: u64,
     done: Vec<Option<Done>>,
 }
 
@@ -24,7 +24,7 @@ impl<F: Read + Write + Seek> Spool<F> {
     pub(super) fn new(file: F, nodes: usize) -> Self {
         Self {
             file,
-            end: 0,
+            bytes: 0,
             done: vec![None; nodes],
         }
     }
@@ -36,9 +36,9 @@ impl<F: Read + Write + Seek> Spool<F> {
         self.done[number] = Some(Done {
             node,
             bytes,
-            at: self.end,
+            at: self.bytes,
         });
-        self.end += bytes;
+        self.bytes += bytes;
         Ok(())
     }
 

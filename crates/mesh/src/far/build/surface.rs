@@ -1,7 +1,4 @@
-//! The hybrid: parts wider than a voxel stay a decimated surface, and thinner parts become voxels.
-//!
-//! Of several candidates for each inner node, `compare.rs` chooses. Shared corners stay in place, so that neighbouring
-//! nodes of any levels join without a gap.
+//! The candidates for an inner node of a hybrid (`spec/far.md`), of which `compare.rs` chooses.
 
 use std::ops::Range;
 
@@ -70,7 +67,7 @@ impl<'s> Surfaces<'s> {
         pack(&Default::default(), &bytes)
     }
 
-    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles.
+    /// An inner node, whose grid is set, and its bytes. `voxels` makes voxels of some triangles.
     pub(super) fn inner(
         &self,
         node: &Node,
@@ -102,7 +99,7 @@ impl<'s> Surfaces<'s> {
         // Small parts are left out whole.
         let is_seen =
             |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
-        let surface = |triangles| Candidate {
+        let candidate = |triangles| Candidate {
             node: *node,
             lists: Default::default(),
             triangles,
@@ -123,8 +120,7 @@ impl<'s> Surfaces<'s> {
         };
         let mut candidates = Vec::new();
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
-            let all = decimated(&|place| is_seen(place, error), error)?;
-            let all = surface(all);
+            let all = candidate(decimated(&|place| is_seen(place, error), error)?);
             if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
                 candidates.push(all);
             }
@@ -135,7 +131,7 @@ impl<'s> Surfaces<'s> {
         }
         let wide = decimated(&|place| !is_thin(place) && is_seen(place, ERROR), ERROR)?;
         let lines = decimated(&is_thin, ERROR * FINEST)?;
-        let both = surface([&wide[..], &lines].concat());
+        let both = candidate([&wide[..], &lines].concat());
         if least_of(&is_thin) < bytes(&both) {
             let mut node = *node;
             let lists = voxels(&mut node, &thin)?;
@@ -163,10 +159,9 @@ impl<'s> Surfaces<'s> {
             return Ok(Vec::new());
         }
         let numbers: Vec<u32> = taken.iter().map(|&place| self.order[place]).collect();
-        let tinted: Option<Vec<u32>> = numbers
-            .iter()
-            .map(|&number| self.surface.tinted_material(number as usize))
-            .collect();
+        let tinted = numbers.iter();
+        let tinted = tinted.map(|&number| self.surface.tinted_material(number as usize));
+        let tinted: Option<Vec<u32>> = tinted.collect();
         let mesh = mesh_of(&leaf_triangles(self.surface, &numbers, self.centre), tinted);
         let how = Decimation {
             triangles: 0,

@@ -25,8 +25,8 @@ pub(super) fn touched(
     let mut all: Vec<Touched> = Vec::new();
     for (triangle, corners) in triangles {
         let corners = corners.map(|p| grid.local(p));
-        parts(grid, &corners, |number, piece| {
-            let part = piece.cut();
+        parts(grid, &corners, |number, cut| {
+            let part = cut();
             let area = part.area();
             if area < LEAST_AREA {
                 return;
@@ -58,9 +58,9 @@ pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) ->
     let mut count = 0;
     for corners in triangles {
         let corners = corners.map(|p| grid.local(p));
-        parts(grid, &corners, |number, piece| {
+        parts(grid, &corners, |number, cut| {
             let mark = &mut is_touched[number as usize];
-            if !*mark && piece.cut().area() >= LEAST_AREA {
+            if !*mark && cut().area() >= LEAST_AREA {
                 *mark = true;
                 count += 1;
             }
@@ -69,20 +69,8 @@ pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) ->
     count
 }
 
-struct Piece<'t> {
-    triangle: &'t Polygon,
-    /// The voxel's lowest corner; `None` where all of the triangle is in it.
-    voxel: Option<DVec3>,
-}
-
-impl Piece<'_> {
-    fn cut(&self) -> Polygon {
-        self.voxel
-            .map_or(*self.triangle, |corner| self.triangle.within(corner))
-    }
-}
-
-fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_>)) {
+/// Calls `visit` with each voxel that a triangle may touch, and with what cuts the triangle to it.
+fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &dyn Fn() -> Polygon)) {
     let [a, b, c] = *corners;
     let most = IVec3::from_array(grid.cells.map(|n| i32::from(n) - 1));
     let place = |p: DVec3| p.floor().as_ivec3().clamp(IVec3::ZERO, most);
@@ -90,11 +78,7 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_
     let number = |at: IVec3| grid.number(at.to_array().map(|c| c as u8)) as u32;
     let whole = Polygon::of(corners);
     if low == high {
-        let piece = Piece {
-            triangle: &whole,
-            voxel: None,
-        };
-        visit(number(low), &piece);
+        visit(number(low), &|| whole);
         return;
     }
     let normal = (b - a).cross(c - a);
@@ -106,11 +90,7 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_
                 let corner = at.as_dvec3();
                 let middle = corner + DVec3::splat(0.5);
                 if (middle - a).dot(normal).abs() <= reach {
-                    let piece = Piece {
-                        triangle: &whole,
-                        voxel: Some(corner),
-                    };
-                    visit(number(at), &piece);
+                    visit(number(at), &|| whole.within(corner));
                 }
             }
         }
@@ -122,10 +102,8 @@ impl Polygon {
         let mut part = *self;
         for axis in 0..3 {
             let along = part.corners().iter().map(|p| p[axis]);
-            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
-                (low.min(at), high.max(at))
-            });
-            if low < corner[axis] {
+            let high = along.clone().fold(f64::NEG_INFINITY, f64::max);
+            if along.fold(f64::INFINITY, f64::min) < corner[axis] {
                 part = part.cut_in_order(|p| p[axis] - corner[axis]);
             }
             if high > corner[axis] + 1.0 {

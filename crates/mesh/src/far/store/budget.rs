@@ -1,5 +1,4 @@
-//! Keeps unpacked data of nodes to a budget, by the clock algorithm: a node that was used since the hand last passed is
-//! spared once.
+//! Keeps unpacked data of nodes to a budget by the clock algorithm, which spares nodes once that were used.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,19 +15,14 @@ pub(super) struct Budget {
 #[derive(Debug, Default)]
 struct Clock {
     here: VecDeque<(usize, u64)>,
-    bytes: u64,
-    most_bytes: u64,
-    released: u64,
+    resident: Resident,
 }
 
-/// The state of a budget.
+/// The use of a budget: bytes now, the most that there were, and nodes released.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Resident {
-    /// Bytes of nodes that are in memory.
     pub bytes: u64,
-    /// The most that there were.
     pub most_bytes: u64,
-    /// How often a node was let go of.
     pub released: u64,
 }
 
@@ -53,7 +47,7 @@ impl Budget {
         if self.is_here[node].swap(true, Ordering::Relaxed) {
             return;
         }
-        while clock.bytes.saturating_add(bytes) > self.most
+        while clock.resident.bytes.saturating_add(bytes) > self.most
             && let Some((other, its)) = clock.here.pop_front()
         {
             if self.was_used[other].swap(false, Ordering::Relaxed) {
@@ -62,47 +56,46 @@ impl Budget {
             }
             release(other);
             self.is_here[other].store(false, Ordering::Relaxed);
-            clock.bytes -= its;
-            clock.released += 1;
+            clock.resident.bytes -= its;
+            clock.resident.released += 1;
         }
-        clock.bytes += bytes;
-        clock.most_bytes = clock.most_bytes.max(clock.bytes);
+        let resident = &mut clock.resident;
+        resident.bytes += bytes;
+        resident.most_bytes = resident.most_bytes.max(resident.bytes);
         clock.here.push_back((node, bytes));
     }
 
     pub(super) fn resident(&self) -> Resident {
         let clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
-        Resident {
-            bytes: clock.bytes,
-            most_bytes: clock.most_bytes,
-            released: clock.released,
-        }
+        clock.resident
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     #[test]
     fn what_was_not_used_goes_first_and_the_budget_is_kept() {
         let budget = Budget::new(100, 20);
-        let gone = Mutex::new(Vec::new());
-        let touch = |node: usize| {
-            budget.touch(node, 30, |other| gone.lock().unwrap().push(other));
-        };
-        (0..3).for_each(touch);
-        // All were used: the hand spares each once, then takes the first.
-        touch(3);
-        assert_eq!(*gone.lock().unwrap(), [0]);
-        touch(2);
-        touch(4);
-        assert_eq!(*gone.lock().unwrap(), [0, 1]);
-        // All were used again: the first goes.
-        touch(5);
-        touch(3);
-        touch(6);
-        assert_eq!(*gone.lock().unwrap(), [0, 1, 2, 4], "3 was used");
+        // All were used at 3 and 5: the hand spares each once, then takes the first.
+        for (node, expected) in [
+            (0, None),
+            (1, None),
+            (2, None),
+            (3, Some(0)),
+            (2, None),
+            (4, Some(1)),
+            (5, Some(2)),
+            (3, None),
+            (6, Some(4)),
+        ] {
+            let gone = Cell::new(None);
+            budget.touch(node, 30, |other| gone.set(Some(other)));
+            assert_eq!(gone.get(), expected, "{node}");
+        }
         let resident = budget.resident();
         assert_eq!(
             (resident.bytes, resident.most_bytes, resident.released),

@@ -2,20 +2,16 @@
 
 use crate::far::record::{MOST_COLORS, Node};
 
-/// Checks all nodes against each other and against the sizes of the sections.
-///
-/// An error is the number of a node and the expected value.
+/// Checks all nodes against each other and against the sizes of the sections. Errors: node, expected value.
 pub(super) fn check(
     nodes: &[Node],
     data_bytes: u64,
     triangles: u64,
 ) -> Result<(), (usize, String)> {
     let fault = |node: usize, expected: String| Err((node, expected));
-    let Some(root) = nodes.first() else {
-        return fault(0, "a root".to_owned());
-    };
-    let is_root = root.level == 0 && root.first_triangle == 0;
-    if !is_root || u64::from(root.triangles) != triangles {
+    let is_root =
+        |n: &Node| [n.level, n.first_triangle] == [0; 2] && u64::from(n.triangles) == triangles;
+    if !nodes.first().is_some_and(is_root) {
         return fault(0, format!("a root with all {triangles} triangles"));
     }
     let mut has_parent = vec![false; nodes.len()];
@@ -49,67 +45,70 @@ pub(super) fn check(
 }
 
 fn check_alone(node: &Node) -> Result<(), &'static str> {
-    let ensure = |holds: bool, expected| if holds { Ok(()) } else { Err(expected) };
-    ensure(node.is_leaf <= 1, "a leaf or not, 1 or 0")?;
-    ensure(node.triangles > 0, "triangles")?;
     let is_box = (0..3).all(|k| {
         let (low, high) = (node.low[k], node.high[k]);
         low.is_finite() && high.is_finite() && low <= high
     });
-    ensure(is_box, "a box of finite numbers")?;
-    ensure(
-        node.error.is_finite() && node.error >= 0.0,
-        "an error of 0 or more",
-    )?;
     let vertices: u64 = node.vertices.iter().map(|&n| u64::from(n)).sum();
-    ensure(
-        node.surface <= node.triangles && vertices <= 3 * u64::from(node.surface),
-        "no more triangles than it has, of three vertices each",
-    )?;
+    let is_surface = node.surface <= node.triangles && vertices <= 3 * u64::from(node.surface);
     let has_colors = usize::from(node.colors) <= MOST_COLORS && node.is_flat <= 1;
-    ensure(
-        has_colors && node.spare == 0,
-        "at most 256 colours, and flat triangles or not",
-    )?;
-    if node.is_leaf() {
-        ensure(node.surface == node.triangles, "all of a leaf's triangles")?;
-        ensure(node.children == [0; 2], "a leaf without children")?;
-    }
-    let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
-    if node.is_leaf() || is_plain {
-        let counts = [
-            node.touched,
-            node.untested,
-            node.rays,
-            node.hits,
-            node.crossings,
-        ];
-        let is_empty = counts == [0; 5] && node.counts == [0; 6];
-        ensure(is_plain && is_empty, "no voxels or rays without a grid")?;
-        return ensure(
-            node.is_leaf() || node.surface == 0,
-            "no surface without a grid",
-        );
-    }
+    let leaf = node.children == [0; 2] && node.surface == node.triangles;
+    let has_no_grid = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
+    let without_grid = node.is_leaf() || has_no_grid;
+    let counts = [
+        node.touched,
+        node.untested,
+        node.rays,
+        node.hits,
+        node.crossings,
+    ];
+    let is_empty = counts == [0; 5] && node.counts == [0; 6];
     let is_grid = node.voxel > 0.0
         && node.voxel.is_finite()
         && node.origin.iter().all(|c| c.is_finite())
         && node.cells.iter().all(|&c| c > 0);
-    ensure(is_grid, "a grid")?;
     let cells: u64 = node.cells.iter().map(|&c| u64::from(c)).product();
-    ensure(
-        node.voxels() <= u64::from(node.touched),
-        "no more voxels than triangles touch",
-    )?;
-    ensure(
-        u64::from(node.untested) <= node.voxels(),
-        "no more untested voxels than it has",
-    )?;
-    ensure(
-        u64::from(node.touched) <= cells,
-        "no more touched voxels than its grid has",
-    )?;
-    ensure(node.hits <= node.rays, "no more hits than rays")
+    let touched = u64::from(node.touched);
+    let is_counted = u64::from(node.untested) <= node.voxels() && node.voxels() <= touched;
+    let rules = [
+        (node.is_leaf <= 1, "a leaf or not, 1 or 0"),
+        (node.triangles > 0, "triangles"),
+        (is_box, "a box of finite numbers"),
+        (
+            node.error.is_finite() && node.error >= 0.0,
+            "an error of 0 or more",
+        ),
+        (
+            is_surface,
+            "no more triangles than it has, of three vertices each",
+        ),
+        (
+            has_colors && node.spare == 0,
+            "at most 256 colours, and flat triangles or not",
+        ),
+        (
+            !node.is_leaf() || leaf,
+            "all of a leaf's triangles, and no children",
+        ),
+        (
+            !without_grid || has_no_grid && is_empty,
+            "no voxels or rays without a grid",
+        ),
+        (
+            !has_no_grid || node.is_leaf() || node.surface == 0,
+            "no surface without a grid",
+        ),
+        (without_grid || is_grid, "a grid"),
+        (
+            without_grid || is_counted && touched <= cells,
+            "no more voxels than triangles touch, of those that its grid has",
+        ),
+        (node.hits <= node.rays, "no more hits than rays"),
+    ];
+    match rules.into_iter().find(|(holds, _)| !holds) {
+        None => Ok(()),
+        Some((_, expected)) => Err(expected),
+    }
 }
 
 fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {

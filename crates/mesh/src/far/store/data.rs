@@ -1,6 +1,6 @@
 //! The data of a node in memory: unpacked and found sound.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES};
 
@@ -23,15 +23,13 @@ impl NodeData {
         let is_in_grid = |record: &[u8]| (0..3).all(|k| record[k] < node.cells[k]);
         let is_in_box = |p: &[f32; 3]| (0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]);
         let is_list = |(list, bytes): (&[u8], usize)| list.chunks_exact(bytes).all(is_in_grid);
-        let is_sound = data.lists().into_iter().zip(RECORD_BYTES).all(is_list)
-            && data
-                .triangles
-                .iter()
-                .all(|t| t.corners.iter().all(is_in_box));
+        let mut corners = data.triangles.iter().flat_map(|t| &t.corners);
+        let is_sound =
+            data.lists().into_iter().zip(RECORD_BYTES).all(is_list) && corners.all(is_in_box);
         is_sound.then_some(data)
     }
 
-    /// Records of the voxels, one slice for each list; empty ones of a leaf.
+    /// Records of the voxels by list.
     pub fn lists(&self) -> [&[u8]; LISTS.len()] {
         let mut rest = &self.records[..];
         std::array::from_fn(|list| {
@@ -41,7 +39,6 @@ impl NodeData {
         })
     }
 
-    /// Triangles: of a leaf all that it has, of an inner node its surface.
     pub fn triangles(&self) -> &[LeafTriangle] {
         &self.triangles
     }
@@ -55,14 +52,7 @@ impl NodeData {
 pub(super) struct Slot(Mutex<Option<Arc<NodeData>>>);
 
 impl Slot {
-    pub(super) fn get(&self) -> Option<Arc<NodeData>> {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
-    }
-
-    pub(super) fn set(&self, data: Option<Arc<NodeData>>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = data;
+    pub(super) fn lock(&self) -> MutexGuard<'_, Option<Arc<NodeData>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -6,13 +6,14 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::FarData;
-use crate::far::record::{NODE_BYTES, Node};
+use crate::far::record::NODE_BYTES;
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
 
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
     magic: *b"\x89FAR\r\n\x1a\n",
-    version: 6,
+    versions: &[6],
+    header_bytes: HEADER_BYTES,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
@@ -45,23 +46,14 @@ pub(super) fn layout(nodes: u64, data_bytes: u64) -> [[u64; 2]; 2] {
     [nodes, section_after(nodes[1], data_bytes, 1)]
 }
 
-/// Writes far voxels.
-///
-/// # Errors
-/// Errors of `out`; a machine that stores the highest byte first.
-pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
-    write_parts(data, data.packed.len() as u64, out, |out| {
-        out.write_all(&data.packed)
-    })
-}
-
+/// Writes a file whose data `copy` writes.
 pub(in crate::far) fn write_parts(
     data: &FarData,
     data_bytes: u64,
     out: &mut dyn Write,
     copy: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let nodes: &[u8] = bytemuck::cast_slice::<Node, u8>(&data.nodes);
+    let nodes: &[u8] = bytemuck::cast_slice(&data.nodes);
     let [node_place, [begin, end]] = layout(data.nodes.len() as u64, data_bytes);
     let settings = &data.settings;
     let fields = Fields {
@@ -78,7 +70,9 @@ pub(in crate::far) fn write_parts(
         bevels: settings.bevels,
         ..Zeroable::zeroed()
     };
-    let header = FORMAT.header(end, |put| put(FIELDS, bytemuck::bytes_of(&fields)));
+    let header = FORMAT.header(FORMAT.versions[0], end, |put| {
+        put(FIELDS, bytemuck::bytes_of(&fields))
+    });
     // The zeros before the data are written before an empty section.
     let sections = [(node_place, nodes), ([begin; 2], &[][..])];
     file::write(&FORMAT, &header, sections.into_iter(), out)?;
@@ -86,11 +80,10 @@ pub(in crate::far) fn write_parts(
 }
 
 /// The bytes of a whole file.
-///
-/// # Errors
-/// As [`write_to`].
 pub fn encode(data: &FarData) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    write_to(data, &mut bytes)?;
+    write_parts(data, data.packed.len() as u64, &mut bytes, |out| {
+        out.write_all(&data.packed)
+    })?;
     Ok(bytes)
 }

@@ -1,7 +1,4 @@
-//! The `.far` file: hierarchy and data apart, mapped and used in place.
-//!
-//! Opening a file checks every field of header and hierarchy. A node's data is unpacked and checked when it is first
-//! needed; [`FarFile::verify`] reads all.
+//! The `.far` file, mapped and used in place. A node's data is unpacked and checked when it is first needed.
 
 mod budget;
 mod check;
@@ -13,7 +10,7 @@ pub(in crate::far) mod surface;
 
 pub use budget::Resident;
 pub use data::NodeData;
+pub use format::encode;
 pub(in crate::far) use format::write_parts;
-pub use format::{encode, write_to};
 pub use read::FarFile;
 pub use shiftvox::graph::file::FileError as FarError;

@@ -18,7 +18,7 @@ use crate::far::FarSettings;
 use crate::far::record::Node;
 use crate::geometry::point;
 use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
 use shiftvox::graph::map::release;
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
@@ -28,7 +28,6 @@ const BROUGHT_IN: u64 = 64 << 10;
 /// An open `.far` file.
 #[derive(Debug)]
 pub struct FarFile {
-    /// The settings of all nodes.
     pub settings: FarSettings,
     path: PathBuf,
     bytes: Bytes,
@@ -41,20 +40,15 @@ pub struct FarFile {
 }
 
 impl FarFile {
-    /// Opens a file: maps it and checks header and hierarchy.
-    ///
-    /// # Errors
-    /// When it cannot be read, or a field of header or hierarchy is not as it should be.
+    /// Maps a file and checks header and hierarchy.
     pub fn open(path: &Path) -> Result<Self, FarError> {
         let opened = file::open(path, HEADER_BYTES)?;
         read_header(&opened.beginning, opened.bytes, path)?;
         Self::of(Bytes::Mapped(opened.map()?), path)
     }
 
-    /// Opens a file of which at most so many bytes of nodes' data are in memory at a time, or one larger node.
-    ///
-    /// # Errors
-    /// As [`FarFile::open`]; and where the system cannot let go of mapped pages.
+    /// Opens a file of which at most so many bytes of nodes' data are in memory at a time, or one larger node. An error
+    /// where the system cannot release mapped pages.
     pub fn open_within(path: &Path, bytes: u64) -> Result<Self, FarError> {
         let mut file = Self::open(path)?;
         let whole = file.bytes.get().len();
@@ -71,26 +65,22 @@ impl FarFile {
         Ok(file)
     }
 
-    /// The state of the budget, or `None` without one.
+    /// `None` without a budget.
     pub fn resident(&self) -> Option<Resident> {
         self.budget.as_ref().map(Budget::resident)
     }
 
     /// A file that is held in memory; it is named `(memory)` in errors.
-    ///
-    /// # Errors
-    /// As [`FarFile::open`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FarError> {
         Self::of(Bytes::held(bytes), Path::new("(memory)"))
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, FarError> {
-        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
         let places = layout(header.nodes, header.data_bytes);
         let [place, section] = places;
-        check_padding(all, places.into_iter(), path)?;
+        FORMAT.check_padding(all, places.into_iter(), path)?;
         let damaged =
             |section, offset, expected| FarError::damaged(path, section, offset, expected);
         let node_bytes = &all[range(place)];
@@ -101,11 +91,8 @@ impl FarFile {
         let nodes: Vec<Node> = bytemuck::pod_collect_to_vec(node_bytes);
         check(&nodes, section[1] - section[0], header.triangles).map_err(|(node, expected)| {
             let offset = place[0] + (node * size_of::<Node>()) as u64;
-            damaged(
-                "hierarchy",
-                offset,
-                format!("node {node} to have {expected}"),
-            )
+            let expected = format!("node {node} to have {expected}");
+            damaged("hierarchy", offset, expected)
         })?;
         let file = Self {
             settings: FarSettings {
@@ -126,9 +113,8 @@ impl FarFile {
             bytes,
         };
         let (low, high) = file.bounds();
-        let extents = file.nodes[0].high.iter().zip(file.nodes[0].low);
-        let extents = extents.map(|(&high, low)| f64::from(high) - f64::from(low));
-        let finest = extents.fold(0.0, f64::max) / MOST_PARTS;
+        let root = &file.nodes[0];
+        let finest = (point(root.high) - point(root.low)).max_element() / MOST_PARTS;
         if !can_be_seen(low.to_array(), high.to_array(), finest) {
             let expected = "a centre from which the boxes of nodes can be told apart";
             return Err(damaged("header", CENTRE, expected.to_owned()));
@@ -139,11 +125,6 @@ impl FarFile {
     /// The hierarchy, parents before children; the root comes first.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
-    }
-
-    /// Whether +Y is up, for fitted cameras; else +Z.
-    pub fn y_up(&self) -> bool {
-        self.settings.y_up
     }
 
     /// Bytes of the file.
@@ -170,7 +151,7 @@ impl FarFile {
         MeshBox::new(span, self.settings.bevels, self.settings.y_up)
     }
 
-    /// The number of each node's first voxel.
+    /// Voxels are numbered from node to node, as triangles are.
     pub(in crate::far) fn first_voxels(&self) -> &[u32] {
         &self.first_voxel
     }
@@ -179,36 +160,31 @@ impl FarFile {
         &self.first_triangle
     }
 
-    /// Voxels of all nodes.
     pub fn voxels(&self) -> u32 {
         let last = self.nodes.len() - 1;
         self.first_voxel[last] + self.nodes[last].voxels() as u32
     }
 
-    /// A node's voxels or triangles.
-    ///
-    /// # Errors
-    /// When they are not as they were written.
+    /// A node's voxels and triangles. An error if they are not as they were written.
     pub fn data(&self, number: usize) -> Result<Arc<NodeData>, FarError> {
-        let slot = &self.data[number];
-        let data = match slot.get() {
+        let here = self.data[number].lock().clone();
+        let data = match here {
             Some(data) => data,
             None => {
                 let data = Arc::new(self.unpacked(number)?);
-                slot.set(Some(Arc::clone(&data)));
+                *self.data[number].lock() = Some(Arc::clone(&data));
                 data
             }
         };
         if let Some(budget) = &self.budget {
-            budget.touch(number, data.bytes(), |other| self.data[other].set(None));
+            budget.touch(number, data.bytes(), |other| {
+                *self.data[other].lock() = None
+            });
         }
         Ok(data)
     }
 
     /// Checks the data of all nodes.
-    ///
-    /// # Errors
-    /// At the first node whose data is not as it was written.
     pub fn verify(&self) -> Result<(), FarError> {
         (0..self.nodes.len()).try_for_each(|node| self.data(node).map(drop))
     }
@@ -240,7 +216,6 @@ impl FarFile {
     }
 }
 
-/// The number of each node's first item, if items are counted on from node to node.
 fn first_of(nodes: &[Node], items: impl Fn(&Node) -> u32) -> Vec<u32> {
     let mut next = 0;
     let first = |node| {

@@ -1,6 +1,4 @@
-//! Triangles of a node as they are stored (`spec/far.md`): vertices of one node in steps of 1/65,535 of its box, shared
-//! ones in single precision, so that no gap opens. A triangle names a vertex by how far back in its list it is: 0 is the
-//! next.
+//! Triangles of a node as they are stored (`spec/far.md`, Surface). Shared vertices are exact, so that no gap opens.
 
 use std::collections::HashMap;
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::FarCounts;
 use crate::far::store::FarFile;
+use crate::geometry::point;
 use crate::raster::RasterCamera;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +12,7 @@ pub(super) struct Chosen {
     pub(super) number: usize,
     /// Its voxels and triangles are drawn; else its children are, and the outline holds all that is below.
     pub(super) is_drawn: bool,
-    /// Distance of the eye from its box, world units.
+    /// Of the eye from its box and from the box's middle, world units.
     pub(super) distance: f64,
     pub(super) middle: f64,
     pub(super) outline: Outline,
@@ -32,14 +33,7 @@ impl Outline {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         let (mut depth, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
         for corner in 0..8 {
-            let pick = |k: usize| {
-                if corner >> k & 1 == 1 {
-                    high[k]
-                } else {
-                    low[k]
-                }
-            };
-            let seen = view.seen(DVec3::new(pick(0), pick(1), pick(2)));
+            let seen = view.seen(point([0, 1, 2].map(|k| [low, high][corner >> k & 1][k])));
             depth = depth.min(seen.z);
             farthest = farthest.max(seen.z);
             if seen.z >= view.near {
@@ -80,7 +74,6 @@ const BRANCH_MARGIN: f64 = 2.0;
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
     pub(super) view: RasterCamera,
-    pub(super) cut_of: RasterCamera,
     pub(super) voxel_px: f64,
 }
 
@@ -93,11 +86,13 @@ impl Cut<'_> {
         let (low, high) = node.bounds();
         let (low, high) = (low + centre, high + centre);
         let voxel = f64::from(node.voxel);
-        let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
-        let from = distance_from(self.cut_of.eye);
-        let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
+        let eye = self.view.eye;
+        let distance = (low - eye).max(eye - high).max(DVec3::ZERO).length();
+        let is_small = voxel * self.view.focal_px <= self.voxel_px * distance;
         // Nearer, things that hide it may be behind the eye, unless the eye is outside the box of everything.
-        let is_far = from >= self.file.settings.distance_voxels * voxel || self.is_outside_all();
+        let all = self.file.bounds();
+        let is_outside_all = eye.cmplt(all.0).any() || eye.cmpgt(all.1).any();
+        let is_far = distance >= self.file.settings.distance_voxels * voxel || is_outside_all;
         let is_drawn = node.is_leaf() || node.has_grid() && is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
@@ -114,29 +109,10 @@ impl Cut<'_> {
         Some(Chosen {
             number,
             is_drawn,
-            distance: distance_from(self.view.eye),
-            middle: ((low + high) / 2.0 - self.view.eye).length(),
+            distance,
+            middle: ((low + high) / 2.0 - eye).length(),
             outline,
         })
-    }
-
-    fn is_outside_all(&self) -> bool {
-        let (low, high) = self.file.bounds();
-        let eye = self.cut_of.eye;
-        eye.cmplt(low).any() || eye.cmpgt(high).any()
-    }
-
-    pub(super) fn all(&self, counts: &mut FarCounts) -> Vec<Chosen> {
-        let mut drawn = Vec::new();
-        let mut waiting = vec![0];
-        while let Some(number) = waiting.pop() {
-            match self.classify(number, counts) {
-                None => {}
-                Some(chosen) if chosen.is_drawn => drawn.push(chosen),
-                Some(_) => waiting.extend(self.children(number)),
-            }
-        }
-        drawn
     }
 
     pub(super) fn children(&self, number: usize) -> impl Iterator<Item = usize> + use<> {

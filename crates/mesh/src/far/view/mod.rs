@@ -1,11 +1,5 @@
-//! Far voxels to a picture.
-//!
-//! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
-//! 2. Opaque voxels and triangles into one word per pixel, depth above and number below. The least counts, so that the
-//!    result is independent of order, threads and culling.
-//! 3. `visible`, with the depth pyramid of `fill`: hidden branches of the hierarchy are culled.
-//! 4. The winners' colours, then transparent voxels over them.
-//! 5. With several samples per pixel all this happens per sample, and `samples` averages them.
+//! Far voxels to a picture: `cut` chooses nodes, `visible` and `fill` cull hidden ones, `opaque` draws into a depth buffer,
+//! `transparent` over it. `samples` averages several samples per pixel.
 
 mod cut;
 mod fill;
@@ -15,7 +9,6 @@ mod splat;
 mod transparent;
 mod visible;
 
-use super::record::Node;
 pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
 use crate::raster::{Light, RasterCamera, RasterError};
@@ -23,20 +16,18 @@ use crate::{linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
-use visible::{VisibilityHistory, VisibleNodes};
+use visible::VisibilityHistory;
 
-/// How far voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewOptions {
     /// Largest projected side of a voxel, pixels, above 0.
     pub voxel_px: f64,
     /// Samples of a pixel along each axis, 1 to 16.
     pub samples_across: u32,
-    /// The opacities that are used.
     pub opacity: Opacity,
-    /// The light, or `None` for unlit colours.
+    /// `None` for unlit colours.
     pub light: Option<Light>,
-    /// The background, sRGB, or `None` for transparent.
+    /// sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
     /// Whether hidden nodes are left out. Never changes the picture.
     pub culling: bool,
@@ -55,22 +46,16 @@ impl Default for ViewOptions {
     }
 }
 
-/// Most samples of a pixel along each axis.
-pub const MOST_SAMPLES_ACROSS: u32 = 16;
+const MOST_SAMPLES_ACROSS: u32 = 16;
 
-/// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// The file's data is damaged.
     #[error(transparent)]
     File(#[from] FarError),
-    /// The camera or the picture's size.
     #[error(transparent)]
     Raster(#[from] RasterError),
-    /// The size of voxels.
     #[error("voxels are drawn at a size above 0 pixels, not {0}")]
     VoxelSize(f64),
-    /// The number of samples.
     #[error("a pixel has 1 to {MOST_SAMPLES_ACROSS} samples along each axis, not {0}")]
     Samples(u32),
 }
@@ -78,13 +63,10 @@ pub enum ViewError {
 /// A finished picture, row by row from the top left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarPicture {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
     /// Colour, sRGB, and coverage, not premultiplied.
     pub rgba: Vec<[u8; 4]>,
-    /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
     /// View-axis depth, world units, of the opaque surface at the sample right of and below the pixel's middle, or infinite.
     pub depth: Vec<f32>,
@@ -92,28 +74,26 @@ pub struct FarPicture {
     pub node: Vec<i32>,
 }
 
-/// Counts and work of one frame.
+/// Work of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FarCounts {
-    /// Nodes that were visited.
+    /// Nodes.
     pub visited: u64,
-    /// Nodes of those beside or behind the picture.
+    /// Visited nodes beside or behind the picture.
     pub outside: u64,
     /// Inner nodes drawn.
     pub voxel_nodes: u64,
     /// Leaves drawn.
     pub leaves: u64,
-    /// Nodes and branches found hidden.
+    /// Nodes and branches.
     pub hidden: u64,
     /// Queries whether a node or branch is hidden.
     pub queries: u64,
-    /// Opaque voxels drawn.
     pub opaque_voxels: u64,
-    /// Transparent voxels drawn.
     pub transparent_voxels: u64,
-    /// Triangles given to the rasteriser.
+    /// Given to the rasteriser.
     pub triangles: u64,
-    /// Whether triangles of different batches were equally deep, and the frame was drawn again in one.
+    /// Frames drawn again in one batch, because triangles of different batches were equally deep.
     pub drawn_twice: u64,
     /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
@@ -127,7 +107,6 @@ pub struct FarViewer<'f> {
 }
 
 impl<'f> FarViewer<'f> {
-    /// Nothing was drawn yet.
     pub fn new(file: &'f FarFile) -> Self {
         Self {
             file,
@@ -135,26 +114,9 @@ impl<'f> FarViewer<'f> {
         }
     }
 
-    /// Draws a frame.
-    ///
-    /// # Errors
-    /// See [`ViewError`].
     pub fn draw(
         &mut self,
         view: &RasterCamera,
-        options: &ViewOptions,
-    ) -> Result<(FarPicture, FarCounts), ViewError> {
-        self.draw_with_cut_of(view, view, options)
-    }
-
-    /// Draws a frame with the nodes that would be drawn from elsewhere.
-    ///
-    /// # Errors
-    /// See [`ViewError`].
-    pub fn draw_with_cut_of(
-        &mut self,
-        view: &RasterCamera,
-        cut_of: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<(FarPicture, FarCounts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
@@ -169,22 +131,13 @@ impl<'f> FarViewer<'f> {
         let cut = Cut {
             file: self.file,
             view: *view,
-            cut_of: samples::finer(cut_of, across),
             // From here on a pixel is a sample.
             voxel_px: options.voxel_px * f64::from(across),
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
-        let walked = if options.culling {
-            visible::walk(&cut, &self.memory, &mut opaque, &mut counts)?
-        } else {
-            let drawn = cut.all(&mut counts);
-            opaque.draw(&drawn, &mut counts)?;
-            VisibleNodes {
-                drawn,
-                branches: Vec::new(),
-            }
-        };
-        if opaque.has_tie() {
+        let memory = options.culling.then_some(&self.memory);
+        let walked = visible::walk(&cut, memory, &mut opaque, &mut counts)?;
+        if opaque.has_tie {
             // Rasterised in one go, whose rule for equal depths has more digits.
             counts.drawn_twice = 1;
             counts.opaque_voxels = 0;
@@ -192,14 +145,12 @@ impl<'f> FarViewer<'f> {
             opaque = Opaque::new(self.file, view, options)?;
             opaque.draw(&walked.drawn, &mut counts)?;
         }
-        let is_leaf = |node: &&Chosen| self.file.nodes()[node.number].is_leaf();
-        counts.leaves = walked.drawn.iter().filter(is_leaf).count() as u64;
+        for node in &walked.drawn {
+            let node = &self.file.nodes()[node.number];
+            counts.leaves += u64::from(node.is_leaf());
+            counts.bytes += node.drawn_bytes();
+        }
         counts.voxel_nodes = walked.drawn.len() as u64 - counts.leaves;
-        let drawn = walked
-            .drawn
-            .iter()
-            .map(|node| &self.file.nodes()[node.number]);
-        counts.bytes = drawn.map(Node::drawn_bytes).sum();
         let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
         if options.culling {
             let fill = Fill::of(&opaque.depths(), view);
@@ -220,8 +171,8 @@ impl<'f> FarViewer<'f> {
                 height: pixels.height,
                 rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
                 coverage: drawn.iter().map(|p| p.coverage).collect(),
-                node: samples::middles(opaque.nodes(), size, across as usize),
-                depth: samples::middles(opaque.depths(), size, across as usize),
+                node: samples::middles(&opaque.nodes(), size, across as usize),
+                depth: samples::middles(&opaque.depths(), size, across as usize),
             },
             counts,
         ))
@@ -242,18 +193,15 @@ impl Pixel {
         }
         let light = self.light.map(f64::from);
         let coverage = f64::from(self.coverage);
-        let bytes = |light: [f64; 3]| light.map(linear_to_srgb);
-        match background {
+        let (light, alpha) = match background {
             Some(color) => {
                 let mixed =
                     |k: usize| light[k] + (1.0 - coverage) * f64::from(srgb_to_linear(color[k]));
-                let [r, g, b] = bytes([0, 1, 2].map(mixed));
-                [r, g, b, 255]
+                ([0, 1, 2].map(mixed), 255)
             }
-            None => {
-                let [r, g, b] = bytes(light.map(|l| l / coverage));
-                [r, g, b, (coverage * 255.0 + 0.5) as u8]
-            }
-        }
+            None => (light.map(|l| l / coverage), (coverage * 255.0 + 0.5) as u8),
+        };
+        let [r, g, b] = light.map(linear_to_srgb);
+        [r, g, b, alpha]
     }
 }

@@ -1,6 +1,5 @@
 //! Opaque voxels and triangles, with a depth buffer.
 
-use std::borrow::Borrow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,13 +13,14 @@ use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
 use crate::geometry::point;
 use crate::raster::{
-    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
+    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
 };
 use crate::{Surface, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
 
+/// Neighbouring pixels mostly show one node.
 const RESOLVED: usize = 1 << 12;
 
 /// For each pixel depth (bits of a positive `f32`) and number of the nearest voxel or triangle.
@@ -29,8 +29,10 @@ pub(super) struct Opaque<'f> {
     view: RasterCamera,
     options: ViewOptions,
     words: Vec<AtomicU64>,
-    pictures: Vec<(RasterPicture, Vec<u32>)>,
-    has_tie: bool,
+    /// Colours and numbers of triangles, of each batch.
+    pictures: Vec<(Vec<[u8; 4]>, Vec<u32>)>,
+    /// Triangles of different batches were equally deep.
+    pub(super) has_tie: bool,
 }
 
 impl<'f> Opaque<'f> {
@@ -51,17 +53,14 @@ impl<'f> Opaque<'f> {
         })
     }
 
-    /// Draws what is opaque of some nodes, in any order and batches, unless [`Opaque::has_tie`].
-    pub(super) fn draw<N: Borrow<Chosen> + Sync>(
+    /// Draws what is opaque of some nodes, in any order and batches, unless there is a tie.
+    pub(super) fn draw(
         &mut self,
-        nodes: impl IntoIterator<Item = N>,
+        nodes: &[Chosen],
         counts: &mut FarCounts,
     ) -> Result<(), ViewError> {
-        let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
-        let drawn = nodes
-            .par_iter()
-            .map(|node| self.voxels(node.number))
-            .collect::<Result<Vec<u64>, ViewError>>()?;
+        let drawn = nodes.par_iter().map(|node| self.voxels(node.number));
+        let drawn = drawn.collect::<Result<Vec<u64>, ViewError>>()?;
         counts.opaque_voxels += drawn.iter().sum::<u64>();
         let with_surface = nodes.iter().map(|node| node.number);
         let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
@@ -102,9 +101,9 @@ impl<'f> Opaque<'f> {
                 let depth = (square.depth as f32).to_bits();
                 let word = u64::from(depth) << 32 | u64::from(number);
                 let hexagon = places.hexagon(&self.view, &square);
-                let [[x0, y0], [x1, y1]] = hexagon.pixels(&self.view);
-                for y in y0..y1 {
-                    for x in x0..x1 {
+                let [columns, rows] = hexagon.pixels(&self.view);
+                for y in rows {
+                    for x in columns.clone() {
                         if hexagon.holds(x, y) {
                             self.put(y * width + x, word);
                         }
@@ -124,32 +123,27 @@ impl<'f> Opaque<'f> {
 
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
         let surface = Surfaces::of(self.file, nodes)?;
-        let numbers: Vec<u32> = surface.places.iter().map(|place| place.2).collect();
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
             background: None,
         };
-        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let mut picture = raster::draw(&surface, &self.view, &options, &Silent)?;
         let voxels = self.file.voxels();
-        for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
-            if at == NO_TRIANGLE {
+        for (pixel, at) in picture.triangle.iter_mut().enumerate() {
+            if *at == NO_TRIANGLE {
                 continue;
             }
-            let id = voxels + numbers[at as usize];
+            *at = surface.places[*at as usize].2;
+            let (id, depth) = (voxels + *at, picture.depth[pixel]);
             let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
             let there = self.words[pixel].load(Ordering::Relaxed);
             let is_triangle = there as u32 >= voxels && there != EMPTY;
             self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
             self.put(pixel, word);
         }
-        let drawn = numbers.len() as u64;
-        self.pictures.push((picture, numbers));
-        Ok(drawn)
-    }
-
-    pub(super) fn has_tie(&self) -> bool {
-        self.has_tie
+        self.pictures.push((picture.rgba, picture.triangle));
+        Ok(surface.places.len() as u64)
     }
 
     pub(super) fn depths(&self) -> Vec<f32> {
@@ -159,35 +153,24 @@ impl<'f> Opaque<'f> {
 
     pub(super) fn nodes(&self) -> Vec<i32> {
         let voxels = self.file.voxels();
-        self.words
-            .iter()
-            .map(|word| {
-                let word = word.load(Ordering::Relaxed);
-                let id = word as u32;
-                let node = if word == EMPTY {
-                    return -1;
-                } else if id < voxels {
-                    last_from(self.file.first_voxels(), id)
-                } else {
-                    last_from(self.file.first_triangles(), id - voxels)
-                };
-                i32::try_from(node).unwrap_or(i32::MAX)
-            })
-            .collect()
+        let node = |word: &AtomicU64| {
+            let word = word.load(Ordering::Relaxed);
+            let node = match word as u32 {
+                _ if word == EMPTY => return -1,
+                id if id < voxels => last_from(self.file.first_voxels(), id),
+                id => last_from(self.file.first_triangles(), id - voxels),
+            };
+            i32::try_from(node).unwrap_or(i32::MAX)
+        };
+        self.words.iter().map(node).collect()
     }
 
     pub(super) fn resolve(&self) -> Vec<Pixel> {
-        let mut pixels = vec![Pixel::default(); self.words.len()];
+        let pixels = (0..self.words.len()).into_par_iter();
+        let pixels = pixels.with_min_len(RESOLVED);
         pixels
-            .par_chunks_mut(RESOLVED)
-            .enumerate()
-            .for_each(|(chunk, pixels)| {
-                let mut last = None;
-                for (at, pixel) in pixels.iter_mut().enumerate() {
-                    *pixel = self.pixel(chunk * RESOLVED + at, &mut last);
-                }
-            });
-        pixels
+            .map_init(|| None, |last, pixel| self.pixel(pixel, last))
+            .collect()
     }
 
     /// `last`: the node whose data was needed last.
@@ -200,13 +183,11 @@ impl<'f> Opaque<'f> {
             };
         }
         let (id, voxels) = (word as u32, self.file.voxels());
-        let light = if id < voxels {
-            self.voxel_light(id, last)
-        } else {
-            self.triangle_light(pixel, id - voxels)
-        };
         Pixel {
-            light,
+            light: match id < voxels {
+                true => self.voxel_light(id, last),
+                false => self.triangle_light(pixel, id - voxels),
+            },
             coverage: 1.0,
             depth: f32::from_bits((word >> 32) as u32),
         }
@@ -236,22 +217,19 @@ impl<'f> Opaque<'f> {
     }
 
     fn triangle_light(&self, pixel: usize, number: u32) -> [f32; 3] {
-        for (picture, numbers) in &self.pictures {
-            let at = picture.triangle[pixel];
-            if at != NO_TRIANGLE && numbers[at as usize] == number {
-                let [r, g, b, _] = picture.rgba[pixel];
-                return [r, g, b].map(srgb_to_linear);
-            }
-        }
-        [0.0; 3]
+        let is_there = |(_, numbers): &&(_, Vec<u32>)| numbers[pixel] == number;
+        let found = self.pictures.iter().find(is_there);
+        found.map_or([0.0; 3], |(colors, _)| {
+            let [r, g, b, _] = colors[pixel];
+            [r, g, b].map(srgb_to_linear)
+        })
     }
 }
 
 /// The node that an item belongs to.
 fn last_from(first: &[u32], item: u32) -> usize {
-    first
-        .partition_point(|&first| first <= item)
-        .saturating_sub(1)
+    let after = first.partition_point(|&first| first <= item);
+    after.saturating_sub(1)
 }
 
 pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions) -> [f32; 3] {

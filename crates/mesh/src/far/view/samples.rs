@@ -36,10 +36,7 @@ pub(super) fn averaged(samples: Vec<Pixel>, size: [usize; 2], across: usize) -> 
 }
 
 /// Of each pixel the sample right of and below its middle; with one sample that.
-pub(super) fn middles<T: Copy>(samples: Vec<T>, size: [usize; 2], across: usize) -> Vec<T> {
-    if across == 1 {
-        return samples;
-    }
+pub(super) fn middles<T: Copy>(samples: &[T], size: [usize; 2], across: usize) -> Vec<T> {
     let [width, height] = size;
     let middle = |number: usize| {
         let (x, y) = (number % width * across, number / width * across);

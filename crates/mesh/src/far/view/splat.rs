@@ -1,5 +1,7 @@
 //! A voxel in the picture: a square of the size of its cube's outline.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::far::record::Node;
@@ -94,40 +96,34 @@ impl Places {
 }
 
 impl Hexagon {
-    pub(super) fn pixels(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
-        let range = |k: usize, side: u32| {
-            let most = f64::from(side);
-            let at = |c: f64| (c - 0.5).ceil().clamp(0.0, most) as usize;
+    /// Ranges of columns and rows.
+    pub(super) fn pixels(&self, view: &RasterCamera) -> [Range<usize>; 2] {
+        let sides = [view.width, view.height].map(f64::from);
+        [0, 1].map(|k| {
+            let at = |c: f64| (c - 0.5).ceil().clamp(0.0, sides[k]) as usize;
             let half = self.edges.iter().map(|edge| edge[k].abs()).sum::<f64>();
             let half = half * (1.0 + OUTLINE_MARGIN);
-            [at(self.middle[k] - half), at(self.middle[k] + half)]
-        };
-        let ([x0, x1], [y0, y1]) = (range(0, view.width), range(1, view.height));
-        [[x0, y0], [x1, y1]]
+            at(self.middle[k] - half)..at(self.middle[k] + half)
+        })
     }
 
     pub(super) fn holds(&self, x: usize, y: usize) -> bool {
-        let offset = [
-            x as f64 + 0.5 - self.middle[0],
-            y as f64 + 0.5 - self.middle[1],
-        ];
-        let edges = self.edges.iter().zip(self.reach);
-        edges
-            .into_iter()
-            .all(|(&edge, reach)| cross(offset, edge).abs() <= reach)
+        let [x, y] = [x, y].map(|c| c as f64 + 0.5);
+        let offset = [x - self.middle[0], y - self.middle[1]];
+        let mut edges = self.edges.iter().zip(self.reach);
+        edges.all(|(&edge, reach)| cross(offset, edge).abs() <= reach)
     }
 }
 
 impl Square {
-    pub(super) fn touched(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
-        let range = |k: usize, side: u32| {
-            let most = f64::from(side);
-            let low = (self.middle[k] - self.half).floor().clamp(0.0, most) as usize;
-            let high = (self.middle[k] + self.half).ceil().clamp(0.0, most) as usize;
-            [low, high]
-        };
-        let ([x0, x1], [y0, y1]) = (range(0, view.width), range(1, view.height));
-        [[x0, y0], [x1, y1]]
+    /// Ranges of columns and rows.
+    pub(super) fn touched(&self, view: &RasterCamera) -> [Range<usize>; 2] {
+        let sides = [view.width, view.height].map(f64::from);
+        [0, 1].map(|k| {
+            let at = |c: f64| c.clamp(0.0, sides[k]) as usize;
+            let (low, high) = (self.middle[k] - self.half, self.middle[k] + self.half);
+            at(low.floor())..at(high.ceil())
+        })
     }
 
     /// The [`PARTS`] of a row or column whose middles are in the square, a bit each.
@@ -136,10 +132,8 @@ impl Square {
             let part = ((edge - pixel as f64) * PARTS as f64 - 0.5).ceil();
             part.clamp(0.0, PARTS as f64) as u32
         };
-        let (low, high) = (
-            at(self.middle[k] - self.half),
-            at(self.middle[k] + self.half),
-        );
+        let low = at(self.middle[k] - self.half);
+        let high = at(self.middle[k] + self.half);
         (1 << high) - (1 << low.min(high))
     }
 }

@@ -1,5 +1,6 @@
-//! Transparent voxels before what is opaque, front to back. A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in the parts whose
-//! middles its square covers: squares side by side cover each part once.
+//! Transparent voxels over opaque ones, front to back, by the 4 x 4 parts of a pixel (`spec/far.md`).
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -17,7 +18,8 @@ struct Splat {
     square: Square,
     color: [f32; 3],
     through: f32,
-    rows: [usize; 2],
+    columns: Range<usize>,
+    rows: Range<usize>,
 }
 
 #[derive(Clone, Copy)]
@@ -45,12 +47,10 @@ pub(super) fn draw(
         .par_chunks_mut(width * BAND)
         .enumerate()
         .for_each(|(band, pixels)| {
-            let rows = [band * BAND, band * BAND + pixels.len() / width];
+            let rows = band * BAND..band * BAND + pixels.len() / width;
             let mut veils: Vec<Option<Box<Veil>>> = vec![None; pixels.len()];
             for splat in splats.iter().flat_map(|node| node.iter().rev()) {
-                if splat.rows[0] < rows[1] && splat.rows[1] > rows[0] {
-                    blend(splat, view, rows, pixels, &mut veils);
-                }
+                blend(splat, width, &rows, pixels, &mut veils);
             }
             for (pixel, veil) in pixels.iter_mut().zip(&veils) {
                 if let Some(veil) = veil {
@@ -79,8 +79,8 @@ fn splats(
             let Some(square) = places.square(view, record) else {
                 continue;
             };
-            let [[x0, y0], [x1, y1]] = square.touched(view);
-            if x0 >= x1 || y0 >= y1 {
+            let [columns, rows] = square.touched(view);
+            if columns.is_empty() || rows.is_empty() {
                 continue;
             }
             let voxel = Voxel::read(list, record);
@@ -89,7 +89,8 @@ fn splats(
                 splats.push(Splat {
                     through: (1.0 - opacity) as f32,
                     color: light_of(&voxel, square.towards_eye, options),
-                    rows: [y0, y1],
+                    columns,
+                    rows,
                     square,
                 });
             }
@@ -100,19 +101,17 @@ fn splats(
 
 fn blend(
     splat: &Splat,
-    view: &RasterCamera,
-    [top, bottom]: [usize; 2],
+    width: usize,
+    rows: &Range<usize>,
     pixels: &[Pixel],
     veils: &mut [Option<Box<Veil>>],
 ) {
-    let width = view.width as usize;
-    let [[x0, y0], [x1, y1]] = splat.square.touched(view);
     let depth = splat.square.depth as f32;
-    for y in y0.max(top)..y1.min(bottom) {
+    for y in splat.rows.start.max(rows.start)..splat.rows.end.min(rows.end) {
         let down = splat.square.parts(1, y);
-        for x in x0..x1 {
+        for x in splat.columns.clone() {
             let across = splat.square.parts(0, x);
-            let at = (y - top) * width + x;
+            let at = (y - rows.start) * width + x;
             if down == 0 || across == 0 || depth > pixels[at].depth {
                 continue;
             }
@@ -123,13 +122,8 @@ fn blend(
                 })
             };
             let veil = veils[at].get_or_insert_with(clear);
-            let factors: [f32; PARTS] = std::array::from_fn(|part| {
-                if across >> part & 1 == 1 {
-                    splat.through
-                } else {
-                    1.0
-                }
-            });
+            let factors: [f32; PARTS] =
+                std::array::from_fn(|part| [1.0, splat.through][(across >> part & 1) as usize]);
             let mut taken = 0.0;
             for (part, row) in veil.through.iter_mut().enumerate() {
                 if down >> part & 1 == 0 {

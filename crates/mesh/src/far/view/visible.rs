@@ -1,8 +1,5 @@
-//! The visible nodes: traverses the hierarchy front to back and culls hidden nodes.
-//!
-//! A branch that was visible in the last frame is walked without a test, and its nodes are drawn first. Any other
-//! branch's box is tested against the picture of the batch before the last, as a GPU's late answers are. Culled nodes
-//! are behind drawn ones in every pixel, so memory cannot change the picture.
+//! Traverses the hierarchy front to back and culls hidden nodes (`spec/far.md`, Culling). Culled nodes are behind drawn
+//! ones in every pixel, so memory cannot change the picture.
 
 use std::collections::BTreeMap;
 
@@ -56,9 +53,10 @@ pub(super) struct VisibleNodes {
     pub(super) branches: Vec<usize>,
 }
 
+/// Without a memory, nothing is culled.
 pub(super) fn walk(
     cut: &Cut<'_>,
-    memory: &VisibilityHistory,
+    memory: Option<&VisibilityHistory>,
     opaque: &mut Opaque<'_>,
     counts: &mut FarCounts,
 ) -> Result<VisibleNodes, ViewError> {
@@ -74,7 +72,7 @@ pub(super) fn walk(
         let Some(found) = cut.classify(number, counts) else {
             continue;
         };
-        if !memory.was_visible(number) {
+        if memory.is_some_and(|memory| !memory.was_visible(number)) {
             waiting.insert(place(&found), found);
         } else if found.is_drawn {
             walked.drawn.push(found);

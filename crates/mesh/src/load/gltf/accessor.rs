@@ -1,5 +1,7 @@
 //! Numbers out of a glTF document's buffers, every place checked.
 
+use glam::DVec3;
+
 use super::document::{BufferView, Document};
 use super::{Buffers, Problem, broken, fault_of};
 
@@ -8,10 +10,8 @@ pub(super) struct Numbers<'b> {
     bytes: &'b [u8],
     stride: usize,
     pub(super) count: usize,
-    /// Numbers of an element.
     pub(super) width: usize,
     component: u32,
-    /// Bytes of a number.
     size: usize,
     normalized: bool,
 }
@@ -91,57 +91,46 @@ impl<'b> Numbers<'b> {
 
     /// Number `k` of an element as it is meant; 0 outside.
     pub(super) fn real(&self, element: usize, k: usize) -> f32 {
-        let Some(raw) = self.raw(element, k) else {
-            return 0.0;
+        let (value, full) = match (self.component, self.raw(element, k)) {
+            (5120, &[a]) => (f32::from(a as i8), 127.0),
+            (5121, &[a]) => (f32::from(a), 255.0),
+            (5122, &[a, b]) => (f32::from(i16::from_le_bytes([a, b])), 32767.0),
+            (5123, &[a, b]) => (f32::from(u16::from_le_bytes([a, b])), 65535.0),
+            (5125, &[a, b, c, d]) => (u32::from_le_bytes([a, b, c, d]) as f32, 4_294_967_295.0),
+            (5126, &[a, b, c, d]) => return f32::from_le_bytes([a, b, c, d]),
+            _ => return 0.0,
         };
-        let (value, full) = match self.component {
-            5120 => (f32::from(raw as u8 as i8), 127.0),
-            5121 => (f32::from(raw as u8), 255.0),
-            5122 => (f32::from(raw as u16 as i16), 32767.0),
-            5123 => (f32::from(raw as u16), 65535.0),
-            5125 => (raw as f32, 4_294_967_295.0),
-            _ => return f32::from_bits(raw),
-        };
-        if self.normalized {
-            (value / full).max(-1.0)
-        } else {
-            value
+        match self.normalized {
+            true => (value / full).max(-1.0),
+            false => value,
         }
     }
 
-    pub(super) fn triple(&self, element: usize) -> [f32; 3] {
-        std::array::from_fn(|k| self.real(element, k))
+    pub(super) fn point(&self, element: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|k| f64::from(self.real(element, k))))
     }
 
     /// An index, where the numbers are whole and not negative.
     pub(super) fn index(&self, element: usize) -> Option<u32> {
-        match self.component {
-            5121 | 5123 | 5125 if self.width == 1 => self.raw(element, 0),
+        match (self.component, self.raw(element, 0)) {
+            (5121, &[a]) if self.width == 1 => Some(a.into()),
+            (5123, &[a, b]) if self.width == 1 => Some(u16::from_le_bytes([a, b]).into()),
+            (5125, &[a, b, c, d]) if self.width == 1 => Some(u32::from_le_bytes([a, b, c, d])),
             _ => None,
         }
     }
 
-    fn raw(&self, element: usize, k: usize) -> Option<u32> {
-        if element >= self.count || k >= self.width {
-            return None;
-        }
+    fn raw(&self, element: usize, k: usize) -> &[u8] {
         let at = element * self.stride + k * self.size;
-        Some(match *self.bytes.get(at..at + self.size)? {
-            [a] => u32::from(a),
-            [a, b] => u32::from(u16::from_le_bytes([a, b])),
-            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
-            _ => return None,
-        })
+        let is_inside = element < self.count && k < self.width;
+        let range = if is_inside { at..at + self.size } else { 0..0 };
+        self.bytes.get(range).unwrap_or_default()
     }
 }
 
-/// The bytes of a buffer view, where they are within its buffer.
 pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers) -> Option<&'b [u8]> {
-    slice(
-        buffers.get(view.buffer)?,
-        view.byte_offset,
-        view.byte_length,
-    )
+    let buffer = buffers.by_number.get(view.buffer)?;
+    slice(buffer, view.byte_offset, view.byte_length)
 }
 
 fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {

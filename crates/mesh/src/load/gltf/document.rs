@@ -1,5 +1,7 @@
 //! The parts of a glTF document that are read.
 
+use std::collections::HashMap;
+
 use serde::Deserialize;
 
 use crate::load::{Fault, Place, Problem};
@@ -34,15 +36,15 @@ struct Asset {
     version: String,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Scene {
-    #[serde(default)]
     pub(super) nodes: Vec<usize>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Node {
-    #[serde(default)]
     pub(super) children: Vec<usize>,
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
@@ -52,43 +54,26 @@ pub(super) struct Node {
     pub(super) scale: Option<[f64; 3]>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Mesh {
-    #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Primitive {
-    #[serde(default)]
-    pub(super) attributes: Attributes,
+    pub(super) attributes: HashMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
     pub(super) mode: Option<u32>,
-    #[serde(default)]
     pub(super) targets: Vec<serde::de::IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]
-pub(super) struct Attributes {
-    #[serde(rename = "POSITION")]
-    pub(super) position: Option<usize>,
-    #[serde(rename = "NORMAL")]
-    pub(super) normal: Option<usize>,
-    #[serde(rename = "COLOR_0")]
-    pub(super) color: Option<usize>,
-    #[serde(rename = "TEXCOORD_0")]
-    pub(super) first_uv: Option<usize>,
-    #[serde(rename = "TEXCOORD_1")]
-    pub(super) second_uv: Option<usize>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct Material {
-    #[serde(default)]
     pub(super) name: String,
-    #[serde(default)]
     pub(super) pbr_metallic_roughness: Pbr,
     pub(super) alpha_mode: Option<String>,
     pub(super) alpha_cutoff: Option<f32>,
@@ -117,23 +102,23 @@ pub(super) struct TextureExtensions {
     pub(super) transform: Option<TextureTransform>,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct TextureTransform {
     pub(super) offset: Option<[f64; 2]>,
-    #[serde(default)]
     pub(super) rotation: f64,
     pub(super) scale: Option<[f64; 2]>,
     pub(super) tex_coord: Option<usize>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Texture {
     pub(super) source: Option<usize>,
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
 pub(super) struct Image {
     pub(super) uri: Option<String>,
     pub(super) buffer_view: Option<usize>,
@@ -173,25 +158,17 @@ pub(super) struct Buffer {
 
 impl Document {
     pub(super) fn check(&self) -> Result<(), Problem> {
-        let wrong = |part, expected, found, advice| -> Problem {
-            Fault::new(part, Place::Whole, expected, found, advice).into()
+        let (version, extensions) = (&self.asset.version, &self.extensions_required);
+        let is_known = |name: &str| HARMLESS.contains(&name) || name.starts_with("KHR_materials_");
+        let (part, expected, found, advice) = if !version.starts_with("2.") {
+            ("asset", "version 2", version, "export as glTF 2.0")
+        } else if let Some(unknown) = extensions.iter().find(|name| !is_known(name)) {
+            let expected = "no extension that has to be understood";
+            let advice = "export without compression";
+            ("extensionsRequired", expected, unknown, advice)
+        } else {
+            return Ok(());
         };
-        if !self.asset.version.starts_with("2.") {
-            let found = self.asset.version.clone();
-            return Err(wrong("asset", "version 2", found, "export as glTF 2.0"));
-        }
-        let unknown = self
-            .extensions_required
-            .iter()
-            .find(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
-        match unknown {
-            None => Ok(()),
-            Some(name) => Err(wrong(
-                "extensionsRequired",
-                "no extension that has to be understood",
-                name.clone(),
-                "export without compression",
-            )),
-        }
+        Err(Fault::new(part, Place::Whole, expected, found.clone(), advice).into())
     }
 }

@@ -11,9 +11,10 @@ mod picture;
 mod scene;
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use base64::Engine as _;
-use base64::engine::general_purpose::{STANDARD, STANDARD_NO_PAD};
+use base64::engine::general_purpose::STANDARD_NO_PAD;
 
 use super::{Beside, Fault, Place, Problem};
 use crate::MeshBuilder;
@@ -21,8 +22,8 @@ use document::Document;
 
 const BROKEN: &str = "the file is damaged or cut short; export the mesh again";
 
-const JSON: u32 = 0x4e4f_534a;
-const BIN: u32 = 0x004e_4942;
+const JSON: usize = 0x4e4f_534a;
+const BIN: usize = 0x004e_4942;
 
 pub(super) fn read_json(
     bytes: &[u8],
@@ -38,34 +39,37 @@ pub(super) fn read_binary(
     beside: &dyn Beside,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
-    let wrong = |part: &str, offset: usize, expected: String, found: String| -> Problem {
-        Fault::new(part, Place::Byte(offset as u64), expected, found, BROKEN).into()
+    let wrong = |part: &str, offset: usize, expected: &str, found: usize| -> Problem {
+        let (place, found) = (Place::Byte(offset as u64), found.to_string());
+        Fault::new(part, place, expected, found, BROKEN).into()
     };
-    let word = |offset: usize| -> Option<u32> {
+    let word = |offset: usize| -> Option<usize> {
         let word = bytes.get(offset..offset.checked_add(4)?)?;
-        Some(u32::from_le_bytes(word.try_into().ok()?))
+        Some(u32::from_le_bytes(word.try_into().ok()?) as usize)
     };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        let found = bytes.len().to_string();
-        return Err(wrong("header", 0, "12 bytes".into(), found));
+        return Err(wrong("header", 0, "12 bytes", bytes.len()));
     };
     if version != 2 {
-        return Err(wrong("header", 4, "version 2".into(), version.to_string()));
+        return Err(wrong("header", 4, "version 2", version));
     }
-    if u64::from(length) > bytes.len() as u64 {
+    let Some(bytes) = bytes.get(..length) else {
         let expected = format!("{length} bytes in all, as it says");
-        return Err(wrong("header", 8, expected, bytes.len().to_string()));
-    }
-    let bytes = &bytes[..length as usize];
-    let mut at = 12usize;
+        return Err(wrong("header", 8, &expected, bytes.len()));
+    };
+    let mut at = 12;
     let (mut json, mut binary) = (None, None);
     while let (Some(size), Some(kind)) = (word(at), word(at + 4)) {
         let begin = at + 8;
-        let end = begin.saturating_add(size as usize);
+        let end = begin.saturating_add(size);
         let Some(content) = bytes.get(begin..end) else {
-            let expected = format!("{size} bytes of content");
-            let found = bytes.len().saturating_sub(begin).to_string();
-            return Err(wrong("chunk", at, expected, found));
+            let found = bytes.len().saturating_sub(begin);
+            return Err(wrong(
+                "chunk",
+                at,
+                &format!("{size} bytes of content"),
+                found,
+            ));
         };
         match kind {
             JSON if json.is_none() => json = Some((content, begin)),
@@ -74,9 +78,7 @@ pub(super) fn read_binary(
         }
         at = end;
     }
-    let Some((json, offset)) = json else {
-        return Err(wrong("file", 12, "a JSON chunk".into(), "none".into()));
-    };
+    let (json, offset) = json.ok_or_else(|| wrong("file", 12, "a JSON chunk", 0))?;
     read_document(json, offset as u64, binary, beside, builder)
 }
 
@@ -99,11 +101,9 @@ fn read_document(
     scene::Reader::new(&document, &buffers, beside, json.len()).read(builder)
 }
 
-/// The bytes of all buffers. One address is read once.
 struct Buffers {
-    distinct: Vec<Vec<u8>>,
-    /// By number.
-    of: Vec<usize>,
+    by_number: Vec<Rc<Vec<u8>>>,
+    bytes: usize,
 }
 
 impl Buffers {
@@ -112,91 +112,73 @@ impl Buffers {
         binary: Option<&[u8]>,
         beside: &dyn Beside,
     ) -> Result<Self, Problem> {
-        let (mut distinct, mut of) = (Vec::new(), Vec::new());
-        let mut known: HashMap<Option<&str>, usize> = HashMap::new();
+        let (mut by_number, mut total) = (Vec::new(), 0);
+        let mut known: HashMap<&str, Rc<Vec<u8>>> = HashMap::new();
         for (number, buffer) in document.buffers.iter().enumerate() {
-            let uri = buffer.uri.as_deref();
-            let at = match known.get(&uri) {
-                Some(&at) if uri.is_some() => at,
-                _ => {
-                    let bytes = match (uri, binary) {
-                        (None, Some(binary)) if number == 0 => binary.to_vec(),
-                        (None, _) => {
-                            return Err(broken("buffer", number, "content", "none"));
-                        }
-                        (Some(uri), _) => fetch(uri, number, beside)?,
-                    };
-                    distinct.push(bytes);
-                    known.insert(uri, distinct.len() - 1);
-                    distinct.len() - 1
+            let uri = buffer.uri.as_deref().unwrap_or_default();
+            let bytes = match (known.get(uri), &buffer.uri, binary) {
+                (Some(bytes), ..) => bytes.clone(),
+                (None, None, Some(binary)) if number == 0 => {
+                    total += binary.len();
+                    Rc::new(binary.to_vec())
+                }
+                (None, None, _) => return Err(broken("buffer", number, "content", "none")),
+                (None, Some(_), _) => {
+                    let bytes = fetch(uri, number, beside)?;
+                    total += bytes.len();
+                    known.entry(uri).or_insert(Rc::new(bytes)).clone()
                 }
             };
-            let bytes = distinct[at].len() as u64;
-            if bytes < buffer.byte_length {
+            if (bytes.len() as u64) < buffer.byte_length {
                 let expected = format!("{} bytes", buffer.byte_length);
-                return Err(broken("buffer", number, &expected, &bytes.to_string()));
+                return Err(broken(
+                    "buffer",
+                    number,
+                    &expected,
+                    &bytes.len().to_string(),
+                ));
             }
-            of.push(at);
+            by_number.push(bytes);
         }
-        Ok(Self { distinct, of })
-    }
-
-    fn get(&self, number: usize) -> Option<&[u8]> {
-        self.of.get(number).map(|&at| &self.distinct[at][..])
-    }
-
-    /// Bytes of all, each once.
-    fn len(&self) -> usize {
-        self.distinct.iter().map(Vec::len).sum()
+        Ok(Self {
+            by_number,
+            bytes: total,
+        })
     }
 }
 
-/// The bytes of a `data:` address, where it is one in base64.
-fn decoded(data: &str) -> Option<Vec<u8>> {
-    let (_, text) = data.split_once(";base64,")?;
+fn decoded(uri: &str) -> Option<Vec<u8>> {
+    let (_, text) = uri.strip_prefix("data:")?.split_once(";base64,")?;
     let text = text.trim_end_matches('=');
-    let decoded = STANDARD_NO_PAD.decode(text);
-    decoded.or_else(|_| STANDARD.decode(text)).ok()
+    STANDARD_NO_PAD.decode(text).ok()
 }
 
 fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, Problem> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return decoded(data)
-            .ok_or_else(|| broken("buffer", number, "data in base64", "other data"));
+    if uri.starts_with("data:") {
+        let other = || broken("buffer", number, "data in base64", "other data");
+        return decoded(uri).ok_or_else(other);
     }
     let name = unescaped(uri);
     beside.read(&name).map_err(|error| {
-        fault_of(
-            "buffer",
-            number,
-            &format!("the file {name:?} beside the mesh"),
-            &error.to_string(),
-            "put it into the same folder, or export as .glb",
-        )
+        let expected = format!("the file {name:?} beside the mesh");
+        let advice = "put it into the same folder, or export as .glb";
+        fault_of("buffer", number, &expected, &error.to_string(), advice)
     })
 }
 
-/// An address with its `%20`s resolved.
 fn unescaped(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let [first, after @ ..] = rest {
-        let hex = after.get(..2).and_then(|h| std::str::from_utf8(h).ok());
-        match hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
-            Some(byte) if *first == b'%' => {
-                bytes.push(byte);
-                rest = &after[2..];
-            }
-            _ => {
-                bytes.push(*first);
-                rest = after;
-            }
-        }
+        let hex = after.get(..2).filter(|_| *first == b'%');
+        let hex = hex.and_then(|hex| std::str::from_utf8(hex).ok());
+        let byte = hex.and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        bytes.push(byte.unwrap_or(*first));
+        rest = if byte.is_some() { &after[2..] } else { after };
     }
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A fault at a numbered part of a document that is damaged.
 fn broken(part: &str, number: usize, expected: &str, found: &str) -> Problem {
     fault_of(part, number, expected, found, BROKEN)
 }

@@ -1,6 +1,6 @@
 //! The pictures of base colours.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::rc::Rc;
 
 use super::accessor::{Numbers, view_bytes};
@@ -8,7 +8,6 @@ use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::load::texture::{Texture, Textures};
 
-/// A texture and where corners are on it.
 pub(super) struct Painted<'d> {
     pub(super) texture: Rc<Texture>,
     pub(super) uvs: Numbers<'d>,
@@ -41,32 +40,23 @@ pub(super) fn find(
     texture: usize,
     textures: &mut Textures,
 ) -> Option<Rc<Texture>> {
-    let source = document
-        .textures
-        .get(texture)
-        .and_then(|texture| texture.source);
-    let missing = |what: &str| io::Error::new(io::ErrorKind::NotFound, what.to_owned());
-    let Some(image) = source.and_then(|source| document.images.get(source)) else {
-        return textures.get(&format!("number {texture}"), || {
-            Err(missing("it has no PNG or JPEG picture"))
-        });
-    };
-    if let Some(uri) = &image.uri {
-        if let Some(data) = uri.strip_prefix("data:") {
-            let read = || decoded(data).ok_or_else(|| missing("its data is not in base64"));
-            return textures.get(&format!("number {texture}"), read);
+    let source = document.textures.get(texture).and_then(|t| t.source);
+    let image = source.and_then(|source| document.images.get(source));
+    let uri = image.and_then(|image| image.uri.as_deref());
+    let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
+    let name = file.clone().unwrap_or_else(|| format!("number {texture}"));
+    textures.get(&name, || {
+        let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
+        let image = image.ok_or_else(|| missing("it has no PNG or JPEG picture"))?;
+        match (&file, uri) {
+            (Some(file), _) => beside.read(file),
+            (None, Some(uri)) => decoded(uri).ok_or_else(|| missing("its data is not in base64")),
+            (None, None) => {
+                let view = image.buffer_view.and_then(|v| document.buffer_views.get(v));
+                let bytes = view.and_then(|view| view_bytes(view, buffers));
+                let bytes = bytes.ok_or_else(|| missing("it is not in its buffer"))?;
+                Ok(bytes.to_vec())
+            }
         }
-        let name = unescaped(uri);
-        return textures.get(&name, || beside.read(&name));
-    }
-    let read = || {
-        let view = image
-            .buffer_view
-            .and_then(|view| document.buffer_views.get(view));
-        let bytes = view.and_then(|view| view_bytes(view, buffers));
-        bytes
-            .map(<[u8]>::to_vec)
-            .ok_or_else(|| missing("it is not in its buffer"))
-    };
-    textures.get(&format!("number {texture}"), read)
+    })
 }

@@ -1,5 +1,7 @@
 //! From a glTF document's nodes to triangles in world coordinates.
 
+use std::collections::{HashMap, HashSet};
+
 use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
@@ -15,7 +17,6 @@ const FREE_TRIANGLES: u64 = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: u64 = 16;
 
-/// A primitive's corners: their order and their number.
 struct Sizes<'d> {
     mode: u32,
     positions: Numbers<'d>,
@@ -26,12 +27,11 @@ struct Sizes<'d> {
 pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers,
-    /// Positions and triangles that may be made.
+    beside: &'d dyn Beside,
     most: u64,
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
-    beside: &'d dyn Beside,
     textures: Textures,
 }
 
@@ -42,48 +42,70 @@ impl<'d> Reader<'d> {
         beside: &'d dyn Beside,
         json_bytes: usize,
     ) -> Self {
-        let bytes = json_bytes + buffers.len();
+        let bytes = json_bytes + buffers.bytes;
         Self {
             document,
             buffers,
+            beside,
             most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes as u64,
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
-            beside,
             textures: Textures::default(),
         }
     }
 
     /// Adds all triangles of the default scene, or of the first, or of all nodes.
     pub(super) fn read(mut self, builder: &mut MeshBuilder) -> Result<(), Problem> {
-        let document = self.document;
         builder.material(Material::default_color());
-        for material in &document.materials {
+        for material in &self.document.materials {
             builder.material(understood(material));
         }
-        let nodes = &document.nodes;
-        let mut open: Vec<(usize, DMat4)> = match document.scenes.get(document.scene.unwrap_or(0)) {
-            Some(scene) => scene.nodes.iter().map(|&n| (n, DMat4::IDENTITY)).collect(),
+        let shown = self.shown()?;
+        self.make_room(&shown, builder)?;
+        for (number, placed) in shown {
+            for primitive in &self.mesh(number)?.primitives {
+                self.primitive(number, primitive, placed, builder)?;
+            }
+        }
+        self.textures.tell(builder);
+        for (count, what) in [
+            (
+                self.skipped_modes,
+                "primitives of points or lines were passed over",
+            ),
+            (
+                self.morphed,
+                "primitives have morph targets, which are not applied",
+            ),
+            (self.skinned, "meshes have skins, which are not applied"),
+        ] {
+            if count > 0 {
+                builder.warn(format!("{count} {what}"));
+            }
+        }
+        Ok(())
+    }
+
+    fn shown(&mut self) -> Result<Vec<(usize, DMat4)>, Problem> {
+        let nodes = &self.document.nodes;
+        let scene = self.document.scene.unwrap_or(0);
+        let roots = match self.document.scenes.get(scene) {
+            Some(scene) => scene.nodes.clone(),
             None => {
-                let mut is_child = vec![false; nodes.len()];
-                for &child in nodes.iter().flat_map(|node| &node.children) {
-                    if let Some(entry) = is_child.get_mut(child) {
-                        *entry = true;
-                    }
-                }
-                let roots = (0..nodes.len()).filter(|&n| !is_child[n]);
-                roots.map(|n| (n, DMat4::IDENTITY)).collect()
+                let children = nodes.iter().flat_map(|node| node.children.iter().copied());
+                let children: HashSet<usize> = children.collect();
+                (0..nodes.len()).filter(|n| !children.contains(n)).collect()
             }
         };
-        open.reverse();
-        let mut seen = vec![false; nodes.len()];
-        let mut shown = Vec::new();
+        let roots = roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY));
+        let mut open: Vec<(usize, DMat4)> = roots.collect();
+        let (mut seen, mut shown) = (HashSet::new(), Vec::new());
         while let Some((number, parent)) = open.pop() {
             let Some(node) = nodes.get(number) else {
                 return Err(broken("node", number, "a node of this number", "none"));
             };
-            if std::mem::replace(&mut seen[number], true) {
+            if !seen.insert(number) {
                 let expected = "one parent, in a tree";
                 return Err(broken("node", number, expected, "a second way to it"));
             }
@@ -94,33 +116,12 @@ impl<'d> Reader<'d> {
             }
             open.extend(node.children.iter().rev().map(|&child| (child, placed)));
         }
-        self.make_room(&shown, builder)?;
-        for (number, placed) in shown {
-            let mesh = document.meshes.get(number);
-            let mesh =
-                mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))?;
-            for primitive in &mesh.primitives {
-                self.primitive(number, primitive, placed, builder)?;
-            }
-        }
-        self.tell(builder);
-        Ok(())
+        Ok(shown)
     }
 
-    fn tell(&self, builder: &mut MeshBuilder) {
-        self.textures.tell(builder);
-        let mut warn = |count: u64, what: &str| {
-            if count > 0 {
-                builder.warn(format!("{count} {what}"));
-            }
-        };
-        let (modes, morphed) = (self.skipped_modes, self.morphed);
-        warn(modes, "primitives of points or lines were passed over");
-        warn(
-            morphed,
-            "primitives have morph targets, which are not applied",
-        );
-        warn(self.skinned, "meshes have skins, which are not applied");
+    fn mesh(&self, number: usize) -> Result<&'d FileMesh, Problem> {
+        let mesh = self.document.meshes.get(number);
+        mesh.ok_or_else(|| broken("mesh", number, "a mesh of this number", "none"))
     }
 
     fn make_room(
@@ -132,53 +133,47 @@ impl<'d> Reader<'d> {
             let advice = "export a part of the scene";
             Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
         };
-        let mut of_mesh = vec![None; self.document.meshes.len()];
-        let (mut positions, mut triangles) = (0u64, 0u64);
+        let mut of_mesh: HashMap<usize, [usize; 2]> = HashMap::new();
+        let mut sum = [0; 2];
         for &(mesh, _) in shown {
-            // A missing mesh is reported where it is drawn.
-            let Some(known) = of_mesh.get_mut(mesh) else {
-                continue;
+            let size = match of_mesh.get(&mesh) {
+                Some(&known) => known,
+                None => *of_mesh.entry(mesh).or_insert(self.size_of(mesh)?),
             };
-            let (more_positions, more_triangles) = match *known {
-                Some(known) => known,
-                None => *known.insert(self.size_of(&self.document.meshes[mesh])?),
-            };
-            positions += more_positions;
-            triangles += more_triangles;
+            sum = [0, 1].map(|k| size[k].saturating_add(sum[k]));
             // Positions count as triangles: they take memory too.
-            if positions + triangles > self.most {
+            if sum[0].saturating_add(sum[1]) as u64 > self.most {
                 return Err(fault(
                     format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
                     "more: they show meshes very often".to_owned(),
                 ));
             }
         }
-        let room = builder.reserve(positions as usize, triangles as usize);
+        let room = builder.reserve(sum[0], sum[1]);
         room.map_err(|short| fault("memory for all triangles".to_owned(), short.to_string()))
     }
 
-    fn size_of(&self, mesh: &FileMesh) -> Result<(u64, u64), Problem> {
-        let (mut positions, mut triangles) = (0, 0);
-        for primitive in &mesh.primitives {
+    fn size_of(&self, mesh: usize) -> Result<[usize; 2], Problem> {
+        let mut sum = [0; 2];
+        for primitive in &self.mesh(mesh)?.primitives {
             if let Some(of) = self.sizes(primitive)? {
-                positions += of.positions.count as u64;
-                triangles += of.triangles as u64;
+                sum[0] = of.positions.count.saturating_add(sum[0]);
+                sum[1] = of.triangles.saturating_add(sum[1]);
             }
         }
-        Ok((positions, triangles))
+        Ok(sum)
     }
 
-    /// The corners of a primitive, or none if it has no triangles.
     fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, Problem> {
         let mode = primitive.mode.unwrap_or(4);
-        let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {
+        if !(4..=6).contains(&mode) {
+            return Ok(None);
+        }
+        let Some(positions) = self.attribute(primitive, "POSITION")? else {
             return Ok(None);
         };
-        let positions = self.numbers(position)?;
         let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
-        let corners = indices
-            .as_ref()
-            .map_or(positions.count, |indices| indices.count);
+        let corners = indices.as_ref().map_or(positions.count, |i| i.count);
         let triangles = match mode {
             4 => corners / 3,
             _ => corners.saturating_sub(2),
@@ -194,29 +189,19 @@ impl<'d> Reader<'d> {
     fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, Problem> {
         let document = self.document;
         let material = primitive.material.and_then(|m| document.materials.get(m));
-        let Some(info) =
-            material.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref())
-        else {
+        let info = material.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
+        let Some(info) = info else {
             return Ok(None);
         };
         let transform = info.extensions.transform.as_ref();
         let set = transform
             .and_then(|t| t.tex_coord)
             .unwrap_or(info.tex_coord);
-        let uvs = match set {
-            0 => primitive.attributes.first_uv,
-            1 => primitive.attributes.second_uv,
-            _ => None,
+        let Some(uvs) = self.attribute(primitive, &format!("TEXCOORD_{set}"))? else {
+            return Ok(None);
         };
-        let Some(uvs) = uvs else { return Ok(None) };
-        let uvs = self.numbers(uvs)?;
-        let texture = picture::find(
-            document,
-            self.buffers,
-            self.beside,
-            info.index,
-            &mut self.textures,
-        );
+        let (buffers, beside) = (self.buffers, self.beside);
+        let texture = picture::find(document, buffers, beside, info.index, &mut self.textures);
         Ok(texture.map(|texture| Painted {
             texture,
             uvs,
@@ -226,6 +211,11 @@ impl<'d> Reader<'d> {
 
     fn numbers(&self, accessor: usize) -> Result<Numbers<'d>, Problem> {
         Numbers::find(self.document, self.buffers, accessor)
+    }
+
+    fn attribute(&self, primitive: &Primitive, name: &str) -> Result<Option<Numbers<'d>>, Problem> {
+        let accessor = primitive.attributes.get(name);
+        accessor.map(|&a| self.numbers(a)).transpose()
     }
 
     fn primitive(
@@ -246,17 +236,14 @@ impl<'d> Reader<'d> {
             return Ok(());
         };
         self.morphed += u64::from(!primitive.targets.is_empty());
-        let optional = |accessor: Option<usize>| accessor.map(|a| self.numbers(a)).transpose();
-        let normals = optional(primitive.attributes.normal)?;
-        let colors = optional(primitive.attributes.color)?;
+        let normals = self.attribute(primitive, "NORMAL")?;
+        let colors = self.attribute(primitive, "COLOR_0")?;
         let base = builder.positions() as u32;
         for at in 0..positions.count {
-            let point = DVec3::from_array(positions.triple(at).map(f64::from));
-            let world = placed.transform_point3(point).to_array();
+            let world = placed.transform_point3(positions.point(at)).to_array();
             match &colors {
                 Some(colors) => {
-                    let light = colors.triple(at);
-                    let color = light.map(|light| linear_to_srgb(f64::from(light)));
+                    let color = colors.point(at).to_array().map(linear_to_srgb);
                     builder.colored_position(world, color)
                 }
                 None => builder.position(world),
@@ -264,15 +251,6 @@ impl<'d> Reader<'d> {
         }
         let turn = placed.inverse().transpose();
         let mirrored = placed.determinant() < 0.0;
-        let normal_of = |at: u32| {
-            normals.as_ref().map(|normals| {
-                let normal = DVec3::from_array(normals.triple(at as usize).map(f64::from));
-                turn.transform_vector3(normal)
-                    .normalize_or_zero()
-                    .as_vec3()
-                    .to_array()
-            })
-        };
         // The first material is the one of triangles without.
         let material = primitive
             .material
@@ -290,26 +268,21 @@ impl<'d> Reader<'d> {
             }
             let mut triangle = [0u32; 3];
             for (corner, &at) in triangle.iter_mut().zip(&at) {
-                let index = match &indices {
-                    None => Some(at as u32),
-                    Some(indices) => indices.index(at),
-                };
+                let index = indices.as_ref().map_or(Some(at as u32), |i| i.index(at));
                 let sound = index.filter(|&index| (index as usize) < positions.count);
                 *corner = sound.ok_or_else(|| {
-                    broken(
-                        "mesh",
-                        mesh,
-                        &format!("indices from 0 to {}", positions.count as i64 - 1),
-                        &index.map_or("a number of another kind".into(), |i| i.to_string()),
-                    )
+                    let expected = format!("indices from 0 to {}", positions.count as i64 - 1);
+                    let found = index.map(|index| index.to_string());
+                    let found = found.as_deref().unwrap_or("a number of another kind");
+                    broken("mesh", mesh, &expected, found)
                 })?;
             }
-            let given = triangle.map(normal_of);
-            let given = match given {
-                [Some(a), Some(b), Some(c)] => Some([a, b, c]),
-                _ => None,
-            };
-            // In range: checked just now.
+            let given = normals.as_ref().map(|normals| {
+                triangle.map(|at| {
+                    let normal = turn.transform_vector3(normals.point(at as usize));
+                    normal.normalize_or_zero().as_vec3().to_array()
+                })
+            });
             let tint = painted.as_ref().and_then(|painted| painted.mean(triangle));
             let corners = triangle.map(|i| base + i);
             let _ = builder.textured_triangle(corners, given, material, tint);
@@ -318,25 +291,26 @@ impl<'d> Reader<'d> {
     }
 }
 
-/// A node's place in its parent.
 fn transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix);
     }
-    let rotation = node.rotation.map(DQuat::from_array);
-    let rotation = rotation.filter(|q| q.length_squared() > 0.0 && q.is_finite());
+    let rotation = DQuat::from_array(node.rotation.unwrap_or_default());
+    let is_sound = rotation.length_squared() > 0.0 && rotation.is_finite();
     DMat4::from_scale_rotation_translation(
         DVec3::from_array(node.scale.unwrap_or([1.0; 3])),
-        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
+        if is_sound {
+            rotation.normalize()
+        } else {
+            DQuat::IDENTITY
+        },
         DVec3::from_array(node.translation.unwrap_or_default()),
     )
 }
 
 fn understood(material: &FileMaterial) -> Material {
-    let [r, g, b, a] = material
-        .pbr_metallic_roughness
-        .base_color_factor
-        .unwrap_or([1.0; 4]);
+    let factor = material.pbr_metallic_roughness.base_color_factor;
+    let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
     let alpha = match material.alpha_mode.as_deref() {
         Some("BLEND") => a,
         // Written so that an alpha that is no number is opaque.

@@ -98,7 +98,7 @@ pub fn build<S: Surface + ?Sized>(
         let lattice = CellGrid::around(low, high, cells, texels);
         build_grid(surface, &primitives, &lattice, options.element, progress)
     });
-    let grids = grids.collect::<Result<Vec<GridData>, BuildError>>()?;
+    let grids = grids.collect::<Result<_, _>>()?;
     Ok(TexturedData {
         low,
         high,
@@ -120,7 +120,7 @@ fn build_grid<S: Surface + ?Sized>(
     element: Element,
     progress: &dyn Progress,
 ) -> Result<GridData, BuildError> {
-    let (cells, texels) = (lattice.cells(), lattice.texels());
+    let (cells, texels) = (lattice.cells, lattice.texels);
     progress.begin("find voxels", 0);
     let corners: Vec<[[i64; 3]; 3]> = primitives
         .par_iter()

@@ -5,7 +5,6 @@
 
 use glam::DVec3;
 
-use crate::geometry::{barycentric, blend, plane_normal};
 use crate::raster::Edges;
 use crate::textured::CellGrid;
 use crate::textured::record::Texel;
@@ -13,7 +12,6 @@ use crate::voxelize::{OTHERS, Prepared};
 use crate::{Surface, Triangle, linear_to_srgb};
 use shiftvox::graph::PackedNormal;
 
-#[derive(Debug)]
 pub(super) struct Column {
     pub(super) axis: usize,
     /// Where it is along the other two axes.
@@ -24,7 +22,7 @@ pub(super) struct Column {
     pub(super) wanted: Vec<(u32, u32)>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Projected {
     /// Voxels and their sub-textures; `None` where nothing projects on any texel.
     pub(super) textures: Vec<(u32, Option<Vec<Texel>>)>,
@@ -45,8 +43,8 @@ pub(super) fn project<S: Surface + ?Sized>(
     corners: &[[[i64; 3]; 3]],
     lattice: &CellGrid,
 ) -> Projected {
-    let texels = lattice.texels() as usize;
-    let cells = lattice.cells();
+    let texels = lattice.texels as usize;
+    let cells = lattice.cells;
     let middle = cells / 2;
     let mut projected = Projected::default();
     let mut slices: Vec<Vec<Option<Hit>>> = vec![Vec::new(); cells as usize];
@@ -57,11 +55,7 @@ pub(super) fn project<S: Surface + ?Sized>(
             let slice = ((along / lattice.cell_steps()) as u32).min(cells - 1);
             let is_positive = slice >= middle;
             projected.texels += 1;
-            let volumes = if is_positive {
-                cells - slice
-            } else {
-                slice + 1
-            };
+            let volumes = [slice + 1, cells - slice][usize::from(is_positive)];
             projected.texels_afresh += u64::from(volumes);
             let hits = &mut slices[slice as usize];
             hits.resize(texels * texels, None);
@@ -93,7 +87,13 @@ pub(super) fn project<S: Surface + ?Sized>(
                 }
                 if let Some((_, triangle)) = &last {
                     let point = world(column, lattice, texel, along);
-                    texture[texel] = paint(triangle, point, DVec3::AXES[column.axis] * outwards);
+                    let outwards = DVec3::AXES[column.axis] * outwards;
+                    let (normal, color) = triangle.seen_from(point, outwards);
+                    texture[texel] = Texel {
+                        color: color.to_array().map(linear_to_srgb),
+                        opacity: 255,
+                        normal: PackedNormal::encode(normal).0,
+                    };
                 }
             }
             for &(_, voxel) in column.wanted.iter().filter(|(at, _)| *at == slice) {
@@ -117,8 +117,8 @@ fn each_texel(
     let Some(edges) = Edges::new(triangle.corners.map(|p| axes.map(|k| p[k]))) else {
         return;
     };
-    let step = lattice.texel_steps();
-    let texels = i64::from(lattice.texels());
+    let step = lattice.texel_steps;
+    let texels = i64::from(lattice.texels);
     let first = column.at.map(|c| i64::from(c) * texels);
     let [columns, rows] = [0, 1].map(|k| {
         let begin = (triangle.low[axes[k]] + step / 2 - 1).div_euclid(step);
@@ -143,8 +143,8 @@ fn each_texel(
 
 /// The point, `along` the axis, behind the middle of a texel.
 fn world(column: &Column, lattice: &CellGrid, texel: usize, along: i64) -> DVec3 {
-    let texels = lattice.texels() as usize;
-    let step = lattice.texel_steps();
+    let texels = lattice.texels as usize;
+    let step = lattice.texel_steps;
     let place = [texel % texels, texel / texels];
     let mut point = [along; 3];
     for (k, axis) in OTHERS[column.axis].into_iter().enumerate() {
@@ -152,17 +152,4 @@ fn world(column: &Column, lattice: &CellGrid, texel: usize, along: i64) -> DVec3
         point[axis] = number as i64 * step + step / 2;
     }
     lattice.world(point)
-}
-
-fn paint(triangle: &Triangle, point: DVec3, outwards: DVec3) -> Texel {
-    let share = barycentric(&triangle.corners, point);
-    let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
-    let plane = facing(plane_normal(triangle.corners), outwards);
-    let normal = facing(blend(&triangle.normals, share).normalize_or(plane), plane);
-    let color = blend(&triangle.colors, share);
-    Texel {
-        color: color.to_array().map(linear_to_srgb),
-        opacity: 255,
-        normal: PackedNormal::encode(normal).0,
-    }
 }

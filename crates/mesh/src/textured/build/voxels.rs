@@ -20,7 +20,7 @@ pub(super) fn fill(corners: &[[[i64; 3]; 3]], lattice: &CellGrid) -> Vec<u64> {
         .par_iter()
         .enumerate()
         .flat_map_iter(|(primitive, &corners)| {
-            let side = i64::from(lattice.cells().next_power_of_two());
+            let side = i64::from(lattice.cells.next_power_of_two());
             let mut touched = Vec::new();
             descend(&Prepared::new(corners), lattice, [0; 3], side, &mut touched);
             let pair = move |cell| u64::from(cell) << 32 | primitive as u64;
@@ -39,7 +39,7 @@ fn descend(
     side: i64,
     touched: &mut Vec<u32>,
 ) {
-    let (cells, step) = (i64::from(lattice.cells()), lattice.cell_steps());
+    let (cells, step) = (i64::from(lattice.cells), lattice.cell_steps());
     let is_beyond = corner.iter().any(|&c| c >= cells);
     if is_beyond || !triangle.touches(corner.map(|c| c * step), side * step) {
         return;

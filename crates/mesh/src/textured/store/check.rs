@@ -1,13 +1,16 @@
 //! Whether a grid makes sense: every field of every voxel, every entry of every list.
 
+use glam::DVec3;
+
 use super::format::GridEntry;
 use crate::textured::CellGrid;
+use crate::textured::build::bounds;
 use crate::textured::levels::surfels;
 use crate::textured::record::{CLEAR, NEVER, Primitive, VoxelRecord};
 
 pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
     let cells = u64::from(entry.cells).saturating_pow(3);
-    for (holds, expected) in [
+    let rules = [
         (
             CellGrid::is_possible(entry.cells, entry.texels),
             "an even number of cells up to 128, and texels up to 64",
@@ -20,12 +23,11 @@ pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
             entry.listed < u64::from(NEVER) && entry.textures < u64::from(CLEAR),
             "fewer than 2^32 listed primitives and sub-textures",
         ),
-    ] {
-        if !holds {
-            return Err(expected);
-        }
+    ];
+    match rules.into_iter().find(|(holds, _)| !holds) {
+        None => Ok(()),
+        Some((_, expected)) => Err(expected),
     }
-    Ok(())
 }
 
 /// Checks voxels and lists against each other and the number of primitives. Errors: section, record, expected value.
@@ -47,10 +49,8 @@ pub(super) fn check(
             return fault("voxels", number, "voxels by rising depth and cell");
         }
         let next = voxels.get(number + 1);
-        let (begin, end) = (
-            voxel.first as usize,
-            next.map_or(lists.len(), |v| v.first as usize),
-        );
+        let end = next.map_or(lists.len(), |v| v.first as usize);
+        let begin = voxel.first as usize;
         if begin >= end || end > lists.len() || number == 0 && begin != 0 {
             return fault("voxels", number, "a list after that of the voxel before");
         }
@@ -63,38 +63,30 @@ pub(super) fn check(
         }
     }
     if let Some(missing) = is_listed.iter().position(|listed| !listed) {
-        return fault(
-            "lists",
-            lists.len(),
-            &format!("primitive {missing} in a list"),
-        );
+        let expected = format!("primitive {missing} in a list");
+        return fault("lists", lists.len(), &expected);
     }
     let mut is_surfel = vec![[false; 3]; voxels.len()];
     for surfel in surfels(voxels, entry.cells) {
         is_surfel[surfel.voxel as usize][usize::from(surfel.axis)] = true;
     }
-    for (number, (voxel, is_surfel)) in voxels.iter().zip(&is_surfel).enumerate() {
-        for (&texture, is_surfel) in voxel.textures.iter().zip(is_surfel) {
-            let is_sound = match is_surfel {
-                true => texture == CLEAR || u64::from(texture) < entry.textures,
-                false => texture == NEVER,
-            };
-            if !is_sound {
-                return fault(
-                    "voxels",
-                    number,
-                    "a sub-texture for each face that is shown",
-                );
-            }
-        }
+    let is_sound = |number: usize| {
+        let mut faces = voxels[number].textures.iter().zip(is_surfel[number]);
+        faces.all(|(&texture, is_surfel)| match is_surfel {
+            true => texture == CLEAR || u64::from(texture) < entry.textures,
+            false => texture == NEVER,
+        })
+    };
+    match (0..voxels.len()).find(|&number| !is_sound(number)) {
+        Some(number) => fault("voxels", number, "a sub-texture for each shown face"),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Checks the primitives, and that the box is no larger than they are. Errors: record, expected value.
 pub(super) fn check_primitives(
     primitives: &[Primitive],
-    (low, high): (glam::DVec3, glam::DVec3),
+    (low, high): (DVec3, DVec3),
 ) -> Result<(), (usize, &'static str)> {
     let is_sound =
         |p: &Primitive| p.spare == 0 && p.corners.as_flattened().iter().all(|c| c.is_finite());
@@ -102,8 +94,8 @@ pub(super) fn check_primitives(
         return Err((number, "finite corners, and zero in the spare field"));
     }
     // The box is that of the corners before they were rounded to single precision, which keeps their order.
-    let rounded = |corner: glam::DVec3| corner.as_vec3().as_dvec3();
-    if crate::textured::build::bounds(primitives) != (rounded(low), rounded(high)) {
+    let rounded = |corner: DVec3| corner.as_vec3().as_dvec3();
+    if bounds(primitives) != (rounded(low), rounded(high)) {
         return Err((0, "primitives that fill the box of the header"));
     }
     Ok(())

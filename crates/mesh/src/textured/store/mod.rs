@@ -6,9 +6,7 @@
 mod check;
 mod format;
 mod read;
-mod write;
 
-pub use format::GridEntry;
+pub use format::{GridEntry, encode, write_to};
 pub use read::{Grid, TexturedFile};
 pub use shiftvox::graph::file::FileError as TexturedError;
-pub use write::{encode, write_to};

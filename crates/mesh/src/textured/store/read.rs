@@ -16,7 +16,7 @@ use crate::textured::levels::Levels;
 use crate::textured::record::{Primitive, Texel, VoxelRecord, list_of};
 use crate::textured::{CellGrid, Element};
 use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
 #[derive(Debug)]
@@ -45,7 +45,6 @@ impl TexturedFile {
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, TexturedError> {
-        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
         let entries = read_entries(&header, all, path)?;
@@ -55,7 +54,7 @@ impl TexturedFile {
             let offset = layout.entries[0];
             return Err(TexturedError::damaged(path, "grids", offset, expected));
         }
-        check_padding(all, layout.sections(), path)?;
+        FORMAT.check_padding(all, layout.sections(), path)?;
         let mut file = Self {
             path: path.to_owned(),
             is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
@@ -160,13 +159,10 @@ impl TexturedFile {
         for number in 0..self.grids() {
             let grid = self.grid(number);
             grid.ensure()?;
-            let voxels = grid.voxels();
-            let cells = voxels.iter().map(|voxel| voxel.cell.map(u32::from));
+            let voxels = grid.voxels().iter();
+            let cells = voxels.clone().map(|voxel| voxel.cell.map(u32::from));
             let depths = depths(cells, grid.entry().cells, grid.element());
-            let wrong = voxels
-                .iter()
-                .zip(depths)
-                .position(|(v, depth)| v.depth != depth);
+            let wrong = voxels.zip(depths).position(|(v, depth)| v.depth != depth);
             if let Some(voxel) = wrong {
                 let at = (voxel * size_of::<VoxelRecord>()) as u64;
                 let expected = format!("the erosion depth of voxel {voxel} of grid {number}");
@@ -225,8 +221,7 @@ impl<'f> Grid<'f> {
         self.places().map(|[begin, end]| end - begin)
     }
 
-    /// A sub-texture, row after row; `number` is below the entry's.
-    /// Texels are as they are in the file: [`Grid::ensure`] checks them.
+    /// A sub-texture, row after row, as it is in the file; [`Grid::ensure`] checks it.
     pub fn texture(&self, number: u32) -> &'f [Texel] {
         let face = (self.entry().texels * self.entry().texels) as usize;
         &self.texels()[number as usize * face..][..face]

@@ -53,7 +53,7 @@ impl<'f> Shown<'f> {
             stored: file.primitives(),
             primitives: levels.primitives(level),
             faces: levels.surfels(level).map(face).collect(),
-            side: lattice.texels() as usize,
+            side: lattice.texels as usize,
         }
     }
 
