@@ -272,16 +272,6 @@ mod tests {
     }
 
     #[test]
-    fn names_of_any_length_do() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        for name in ["a".repeat(255), "\u{20ac}".repeat(85), "-".to_owned()] {
-            write(&at(&name), b"x", false).unwrap();
-        }
-        assert_eq!(names(folder.path()).len(), 3);
-    }
-
-    #[test]
     fn files_with_and_without_a_name_are_alike() {
         for overwrite in [false, true] {
             for make in [Unfinished::new, Unfinished::with_name] {
