@@ -216,6 +216,10 @@ fn is_hidden<P: Probe, L: CageCoordinate>(
             !is_seen(dp, c, canvas, record)
         } else {
             record.place.quad.level < c.levels
+                && match c.outline {
+                    OutlineRule::Silhouette => !crosses_near(dp, c, record),
+                    OutlineRule::Box | OutlineRule::Centre => true,
+                }
                 && is_at_most_a_sample(dp, c, record)
                 && first_undrawn(dp, c, &canvas.fill, record).is_none()
         }
