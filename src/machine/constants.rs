@@ -61,6 +61,8 @@ pub(super) struct Constants {
     pub(super) least_size_screen: Word,
     pub(super) near: Word,
     pub(super) near_crossing: Word,
+    /// Whether the view is so wide that boxes about the picture's middle need a size of their own.
+    pub(super) is_wide: bool,
     /// By level, least depth for the change to screen space.
     pub(super) screen_depth: Vec<Option<Word>>,
     /// By level, least depth of a solid by level of detail.
@@ -160,6 +162,7 @@ impl Constants {
             least_size_screen: Word::from_host(LEAST_SIZE),
             near,
             near_crossing: Word::from_host(near_crossing),
+            is_wide: is_wide(setup),
             screen_depth: depths(&setup.screen_depth),
             lod_depth: depths(&setup.lod_depth),
             eye_floor: eye(setup.eye_floor),
@@ -172,6 +175,15 @@ impl Constants {
             edges,
         }
     }
+}
+
+/// Whether the quadtree's root is more than 12 times as wide as its distance. There, boxes that are far from both edges
+/// of a node move little as they come nearer, and `clip_at_most`, which allows for the edges, overrates their size.
+fn is_wide(setup: &FrameSetup) -> bool {
+    let squares = |row: [i128; 3]| row.map(|c| c * c).iter().sum::<i128>(); // host: for a constant of the frame
+    let edges = setup.edge_clip.map(|edge| edge.map(i128::from));
+    let across = squares(edges.map(|[x, _, w]| 2 * x - w)); // host: for a constant of the frame
+    squares(edges.map(|[_, _, w]| w)) > 36 * across // host: for a constant of the frame
 }
 
 /// The registers of `rtl/machine/frame_constants.v`, then those of planes (`rtl/stage_b/plane_constants.v`), two per

@@ -50,6 +50,11 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
                 canvas.draw(dp, sample, &paint(c, record, None));
             }
         }
+        Verdict::DrawFarthest => {
+            if let Some(sample) = farthest_sample(dp, c, record) {
+                canvas.draw(dp, sample, &paint(c, record, None));
+            }
+        }
         Verdict::DrawBox => {
             let paint = paint(c, record, None);
             while let Some(sample) = first_undrawn(dp, c, &canvas.fill, record) {
@@ -105,6 +110,25 @@ fn centre_sample<P: Probe, L: CageCoordinate>(
     }
 }
 
+/// The sample of a record's farthest vertex, which is beyond the near plane.
+fn farthest_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> Option<QuadNode> {
+    let Pose::Clip(clip, _) = &record.pose else {
+        unreachable!("a record across the near plane is in clip space");
+    };
+    dp.stage(Stage::Draw);
+    let [x, y, z] = clip
+        .w
+        .edges(dp)
+        .map(|edge| usize::from(!dp.is_negative(edge)));
+    let farthest = x << 2 | y << 1 | z;
+    let vertex = [&clip.x, &clip.y, &clip.w].map(|cage| cage.vertices(dp)[farthest]);
+    size::point_sample(dp, c, record.place, vertex)
+}
+
 fn draw_solid<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
@@ -151,6 +175,8 @@ fn paint<L>(c: &Constants, record: &Record<L>, color: Option<BlendColor>) -> Pai
 enum Verdict {
     /// At the sample of its centre (`any`, `center`).
     DrawCentre,
+    /// At the sample of its farthest vertex, in a wide view (`any`, `center`).
+    DrawFarthest,
     /// At every sample that its box overlaps (`any`).
     DrawBox,
     DrawSolid,
@@ -172,12 +198,12 @@ fn verdict<P: Probe, L: CageCoordinate>(
         return Verdict::Drop;
     }
     apply_level_of_detail(dp, c, record);
-    let across_near = has_near_plane && crosses_near(dp, c, record);
     let is_drawn = match c.outline {
         OutlineRule::Silhouette => record.cube.solid,
-        OutlineRule::Box if across_near => record.cube.solid && is_at_most_a_sample(dp, c, record),
-        OutlineRule::Box => is_in_one_sample(c, record),
-        OutlineRule::Centre => record.cube.solid && is_at_most_a_sample(dp, c, record),
+        OutlineRule::Box => is_in_one_sample(dp, c, record),
+        OutlineRule::Centre => {
+            record.cube.solid && !crosses_near(dp, c, record) && is_at_most_a_sample(dp, c, record)
+        }
     };
     let is_last = record.cube.level >= c.level_bound;
     // Rounded screen positions cannot separate its vertices.
@@ -191,14 +217,20 @@ fn verdict<P: Probe, L: CageCoordinate>(
         OutlineRule::Box => (Verdict::DrawBox, is_last || is_least()),
         OutlineRule::Centre => (Verdict::DrawCentre, is_last),
     };
-    if !is_drawn && !is_at_bound {
+    if is_drawn {
+        return draw;
+    }
+    if c.is_wide && has_near_plane && record.cube.solid && is_about_one_sample(dp, c, record) {
+        return Verdict::DrawFarthest;
+    }
+    if !is_at_bound {
         return Verdict::Subdivide;
     }
-    counts.at_level_bound += u64::from(!is_drawn);
-    // In one sample, or not to be divided: the centre decides on which side of the near plane it is.
-    match across_near {
-        true => Verdict::DrawCentre,
-        false => draw,
+    counts.at_level_bound += 1;
+    if crosses_near(dp, c, record) {
+        Verdict::DrawCentre
+    } else {
+        draw
     }
 }
 
@@ -216,10 +248,7 @@ fn is_hidden<P: Probe, L: CageCoordinate>(
             !is_seen(dp, c, canvas, record)
         } else {
             record.place.quad.level < c.levels
-                && match c.outline {
-                    OutlineRule::Silhouette => !crosses_near(dp, c, record),
-                    OutlineRule::Box | OutlineRule::Centre => true,
-                }
+                && !crosses_near(dp, c, record)
                 && is_at_most_a_sample(dp, c, record)
                 && first_undrawn(dp, c, &canvas.fill, record).is_none()
         }
@@ -259,8 +288,13 @@ fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
 }
 
 /// The image-order paper's rule, `any`: a solid whose box lies in one sample.
-fn is_in_one_sample<L: CageCoordinate>(c: &Constants, record: &Record<L>) -> bool {
-    if record.place.quad.level != c.levels || !record.place.inside {
+fn is_in_one_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    let one = record.place.quad.level == c.levels && record.place.inside;
+    if !one || crosses_near(dp, c, record) {
         return false;
     }
     // A box within one sample fulfils a level of detail of one sample or more.
@@ -313,5 +347,16 @@ fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
             size::clip_at_most(dp, clip, &c.size_limit, below)
         }
         Pose::Screen(screen) => size::screen_at_most(dp, screen, c.size_limit_screen),
+    }
+}
+
+fn is_about_one_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    match &record.pose {
+        Pose::Clip(clip, _) => size::clip_is_about_one_sample(dp, c, record.place, clip),
+        Pose::Screen(_) => false,
     }
 }

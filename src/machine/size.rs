@@ -32,6 +32,42 @@ pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     })
 }
 
+/// Whether what a cube shows beyond the near plane is in one column, or within half a sample of an edge of one; and in
+/// rows likewise (R7.3). Unlike [`clip_at_most`] it uses the vertices' own places.
+pub(super) fn clip_is_about_one_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    place: ImagePlace,
+    clip: &Clip<L>,
+) -> bool {
+    let below = c.levels - place.quad.level;
+    let least = dp.max(clip.w_min, c.near);
+    let half = dp.shr(least, below + 1);
+    [clip.x, clip.y].into_iter().all(|x| {
+        let mut from_left = x;
+        // From the node's left edge, its right one, then from bisectors.
+        for edge in 0..below + 2 {
+            let from_edge = match edge.checked_sub(1) {
+                None => x,
+                Some(level) => from_left.zip(&clip.w, |x, w| {
+                    let width = dp.shr(w, level);
+                    dp.sub(x, width)
+                }),
+            };
+            let (low, high) = from_edge.span(dp);
+            if dp.is_negative(low) && !dp.is_negative(high) {
+                let most = dp.neg(low);
+                let most = dp.max(most, high);
+                return dp.lt(most, half);
+            }
+            if edge > 1 && !dp.is_negative(low) {
+                from_left = from_edge;
+            }
+        }
+        true
+    })
+}
+
 /// Whether edges are at most as long as `most` of their length.
 #[inline(always)]
 pub(super) fn edges_at_most<P: Probe>(
@@ -83,10 +119,20 @@ pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     clip: &Clip<L>,
     w: Word,
 ) -> Option<QuadNode> {
-    let mut x = clip.x.centre(dp);
-    let mut y = clip.y.centre(dp);
+    let x = clip.x.centre(dp);
+    let y = clip.y.centre(dp);
     dp.tap(Block::CageCentre, &clip.x, &x);
     dp.tap(Block::CageCentre, &clip.y, &y);
+    point_sample(dp, constants, place, [x, y, w])
+}
+
+/// The sample of a clip vector.
+pub(super) fn point_sample<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    place: ImagePlace,
+    [mut x, mut y, w]: [Word; 3],
+) -> Option<QuadNode> {
     if !place.inside {
         for v in [x, y] {
             if dp.is_negative(v) || !dp.lt(v, w) {

@@ -70,3 +70,30 @@ fn the_report_adds_up() {
         assert_eq!(line["overlap"], line["less"] == "neither");
     }
 }
+
+/// In wide views a voxel near the eye covers little of the picture, but reaches from behind the eye far into it.
+#[test]
+fn wide_views_take_bounded_work() {
+    let folder = Folder::new();
+    for scene in [
+        "knot.obj --depth 1",
+        "knot.obj --depth 2",
+        "knot.obj --depth 4",
+        "wires.obj --depth 2",
+    ] {
+        for fov in [150.0, 160.0, 165.0, 170.0, 175.0, 178.0, 179.9, 179.999] {
+            for rule in ["exact", "alpha", "any", "center"] {
+                let found = folder.json(&format!(
+                    "model @{scene} --fov {fov} --coverage {rule} --size 8 --bits 64"
+                ));
+                let operations = sum(&found["operations"], "times");
+                let most = if rule == "exact" || rule == "alpha" {
+                    2e6
+                } else {
+                    2.5e8
+                };
+                assert!(operations < most, "{scene} {fov} {rule}: {operations}");
+            }
+        }
+    }
+}
