@@ -194,3 +194,9 @@ fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: 
         large_depth: focal * side / LARGE_SAMPLES,
     }
 }
+
+#[test]
+fn directions_of_nearly_parallel_edges_are_rough() {
+    let is_rough_at = |turn: f64| is_rough([1.0, 1.0, 0.0], [1.0, 1.0 + turn, 0.0], [1.0; 3]);
+    assert!(is_rough_at(1e-9) && !is_rough_at(1e-6));
+}
