@@ -91,7 +91,8 @@ impl Constants {
             let [x, y, z] = [0, 1, 2].map(|k| direction[k][i] as f32);
             [x, y, z, 0.0]
         };
-        let across = edge.map(|e| e[0] - middle[0] * e[2]);
+        // From the first sample's centre, the middle is half a sample nearer.
+        let across = edge.map(|e| e[0] - (middle[0] - 0.5) * e[2]);
         let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
         let unit = libm::sqrt(edge.iter().map(|e| e[2] * e[2]).sum());
         let is_wide = root_samples * unit > MOST_WIDTH * focal;
