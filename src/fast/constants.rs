@@ -7,6 +7,11 @@ use crate::project::{FrameSetup, OpacityEye};
 /// Bound of positions times sixteen: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
 
+/// Bound of the error in `f64` of a direction, relative to the size of its terms ([`is_rough`]).
+pub(super) const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 25) as f64;
+/// The same relative to the products whose differences are its coefficients (`doubles.gappa`).
+pub(super) const PRODUCT_ERROR: f64 = 1.0 / (1u64 << 49) as f64;
+
 /// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
 /// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
@@ -86,9 +91,13 @@ impl Constants {
             let [x, y, z] = [0, 1, 2].map(|k| direction[k][i] as f32);
             [x, y, z, 0.0]
         };
-        let across = edge.map(|e| e[0] - middle[0] * e[2]);
+        // From the first sample's centre, the middle is half a sample nearer.
+        let across = edge.map(|e| e[0] - (middle[0] - 0.5) * e[2]);
         let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
-        if root_samples > MOST_WIDTH * focal {
+        let unit = libm::sqrt(edge.iter().map(|e| e[2] * e[2]).sum());
+        let is_wide = root_samples * unit > MOST_WIDTH * focal;
+        let size = [f64::from(setup.width), f64::from(setup.height), 1.0];
+        if is_wide || (0..3).any(|k| is_rough(edge[(k + 1) % 3], edge[(k + 2) % 3], size)) {
             return Err("handed_for_field_of_view");
         }
         let levels = (0..=setup.depth)
@@ -143,6 +152,16 @@ impl Constants {
     }
 }
 
+/// Whether the coefficients of a direction `a x b` lose too many digits where products of `f64` nearly cancel.
+fn is_rough(a: [f64; 3], b: [f64; 3], size: [f64; 3]) -> bool {
+    let product = |i: usize, c: usize| (a[(c + i) % 3] * b[(c + 3 - i) % 3]).abs();
+    let products: f64 = (0..3)
+        .map(|c| (product(1, c) + product(2, c)) * size[c])
+        .sum();
+    let terms: f64 = cross(a, b).map(f64::abs).iter().sum();
+    products * PRODUCT_ERROR > terms * DIRECTION_ERROR
+}
+
 /// `clip`: a finest voxel's edges. `focal`: samples that it takes, times its depth.
 fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
@@ -175,4 +194,10 @@ fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: 
         tiny_depth: focal * side / TINY_SAMPLES,
         large_depth: focal * side / LARGE_SAMPLES,
     }
+}
+
+#[test]
+fn directions_of_nearly_parallel_edges_are_rough() {
+    let is_rough_at = |turn: f64| is_rough([1.0, 1.0, 0.0], [1.0, 1.0 + turn, 0.0], [1.0; 3]);
+    assert!(is_rough_at(1e-9) && !is_rough_at(1e-6));
 }

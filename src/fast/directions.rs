@@ -1,17 +1,15 @@
 //! Squares, pieces of at most 8 x 8 samples of a window, and the directions of their lines.
 
 use super::band::Band;
-use super::constants::Constants;
+use super::constants::{Constants, DIRECTION_ERROR};
 use super::exact::Exact;
 use super::lanes::{F32x4, Floats, Isa};
 use super::window::{Window, bits};
 
-/// Roundings in `f32` of a line's values, each 2^-24 of the largest sum (counted in `spec/fast.md`).
-pub(super) const STEPS: f32 = 18.0;
+/// Roundings in `f32` of a line's values, each 2^-24 of the largest sum (`lines.gappa`).
+const STEPS: f32 = 18.0;
 /// Bound of the error in `f32` of a direction, a moment, and a distance, relative to the sizes of their terms.
 pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
-/// The same of a direction in `f64`, whose coefficients are differences of numbers up to 2^13 times as large.
-const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions<I: Isa> {
@@ -91,7 +89,7 @@ pub(super) fn by_octant(
         for k in 0..3 {
             let [along_x, along_y, first] = constants.direction[k];
             let value = along_x * x + along_y * y + first;
-            let size = along_x.abs() * x + along_y.abs() * y + first.abs();
+            let size = along_x.abs() * (x + 1.0) + along_y.abs() * (y + 1.0) + first.abs();
             let is_downwards = if value.abs() > size * DIRECTION_ERROR {
                 value < 0.0
             } else {

@@ -7,9 +7,8 @@
 use super::window::Window;
 use crate::project::FrameSetup;
 
-/// Bound of the error in `f64` of a plane's value at a sample, relative to the sizes of its at most nine products. A few
-/// operations in a row add 2^-53 each.
-const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
+/// Bound of the error in `f64` of a plane's value at a sample, relative to the sizes of its products (`doubles.gappa`).
+pub(super) const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
 #[derive(Debug, Clone)]
 pub(super) struct Exact {

@@ -30,6 +30,8 @@ mod orders;
 mod parts;
 mod planes;
 mod projection;
+#[cfg(test)]
+mod proof;
 mod strips;
 mod traversal;
 mod voxels;

@@ -110,7 +110,7 @@ fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
     let numbers = AT_A_BRICK.split_whitespace().map(|n| n.parse().unwrap());
     for of_camera in numbers.collect::<Vec<f64>>().chunks(10) {
         let [eye, target, up] = [1, 4, 7].map(|at| DVec3::from_slice(&of_camera[at..]));
-        let camera = Camera {
+        let mut camera = Camera {
             eye,
             target,
             up,
@@ -125,5 +125,8 @@ fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
             };
             assert!(compare(&graph, &camera, &leaves(), fast).is_some());
         }
+        // Wider ones are declined.
+        camera.fov_degrees = 179.98;
+        assert!(compare(&graph, &camera, &leaves(), FastOptions::default()).is_none());
     }
 }
