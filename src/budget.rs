@@ -80,12 +80,25 @@ pub fn free_disk(folder: &Path) -> Option<u64> {
 /// An empty list with capacity for so many items. Errors: [`Shortage`] if the system refuses it.
 pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     let mut list = Vec::new();
-    list.try_reserve_exact(items).map_err(|_| Shortage {
+    let refused = |_| refused::<T>(what, items);
+    list.try_reserve_exact(items).map_err(refused)?;
+    Ok(list)
+}
+
+/// Capacity for so many more items, of which there may be more later. Errors: [`Shortage`] if the system refuses it.
+#[inline]
+pub fn reserve<T>(what: &'static str, list: &mut Vec<T>, more: usize) -> Result<(), Shortage> {
+    list.try_reserve(more)
+        .map_err(|_| refused::<T>(what, list.len() + more))
+}
+
+#[cold]
+fn refused<T>(what: &'static str, items: usize) -> Shortage {
+    Shortage {
         what,
         needed: (items as u64).saturating_mul(size_of::<T>() as u64),
         free: available(),
-    })?;
-    Ok(list)
+    }
 }
 
 /// A list of equal items. Errors: [`Shortage`] if the system refuses it.
