@@ -36,7 +36,7 @@ pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     verify_mapped(&open(path)?, path)
 }
 
-/// Checks all of the file of an opened graph, header included, as it is now. The graph is made anew from the same map.
+/// Checks all of the file of an opened graph, header included, as it is now. The result is a new graph of the same map.
 pub(crate) fn verify_mapped(graph: &Graph, path: &Path) -> Result<Graph, VxgError> {
     let Store::Mapped(map, _) = &graph.mask else {
         return Ok(graph.clone());
