@@ -198,7 +198,7 @@ mod tests {
             let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
             let sight = Sight::new(&setup);
             let light = Light::new(Shading::Lambert, sight.axes());
-            let shares = Shares::new(&sight, light);
+            let shares = Shares::new(&sight, light).expect("memory");
             for bits in 0..=u16::MAX {
                 let packed = PackedNormal(bits);
                 let (x, y) = (u32::from(bits) % side, u32::from(bits) / side % side);
