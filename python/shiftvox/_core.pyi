@@ -16,7 +16,14 @@ class Error(Exception):
 
 class Scene:
     @staticmethod
-    def open(path: str | PathLike[str], *, depth: int = 9, opacities: bool = False, up: Axis | None = None) -> Scene: ...
+    def open(
+        path: str | PathLike[str],
+        *,
+        depth: int = 9,
+        opacities: bool = False,
+        up: Axis | None = None,
+        verify: bool = False,
+    ) -> Scene: ...
     @staticmethod
     def generate(specification: str) -> Scene: ...
     @staticmethod
@@ -40,6 +47,10 @@ class Scene:
     def bytes(self) -> int: ...
     @property
     def bounds(self) -> list[list[float]]: ...
+    @property
+    def is_verified(self) -> bool: ...
+    @property
+    def warnings(self) -> list[str]: ...
 
 class Camera:
     @staticmethod

@@ -52,20 +52,27 @@ fn made(
 impl Scene {
     /// Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is
     /// voxelised with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: for `coverage="alpha"`.
-    /// `up`: the up axis, by default the format's.
+    /// `up`: the up axis, by default the format's. `verify`: check also a .vxg file of more than 256 MiB in full.
     ///
     /// Raises `Error` for a file that is missing, damaged, unknown or too large.
     #[staticmethod]
-    #[pyo3(signature = (path, *, depth=9, opacities=false, up=None))]
+    #[pyo3(signature = (path, *, depth=9, opacities=false, up=None, verify=false))]
     fn open(
         py: Python<'_>,
         path: PathBuf,
         #[pyo3(from_py_with = whole)] depth: i64,
         opacities: bool,
         up: Option<&str>,
+        verify: bool,
     ) -> PyResult<Self> {
         let options = options(depth, opacities, up)?;
-        made(py, || options.open(path))
+        made(py, || {
+            let mut scene = options.open(path)?;
+            if verify && !scene.is_verified() {
+                scene.verify()?;
+            }
+            Ok(scene)
+        })
     }
 
     /// A generated scene, such as "terrain,depth=7,seed=1"; spec/generators.md lists them.
@@ -150,6 +157,18 @@ impl Scene {
     #[getter]
     fn bounds(&self) -> [[f64; 3]; 2] {
         self.scene.bounds()
+    }
+
+    /// Whether the whole file was checked, and not only the header.
+    #[getter]
+    fn is_verified(&self) -> bool {
+        self.scene.is_verified()
+    }
+
+    /// Warnings about the opened file, one sentence each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.scene.warnings().to_vec()
     }
 
     fn __repr__(&self) -> String {

@@ -91,7 +91,8 @@ def test_a_mesh_of_arrays(tmp_path):
     seen = picture.rgba[picture.nodes >= 0]
     assert len(seen) > 50 and (seen[:, 1] > 150).all() and (seen[:, 0] < 60).all()
     scene.save(tmp_path / "t.vxg")
-    again = shiftvox.Scene.open(tmp_path / "t.vxg")
+    again = shiftvox.Scene.open(tmp_path / "t.vxg", verify=True)
+    assert again.is_verified and again.warnings == []
     assert shiftvox.render(again, size=32, shaded=False).hash == picture.hash
     with pytest.raises(shiftvox.Error, match="row 1 has a corner"):
         shiftvox.Scene.from_mesh(positions, np.array([[0, 1, 2], [0, 1, 4]]))

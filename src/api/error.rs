@@ -28,7 +28,7 @@ pub enum Error {
     /// The picture does not fit in memory.
     #[error(transparent)]
     Memory(Shortage),
-    /// The system gives no threads.
+    /// The system provides no threads.
     #[error(transparent)]
     Threads(Reason),
     /// The engine cannot finish the frame: a word overflowed.

@@ -7,6 +7,7 @@ use hwmodel::Overflow;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{EngineKind, Error};
+use crate::budget;
 use crate::drawing::Canvas;
 
 pub(super) const MOST_THREADS: usize = 1024;
@@ -18,6 +19,11 @@ pub(super) struct Key {
     pub(super) overflow: Overflow,
     /// 0: the threads of the caller's pool.
     pub(super) threads: usize,
+}
+
+/// Starts the threads of `rayon`'s global pool.
+pub(super) fn start_threads() -> Result<(), Error> {
+    budget::start_threads().map_err(|reason| Error::Threads(reason.into()))
 }
 
 pub(super) struct Job {
@@ -43,7 +49,10 @@ impl Kept {
             return Ok(job);
         }
         let pool = match threads {
-            0 => None,
+            0 => {
+                start_threads()?;
+                None
+            }
             _ => Some(
                 ThreadPoolBuilder::new()
                     .num_threads(threads)

@@ -1,10 +1,13 @@
 //! A finished picture.
 
+use std::borrow::Cow;
+use std::io::Write;
 use std::path::Path;
 
 use hwmodel::count::Counter;
 
 use super::Error;
+use crate::budget;
 use crate::picture::Buffer;
 use crate::picture::npy::{self, Values};
 use crate::project::Stats;
@@ -153,10 +156,16 @@ impl Picture {
     /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Write`] if the system refuses.
+    /// [`Error::Write`] if the system refuses, [`Error::Memory`] if the file does not fit in memory.
     #[cfg(feature = "png")]
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let pixels = crate::picture::Pixels::new(self.width, self.height, self.rgba().to_vec());
+        let room = || budget::room("a PNG file", self.rgba().len()).map_err(Error::Memory);
+        let mut pixels: Vec<[u8; 4]> = room()?;
+        pixels.extend_from_slice(self.rgba());
+        // The encoder's memory, which it takes unasked: seldom more than the pixels.
+        let of_encoder: Vec<[u8; 4]> = room()?;
+        drop(of_encoder);
+        let pixels = crate::picture::Pixels::new(self.width, self.height, pixels);
         whole::write_with(path.as_ref(), true, |file| {
             pixels.write(file).map_err(std::io::Error::other)
         })
@@ -169,16 +178,20 @@ impl Picture {
     /// # Errors
     /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.
     pub fn save_npy(&self, buffer: Buffer, path: impl AsRef<Path>) -> Result<(), Error> {
-        let values = match buffer {
-            Buffer::Color => Values::U8(self.rgba().as_flattened().to_vec()),
-            other => self.values(other)?.clone(),
+        let bytes = match buffer {
+            Buffer::Color => Cow::Borrowed(self.rgba().as_flattened()),
+            other => self.values(other)?.bytes(),
         };
         let mut shape = vec![self.height as usize, self.width as usize];
         if buffer.entries() > 1 {
             shape.push(buffer.entries());
         }
-        let bytes = npy::encode(&npy::Array { shape, values });
-        whole::write(path.as_ref(), &bytes, true).map_err(|e| Error::Write(e.into()))
+        let header = npy::header(&shape, &buffer.none());
+        whole::write_with(path.as_ref(), true, |file| {
+            file.write_all(&header)?;
+            file.write_all(&bytes)
+        })
+        .map_err(|e| Error::Write(e.into()))
     }
 
     /// The colours and the requested buffers, for bindings to other languages.

@@ -382,12 +382,12 @@ impl Renderer {
         let camera = camera.of_size(width, height)?;
         check_samples(&camera, options.aa_log2, FRAME_BYTES, 0, 0)?;
         let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
-        let light = lights(graph, &setup, self.shading);
+        let light = lights(graph, &setup, self.shading).map_err(Error::Memory)?;
         let view = GraphView {
             light: &light,
             ..graph.view()
         };
-        let mut frame = Frame::new(setup.width, setup.height, false);
+        let mut frame = Frame::nodes_only(0, 0);
         self.machine()
             .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)
             .map_err(|e| Error::Simulate(e.into()))

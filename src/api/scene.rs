@@ -1,8 +1,9 @@
 //! A scene: a voxel graph, its place, and its vertical axis.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Error;
+use super::kept::start_threads;
 use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
@@ -20,15 +21,22 @@ pub struct Scene {
     up: Up,
     warnings: Vec<String>,
     is_verified: bool,
+    mapped: Option<PathBuf>,
 }
 
 impl Scene {
     /// Opens a voxel file or a voxel graph (`spec/input.md`), recognised by content. Meshes are opened by the crate
     /// `shiftvox-mesh`.
     ///
+    /// A `.vxg` file is mapped, and its pages are read while it is drawn. A program that writes to the file meanwhile changes
+    /// later pictures, or makes them wrong, but causes no panic. One that cuts it short ends this process by the signal
+    /// SIGBUS on Unix, which the program `shiftvox` reports as an error and a library cannot. Replacing the file by
+    /// another, as [`Scene::save_vxg`] does, is safe. [`Scene::from_bytes`] of a file that was read does not map it.
+    ///
     /// # Errors
     /// [`Error::Open`] if the file cannot be read, is damaged or of another format, or does not fit in memory.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        start_threads()?;
         let file = SceneFile::open(path.as_ref()).map_err(|e| Error::Open(e.into()))?;
         let source = Source::File(file);
         let opened = open_source(source, &OpenOptions::default(), &NoMeshes, &Silent);
@@ -40,6 +48,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::open`].
     pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, Error> {
+        start_threads()?;
         let opened = open_bytes(bytes, name, &OpenOptions::default(), &NoMeshes, &Silent);
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
@@ -49,6 +58,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Open`] for a wrong specification.
     pub fn generate(specification: &str) -> Result<Self, Error> {
+        start_threads()?;
         let source = format!("{}{specification}", crate::scene::generate::PREFIX);
         let opened = open(&source, &OpenOptions::default(), &NoMeshes, &Silent);
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
@@ -59,6 +69,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Build`] for no voxel, for a span of more than 2^21 along an axis, and for 2^32 voxels or nodes.
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
+        start_threads()?;
         let mut builder = Builder::new(BuildOptions::default());
         for voxel in voxels {
             builder.push(voxel);
@@ -134,10 +145,44 @@ impl Scene {
         &self.warnings
     }
 
-    /// Whether the whole file was checked, and not only the header, as of a `.vxg` file of more than 256 MiB.
+    /// Whether the whole file was checked, and not only the header, as of a `.vxg` file of more than 256 MiB until
+    /// [`Scene::verify`].
     #[must_use]
     pub fn is_verified(&self) -> bool {
         self.is_verified
+    }
+
+    /// Checks all of a mapped `.vxg` file: checksums, padding and every index. This reads the whole file. Scenes of other
+    /// files were checked when they were opened. After an error, [`Scene::is_verified`] is false.
+    ///
+    /// ```
+    /// # use shiftvox::Scene;
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # let path = folder.path().join("large.vxg");
+    /// # Scene::generate("menger,depth=2")?.save_vxg(&path)?;
+    /// let mut scene = Scene::open(&path)?;
+    /// if !scene.is_verified() {
+    ///     scene.verify()?;
+    /// }
+    /// # scene.verify()?;
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Open`] with the damaged section.
+    pub fn verify(&mut self) -> Result<(), Error> {
+        let Some(path) = &self.mapped else {
+            return Ok(());
+        };
+        self.is_verified = false;
+        let verified = vxg::verify_mapped(&self.graph, path);
+        self.graph = verified.map_err(|e| Error::Open(e.into()))?;
+        // As in `with_up`.
+        if let Some(mesh) = &mut self.graph.placement.mesh {
+            mesh.y_up = self.up == Up::Y;
+        }
+        self.is_verified = true;
+        Ok(())
     }
 
     /// The graph.
@@ -153,6 +198,7 @@ impl From<Opened> for Scene {
         Self {
             warnings: opened.info.map(|info| info.warnings).unwrap_or_default(),
             is_verified: opened.is_verified,
+            mapped: opened.mapped,
             ..opened.graph.into()
         }
     }
@@ -166,6 +212,7 @@ impl From<Graph> for Scene {
             graph,
             warnings: Vec::new(),
             is_verified: true,
+            mapped: None,
         }
     }
 }
@@ -193,5 +240,57 @@ mod tests {
         let missing = Scene::open("gen:menger,depth=2").expect_err("there is no such file");
         assert!(matches!(missing, Error::Open(_)), "{missing}");
         assert!(Scene::generate("menger,depth=2").is_ok());
+    }
+
+    #[test]
+    fn a_mapped_file_is_verified_on_request_and_its_damage_is_found() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("menger.vxg");
+        let made = Scene::generate("menger,depth=2").expect("a scene");
+        made.save_vxg(&path).expect("written");
+        let open_up_to = |verify_up_to| {
+            let options = OpenOptions {
+                verify_up_to,
+                ..OpenOptions::default()
+            };
+            let path = path.to_str().expect("text");
+            Scene::from(open(path, &options, &NoMeshes, &Silent).expect("a graph"))
+        };
+        let draw = |scene: &Scene| {
+            let renderer = crate::Renderer::new().hashed(true);
+            let picture = renderer.render(scene, &crate::Camera::fit(&made), 48, 48);
+            picture
+                .expect("a picture")
+                .hash()
+                .expect("a hash")
+                .to_owned()
+        };
+        let length = std::fs::metadata(&path).expect("a file").len();
+        assert!(open_up_to(length).is_verified());
+        assert_eq!(OpenOptions::default().verify_up_to, 256 << 20);
+        let mut scene = open_up_to(length - 1).with_up(Up::Y);
+        assert!(!scene.is_verified());
+        scene.verify().expect("sound");
+        assert!(scene.is_verified() && scene.up() == Up::Y);
+        assert_eq!(draw(&scene), draw(&made));
+        // Another program changes the last byte of a section, in place, and then the header.
+        let mut bytes = std::fs::read(&path).expect("bytes");
+        for (at, section) in [(length as usize - 1, "section NRML"), (30, "header")] {
+            bytes[at] ^= 1;
+            let file = std::fs::File::options().write(true).open(&path);
+            let written = std::io::Write::write_all(&mut file.expect("a file"), &bytes);
+            written.expect("written in place");
+            draw(&scene);
+            let found = scene.verify().expect_err("damaged");
+            let told = found.to_string();
+            assert!(
+                matches!(found, Error::Open(_)) && told.contains(section),
+                "{told}"
+            );
+            assert!(told.contains("menger.vxg") && !scene.is_verified());
+        }
+        // A scene in memory has been checked.
+        let mut held = made;
+        assert!(held.verify().is_ok() && held.is_verified());
     }
 }

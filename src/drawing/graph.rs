@@ -166,7 +166,7 @@ impl<'g> GraphDrawing<'g> {
 
     fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<(Stats, f64), DrawError> {
         let started = Instant::now();
-        let light = lights(self.graph, setup, self.style.shading);
+        let light = lights(self.graph, setup, self.style.shading)?;
         let stats = self.viewer.render_lit(setup, &light)?;
         Ok((stats, milliseconds_since(started)))
     }
@@ -274,9 +274,9 @@ impl Drawable for GraphDrawing<'_> {
     fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
         let (graph, setup) = (self.graph, self.setup(camera)?);
         let mut engine = (self.engine)();
-        let mut colors = Colors::new(setup.width, setup.height);
-        colors.words.fill(1);
-        let light = lights(graph, &setup, Shading::Flat);
+        let mut colors = Colors::new(0, 0);
+        colors.fit(setup.width, setup.height)?;
+        let light = lights(graph, &setup, Shading::Flat)?;
         Ok(Box::new(move || {
             let view = GraphView {
                 light: &light,

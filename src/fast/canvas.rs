@@ -5,6 +5,7 @@
 
 use super::lanes::{Isa, Scalar};
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
+use crate::budget::{self, Shortage};
 use crate::frame::{Blend, NO_NODE, color_word};
 
 const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
@@ -26,6 +27,13 @@ pub(super) struct FillPart<'p> {
     blocks: &'p mut [u64],
 }
 
+fn resize(masks: &mut Vec<u64>, length: usize) -> Result<(), Shortage> {
+    if masks.len() != length {
+        *masks = budget::filled("the open samples of a picture", 0, length)?;
+    }
+    Ok(())
+}
+
 #[derive(Debug, Default)]
 pub(super) struct FillMemory {
     tiles: Vec<u64>,
@@ -33,13 +41,15 @@ pub(super) struct FillMemory {
 }
 
 impl FillMemory {
-    pub(super) fn resize(&mut self, grid: &TileGrid) {
+    pub(super) fn resize(&mut self, grid: &TileGrid) -> Result<(), Shortage> {
         let beyond = grid.tiles_across + 2;
-        self.tiles
-            .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
+        resize(
+            &mut self.tiles,
+            grid.tiles_down * grid.tiles_across + beyond,
+        )?;
         // Each band has its own row of blocks; there may be a band for each row of tiles.
         let block_rows = grid.tiles_down.div_ceil(TILES_PER_BLOCK) + grid.tiles_down;
-        self.blocks.resize(block_rows * grid.blocks_across, 0);
+        resize(&mut self.blocks, block_rows * grid.blocks_across)
     }
 
     pub(super) fn part(&mut self) -> FillPart<'_> {

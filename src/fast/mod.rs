@@ -74,9 +74,10 @@ pub struct Fast {
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
     prepared: Option<Prepared>,
-    counters: Counters,
-    declined: Option<&'static str>,
 }
+
+/// Counts of a drawn frame, or the reason for which the fallback has to draw it.
+type Drawn = Result<Counters, &'static str>;
 
 struct Prepared {
     setup: FrameSetup,
@@ -92,17 +93,16 @@ impl Fast {
             fallback,
             fill: FillMemory::default(),
             prepared: None,
-            counters: Counters::default(),
-            declined: None,
         }
     }
 
-    pub fn declined(&self) -> Option<&'static str> {
-        self.declined
-    }
-
-    /// `false`: the fallback has to draw. Allocates nothing when the set-up is that of the last frame.
-    fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
+    /// Allocates nothing when the set-up is that of the last frame.
+    fn draw_fast(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        pixels: Pixels<'_>,
+    ) -> Result<Drawn, EngineError> {
         let prepared = match &mut self.prepared {
             Some(prepared) if prepared.setup == *setup => prepared,
             other => other.insert(Prepared {
@@ -111,9 +111,9 @@ impl Fast {
                 exact: Exact::new(setup),
             }),
         };
-        self.declined = prepared.constants.as_ref().err().copied();
-        let Ok(constants) = &prepared.constants else {
-            return false;
+        let constants = match &prepared.constants {
+            Ok(constants) => constants,
+            Err(why) => return Ok(Err(why)),
         };
         let job = Job {
             constants,
@@ -122,7 +122,7 @@ impl Fast {
             switches: &self.options.switches,
         };
         let grid = TileGrid::new(setup.width, setup.height);
-        self.fill.resize(&grid);
+        self.fill.resize(&grid)?;
         let threads = match self.options.threads {
             0 => rayon::current_num_threads(),
             threads => threads,
@@ -135,19 +135,22 @@ impl Fast {
         };
         let object = constants.rows(setup.height);
         let object = object.start >> TILE_LOG2..object.end.div_ceil(1 << TILE_LOG2);
-        let counters = match self.options.instructions.best() {
+        Ok(Ok(match self.options.instructions.best() {
             #[cfg(target_arch = "x86_64")]
             InstructionSet::Avx2(isa) => run_bands(&job, buffers, isa, &object, threads),
             InstructionSet::Scalar(isa) => run_bands(&job, buffers, isa, &object, threads),
-        };
-        self.counters = counters;
-        true
+        }))
     }
 
-    fn draw_frame(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
+    fn draw_frame(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Drawn, EngineError> {
+        frame.fit(setup.width, setup.height, setup.options.coverage.blends())?;
         if frame.records.is_some() {
-            self.declined = Some("handed_for_records");
-            return false;
+            return Ok(Err("handed_for_records"));
         }
         let pixels = Pixels {
             width: frame.width as usize,
@@ -168,11 +171,10 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
-        frame.set_blending(setup.options.coverage.blends());
-        if self.draw_frame(graph, setup, frame) {
-            return Ok(());
+        match self.draw_frame(graph, setup, frame)? {
+            Ok(_) => Ok(()),
+            Err(_) => self.fallback.draw(graph, setup, frame),
         }
-        self.fallback.draw(graph, setup, frame)
     }
 
     fn draw_colors(
@@ -182,6 +184,7 @@ impl Engine for Fast {
         setup: &FrameSetup,
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
+        colors.fit(setup.width, setup.height)?;
         if setup.options.coverage.blends() {
             self.draw(graph, setup, colors.nodes())?;
             colors.take_nodes(of_node);
@@ -195,7 +198,7 @@ impl Engine for Fast {
             voxel: &mut [],
             blend: &mut [],
         };
-        if !of_node.is_empty() && self.draw_fast(graph, setup, pixels) {
+        if !of_node.is_empty() && self.draw_fast(graph, setup, pixels)?.is_ok() {
             return Ok(());
         }
         self.fallback.draw_colors(graph, of_node, setup, colors)
@@ -207,13 +210,12 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
-        frame.set_blending(setup.options.coverage.blends());
-        if self.draw_frame(graph, setup, frame) {
-            return Ok(self.counters.stats());
-        }
+        let why = match self.draw_frame(graph, setup, frame)? {
+            Ok(counters) => return Ok(counters.stats()),
+            Err(why) => why,
+        };
         let mut stats = self.fallback.render(graph, setup, frame)?;
-        stats.push(("handed_to_machine", 1));
-        stats.extend(self.declined.map(|why| (why, 1)));
+        stats.extend([("handed_to_machine", 1), (why, 1)]);
         Ok(stats)
     }
 }

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use rayon::prelude::*;
 
 use super::{Blend, Frame, NO_NODE};
+use crate::budget::Shortage;
 use crate::srgb::from_linear;
 
 const TOGETHER: usize = 16;
@@ -34,10 +35,15 @@ impl Colors {
         }
     }
 
+    /// Makes this a picture of `width` x `height` samples. Errors: [`Shortage`] if the system refuses the memory.
+    pub fn fit(&mut self, width: u32, height: u32) -> Result<(), Shortage> {
+        (self.width, self.height) = (width, height);
+        super::fit(&mut self.words, 0, width as usize * height as usize)
+    }
+
+    /// A frame to be drawn, of any size.
     pub fn nodes(&mut self) -> &mut Frame {
-        let (width, height) = (self.width, self.height);
-        self.nodes
-            .get_or_insert_with(|| Frame::nodes_only(width, height))
+        self.nodes.get_or_insert_with(|| Frame::nodes_only(0, 0))
     }
 
     /// Looks up the colours of the nodes that [`Colors::nodes`] shows. `of_node`: colours by graph node.
@@ -108,8 +114,7 @@ mod tests {
     #[test]
     fn nodes_become_colors_and_nothing_zero() {
         let mut colors = Colors::new(2, 2);
-        colors.nodes().node[1] = 2;
-        colors.nodes().node[3] = 1;
+        colors.nodes().node = vec![NO_NODE, 2, NO_NODE, 1];
         colors.words.fill(7);
         colors.take_nodes(&[[9, 9, 9], [1, 2, 3], [4, 5, 6]]);
         assert_eq!(colors.words, [0, 0xff04_0506, 0, 0xff01_0203]);

@@ -3,6 +3,8 @@
 mod colors;
 pub mod quadtree;
 
+use crate::budget::{self, Shortage};
+
 pub use colors::{Colors, color_word};
 pub use quadtree::{FillVectors, QuadNode};
 
@@ -90,15 +92,37 @@ impl Frame {
         }
     }
 
-    pub fn set_blending(&mut self, blends: bool) {
-        let samples = self.node.len();
-        match &mut self.blend {
-            Some(blend) if blends => blend.fill(Blend::default()),
-            blend => *blend = blends.then(|| vec![Blend::default(); samples]),
+    /// Makes this a frame of `width` x `height` samples, with empty blends if `blends`. Other entries may be old. A frame
+    /// without voxels or records stays without. Errors: [`Shortage`] if the system refuses the memory.
+    pub fn fit(&mut self, width: u32, height: u32, blends: bool) -> Result<(), Shortage> {
+        let samples = width as usize * height as usize;
+        (self.width, self.height) = (width, height);
+        fit(&mut self.node, NO_NODE, samples)?;
+        if !self.voxel.is_empty() {
+            fit(&mut self.voxel, NO_VOXEL, samples)?;
         }
+        if let Some(records) = &mut self.records {
+            fit(records, 0.0, samples)?;
+        }
+        if !blends {
+            self.blend = None;
+            return Ok(());
+        }
+        let blend = self.blend.get_or_insert_default();
+        blend.fill(Blend::default());
+        fit(blend, Blend::default(), samples)
     }
 
     pub fn drawn(&self) -> usize {
         self.node.iter().filter(|&&node| node != NO_NODE).count()
     }
+}
+
+/// Replaces a list of another length by one of equal entries.
+fn fit<T: Clone>(list: &mut Vec<T>, entry: T, samples: usize) -> Result<(), Shortage> {
+    if list.len() != samples {
+        *list = Vec::new();
+        *list = budget::filled("the frame of a picture", entry, samples)?;
+    }
+    Ok(())
 }

@@ -3,6 +3,8 @@
 //! A bit per quadrant (`y << 1 | x`). A drawn sample sets all its bits; a full node sets its bit in its parent. Quadrants
 //! outside the picture are full from the start, so clipping is the same test as occlusion.
 
+use crate::budget::{self, Shortage};
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct QuadNode {
     /// Level, 0 = root; a sample is at the deepest level.
@@ -84,11 +86,16 @@ pub const fn nodes_to(levels: u32) -> usize {
 }
 
 impl FillVectors {
-    pub fn new(levels: u32, width: u32, height: u32) -> Self {
+    /// Errors: [`Shortage`] if there is too little memory.
+    pub fn new(levels: u32, width: u32, height: u32) -> Result<Self, Shortage> {
+        let (what, nodes) = ("the fill vectors of a picture", nodes_to(levels));
+        if nodes > 1 << 23 {
+            budget::check(what, 2 * nodes as u64)?;
+        }
         let mut fill = Self {
             levels,
-            vectors: vec![0; nodes_to(levels)],
-            empty_picture: Vec::new(),
+            vectors: budget::filled(what, 0, nodes)?,
+            empty_picture: budget::room(what, nodes)?,
         };
         for level in (0..=levels).rev() {
             let side = 1u32 << level;
@@ -108,8 +115,8 @@ impl FillVectors {
                 }
             }
         }
-        fill.empty_picture.clone_from(&fill.vectors);
-        fill
+        fill.empty_picture.extend_from_slice(&fill.vectors);
+        Ok(fill)
     }
 
     pub fn clear(&mut self) {
@@ -143,7 +150,7 @@ mod tests {
 
     #[test]
     fn outside_the_picture_is_full_from_the_start() {
-        let fill = FillVectors::new(3, 5, 2);
+        let fill = FillVectors::new(3, 5, 2).expect("memory");
         // Rows 4..8 are outside: both lower quadrants of the root. Column 4 alone is inside the upper right quadrant.
         assert_eq!(fill.vector(QuadNode::ROOT), 0b1100);
         assert_eq!(fill.vector(QuadNode::ROOT.quadrant(1)), 0b1110);
@@ -157,7 +164,7 @@ mod tests {
                 assert_eq!(is_full, fill.vector(node) >> quadrant & 1 != 0);
             }
         }
-        let mut fill = FillVectors::new(0, 1, 1);
+        let mut fill = FillVectors::new(0, 1, 1).expect("memory");
         assert_eq!(fill.vector(QuadNode::ROOT), 0);
         assert_eq!(fill.set(QuadNode::ROOT, FULL), FULL);
         fill.clear();

@@ -48,10 +48,6 @@ impl Builder {
         }
     }
 
-    pub fn reserve(&mut self, voxels: usize) {
-        self.records.reserve(voxels);
-    }
-
     pub fn len(&self) -> u64 {
         self.pushed
     }

@@ -22,7 +22,7 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece, 40 MB; a reserved one may have more.
+/// Voxels per piece, 40 MB.
 const PIECE: usize = 1 << 21;
 
 const VOXELS: &str = "voxels that are sorted";
@@ -87,22 +87,12 @@ impl PushedVoxels {
         self.pieces.iter().map(Vec::len).sum()
     }
 
-    /// Reserves memory in one piece, which then need not be copied.
-    pub(super) fn reserve(&mut self, more: usize) {
-        let room = self.pieces.last().map_or(0, |p| p.capacity() - p.len());
-        if more <= room.max(PIECE) {
-            return;
-        }
-        if let Some(last) = self.pieces.last_mut() {
-            last.shrink_to_fit();
-        }
-        self.pieces.retain(|piece| !piece.is_empty());
-        self.pieces.push(Vec::with_capacity(more));
-    }
-
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
-            Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
+            Some(last) if last.len() < PIECE => {
+                budget::reserve(VOXELS, last, 1)?;
+                last.push(record);
+            }
             None => self.pieces.push(vec![record]),
             Some(_) => {
                 let mut piece = budget::room(VOXELS, PIECE)?;
@@ -143,32 +133,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
+    fn pieces_hold_little_more_than_their_voxels_and_sort() {
         assert_eq!(size_of::<PushedVoxel>(), 20);
         let count = 2 * PIECE + 1000;
-        let (mut grown, mut reserved) = (PushedVoxels::default(), PushedVoxels::default());
+        let mut grown = PushedVoxels::default();
         for i in 0..count as u32 {
             // The last of each thousand lies where the first does, in a row that runs through all axes.
             let at = if i % 1000 == 999 { i - 999 } else { i };
             let index = [at % 100, at / 100 % 200, at / 20_000].map(|c| c as i32 - 50);
             let pushed = PushedVoxel::new(index, i, [i as u8; 3], PackedNormal::NONE);
             grown.push(pushed).unwrap();
-            if i == 1 {
-                // A later, smaller one changes nothing.
-                reserved.reserve(count - 1);
-            }
-            reserved.reserve(1);
-            reserved.push(pushed).unwrap();
             let room: usize = grown.pieces.iter().map(Vec::capacity).sum();
             let first = grown.len().next_power_of_two().max(4);
             assert!(room <= first.min(grown.len() + PIECE).max(4));
         }
-        let pieces = [&grown, &reserved].map(|pushed| (pushed.len(), pushed.pieces.len()));
-        assert_eq!(pieces, [(count, 3), (count, 2)]);
-        let [grown, reserved] = [grown, reserved].map(|pushed| pushed.sorted([-50; 3]).unwrap());
+        assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
+        let grown = grown.sorted([-50; 3]).unwrap();
         assert!(grown.is_sorted_by_key(PushedVoxel::key));
-        let parts = |r: &PushedVoxel| (r.key(), r.sequence, r.color);
-        assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
         // The last pushed stays.
         assert_eq!(
             (grown.len(), grown[0].sequence),

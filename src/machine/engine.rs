@@ -67,7 +67,8 @@ impl Machine {
         let options = self.options;
         let wants_records = frame.records.is_some();
         let records = wants_records.then(|| RecordsBySample::new(setup.levels));
-        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let records = records.transpose()?;
+        let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, records);
         let is_done = if options.organisation == Organisation::default() {
             state.draw_object(QuadNode::ROOT, most)?
@@ -84,18 +85,22 @@ impl Machine {
         Ok(Some((stats, probe)))
     }
 
-    /// Clears a frame. Returns its fill vectors.
-    pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
+    /// Fits and clears a frame. Returns its fill vectors.
+    pub(super) fn emptied(
+        &mut self,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<&mut FillVectors, EngineError> {
+        frame.fit(setup.width, setup.height, setup.options.coverage.blends())?;
         frame.clear();
-        frame.set_blending(setup.options.coverage.blends());
         let size = (setup.levels, setup.width, setup.height);
-        if self.fill.as_ref().is_some_and(|(kept, _)| *kept != size) {
-            self.fill = None;
-        }
-        let new = || (size, FillVectors::new(size.0, size.1, size.2));
-        let (_, vectors) = self.fill.get_or_insert_with(new);
+        let kept = match self.fill.take().filter(|(kept, _)| *kept == size) {
+            Some(kept) => kept,
+            None => (size, FillVectors::new(size.0, size.1, size.2)?),
+        };
+        let (_, vectors) = self.fill.insert(kept);
         vectors.clear();
-        vectors
+        Ok(vectors)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::cage::CageCoordinate;
 use super::record::Record;
+use crate::budget::{self, Shortage};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::nodes_to;
 
@@ -43,11 +44,9 @@ pub(super) struct RecordsBySample {
 }
 
 impl RecordsBySample {
-    pub(super) fn new(levels: u32) -> Self {
-        Self {
-            levels,
-            turns: vec![0; nodes_to(levels)],
-        }
+    pub(super) fn new(levels: u32) -> Result<Self, Shortage> {
+        let turns = budget::filled("a map of work", 0, nodes_to(levels))?;
+        Ok(Self { levels, turns })
     }
 
     /// Writes each sample's share, in rows of `width`: a record counts 1, spread evenly over its node's samples.

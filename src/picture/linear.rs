@@ -4,6 +4,7 @@ use super::Shading;
 use super::color::Light;
 use super::shade::towards_eye;
 use super::sight::Sight;
+use crate::budget::{self, Shortage};
 use crate::graph::{Graph, PackedNormal};
 use crate::project::FrameSetup;
 use rayon::prelude::*;
@@ -63,24 +64,30 @@ impl Linear {
 ///
 /// A picture that is shaded afterwards knows the face and the ray of each sample. Here a node has one light for all
 /// samples: its normal is turned towards the camera's plane, and a node without one is lit as if it faced the camera.
-pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
+pub fn lights(
+    graph: &Graph,
+    setup: &FrameSetup,
+    shading: Shading,
+) -> Result<Vec<[u16; 3]>, Shortage> {
     if !setup.options.coverage.blends() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
+    let mut lights = budget::filled("the light of all nodes", [0; 3], graph.len())?;
     let sight = Sight::new(setup);
     let [_, _, back] = sight.axes();
     let light = Light::new(shading, sight.axes());
     let linear = Linear::tables();
-    (0..graph.len() as u32)
-        .into_par_iter()
-        .map(|node| {
+    lights
+        .par_iter_mut()
+        .zip(0..graph.len() as u32)
+        .for_each(|(lit, node)| {
             let normal = PackedNormal::decode(graph.normal_of(node));
             let normal = normal.map_or(back, |normal| towards_eye(normal, -back));
             let share = light.on(normal);
             let full = linear.decode(graph.color_of(node));
-            full.map(|channel| ((channel * share) >> 8) as u16)
-        })
-        .collect()
+            *lit = full.map(|channel| ((channel * share) >> 8) as u16);
+        });
+    Ok(lights)
 }
 
 #[cfg(test)]

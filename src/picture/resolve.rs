@@ -52,7 +52,7 @@ pub struct Resolver<'f> {
     shader: Shader<'f>,
     origin_index: [i64; 3],
     aa: u32,
-    shares: OnceLock<Option<Shares>>,
+    shares: OnceLock<Shares>,
 }
 
 const PIXELS: &str = "the pixels of a picture";
@@ -107,10 +107,11 @@ impl<'f> Resolver<'f> {
     ) -> Result<(), ResolveError> {
         let Shader { sight, light, .. } = &self.shader;
         let is_lit = light.is_directed() && self.frame.blend.is_none();
-        let shares = self
-            .shares
-            .get_or_init(|| is_lit.then(|| Shares::new(sight, *light)));
-        let painter = Painter::new(self.frame, &self.shader, shares.as_ref(), self.aa);
+        if is_lit && self.shares.get().is_none() {
+            // Another thread may have been faster.
+            let _ = self.shares.set(Shares::new(sight, *light)?);
+        }
+        let painter = Painter::new(self.frame, &self.shader, self.shares.get(), self.aa);
         self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 

@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 use super::color::Light;
 use super::shade::AWAY;
 use super::sight::Sight;
+use crate::budget::{self, Shortage};
 use crate::graph::PackedNormal;
 
 pub(super) const TOGETHER: usize = 16;
@@ -66,7 +67,7 @@ pub(super) struct Run {
 }
 
 impl Shares {
-    pub(super) fn new(sight: &Sight, light: Light) -> Self {
+    pub(super) fn new(sight: &Sight, light: Light) -> Result<Self, Shortage> {
         let m = sight.to_object;
         let columns = [m.x_axis, m.y_axis, m.z_axis];
         // Lengths around 1, so that no square leaves the range of `f32`.
@@ -74,14 +75,16 @@ impl Shares {
         let columns = columns.map(|column| column / longest);
         let columns_f32 = columns.map(|column| column.as_vec3());
         let lengths: f64 = columns.iter().map(|column| column.length()).sum();
-        Self {
+        let mut entries = budget::room("shares of light", NORMALS)?;
+        entries.extend((0..NORMALS).map(|_| Default::default()));
+        Ok(Self {
             light,
             columns,
             columns_f32,
             step: (1.0 / sight.root_doubled) as f32,
             margin: MARGIN * lengths as f32,
-            entries: (0..NORMALS).map(|_| Default::default()).collect(),
-        }
+            entries,
+        })
     }
 
     pub(super) fn down(&self, y: u32) -> f32 {
@@ -195,7 +198,7 @@ mod tests {
             let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
             let sight = Sight::new(&setup);
             let light = Light::new(Shading::Lambert, sight.axes());
-            let shares = Shares::new(&sight, light);
+            let shares = Shares::new(&sight, light).expect("memory");
             for bits in 0..=u16::MAX {
                 let packed = PackedNormal(bits);
                 let (x, y) = (u32::from(bits) % side, u32::from(bits) / side % side);

@@ -37,7 +37,7 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` has the size of `setup` and is
+    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` gets the size of `setup` and is
     /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
@@ -46,12 +46,13 @@ pub trait Engine {
         setup: &FrameSetup,
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
+        colors.fit(setup.width, setup.height)?;
         self.draw(graph, setup, colors.nodes())?;
         colors.take_nodes(of_node);
         Ok(())
     }
 
-    /// Draws into `frame`, which has the size of `setup` and is cleared first. Fails when the frame cannot be finished;
+    /// Draws into `frame`, which gets the size of `setup` and is cleared first. Fails when the frame cannot be finished;
     /// its contents then have no meaning.
     fn render(
         &mut self,

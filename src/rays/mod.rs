@@ -21,13 +21,14 @@ use search::Search;
 pub struct Rays;
 
 impl Engine for Rays {
-    /// Never fails. `frame.records` is the number of cubes tested against the sample's ray.
+    /// Fails only if the system refuses the memory of a frame. `frame.records` is the number of cubes tested against the sample's ray.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
+        frame.fit(setup.width, setup.height, false)?;
         let view = RayFrame::new(setup);
         let tested = if view.fits_i128() {
             render_rows::<i128>(graph, &view, frame)
@@ -82,29 +83,24 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
     if width == 0 {
         return 0;
     }
-    let record_rows: Vec<Option<&mut [f32]>> = match &mut frame.records {
-        Some(records) => records.chunks_mut(width).map(Some).collect(),
-        None => (0..frame.height).map(|_| None).collect(),
-    };
-    let mut unwanted = Vec::new();
-    let voxels = if frame.voxel.is_empty() {
-        unwanted.resize(frame.node.len(), NO_VOXEL);
-        &mut unwanted
-    } else {
-        &mut frame.voxel
-    };
+    let height = frame.height;
+    let voxels = Some(&mut frame.voxel[..]).filter(|voxels| !voxels.is_empty());
+    let records = frame.records.as_deref_mut();
     frame
         .node
         .par_chunks_mut(width)
-        .zip(voxels.par_chunks_mut(width))
-        .zip(record_rows)
+        .zip(optional_rows(voxels, width, height))
+        .zip(optional_rows(records, width, height))
         .enumerate()
-        .map(|(j, ((nodes, voxels), mut records))| {
+        .map(|(j, ((nodes, mut voxels), mut records))| {
             let mut tested_in_row = 0u64;
             for i in 0..width {
                 let mut walk = Search::<N>::new(graph, view, i as u32, j as u32);
-                let seen = walk.nearest();
-                (nodes[i], voxels[i]) = seen.unwrap_or((NO_NODE, NO_VOXEL));
+                let (node, voxel) = walk.nearest().unwrap_or((NO_NODE, NO_VOXEL));
+                nodes[i] = node;
+                if let Some(voxels) = &mut voxels {
+                    voxels[i] = voxel;
+                }
                 if let Some(records) = &mut records {
                     records[i] = walk.tested as f32;
                 }
@@ -113,6 +109,14 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
             tested_in_row
         })
         .sum()
+}
+
+/// The rows of a buffer, or none for each row.
+fn optional_rows<T>(buffer: Option<&mut [T]>, width: usize, height: u32) -> Vec<Option<&mut [T]>> {
+    match buffer {
+        Some(buffer) => buffer.chunks_mut(width).map(Some).collect(),
+        None => (0..height).map(|_| None).collect(),
+    }
 }
 
 #[cfg(test)]

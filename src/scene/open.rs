@@ -41,6 +41,8 @@ pub struct Opened {
     pub mesh: Option<MeshSummary>,
     /// `false` for a graph file larger than [`OpenOptions::verify_up_to`].
     pub is_verified: bool,
+    /// The graph file that is mapped.
+    pub mapped: Option<PathBuf>,
 }
 
 impl Opened {
@@ -51,6 +53,7 @@ impl Opened {
             info: None,
             mesh: None,
             is_verified: true,
+            mapped: None,
         }
     }
 }
@@ -85,6 +88,7 @@ pub fn open_source(
         };
         return Ok(Opened {
             is_verified,
+            mapped: Some(file.path().to_owned()),
             ..Opened::of(graph, FileKind::Vxg)
         });
     }

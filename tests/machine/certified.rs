@@ -48,7 +48,7 @@ fn compare(
     let mut engine = Fast::new(fast, Box::new(Machine::default()));
     let stats = engine.render(&graph.view(), &setup, &mut frame);
     let stats = stats.expect("no overflow");
-    if engine.declined().is_some() {
+    if stats.iter().any(|(name, _)| *name == "handed_to_machine") {
         return None;
     }
     assert!(truth == frame, "{camera:?}, {fast:?}, {options:?}");

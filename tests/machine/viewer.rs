@@ -3,10 +3,13 @@
 use crate::common::*;
 use crate::scenes::{CameraPlace, Dice, camera_at};
 use proptest::prelude::*;
-use shiftvox::frame::Frame;
+use shiftvox::fast::{Fast, FastOptions};
+use shiftvox::frame::{Colors, Frame};
+use shiftvox::graph::GraphView;
 use shiftvox::machine::Machine;
 use shiftvox::project::viewer::FRAMES_UNCHANGED;
-use shiftvox::project::{Camera, Contents, Engine, FrameSetup, SetupOptions, Viewer};
+use shiftvox::project::{Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Viewer};
+use shiftvox::rays::Rays;
 
 fn settings(number: usize) -> SetupOptions {
     let mut options = SetupOptions::default();
@@ -73,6 +76,82 @@ proptest! {
             let is_drawn = drawn.is_ok();
             prop_assert!(viewer.frame() == is_drawn.then_some(&right), "a stale picture");
             last = is_drawn.then_some(setup);
+        }
+    }
+}
+
+/// The fast engine declines the rule `any` and frames with records.
+#[test]
+fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
+    let graph = sierpinski(5);
+    let light = lights(&graph);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let fast = || {
+        Box::new(Fast::new(
+            FastOptions::default(),
+            Box::new(Machine::default()),
+        )) as Box<dyn Engine>
+    };
+    let engines = [
+        fast as fn() -> Box<dyn Engine>,
+        || Box::new(Machine::default()),
+        || Box::new(Rays),
+    ];
+    for (kind, new) in engines.iter().enumerate() {
+        let mut used = new();
+        let mut frames = [false, true].map(|with_records| Frame::new(7, 3, with_records));
+        let mut colors = Colors::new(2, 200);
+        for (coverage, (width, height), with_records) in [
+            (Coverage::Exact, (40, 30), false),
+            (Coverage::Any, (40, 30), false),
+            (Coverage::Exact, (65, 9), false),
+            (Coverage::Exact, (65, 9), true),
+            (Coverage::Alpha, (9, 65), false),
+            (Coverage::Exact, (30, 40), false),
+            (Coverage::Any, (1, 1), false),
+            (Coverage::Alpha, (40, 30), false),
+        ] {
+            let camera = Camera {
+                eye: glam::DVec3::new(51.0, -22.0, 40.0),
+                target: glam::DVec3::splat(13.0),
+                up: glam::DVec3::Z,
+                fov_degrees: 50.0,
+                width,
+                height,
+            };
+            let options = SetupOptions {
+                coverage,
+                ..SetupOptions::default()
+            };
+            let setup = setup(&graph, &camera, &options);
+            let what = format!("{kind}, {coverage:?}, {width} x {height}");
+            let mut right = Frame::new(width, height, with_records);
+            let counts = new().render(&view, &setup, &mut right).expect("a frame");
+            let frame = &mut frames[usize::from(with_records)];
+            assert_eq!(
+                used.render(&view, &setup, frame),
+                Ok(counts.clone()),
+                "{what}"
+            );
+            assert!(*frame == right && right.drawn() > 0, "{what}");
+            let handed = counts.iter().any(|(name, _)| *name == "handed_to_machine");
+            assert_eq!(
+                handed,
+                kind == 0 && (coverage == Coverage::Any || with_records)
+            );
+            *frame = Frame::new(3, 5, with_records);
+            assert_eq!(used.draw(&view, &setup, frame), Ok(()), "{what}");
+            assert!(*frame == right, "{what}");
+            let mut right = Colors::new(width, height);
+            let drawn = new().draw_colors(&view, &graph.color, &setup, &mut right);
+            let again = used.draw_colors(&view, &graph.color, &setup, &mut colors);
+            assert!(
+                drawn == Ok(()) && again == drawn && colors.words == right.words,
+                "{what}"
+            );
         }
     }
 }

@@ -3,6 +3,7 @@
 //! The handler wakes a waiting thread, which reports the error, removes unfinished files and exits with the usual code.
 //! After five seconds the handler exits itself.
 
+use std::io::{self, Write};
 use std::sync::Mutex;
 
 static SCENES: Mutex<Vec<String>> = Mutex::new(Vec::new());
@@ -15,15 +16,36 @@ pub(super) fn reads(scene: &str) {
     }
 }
 
+/// Memory that a backtrace may take, bytes.
+const BACKTRACE: usize = 1 << 29;
+
+/// Panics print no backtrace if there is little memory. The standard library reports memory that is refused meanwhile with
+/// a backtrace, too, and waits for ever until the first is finished.
+fn guard_backtraces() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let mut room: Vec<u8> = Vec::new();
+        if room.try_reserve_exact(BACKTRACE).is_err() {
+            let _ = writeln!(io::stderr(), "{panic}");
+            return;
+        }
+        drop(room);
+        usual(panic);
+    }));
+}
+
 /// Installs the handlers. `json`: whether the error is also printed as a JSON document.
 #[cfg(unix)]
 pub(super) fn install(json: bool) {
+    guard_backtraces();
     // Where there is no pipe or no thread, the program ends as any other does.
     let _ = handlers::install(json);
 }
 
 #[cfg(not(unix))]
-pub(super) fn install(_json: bool) {}
+pub(super) fn install(_json: bool) {
+    guard_backtraces();
+}
 
 #[cfg(unix)]
 mod handlers {
@@ -46,6 +68,9 @@ mod handlers {
 
     pub(super) fn install(json: bool) -> io::Result<()> {
         let (mut reader, writer) = io::pipe()?;
+        WAKE.store(writer.into_raw_fd(), Ordering::Relaxed);
+        // First, since a thread may end the program as it starts.
+        handle_signals();
         let mut reserve: Vec<u8> = Vec::new();
         // Where it is refused already, the report may be cut short.
         let _ = reserve.try_reserve_exact(RESERVE);
@@ -61,7 +86,10 @@ mod handlers {
             .name("fatal-signals".to_owned())
             .stack_size(1 << 18)
             .spawn(wait)?;
-        WAKE.store(writer.into_raw_fd(), Ordering::Relaxed);
+        Ok(())
+    }
+
+    fn handle_signals() {
         // Not by `signal-hook`: it calls the handler of the standard library first, which restores the default, so that
         // a second thread at the same fault would end the program.
         for signal in [SIGABRT, SIGBUS] {
@@ -73,17 +101,17 @@ mod handlers {
                 libc::sigaction(signal, &raw const action, std::ptr::null_mut());
             }
         }
-        Ok(())
     }
 
-    /// Wakes the thread that waits and lets it end the program.
+    /// Wakes the thread that waits and lets it end the program. Without such a thread ends the program itself.
     extern "C" fn handler(signal: c_int) {
         let byte = signal as u8;
         // SAFETY: `write`, `poll` and `_exit` may be called in handlers; one byte is written from
         // one that lives.
         unsafe {
-            libc::write(WAKE.load(Ordering::Relaxed), (&raw const byte).cast(), 1);
-            libc::poll(std::ptr::null_mut(), 0, PATIENCE_MS);
+            if libc::write(WAKE.load(Ordering::Relaxed), (&raw const byte).cast(), 1) == 1 {
+                libc::poll(std::ptr::null_mut(), 0, PATIENCE_MS);
+            }
             libc::_exit(c_int::from(kind(signal).code()));
         }
     }
@@ -125,5 +153,41 @@ mod handlers {
             }
             std::process::exit(i32::from(error.kind.code()));
         });
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    /// The test runs itself again, in a process that uses up its memory.
+    #[test]
+    fn a_panic_without_memory_ends() {
+        let this = "SHIFTVOX_PANICS_WITHOUT_MEMORY";
+        if std::env::var(this).is_ok() {
+            super::guard_backtraces();
+            let mut taken: Vec<Vec<u8>> = Vec::with_capacity(1 << 16);
+            for size in (6..26).rev().map(|log2| 1 << log2) {
+                let mut more = Vec::new();
+                while taken.len() < taken.capacity() && more.try_reserve_exact(size).is_ok() {
+                    taken.push(std::mem::take(&mut more));
+                }
+            }
+            panic!("no memory is left");
+        }
+        let limited = "ulimit -v 200000; exec timeout 20 \"$@\"";
+        let ended = std::process::Command::new("sh")
+            .args(["-c", limited, "sh"])
+            .arg(std::env::current_exe().unwrap())
+            .args([
+                "a_panic_without_memory_ends",
+                "--nocapture",
+                "--test-threads=1",
+            ])
+            .envs([(this, "1"), ("RUST_BACKTRACE", "1")])
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&ended.stderr);
+        // The test harness may need memory to end in order.
+        assert_ne!(ended.status.code(), Some(124), "{told}");
+        assert!(told.contains("no memory is left"), "{told}");
     }
 }

@@ -178,8 +178,8 @@ fn run(line: Vec<OsString>) -> Result<(), CliError> {
         .iter()
         .take_while(|word| *word != "--")
         .any(|word| word == "--json");
-    signals::tidy_up_when_stopped();
     fatal_signals::install(json);
+    signals::tidy_up_when_stopped();
     let (cli, matches) = match parse(&line) {
         Ok(parsed) => parsed,
         Err(error) if error.exit_code() == 0 => {

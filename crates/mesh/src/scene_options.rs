@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use shiftvox::budget;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{self, OpenError, Opened, SceneFile, Source};
 use shiftvox::{Error, Scene, Up};
@@ -61,6 +62,7 @@ impl SceneOptions {
     /// # Errors
     /// As [`Scene::open`], and where a setting is out of its range.
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
+        start_threads()?;
         let OpenOptions { voxels, mesh } = &self.options;
         let opened = SceneFile::open(path.as_ref())
             .map_err(OpenError::from)
@@ -73,6 +75,7 @@ impl SceneOptions {
     /// # Errors
     /// As [`SceneOptions::open`].
     pub fn from_bytes(&self, bytes: &[u8], name: &str) -> Result<Scene, Error> {
+        start_threads()?;
         self.placed(open_bytes(bytes, name, &self.options, &Silent))
     }
 
@@ -83,4 +86,8 @@ impl SceneOptions {
             None => scene,
         })
     }
+}
+
+fn start_threads() -> Result<(), Error> {
+    budget::start_threads().map_err(|reason| Error::Threads(reason.into()))
 }

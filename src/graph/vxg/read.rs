@@ -18,28 +18,6 @@ use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
 /// Maps a file. Fails when it cannot be read, is something else, is truncated, or its header is damaged.
 pub fn open(path: &Path) -> Result<Graph, VxgError> {
-    Ok(open_with_header(path)?.0)
-}
-
-/// Opens a file and checks all of it: checksums, padding and every index.
-pub fn verify(path: &Path) -> Result<Graph, VxgError> {
-    let (graph, header, map) = open_with_header(path)?;
-    advise(&map, true);
-    header.verify_sections(&graph, &map, path)?;
-    advise(&map, false);
-    Ok(graph)
-}
-
-/// A graph from the bytes of a whole file, checked like [`verify`]. Errors name the file `(memory)`.
-pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
-    let path = Path::new("(memory)");
-    let header = Header::read(bytes, bytes.len() as u64, path)?;
-    let graph = header.graph(&Source::Held(bytes), path)?;
-    header.verify_sections(&graph, bytes, path)?;
-    Ok(graph)
-}
-
-fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError> {
     let opened = file::open(path, HEADER_BYTES)?;
     let header = Header::read(&opened.beginning, opened.bytes, path)?;
     let map = opened.map()?;
@@ -50,8 +28,34 @@ fn open_with_header(path: &Path) -> Result<(Graph, Header, Arc<Mmap>), VxgError>
         return Err(VxgError::damaged(path, "header", offset, expected));
     }
     advise(&map, false);
-    let graph = header.graph(&Source::Mapped(&map), path)?;
-    Ok((graph, header, map))
+    header.graph(&Source::Mapped(&map), path)
+}
+
+/// Opens a file and checks all of it: checksums, padding and every index.
+pub fn verify(path: &Path) -> Result<Graph, VxgError> {
+    verify_mapped(&open(path)?, path)
+}
+
+/// Checks all of the file of an opened graph, header included, as it is now. The result is a new graph of the same map.
+pub(crate) fn verify_mapped(graph: &Graph, path: &Path) -> Result<Graph, VxgError> {
+    let Store::Mapped(map, _) = &graph.mask else {
+        return Ok(graph.clone());
+    };
+    let header = Header::read(map, map.len() as u64, path)?;
+    let graph = header.graph(&Source::Mapped(map), path)?;
+    advise(map, true);
+    let verified = header.verify_sections(&graph, map, path);
+    advise(map, false);
+    verified.map(|()| graph)
+}
+
+/// A graph from the bytes of a whole file, checked like [`verify`]. Errors name the file `(memory)`.
+pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
+    let path = Path::new("(memory)");
+    let header = Header::read(bytes, bytes.len() as u64, path)?;
+    let graph = header.graph(&Source::Held(bytes), path)?;
+    header.verify_sections(&graph, bytes, path)?;
+    Ok(graph)
 }
 
 enum Source<'f> {

@@ -18,20 +18,20 @@ use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Scree
 use crate::machine::state::State;
 use crate::machine::{size, smallest_node, to_screen};
 use crate::project::options::SCREEN_GUARD_SHIFT;
-use crate::project::{ALL_LEFT, Coverage, FrameSetup, OPAQUE_ENOUGH, SHARES};
+use crate::project::{ALL_LEFT, Coverage, EngineError, FrameSetup, OPAQUE_ENOUGH, SHARES};
 use crate::split_mix::SplitMix;
 
 impl Machine {
-    /// Gives `rounds` rounds of inputs to the blocks of a frame.
+    /// Gives `rounds` rounds of inputs to the blocks of a frame. Fails when the system refuses the memory of the frame.
     pub fn show_directed<P: Probe>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         probe: P,
         rounds: u32,
-    ) -> P {
-        let mut frame = Frame::nodes_only(setup.width, setup.height);
-        let canvas = (self.emptied(setup, &mut frame), &mut frame);
+    ) -> Result<P, EngineError> {
+        let mut frame = Frame::nodes_only(0, 0);
+        let canvas = (self.emptied(setup, &mut frame)?, &mut frame);
         let options = MachineOptions::default();
         let mut inputs = Inputs::new(setup);
         with_cage!(setup, L => {
@@ -43,7 +43,7 @@ impl Machine {
             for _ in 0..rounds {
                 round(&mut state, &mut inputs, &setup.options.coverage);
             }
-            state.finish().1
+            Ok(state.finish().1)
         })
     }
 }

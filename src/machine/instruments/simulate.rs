@@ -86,7 +86,7 @@ impl Machine {
             organisation: hardware.organisation,
             ..self.options
         };
-        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
         let state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
         let handed_out = match hardware.hands_out_tiles() {

@@ -261,7 +261,7 @@ impl Machine {
             spans: NumberSpans::new(),
         };
         let options = self.options;
-        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let canvas = (self.emptied(setup, frame)?, &mut *frame);
         with_cage!(setup, L => {
             let mut state = State::<_, L, _>::new(options, graph, setup, canvas, NoProbe, watch);
             state.draw_by_tiles(u64::MAX)?;

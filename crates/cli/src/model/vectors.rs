@@ -51,7 +51,7 @@ pub(super) fn write(
         folder,
         overwrite: args.export.force,
     };
-    let light = lights(graph, setup, Shading::Lambert);
+    let light = lights(graph, setup, Shading::Lambert)?;
     let lit = GraphView {
         light: &light,
         ..graph.view()

@@ -37,13 +37,14 @@ const LEAST_SLOPE: f32 = 1.0 / (1 << MANTISSA_BITS) as f32;
 pub struct FloatRays;
 
 impl Engine for FloatRays {
-    /// Never fails. `steps` counts the cells that rays examined.
+    /// Fails only if the system refuses the memory of a frame. `steps` counts the cells that rays examined.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
+        frame.fit(setup.width, setup.height, false)?;
         frame.clear();
         let rays = Rays::new(setup);
         let caster = Caster {

@@ -89,7 +89,7 @@ pub fn count(
     let line = hardware.node_cache.line_bytes;
     let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
     let mut frame = Frame::new(setup.width, setup.height, true);
-    let light = lights(graph, setup, Shading::Lambert);
+    let light = lights(graph, setup, Shading::Lambert)?;
     let view = GraphView {
         light: &light,
         ..graph.view()

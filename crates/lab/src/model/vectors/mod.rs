@@ -85,7 +85,7 @@ pub fn write(
         let recorder = Recorder::new(folder, setup, request.records, organisation.stack)?;
         let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
         recorder.begin_directed();
-        let recorder = machine.show_directed(graph, setup, recorder, DIRECTED_ROUNDS);
+        let recorder = machine.show_directed(graph, setup, recorder, DIRECTED_ROUNDS)?;
         let (recordings, turns) = recorder.finish()?;
         let found = (&recordings[..], turns.as_ref());
         let manifest = manifest::document(setup, request, graph.mask.len(), &stats, found);
