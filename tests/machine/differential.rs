@@ -1,7 +1,8 @@
 //! One property: every way to draw a frame gives the same frame ([`agree`]), of every scene of the table and of random
 //! graphs.
 //!
-//! `SHIFTVOX_ROUNDS` sets the number of cameras at each place, `SHIFTVOX_CASES` multiplies the random frames.
+//! `SHIFTVOX_ROUNDS` sets the number of cameras at each place, `SHIFTVOX_CASES` multiplies the random frames,
+//! `SHIFTVOX_CAMERAS` sets the number of absurd cameras.
 
 use std::fmt::Debug;
 
@@ -9,6 +10,8 @@ use hwmodel::cycles::{
     Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
 };
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
@@ -412,4 +415,61 @@ proptest! {
         prop_assume!(settings.coverage.draws_outlines() || graph.depth < 5);
         agree(&graph, &camera, &settings, &mut dice);
     }
+}
+
+/// A view of up to 179.999 or down to 0.0001 degrees, from up to 10 million sides of the cube or a tiny part of a voxel
+/// away.
+fn absurd_camera(graph: &Graph, dice: &mut Dice) -> Camera {
+    let mut camera = any_camera(graph, 1..33, dice);
+    match dice.below(4) {
+        0 => camera.fov_degrees = 180.0 - 10f64.powf(dice.between(-3.0, 1.5)),
+        1 => camera.fov_degrees = 10f64.powf(dice.between(-4.0, 1.0)),
+        _ => {}
+    }
+    if dice.below(2) == 0 {
+        let distance = cube(graph).1 * 10f64.powf(dice.between(-12.0, 7.0));
+        camera.eye = camera.target + distance * dice.point(-1.0, 1.0);
+        camera.up = up_of(camera.target - camera.eye);
+    }
+    camera
+}
+
+#[test]
+fn absurd_cameras_are_drawn_alike() {
+    let cameras = number_of("SHIFTVOX_CAMERAS", 300);
+    let draw = |seed: u32| {
+        let mut dice = Dice::new(u64::from(seed));
+        let bytes = [(); 32].map(|()| dice.below(256) as u8);
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+        let random = any_scene().new_tree(&mut TestRunner::new_with_rng(cases(1), rng));
+        let random = random.expect("a graph").current();
+        let graph = match dice.below(2) {
+            0 => &SCENES[dice.below(SCENES.len() as u32) as usize].1,
+            _ => &random,
+        };
+        let (camera, settings) = (absurd_camera(graph, &mut dice), any_settings(&mut dice));
+        let _shown = OnPanic((&format!("seed {seed}"), camera, settings));
+        let is_view = FrameSetup::new(&camera, &graph.placement, graph.depth, &settings).is_ok();
+        let frame = agree(graph, &camera, &settings, &mut dice);
+        let samples = |count: fn(&Frame) -> usize| frame.as_ref().map_or(0, count) as u64;
+        [
+            u64::from(is_view),
+            samples(|_| 1),
+            samples(|frame| frame.node.len()),
+            samples(Frame::drawn),
+        ]
+    };
+    let add = |one: [u64; 4], other: [u64; 4]| std::array::from_fn(|i| one[i] + other[i]);
+    let sums = (0..cameras)
+        .into_par_iter()
+        .map(draw)
+        .reduce(Default::default, add);
+    let [views, frames, samples, drawn] = sums;
+    println!(
+        "{cameras} cameras: {views} with a view, {frames} frames compared, {samples} samples, {drawn} drawn"
+    );
+    assert!(
+        frames * 2 > u64::from(cameras) && drawn * 20 > samples,
+        "{sums:?}"
+    );
 }
