@@ -253,6 +253,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         ..MachineOptions::default()
     };
     if !coverage.blends()
+        && options.tolerance_px.is_finite()
         && let Some((frame, more)) = again(all, &setup, 20 * MOST_SIMULATED)
     {
         same(&frame, &right, &"without rejection");
