@@ -1,4 +1,4 @@
-//! Faults of the disk, drawn from a seed: one system call on the files of a run fails. The run ends by itself. It writes
+//! Faults of the disk, drawn from a seed: a system call on the files of a run fails. The run ends by itself. It writes
 //! all files, or it exits with 1, 4 or 5 and a message that names a file or its folder. Then each file is the earlier one,
 //! or whole. Nothing else is left.
 //!
@@ -33,7 +33,7 @@ const LINES: [&str; 12] = [
 ];
 const CALLS: &str = "openat,mkdir,statx,newfstatat,statfs,fstatfs,lseek,ftruncate,fallocate,write,pwrite64,\
                      read,pread64,mmap,fsync,fchmod,linkat,rename,renameat,renameat2";
-const ERRORS: [&str; 6] = ["ENOSPC", "EIO", "EDQUOT", "EROFS", "EACCES", "EINTR"];
+const ERRORS: [&str; 5] = ["ENOSPC", "EIO", "EDQUOT", "EROFS", "EACCES"];
 
 type Files = BTreeMap<PathBuf, Vec<u8>>;
 
@@ -104,7 +104,13 @@ fn inject(line: &str, has_earlier: bool, count: u64) -> Vec<(String, bool)> {
     let mut injected = Vec::new();
     for _ in 0..count {
         let ((call, when), error) = (&calls[below(calls.len())], ERRORS[below(ERRORS.len())]);
-        let fault = format!("-e inject={call}:error={error}:when={when}");
+        // A full disk stays full.
+        let on = if call == "write" {
+            ["", "+"][below(2)]
+        } else {
+            ""
+        };
+        let fault = format!("-e inject={call}:error={error}:when={when}{on}");
         let (code, files, [folder, told, calls]) = run(&line, &earlier, &fault);
         let faults = calls.matches("(INJECTED)").count();
         let is_whole = |(name, bytes)| {
@@ -114,7 +120,7 @@ fn inject(line: &str, has_earlier: bool, count: u64) -> Vec<(String, bool)> {
         };
         let is_right = match code {
             0 => files == new,
-            // The same call of another thread may be the message.
+            // A second fault may be that of the message.
             1 | 4 | 5 => (faults > 1 || told.contains(&folder)) && files.iter().all(is_whole),
             _ => false,
         };
