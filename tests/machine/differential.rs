@@ -237,8 +237,8 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         let other = crate::common::setup(graph, camera, &SetupOptions { cage, ..*options });
         let (frame, counts) = again(MachineOptions::default(), &other, most).expect("as many");
         same(&frame, &right, &"the other cage");
-        // Boxes are narrowed by half a sample, which is rounded for each number of a cage: beside an eye at a corner in
-        // a wide view, one cage may have a record more.
+        // Boxes are narrowed by half a sample, which is rounded for each number of a cage. So in a wide view from a
+        // corner one cage may have a record more.
         assert!(
             is_absurd || counts == stats,
             "{counts:?} in the other cage, {stats:?}"
