@@ -1,4 +1,4 @@
-"""Writes small seed files for the targets voxels, gltf and mesh into corpus/; run in fuzz/."""
+"""Writes small seed files of each reader into corpus/READER; run in fuzz/."""
 
 import base64
 import json
@@ -55,12 +55,13 @@ NPY = {
     "color": npy(3, b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 7), }", bytes(14)),
 }
 
-# The target's first byte selects the format's mark.
-BINVOX = b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"
-VOXELS = {"binvox": b"\4" + BINVOX}
-VOXELS |= {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}
-VOXELS |= {f"vox_{name}_{oob}": bytes([5 * oob]) + seed for name, seed in VOX.items() for oob in range(4)}
-VOXELS |= {f"npy_{name}": b"\3" + seed for name, seed in NPY.items()}
+BINVOX = {"usual": b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"}
+VOXELS = {"vox": VOX, "ply": PLY, "npy": NPY, "binvox": BINVOX}
+# The first byte selects one of four ways to treat voxels outside of the grid.
+SEEDS = {
+    reader: {f"{name}_{oob}": bytes([oob]) + seed for name, seed in seeds.items() for oob in range(4)}
+    for reader, seeds in VOXELS.items()
+}
 
 # A triangle and a square of two: positions, normals, indices.
 BUFFER = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 2) + struct.pack("<12f", *(0, 0, 1) * 4) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
@@ -92,10 +93,10 @@ def text(document):
 
 
 def glb(document):
-    """The target's own way: two bytes, of which the second, times 16, says where the buffer begins, itself counted."""
+    """A byte that, times 16, says where the buffer begins, itself counted."""
     body = text(document)
     cut = (len(body) + 1 + 15) // 16
-    return bytes([1, cut]) + body.ljust(16 * cut - 1) + BUFFER
+    return bytes([cut]) + body.ljust(16 * cut - 1) + BUFFER
 
 
 INSIDE = {"byteLength": len(BUFFER), "uri": "data:application/octet-stream;base64," + base64.b64encode(BUFFER).decode()}
@@ -103,9 +104,11 @@ STRIP = [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}]
 COLORS = [{"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "mode": 6}]}]
 SMALL = {"materials": [{}], "nodes": [{"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]}
 GLTF = {
-    "inside": b"\0" + text(gltf(buffers=[INSIDE])),
-    "strip": b"\0" + text(gltf(buffers=[INSIDE], meshes=STRIP)),
-    "none": b"\0" + text({"asset": {"version": "2.0"}}),
+    "inside": text(gltf(buffers=[INSIDE])),
+    "strip": text(gltf(buffers=[INSIDE], meshes=STRIP)),
+    "none": text({"asset": {"version": "2.0"}}),
+}
+GLB = {
     "binary": glb(gltf()),
     "fan": glb(gltf(meshes=COLORS)),
     "matrix": glb(gltf(**SMALL)),
@@ -118,17 +121,23 @@ FACES = b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
 SQUARE = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 1, 1, 0)
 STL = b"a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid a\n"
 COLORED = b"".join(b"v %d %d %d 0.5 %d 0\n" % (k, k & 1, k * k, k & 1) for k in range(4)) + b"f 1 2 3\nf 2 3 4\n"
-MESH = {
-    "obj": b"\0" + OBJ + b"\n%\n" + MTL,
-    "obj_colored": b"\0" + COLORED,
-    "ply": b"\1format ascii 1.0\n" + CORNERS + FACES + b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
-    "ply_little": b"\1format binary_little_endian 1.0\n" + CORNERS + FACES + SQUARE + b"\3" + numbers(0, 1, 2),
-    "stl": b"\2" + STL,
-    "stl_binary": b"\3" + bytes(80) + numbers(1) + struct.pack("<3f", 0, 0, 1) + SQUARE + bytes(2),
+SEEDS |= {"gltf": GLTF, "glb": GLB}
+SEEDS["obj"] = {"usual": OBJ + b"\n%\n" + MTL, "colored": COLORED}
+SEEDS["ply-mesh"] = {
+    "ascii": b"format ascii 1.0\n" + CORNERS + FACES + b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
+    "little": b"format binary_little_endian 1.0\n" + CORNERS + FACES + SQUARE + b"\3" + numbers(0, 1, 2),
 }
+SEEDS["stl"] = {
+    "text": b"solid " + STL,
+    "binary": bytes(80) + numbers(1) + struct.pack("<3f", 0, 0, 1) + SQUARE + bytes(2),
+}
+# Choices that compose a scene graph, and choices of a sound file and its edits.
+SEEDS["vox-graph"] = {f"{seed}": bytes(i * seed % 256 for i in range(200)) for seed in (34, 57, 91)}
+for reader in ("vxg", "far", "tvx"):
+    SEEDS[reader] = {f"{file}": numbers(file, 0, *(2654435761 * i for i in range(1, 7))) for file in range(4)}
 
-for target, seeds in {"voxels": VOXELS, "gltf": GLTF, "mesh": MESH}.items():
-    folder = pathlib.Path("corpus") / target
+for reader, seeds in SEEDS.items():
+    folder = pathlib.Path("corpus") / reader
     folder.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():
         (folder / name).write_bytes(seed)

@@ -1,22 +1,15 @@
-//! Any bytes as `.glb` or `.gltf`: a mesh or an error.
-#![no_main]
+//! JSON; of `.glb` a byte, which times 16 is the length of the JSON with itself, JSON and a buffer. A mesh or an error.
 
-use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
-fuzz_target!(|bytes: &[u8]| {
-    // The first byte selects JSON only, or JSON and a buffer in a binary file.
-    let Some((&choice, rest)) = bytes.split_first() else {
-        return;
-    };
+pub(crate) fn run(format: MeshFormat, bytes: &[u8]) {
     let options = LoadOptions::default();
-    let result = if choice & 1 == 0 {
-        read(rest, MeshFormat::Gltf, "fuzz", &Nothing, &options, &Silent)
+    let result = if format == MeshFormat::Gltf {
+        read(bytes, format, "fuzz", &Nothing, &options, &Silent)
     } else {
-        // The second byte times 16 is the length of the JSON.
-        let cut = rest.first().map_or(0, |&b| usize::from(b) * 16);
-        let (json, buffer) = rest.split_at(cut.clamp(1, rest.len().max(1)).min(rest.len()));
+        let cut = bytes.first().map_or(0, |&b| usize::from(b) * 16);
+        let (json, buffer) = bytes.split_at(cut.max(1).min(bytes.len()));
         let json = json.get(1..).unwrap_or_default();
         let mut file = b"glTF\x02\0\0\0".to_vec();
         file.extend((12 + 8 + json.len() as u32 + 8 + buffer.len() as u32).to_le_bytes());
@@ -25,10 +18,10 @@ fuzz_target!(|bytes: &[u8]| {
             file.extend(kind);
             file.extend(content);
         }
-        read(&file, MeshFormat::Glb, "fuzz", &Nothing, &options, &Silent)
+        read(&file, format, "fuzz", &Nothing, &options, &Silent)
     };
     if let Ok(mesh) = result {
         assert!(mesh.triangles().iter().flatten().all(|&i| (i as usize) < mesh.positions().len()));
         assert_eq!(mesh.triangles().len(), mesh.material_of().len());
     }
-});
+}

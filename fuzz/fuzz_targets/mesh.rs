@@ -1,9 +1,7 @@
-//! Any bytes as `.obj` with `.mtl`, `.ply` or `.stl`: a mesh or an error, and voxels of a small mesh.
-#![no_main]
+//! An `.obj` with its `.mtl`, a `.ply` or an `.stl`: a mesh or an error, and voxels of a small mesh.
 
 use std::io;
 
-use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::voxelize::{Grid, voxelize};
 use shiftvox_mesh::{Beside, LoadOptions, MeshFormat, read};
@@ -17,20 +15,11 @@ impl Beside for Rest<'_> {
     }
 }
 
-fuzz_target!(|bytes: &[u8]| {
-    let Some((&choice, rest)) = bytes.split_first() else {
-        return;
-    };
-    let (format, before): (_, &[u8]) = match choice % 4 {
-        0 => (MeshFormat::Obj, b"mtllib a\n"),
-        1 => (MeshFormat::Ply, b"ply\n"),
-        2 => (MeshFormat::Stl, b"solid "),
-        _ => (MeshFormat::Stl, b""),
-    };
+pub(crate) fn run(format: MeshFormat, before: &[u8], bytes: &[u8]) {
     // A line of one `%` ends the mesh and begins the material library.
-    let cut = rest.windows(3).position(|w| w == b"\n%\n").unwrap_or(rest.len());
-    let library = rest.get(cut + 3..).unwrap_or_default();
-    let file = [before, &rest[..cut]].concat();
+    let cut = bytes.windows(3).position(|w| w == b"\n%\n").unwrap_or(bytes.len());
+    let library = bytes.get(cut + 3..).unwrap_or_default();
+    let file = [before, &bytes[..cut]].concat();
     if let Ok(mesh) = read(&file, format, "fuzz", &Rest(library), &LoadOptions::default(), &Silent) {
         assert!(mesh.triangles().iter().flatten().all(|&i| (i as usize) < mesh.positions().len()));
         if let Ok(grid) = Grid::around(&mesh, 3) {
@@ -39,4 +28,4 @@ fuzz_target!(|bytes: &[u8]| {
             assert!(count > 0 && report.voxels == count);
         }
     }
-});
+}

@@ -1,18 +1,15 @@
-//! A `.vox` whose scene graph shares nodes, composed from bytes, is read or rejected within the limit of voxels.
-#![no_main]
+//! Choices that compose a `.vox` whose scene graph shares nodes. It is read or rejected within the limit of voxels.
 
-#[path = "../../tests/input/vox_file.rs"]
-mod vox_file;
-
-use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{ReadOptions, read_voxels_from};
 
+use crate::vox_file;
+
 const MOST: u64 = 1 << 16;
 
-fuzz_target!(|data: &[u8]| {
+pub(crate) fn run(bytes: &[u8]) {
     // Bytes, then zeros.
-    let mut bytes = data.iter();
+    let mut bytes = bytes.iter();
     let mut below = |end| u32::from(bytes.next().copied().unwrap_or(0)) % end;
     let is_wild = below(2) == 1;
     // Going down every path of a larger graph takes too long.
@@ -33,4 +30,4 @@ fuzz_target!(|data: &[u8]| {
         assert_eq!(info.voxels, count);
         assert!(is_wild || last.iter().eq(scene.voxels().keys()));
     }
-});
+}

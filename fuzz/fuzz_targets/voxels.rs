@@ -1,17 +1,19 @@
-//! Any bytes as a voxel file of any format: voxels or an error.
-#![no_main]
+//! A byte of options, then a voxel file without its mark; of `.vox`, the chunks within `MAIN`. Voxels or an error.
 
-use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
-use shiftvox::scene::{FORMATS, Format, OutOfBounds, ReadOptions, read_voxels_from};
+use shiftvox::scene::{FORMATS, OutOfBounds, ReadOptions, read_voxels_from};
 
 const MOST: u64 = 1 << 20;
 
-fuzz_target!(|data: (u8, &[u8])| {
-    let (choice, rest) = data;
+pub(crate) fn run(ending: &str, bytes: &[u8]) {
+    let Some((&choice, rest)) = bytes.split_first() else {
+        return;
+    };
     // The format's mark is given, so that no run has to guess it.
-    let marks: Vec<&[u8]> = FORMATS.iter().flat_map(Format::voxel_marks).copied().collect();
-    let mark = marks[usize::from(choice) % marks.len()];
+    let mut rows = FORMATS.iter().filter(|row| row.ending[1..] == *ending);
+    let marks = rows.find_map(|row| Some(row.voxel_marks()).filter(|marks| !marks.is_empty()));
+    let marks = marks.unwrap_or_else(|| panic!("{ending} is no format of voxels"));
+    let mark = marks[usize::from(choice) / 4 % marks.len()];
     let mut bytes = mark.to_vec();
     if mark == b"VOX " {
         bytes.extend(b"\x96\0\0\0MAIN\0\0\0\0");
@@ -20,7 +22,7 @@ fuzz_target!(|data: (u8, &[u8])| {
     bytes.extend(rest);
     use OutOfBounds::{Drop, Error, Keep, Wrap};
     let options = ReadOptions {
-        oob: [Wrap, Keep, Drop, Error][usize::from(choice) / marks.len() % 4],
+        oob: [Wrap, Keep, Drop, Error][usize::from(choice) % 4],
         most_voxels: MOST,
     };
     let mut count = 0u64;
@@ -29,4 +31,4 @@ fuzz_target!(|data: (u8, &[u8])| {
     if let Ok(info) = result {
         assert_eq!(info.voxels, count);
     }
-});
+}

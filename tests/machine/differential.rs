@@ -1,7 +1,8 @@
 //! One property: every way to draw a frame gives the same frame ([`agree`]), of every scene of the table and of random
 //! graphs.
 //!
-//! `SHIFTVOX_ROUNDS` sets the number of cameras at each place, `SHIFTVOX_CASES` multiplies the random frames.
+//! `SHIFTVOX_ROUNDS` sets the number of cameras at each place, `SHIFTVOX_CASES` multiplies the random frames,
+//! `SHIFTVOX_CAMERAS` sets the number of absurd cameras, and `SHIFTVOX_FIRST` the seed of the first one.
 
 use std::fmt::Debug;
 
@@ -9,6 +10,8 @@ use hwmodel::cycles::{
     Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
 };
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
@@ -172,7 +175,9 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         false => MOST_RECORDS_OF_SOLIDS,
     };
     let drawn = machine(MachineOptions::default(), &setup, most)?;
-    let is_usual = options.bits == 64 && options.frac.is_none();
+    let is_usual = options.bits == 64 && options.frac.is_none() && setup.has_headroom;
+    let (corner, side) = cube(graph);
+    let is_absurd = camera.fov_degrees > 170.0 || camera.eye.distance(corner) > 1000.0 * side;
     for instructions in [Instructions::Scalar, Instructions::Avx2] {
         let options = any_fast(dice, instructions, graph.depth);
         let mut fast = Fast::new(options, Box::new(Machine::default()));
@@ -188,7 +193,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         };
         same(&frame, right, &options);
         // Deep graphs far away may be beyond the fast engine's lanes.
-        let may_decline = !is_usual || !outlines || graph.depth > 12;
+        let may_decline = !is_usual || !outlines || graph.depth > 12 || is_absurd;
         assert!(may_decline || !declined, "{options:?}");
         if !coverage.blends() {
             let mut colors = Colors::new(setup.width, setup.height);
@@ -236,7 +241,12 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         let other = crate::common::setup(graph, camera, &SetupOptions { cage, ..*options });
         let (frame, counts) = again(MachineOptions::default(), &other, most).expect("as many");
         same(&frame, &right, &"the other cage");
-        assert_eq!(counts, stats, "the other cage");
+        // Boxes are narrowed by half a sample, which is rounded for each number of a cage. So in a wide view from a
+        // corner one cage may have a record more.
+        assert!(
+            is_absurd || counts == stats,
+            "{counts:?} in the other cage, {stats:?}"
+        );
     }
     let records = stat(&stats, "records");
     if records > MOST_SIMULATED {
@@ -247,6 +257,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         ..MachineOptions::default()
     };
     if !coverage.blends()
+        && options.tolerance_px.is_finite()
         && let Some((frame, more)) = again(all, &setup, 20 * MOST_SIMULATED)
     {
         same(&frame, &right, &"without rejection");
@@ -284,7 +295,10 @@ fn agree_in_organisations(
         let mut frame = empty(&setup);
         let stats = machine.render(view, &setup, &mut frame);
         same(&frame, right, organisation);
-        (setup, stats.expect("no overflow"))
+        (
+            setup,
+            stats.unwrap_or_else(|trap| panic!("{trap:?} in {organisation:?}")),
+        )
     };
     serial(&mut any_organisation(dice));
     let mut hardware = any_hardware(dice);
@@ -416,4 +430,64 @@ proptest! {
         prop_assume!(settings.coverage.draws_outlines() || graph.depth < 5);
         agree(&graph, &camera, &settings, &mut dice);
     }
+}
+
+/// A view of up to 179.999 or down to 0.0001 degrees, from up to 10 million sides of the cube or a tiny part of a voxel
+/// away.
+fn absurd_camera(graph: &Graph, dice: &mut Dice) -> Camera {
+    let mut camera = any_camera(graph, 1..17, dice);
+    match dice.below(4) {
+        0 => camera.fov_degrees = 180.0 - 10f64.powf(dice.between(-3.0, 1.5)),
+        1 => camera.fov_degrees = 10f64.powf(dice.between(-4.0, 1.0)),
+        _ => {}
+    }
+    if dice.below(2) == 0 {
+        let distance = cube(graph).1 * 10f64.powf(dice.between(-12.0, 7.0));
+        camera.eye = camera.target + distance * dice.point(-1.0, 1.0);
+        camera.up = up_of(camera.target - camera.eye);
+    }
+    camera
+}
+
+#[test]
+fn absurd_cameras_are_drawn_alike() {
+    let cameras = number_of("SHIFTVOX_CAMERAS", 300);
+    let draw = |seed: u32| {
+        let mut dice = Dice::new(u64::from(seed));
+        let bytes = [(); 32].map(|()| dice.below(256) as u8);
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+        let random = any_scene().new_tree(&mut TestRunner::new_with_rng(cases(1), rng));
+        let random = random.expect("a graph").current();
+        let graph = match dice.below(2) {
+            0 => &SCENES[dice.below(SCENES.len() as u32) as usize].1,
+            _ => &random,
+        };
+        let (camera, settings) = (absurd_camera(graph, &mut dice), any_settings(&mut dice));
+        let _shown = OnPanic((&format!("seed {seed}"), camera, settings));
+        let is_view = FrameSetup::new(&camera, &graph.placement, graph.depth, &settings).is_ok();
+        let frame = agree(graph, &camera, &settings, &mut dice);
+        let samples = |count: fn(&Frame) -> usize| frame.as_ref().map_or(0, count) as u64;
+        [
+            u64::from(is_view),
+            samples(|_| 1),
+            samples(|frame| frame.node.len()),
+            samples(Frame::drawn),
+        ]
+    };
+    let first = number_of("SHIFTVOX_FIRST", 0);
+    let add = |one: [u64; 4], other: [u64; 4]| std::array::from_fn(|i| one[i] + other[i]);
+    // Few long jobs: a thread that waits for an engine takes up others, each deeper in its stack.
+    let jobs = (0..8u32).into_par_iter().map(|job| {
+        let seeds = (first + job..first + cameras).step_by(8);
+        seeds.map(draw).fold([0; 4], add)
+    });
+    let sums = jobs.reduce(Default::default, add);
+    let [views, frames, samples, drawn] = sums;
+    println!(
+        "{cameras} cameras: {views} with a view, {frames} frames compared, {samples} samples, {drawn} drawn"
+    );
+    assert!(
+        frames * 2 > u64::from(cameras) && drawn * 20 > samples,
+        "{sums:?}"
+    );
 }

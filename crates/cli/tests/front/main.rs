@@ -6,6 +6,7 @@ mod cases;
 mod compared;
 mod damaged;
 mod explore;
+mod faults;
 mod model;
 mod one_camera;
 mod printed;

@@ -113,7 +113,7 @@ impl Condition {
 }
 
 /// Waits, and sends a signal on the way.
-fn wait(child: &mut Child, mut signal: Option<(Signal, u64)>) -> ExitStatus {
+pub(crate) fn wait(child: &mut Child, mut signal: Option<(Signal, u64)>) -> ExitStatus {
     let started = Instant::now();
     loop {
         if let Some(status) = child.try_wait().unwrap() {

@@ -23,10 +23,12 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
     let white = builder.material(Material::of_srgb("vertex colours", [255; 3]));
     let material = if colors.is_some() { white } else { default };
     let mut normals: Vec<[f32; 3]> = Vec::new();
+    // A second element of this name has other properties.
+    let mut is_first = true;
     for element in &elements {
         let corners = element.list(&["vertex_indices", "vertex_index"]);
         match (&element.name[..], corners) {
-            (b"vertex", _) => file.rows(element, None, |row| {
+            (b"vertex", _) if std::mem::take(&mut is_first) => file.rows(element, None, |row| {
                 let position = positions.map(|k| row.values[k].real());
                 match colors.zip(is_wide) {
                     None => builder.position(position),

@@ -30,6 +30,7 @@ ply  | ascii 3: 0 0 0\n1 0 0\n1 1 0\n0\n      | expected at least one triangle
 ply  | binary_little_endian 4000000000: abc   | vertex 0 at byte 188: expected as many elements as the header says
 PLY  | ply\nformat ascii 2.0\n                | header
 PLY  | ply\n                                  | header
+PLY  | ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nelement vertex 1\nproperty int x\nend_header\n1 2 3\n4\n | at least one triangle
 STL  | solid a\nfacet x\n                     | triangle 1: expected "facet normal
 STL  | solid a\nendsolid a\n                  | at least one triangle
 STL  | 7777777777777777777777777777777777777777777777777777777777777777777777777777777777777 | 46318274834 bytes in all for the 926365495 triangles

@@ -1,4 +1,4 @@
-//! Files of each format, edited and repaired, and every use of such a file. The fuzz target `edited` has it too.
+//! Files of each format, edited and repaired, and every use of such a file. The fuzz target has it too.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -122,12 +122,17 @@ fn edit(bytes: &mut [u8], fields: usize, choice: u64) {
     bytes[at..at + width].copy_from_slice(&new.to_le_bytes()[..width]);
 }
 
-/// A sound file after edits, repaired. The first choice is the file, and whether places within it are repaired too.
-pub(crate) fn edited(mut choices: impl Iterator<Item = u64>) -> Option<(Format, Vec<u8>)> {
+/// A sound file of some formats after edits, repaired. The first choice is the file, and whether places within it are
+/// repaired too.
+pub(crate) fn edited(
+    formats: &[Format],
+    mut choices: impl Iterator<Item = u64>,
+) -> Option<(Format, Vec<u8>)> {
     static FILES: OnceLock<Vec<(Format, Vec<u8>, usize)>> = OnceLock::new();
     let first = choices.next()?;
-    let files = FILES.get_or_init(sound_files);
-    let (format, bytes, fields) = &files[first as usize % files.len()];
+    let files = FILES.get_or_init(sound_files).iter();
+    let files: Vec<_> = files.filter(|file| formats.contains(&file.0)).collect();
+    let (format, bytes, fields) = files[first as usize % files.len()];
     let mut bytes = bytes.clone();
     choices.for_each(|choice| edit(&mut bytes, *fields, choice));
     let seal = match format {

@@ -7,6 +7,7 @@ mod seal;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use exercise::Format;
 use shiftvox::split_mix::SplitMix;
 
 /// Files are of 2 to 20 kB.
@@ -53,6 +54,7 @@ fn truncated_and_damaged_files_are_refused() {
 
 #[test]
 fn edited_files_are_refused_or_drawn() {
+    const ALL: [Format; 3] = [Format::Vxg, Format::Far, Format::Tvx];
     let folder = tempfile::tempdir().unwrap();
     // Of each format: refused, sound.
     let mut found = [[0u32; 2]; 3];
@@ -60,7 +62,7 @@ fn edited_files_are_refused_or_drawn() {
         let mut random = SplitMix::new(seed);
         let edits = random.below(5);
         let choices = (0..=edits).map(|_| random.bits());
-        let Some((format, bytes)) = exercise::edited(choices) else {
+        let Some((format, bytes)) = exercise::edited(&ALL, choices) else {
             continue;
         };
         let path = folder.path().join("edited.vxg");
