@@ -248,49 +248,30 @@ mod tests {
         let path = folder.path().join("menger.vxg");
         let made = Scene::generate("menger,depth=2").expect("a scene");
         made.save_vxg(&path).expect("written");
-        let open_up_to = |verify_up_to| {
-            let options = OpenOptions {
-                verify_up_to,
-                ..OpenOptions::default()
-            };
-            let path = path.to_str().expect("text");
-            Scene::from(open(path, &options, &NoMeshes, &Silent).expect("a graph"))
+        let mut bytes = std::fs::read(&path).expect("bytes");
+        let options = OpenOptions {
+            verify_up_to: bytes.len() as u64 - 1,
+            ..OpenOptions::default()
         };
-        let draw = |scene: &Scene| {
-            let renderer = crate::Renderer::new().hashed(true);
-            let picture = renderer.render(scene, &crate::Camera::fit(&made), 48, 48);
-            picture
-                .expect("a picture")
-                .hash()
-                .expect("a hash")
-                .to_owned()
-        };
-        let length = std::fs::metadata(&path).expect("a file").len();
-        assert!(open_up_to(length).is_verified());
-        assert_eq!(OpenOptions::default().verify_up_to, 256 << 20);
-        let mut scene = open_up_to(length - 1).with_up(Up::Y);
-        assert!(!scene.is_verified());
+        let name = path.to_str().expect("text");
+        let opened = open(name, &options, &NoMeshes, &Silent).expect("a graph");
+        let mut scene = Scene::from(opened).with_up(Up::Y);
+        assert!(!scene.is_verified() && scene.graph.voxels == made.graph.voxels);
         scene.verify().expect("sound");
         assert!(scene.is_verified() && scene.up() == Up::Y);
-        assert_eq!(draw(&scene), draw(&made));
         // Another program changes the last byte of a section, in place, and then the header.
-        let mut bytes = std::fs::read(&path).expect("bytes");
-        for (at, section) in [(length as usize - 1, "section NRML"), (30, "header")] {
+        for (at, section) in [(bytes.len() - 1, "section NRML"), (30, "header")] {
             bytes[at] ^= 1;
             let file = std::fs::File::options().write(true).open(&path);
             let written = std::io::Write::write_all(&mut file.expect("a file"), &bytes);
             written.expect("written in place");
-            draw(&scene);
-            let found = scene.verify().expect_err("damaged");
-            let told = found.to_string();
+            let found = scene.verify().expect_err("damaged").to_string();
             assert!(
-                matches!(found, Error::Open(_)) && told.contains(section),
-                "{told}"
+                found.contains(section) && found.contains("menger.vxg"),
+                "{found}"
             );
-            assert!(told.contains("menger.vxg") && !scene.is_verified());
+            assert!(!scene.is_verified());
         }
-        // A scene in memory has been checked.
-        let mut held = made;
-        assert!(held.verify().is_ok() && held.is_verified());
+        assert!(made.is_verified());
     }
 }

@@ -442,49 +442,44 @@ pub(super) mod tests {
         let line = lines.line(Scalar, [i as f32, j as f32]);
         let about = line.about(Scalar, block);
         let from_centre = about.moment.sub(about.shift(Scalar, part));
+        let sides = [
+            [square.left, square.right, i],
+            [square.top, square.bottom, j],
+        ];
+        let names = "al bl cl an bn cn x h i right sx fx ox across ax y k j bottom sy fy oy down ay un ul pn pl";
         let mut are_inside = [true; 2];
         for axis in 0..3 {
             let (n, l) = ((axis + 1) % 3, (axis + 2) % 3);
-            let [[al, bl, cl], [an, bn, cn]] =
+            let directions =
                 [l, n].map(|k| constants.direction_lanes.map(|lanes| lanes[k] * sign(k)));
-            let [sx, sy] = projection.step.map(|step| step[axis] * sign(n) * sign(l));
-            let across = (square.right - square.left) as f32;
-            let down = (square.bottom - square.top) as f32;
-            let mut inputs = [
-                ("al", al),
-                ("bl", bl),
-                ("cl", cl),
-                ("an", an),
-                ("bn", bn),
-                ("cn", cn),
-                ("x", square.left as f32 + across / 2.0),
-                ("h", across / 2.0),
-                ("i", i as f32),
-                ("y", square.top as f32 + down / 2.0),
-                ("k", down / 2.0),
-                ("j", j as f32),
-                ("right", square.right as f32 + 1.0),
-                ("bottom", square.bottom as f32 + 1.0),
-                ("sx", sx),
-                ("fx", (f64::from(square.left) - centre[0]) as f32),
-                ("sy", sy),
-                ("fy", (f64::from(square.top) - centre[1]) as f32),
-                ("ox", i as f32),
-                ("across", across),
-                ("ax", centre[0].abs() as f32 + 1.0),
-                ("oy", j as f32),
-                ("down", down),
-                ("ay", centre[1].abs() as f32 + 1.0),
-                ("un", block.next[axis]),
-                ("ul", block.last[axis]),
-                ("pn", part.next[axis]),
-                ("pl", part.last[axis]),
+            let [columns, rows] = [0, 1].map(|c| {
+                let slope = projection.step[c][axis] * sign(n) * sign(l);
+                let [first, last, at] = sides[c].map(|x| x as f32);
+                let from = (f64::from(first) - centre[c]) as f32;
+                let (width, centre) = (last - first, centre[c].abs() as f32 + 1.0);
+                let half = width / 2.0;
+                [
+                    first + half,
+                    half,
+                    at,
+                    last + 1.0,
+                    slope,
+                    from,
+                    at,
+                    width,
+                    centre,
+                ]
+            });
+            let offsets = [block, part].map(|at| [at.next[axis], at.last[axis]]);
+            let places = [
+                directions.as_flattened(),
+                &columns,
+                &rows,
+                offsets.as_flattened(),
             ];
-            let signed = lines_in_floats(&inputs);
-            for (_, input) in &mut inputs {
-                *input = input.abs();
-            }
-            let sizes = lines_in_floats(&inputs);
+            let inputs = names.split(' ').zip(places.concat());
+            let signed = lines_in_floats(inputs.clone());
+            let sizes = lines_in_floats(inputs.map(|(name, value)| (name, value.abs())));
             for (of, name, value) in [
                 (&signed, "vn", line.next[axis]),
                 (&signed, "vl", line.last[axis]),

@@ -43,37 +43,32 @@ fn filled(script: &str, (changed, factor): (&str, f64)) -> String {
 fn is_proved(script: &str, change: (&str, f64)) -> bool {
     let script = filled(script, change);
     let list = script.split("\n{ {").nth(1).unwrap();
-    let inputs: Vec<_> = list[..list.find('}').unwrap()].split(' ').collect();
-    let products = inputs
-        .iter()
-        .filter(|input| "P0P1P2N0N1N2".contains(**input));
-    let points = ["B", "K", "L"];
-    let pairs = products
-        .clone()
-        .flat_map(|product| points.map(|point| [*product, point]));
-    let is_alone =
-        |input: &&&str| !points.contains(input) && !products.clone().any(|p| p == *input);
-    let alone = inputs.iter().filter(is_alone).map(|input| [*input; 2]);
-    let cases: Vec<_> = pairs.chain(alone).collect();
-    cases.par_iter().all(|ones| {
-        let values: Vec<_> = inputs
-            .iter()
-            .map(|input| format!("{input} = {}", u8::from(ones.contains(input))))
-            .collect();
-        let text = script.replace(&format!("{{{}}}", inputs.join(" ")), &values.join(" /\\ "));
-        let mut gappa = Command::new("gappa")
-            .stdin(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        gappa
-            .stdin
-            .take()
-            .unwrap()
-            .write_all(text.as_bytes())
-            .unwrap();
-        gappa.wait().unwrap().success()
-    })
+    let list = &list[..list.find('}').unwrap()];
+    // A product of an edge and a sample is multiplied by a coordinate, so both are 1.
+    let of = |group: &'static str| list.split(' ').filter(move |input| group.contains(input));
+    let (products, coordinates) = ("P0 P1 P2 N0 N1 N2", "B K L");
+    let pairs = of(products).flat_map(|product| of(coordinates).map(move |at| [product, at]));
+    let is_alone = |input: &&str| !products.contains(input) && !coordinates.contains(input);
+    let alone = list.split(' ').filter(is_alone).map(|input| [input; 2]);
+    pairs
+        .chain(alone)
+        .collect::<Vec<_>>()
+        .par_iter()
+        .all(|ones| {
+            let value = |input| format!("{input} = {}", u8::from(ones.contains(&input)));
+            let values: Vec<_> = list.split(' ').map(value).collect();
+            let text = script.replace(&format!("{{{list}}}"), &values.join(" /\\ "));
+            let mut gappa = Command::new("gappa");
+            let gappa = gappa.stdin(Stdio::piped()).stderr(Stdio::null()).spawn();
+            let mut gappa = gappa.unwrap();
+            gappa
+                .stdin
+                .take()
+                .unwrap()
+                .write_all(text.as_bytes())
+                .unwrap();
+            gappa.wait().unwrap().success()
+        })
 }
 
 #[test]
@@ -97,11 +92,15 @@ fn gappa_proves_the_bounds() {
 }
 
 /// The values of `lines.gappa` in `f32`, from those of its variables that are no definitions, and of some that are.
-pub(super) fn lines_in_floats(inputs: &[(&'static str, f32)]) -> HashMap<String, f32> {
+pub(super) fn lines_in_floats<'n>(
+    inputs: impl Iterator<Item = (&'n str, f32)>,
+) -> HashMap<String, f32> {
     let script = filled(LINES, ("", 1.0));
     let definitions = script.split("\n{ ").next().unwrap().lines();
     let definitions = definitions.filter(|line| !line.starts_with('#'));
-    let mut known: HashMap<_, _> = inputs.iter().map(|&(n, v)| (n.to_owned(), v)).collect();
+    let mut known: HashMap<_, _> = inputs
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect();
     for definition in definitions.flat_map(|line| line.split("; ")) {
         let (name, value) = definition.split_once(" = ").unwrap_or_default();
         if let Some(value) = in_floats(value.trim_end_matches(';'), &known) {
@@ -113,24 +112,23 @@ pub(super) fn lines_in_floats(inputs: &[(&'static str, f32)]) -> HashMap<String,
 
 /// An operation on two expressions, a product, a variable or a number. `None` for others.
 fn in_floats(expression: &str, known: &HashMap<String, f32>) -> Option<f32> {
-    let Some((operation, operands)) = expression.split_once('(') else {
+    let operands = expression
+        .split_once('(')
+        .map(|(_, rest)| rest.strip_suffix(')'));
+    let Some(operands) = operands else {
         if let Some((a, b)) = expression.split_once(" * ") {
             return Some(in_floats(a, known)? * in_floats(b, known)?);
         }
-        return known
-            .get(expression)
-            .copied()
-            .or_else(|| expression.parse().ok());
+        let value = known.get(expression).copied();
+        return value.or_else(|| expression.parse().ok());
     };
-    let operands = operands.strip_suffix(')')?;
     let mut depth = 0;
-    let comma = operands.find(|c| {
+    let (a, b) = operands?.split_once(|c| {
         depth += i32::from(c == '(') - i32::from(c == ')');
         c == ',' && depth == 0
     })?;
-    let (a, b) = (&operands[..comma], operands[comma + 1..].trim_start());
-    let (a, b) = (in_floats(a, known)?, in_floats(b, known)?);
-    match operation {
+    let (a, b) = (in_floats(a, known)?, in_floats(b.trim_start(), known)?);
+    match &expression[..3] {
         "add" => Some(a + b),
         "sub" => Some(a - b),
         "mul" => Some(a * b),

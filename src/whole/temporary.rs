@@ -11,8 +11,8 @@ use super::{WholeError, failed};
 
 const PREFIX: &str = ".shiftvox-";
 const SUFFIX: &str = ".tmp";
-/// Most bytes of a file's name that its temporary name repeats; names have at most 255.
-const MOST_NAME: usize = 100;
+/// Most characters of a file's name that its temporary name repeats; names have at most 255 bytes.
+const MOST_NAME: usize = 25;
 const MOST_TRIES: u32 = 100;
 
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -134,10 +134,11 @@ impl Unfinished {
                 file.into_temp_path()
             }
         };
-        Ok(match overwrite {
-            true => temporary.persist(path)?,
-            false => temporary.persist_noclobber(path)?,
-        })
+        let named = match overwrite {
+            true => temporary.persist(path),
+            false => temporary.persist_noclobber(path),
+        };
+        named.map_err(|e| e.error)
     }
 }
 
@@ -148,7 +149,7 @@ fn named<T>(
     make: impl FnMut(&Path) -> io::Result<T>,
 ) -> io::Result<NamedTempFile<T>> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = &name[..name.floor_char_boundary(MOST_NAME)];
+    let name: String = name.chars().take(MOST_NAME).collect();
     let prefix = format!("{PREFIX}{name}-");
     Builder::new()
         .prefix(&prefix)

@@ -12,12 +12,12 @@ use super::experiment::export;
 use super::{document, report};
 use shiftvox::whole;
 use shiftvox_lab::report::Table;
-use shiftvox_lab::stress::{self, Case, Hold, SweepPlan};
+use shiftvox_lab::stress::{self, Case, Failed, Hold, SweepPlan};
 
 #[derive(Debug, Args)]
 pub(super) struct StressArgs {
-    /// Scenes, as generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
-    /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
+    /// Scenes, as generators, plane:depth,a,b,c, solid:depth or
+    /// cyclic:depth,seed [default: thirteen of them]
     #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
     /// Seed of viewpoints and rules; the same seed gives the same sweep
@@ -50,8 +50,6 @@ pub(super) struct StressArgs {
     #[arg(long)]
     force: bool,
 }
-
-const PRINTED: usize = 10;
 
 pub(super) fn run(args: &StressArgs, console: &Console) -> Result<(), CliError> {
     if let Some(case) = &args.case {
@@ -86,13 +84,15 @@ pub(super) fn run(args: &StressArgs, console: &Console) -> Result<(), CliError> 
     if total.failed == 0 {
         return Ok(());
     }
-    let failed = findings.failed.iter().filter(|f| f.minimal.is_some());
-    for failed in failed.take(PRINTED) {
-        let minimal = failed.minimal.as_deref().unwrap_or(&failed.case);
-        let detail = failed.minimal_detail.as_deref().unwrap_or(&failed.detail);
+    for of_check in findings.failed.chunk_by(|a, b| a.check == b.check) {
+        let Failed {
+            check,
+            detail,
+            case,
+        } = &of_check[0];
+        let name = check.name();
         console.note(format!(
-            "{}: {detail}\n  shiftvox stress --case '{minimal}'",
-            failed.check.name()
+            "{name}: {detail}\n  shiftvox stress --case '{case}'"
         ));
     }
     let (failed, all) = (report::grouped(total.failed), report::grouped(total.cases));

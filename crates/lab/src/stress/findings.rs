@@ -97,9 +97,6 @@ pub struct Failed {
     pub check: Check,
     pub detail: String,
     pub case: String,
-    /// A smaller case that violates the check, if it was shrunk.
-    pub minimal: Option<String>,
-    pub minimal_detail: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -110,7 +107,7 @@ pub struct Findings {
     pub traps: BTreeMap<String, u64>,
     pub refusals: BTreeMap<String, u64>,
     pub failures: BTreeMap<Check, u64>,
-    /// Some of the failures, shrunk ones first.
+    /// Some of the failures, by check.
     pub failed: Vec<Failed>,
 }
 
@@ -150,8 +147,6 @@ impl Findings {
                     check: failure.check,
                     detail: failure.detail.clone(),
                     case: case.to_string(),
-                    minimal: None,
-                    minimal_detail: None,
                 });
             }
         }

@@ -1,12 +1,11 @@
 //! Numerical stability: frames of many word formats, cameras, scenes and rules against the oracle, the specification and
-//! the bounds on their error (`spec/lab.md`). A failure is shrunk to a small [`Case`], a line of text.
+//! the bounds on their error (`spec/lab.md`). A failure is told as a [`Case`], a line of text.
 
 mod case;
 mod check;
 mod findings;
 mod outcome;
 mod scene;
-mod shrink;
 mod specified;
 mod subject;
 mod sweep;

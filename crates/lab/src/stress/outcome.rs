@@ -103,8 +103,4 @@ impl Outcome {
         let detail = detail.into();
         self.failures.push(Failure { check, detail });
     }
-
-    pub fn fails(&self, check: Check) -> bool {
-        self.failures.iter().any(|failure| failure.check == check)
-    }
 }

@@ -27,14 +27,8 @@ pub enum StressScene {
         depth: u32,
         seed: u64,
     },
-    /// A few voxels: `voxels:depth,x.y.z+x.y.z`.
-    Voxels {
-        depth: u32,
-        at: Vec<[i32; 3]>,
-    },
 }
 
-const MOST_LISTED_DEPTH: u32 = 20;
 const MOST_PLANE_DEPTH: u32 = 10;
 
 impl fmt::Display for StressScene {
@@ -47,11 +41,6 @@ impl fmt::Display for StressScene {
             } => write!(f, "plane:{depth},{a},{b},{c}"),
             Self::Solid { depth } => write!(f, "solid:{depth}"),
             Self::Cyclic { depth, seed } => write!(f, "cyclic:{depth},{seed}"),
-            Self::Voxels { depth, at } => {
-                let voxels: Vec<String> =
-                    at.iter().map(|[x, y, z]| format!("{x}.{y}.{z}")).collect();
-                write!(f, "voxels:{depth},{}", voxels.join("+"))
-            }
         }
     }
 }
@@ -68,15 +57,14 @@ impl FromStr for StressScene {
         }
         let wrong = || {
             format!(
-                "`{text}` is no scene: gen:..., plane:depth,a,b,c, solid:depth, \
-                 cyclic:depth,seed or voxels:depth,x.y.z+x.y.z"
+                "`{text}` is no scene: gen:..., plane:depth,a,b,c, solid:depth \
+                 or cyclic:depth,seed"
             )
         };
         let (depth, rest) = rest.split_once(',').unwrap_or((rest, ""));
         let depth: u32 = depth.parse().map_err(|_| wrong())?;
         let most = match kind {
             "plane" => MOST_PLANE_DEPTH,
-            "voxels" => MOST_LISTED_DEPTH,
             _ => MAX_DEPTH,
         };
         if depth > most {
@@ -102,21 +90,6 @@ impl FromStr for StressScene {
                     _ => Err(wrong()),
                 }
             }
-            "voxels" => {
-                let voxel = |text: &str| -> Option<[i32; 3]> {
-                    let at: Vec<i32> = text
-                        .split('.')
-                        .map(|c| c.parse().ok().filter(|c| (0..1 << depth).contains(c)))
-                        .collect::<Option<_>>()?;
-                    at.try_into().ok()
-                };
-                let at = rest
-                    .split('+')
-                    .map(voxel)
-                    .collect::<Option<_>>()
-                    .ok_or_else(wrong)?;
-                Ok(Self::Voxels { depth, at })
-            }
             _ => Err(wrong()),
         }
     }
@@ -129,7 +102,7 @@ impl StressScene {
         match self {
             Self::Plane { .. } | Self::Solid { .. } => true,
             Self::Generated(spec) => matches!(spec.generator().name, "sphere" | "shell"),
-            Self::Cyclic { .. } | Self::Voxels { .. } => false,
+            Self::Cyclic { .. } => false,
         }
     }
 
@@ -151,33 +124,7 @@ impl StressScene {
                 graph.build().map_err(|e| e.to_string())
             }
             Self::Cyclic { depth, seed } => cyclic(*depth, *seed),
-            Self::Voxels { depth, at } => listed(*depth, at),
         }
-    }
-
-    /// The same scene as a list of voxels, if it has no more than `most`.
-    pub(super) fn as_voxels(&self, most: usize) -> Option<Self> {
-        let graph = self.graph().ok()?;
-        // A cyclic scene's voxels may be too many to walk through.
-        if graph.voxels > most as u64 || graph.depth > MOST_LISTED_DEPTH {
-            return None;
-        }
-        let mut at = Vec::new();
-        for cell in graph.voxels() {
-            let side = 1i32 << (graph.depth - cell.level);
-            for i in 0..side * side * side {
-                let offset = [i / (side * side), i / side % side, i % side];
-                at.push([0, 1, 2].map(|k| cell.corner[k] + offset[k]));
-                if at.len() > most {
-                    return None;
-                }
-            }
-        }
-        at.sort_unstable();
-        Some(Self::Voxels {
-            depth: graph.depth,
-            at,
-        })
     }
 }
 
@@ -194,36 +141,6 @@ fn built(voxels: Vec<[i32; 3]>) -> Result<Graph, String> {
     }
     let graph = builder.finish(([0.0; 3], 1.0), &Silent);
     graph.map_err(|e| e.to_string())
-}
-
-/// A tree of exactly so many levels, whatever the voxels' extent.
-fn listed(depth: u32, at: &[[i32; 3]]) -> Result<Graph, String> {
-    if at.is_empty() {
-        return Err("a scene needs a voxel".to_owned());
-    }
-    let mut children: Vec<[Option<u32>; 8]> = vec![[None; 8]];
-    for voxel in at {
-        let mut node = 0usize;
-        for bit in (0..depth).rev() {
-            let octant = voxel
-                .iter()
-                .fold(0, |octant, c| octant << 1 | (c >> bit & 1) as usize);
-            node = match children[node][octant] {
-                Some(child) => child as usize,
-                None => {
-                    children.push([None; 8]);
-                    let child = children.len() as u32 - 1;
-                    children[node][octant] = Some(child);
-                    child as usize
-                }
-            };
-        }
-    }
-    let mut graph = LinkedGraph::new(depth);
-    for children in children {
-        graph.add_node([200, 120, 60], children);
-    }
-    graph.build().map_err(|e| e.to_string())
 }
 
 /// All voxels `p` with `0 <= normal p - middle < |normal|` (the sum of magnitudes).
@@ -272,25 +189,12 @@ mod tests {
             ("plane:4,3,5,7", 4),
             ("solid:30", 30),
             ("cyclic:6,3", 6),
-            ("voxels:2,0.0.0+3.1.2", 2),
         ] {
             let scene: StressScene = text.parse().unwrap();
             assert_eq!(scene.to_string(), text);
-            let graph = scene.graph().unwrap();
-            assert_eq!(graph.depth, depth, "{text}");
-            // The same voxels as a list, if they are few.
-            let listed = scene.as_voxels(1000);
-            assert_eq!(listed.is_some(), graph.voxels <= 1000, "{text}");
-            let voxels = |graph: Graph| {
-                let mut at: Vec<_> = graph.voxels().map(|cell| cell.corner).collect();
-                at.sort_unstable();
-                at
-            };
-            if let Some(listed) = listed {
-                assert_eq!(voxels(graph), voxels(listed.graph().unwrap()), "{text}");
-            }
+            assert_eq!(scene.graph().unwrap().depth, depth, "{text}");
         }
-        for bad in "plane:4,1,1,0 solid:31 voxels:2,4.0.0 voxels:2, cube gen:x".split(' ') {
+        for bad in "plane:4,1,1,0 solid:31 cube gen:x".split(' ') {
             assert!(bad.parse::<StressScene>().is_err(), "{bad}");
         }
     }

@@ -5,9 +5,8 @@ use rayon::prelude::*;
 use super::case::Case;
 use super::check::{Oracle, PATIENCE, check};
 use super::findings::{Findings, Key};
-use super::outcome::{Check, Outcome};
+use super::outcome::Outcome;
 use super::scene::StressScene;
-use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
 use super::viewpoint::{Viewpoint, viewpoints};
 use shiftvox::graph::{Graph, Progress};
@@ -24,7 +23,6 @@ pub struct SweepPlan {
     pub rules: usize,
     pub seed: u64,
     pub most_records: u64,
-    pub shrink_budget: u32,
 }
 
 /// Tolerances, samples, of `any` and `center`; `exact` has the first alone.
@@ -82,7 +80,6 @@ impl SweepPlan {
             rules: if thorough { 40 } else { 2 },
             seed,
             most_records: if thorough { PATIENCE } else { 500_000 },
-            shrink_budget: if thorough { 20_000 } else { 1500 },
         }
     }
 
@@ -169,7 +166,7 @@ pub(super) fn sweep_of(
     for found in found {
         findings.merge(found);
     }
-    shrink_failures(subject, plan, &mut findings, progress);
+    findings.failed.sort_by_key(|failed| failed.check);
     Ok(findings)
 }
 
@@ -218,41 +215,6 @@ fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
 
 fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
     all.iter().position(|other| other == one).unwrap_or(0)
-}
-
-fn shrink_failures(
-    subject: &dyn Subject,
-    plan: &SweepPlan,
-    findings: &mut Findings,
-    progress: &dyn Progress,
-) {
-    let checks: Vec<Check> = findings.failures.keys().copied().collect();
-    for kind in checks {
-        progress.begin("shrinking a failing case", 0);
-        let first = findings.failed.iter_mut().find(|f| f.check == kind);
-        if let Some(failed) = first
-            && let Ok(case) = failed.case.parse::<Case>()
-        {
-            let mut shrinker = Shrinker {
-                subject,
-                check: kind,
-                most_records: plan.most_records,
-                left: plan.shrink_budget,
-            };
-            let minimal = shrinker.shrink(&case);
-            if let Ok(graph) = minimal.scene.graph() {
-                let mut oracle = Oracle::default();
-                let again = check(subject, &minimal, &graph, plan.most_records, &mut oracle);
-                let failure = again.failures.into_iter().find(|f| f.check == kind);
-                failed.minimal_detail = failure.map(|f| f.detail);
-            }
-            failed.minimal = Some(minimal.to_string());
-        }
-        progress.end();
-    }
-    findings
-        .failed
-        .sort_by_key(|f| (f.minimal.is_none(), f.check));
 }
 
 /// Draws one case.
