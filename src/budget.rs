@@ -1,9 +1,7 @@
 //! Checks of memory and disk space before they are used, for objects whose size depends on a file or a flag.
 
-use std::error::Error as _;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 /// Too little memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
@@ -87,15 +85,8 @@ pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
     Ok(list)
 }
 
-/// Capacity for so many more items, of which there may be more later. Errors: [`Shortage`] if the system refuses it.
-#[inline]
-pub fn reserve<T>(what: &'static str, list: &mut Vec<T>, more: usize) -> Result<(), Shortage> {
-    list.try_reserve(more)
-        .map_err(|_| refused::<T>(what, list.len() + more))
-}
-
 #[cold]
-fn refused<T>(what: &'static str, items: usize) -> Shortage {
+pub(crate) fn refused<T>(what: &'static str, items: usize) -> Shortage {
     Shortage {
         what,
         needed: (items as u64).saturating_mul(size_of::<T>() as u64),
@@ -108,23 +99,6 @@ pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec
     let mut list = room(what, items)?;
     list.resize(items, item);
     Ok(list)
-}
-
-/// Starts the threads of the global pool of `rayon`, which panics where it uses one that does not start. Nothing happens
-/// inside another pool. Fails with the system's reason.
-pub fn start_threads() -> Result<(), &'static str> {
-    static REFUSED: OnceLock<Option<String>> = OnceLock::new();
-    if rayon::current_thread_index().is_some() {
-        return Ok(());
-    }
-    let refused = REFUSED.get_or_init(|| {
-        let error = rayon::ThreadPoolBuilder::new().build_global().err()?;
-        // Without a source, the pool has been started already.
-        error
-            .source()
-            .map(|refused| format!("cannot start the threads: {refused}"))
-    });
-    refused.as_deref().map_or(Ok(()), Err)
 }
 
 /// Memory that this process can still take, bytes, if it is reported. It is the least of the computer's free memory, the limit of the process's container (Linux: control groups), and the rest of

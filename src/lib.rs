@@ -48,6 +48,8 @@
 
 mod api;
 
+#[doc(hidden)]
+pub use api::start_threads;
 pub use api::{Camera, EngineKind, Error, FittedCamera, Picture, Renderer, Scene};
 pub use hwmodel;
 

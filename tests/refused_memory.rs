@@ -72,6 +72,7 @@ fn all_that_does_not_fit_is_an_error() {
             .env(SIDE, side.to_string())
             // Otherwise each thread reserves 64 MB of addresses.
             .env("MALLOC_ARENA_MAX", "1")
+            .env("RAYON_NUM_THREADS", "2")
             .output()
             .expect("a shell");
         let told = String::from_utf8_lossy(&output.stderr);

@@ -1,13 +1,13 @@
 //! Threads, engine and frame of a renderer, kept from picture to picture.
 
+use std::error::Error as _;
 use std::fmt;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use hwmodel::Overflow;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{EngineKind, Error};
-use crate::budget;
 use crate::drawing::Canvas;
 
 pub(super) const MOST_THREADS: usize = 1024;
@@ -21,9 +21,23 @@ pub(super) struct Key {
     pub(super) threads: usize,
 }
 
-/// Starts the threads of `rayon`'s global pool.
-pub(super) fn start_threads() -> Result<(), Error> {
-    budget::start_threads().map_err(|reason| Error::Threads(reason.into()))
+/// For `shiftvox-mesh`: starts the threads of the global pool of `rayon`, which panics where it uses one that does not start. Nothing happens
+/// inside another pool.
+pub fn start_threads() -> Result<(), Error> {
+    static REFUSED: OnceLock<Option<String>> = OnceLock::new();
+    if rayon::current_thread_index().is_some() {
+        return Ok(());
+    }
+    let refused = REFUSED.get_or_init(|| {
+        let error = ThreadPoolBuilder::new().build_global().err()?;
+        // Without a source, the pool has been started already.
+        let refused = error.source()?;
+        Some(format!("cannot start the threads: {refused}"))
+    });
+    match refused.as_deref() {
+        Some(reason) => Err(Error::Threads(reason.into())),
+        None => Ok(()),
+    }
 }
 
 pub(super) struct Job {

@@ -23,6 +23,7 @@ mod scene;
 
 pub use camera::{Camera, FittedCamera, View};
 pub use error::Error;
+pub use kept::start_threads;
 pub use picture::Picture;
 pub use renderer::{EngineKind, Renderer};
 pub use scene::{Scene, Up};

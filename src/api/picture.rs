@@ -159,12 +159,11 @@ impl Picture {
     /// [`Error::Write`] if the system refuses, [`Error::Memory`] if the file does not fit in memory.
     #[cfg(feature = "png")]
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let room = || budget::room("a PNG file", self.rgba().len()).map_err(Error::Memory);
-        let mut pixels: Vec<[u8; 4]> = room()?;
+        // The encoder takes memory unasked, seldom more than the pixels.
+        let room = budget::room("a PNG file", 2 * self.rgba().len());
+        let mut pixels: Vec<[u8; 4]> = room.map_err(Error::Memory)?;
         pixels.extend_from_slice(self.rgba());
-        // The encoder's memory, which it takes unasked: seldom more than the pixels.
-        let of_encoder: Vec<[u8; 4]> = room()?;
-        drop(of_encoder);
+        pixels.shrink_to_fit();
         let pixels = crate::picture::Pixels::new(self.width, self.height, pixels);
         whole::write_with(path.as_ref(), true, |file| {
             pixels.write(file).map_err(std::io::Error::other)

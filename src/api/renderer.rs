@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{Hardware, NoObserver};
+use hwmodel::cycles::{Hardware, NoObserver, SimulationError};
 
 use super::camera::View;
 use super::kept::{Kept, Key};
@@ -390,7 +390,10 @@ impl Renderer {
         let mut frame = Frame::nodes_only(0, 0);
         self.machine()
             .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)
-            .map_err(|e| Error::Simulate(e.into()))
+            .map_err(|e| match e {
+                SimulationError::Workload(EngineError::Memory(short)) => Error::Memory(short),
+                other => Error::Simulate(other.into()),
+            })
     }
 
     fn options(&self) -> Result<SetupOptions, Error> {

@@ -28,13 +28,14 @@ impl Scene {
     /// Opens a voxel file or a voxel graph (`spec/input.md`), recognised by content. Meshes are opened by the crate
     /// `shiftvox-mesh`.
     ///
-    /// A `.vxg` file is mapped, and its pages are read while it is drawn. A program that writes to the file meanwhile changes
-    /// later pictures, or makes them wrong, but causes no panic. One that cuts it short ends this process by the signal
-    /// SIGBUS on Unix, which the program `shiftvox` reports as an error and a library cannot. Replacing the file by
-    /// another, as [`Scene::save_vxg`] does, is safe. [`Scene::from_bytes`] of a file that was read does not map it.
+    /// A `.vxg` file is mapped, and its pages are read while it is drawn. A program that writes to the file meanwhile
+    /// changes later pictures, or makes them wrong, but causes no panic. One that cuts it short ends this process by the
+    /// signal SIGBUS on Unix, which the program `shiftvox` reports as an error and a library cannot. Replacing the file
+    /// by another, as [`Scene::save_vxg`] does, is safe. [`Scene::from_bytes`] of a file that was read does not map it.
     ///
     /// # Errors
     /// [`Error::Open`] if the file cannot be read, is damaged or of another format, or does not fit in memory.
+    /// [`Error::Threads`] if `rayon`'s global threads, which all functions start that make a scene, cannot be started.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         start_threads()?;
         let file = SceneFile::open(path.as_ref()).map_err(|e| Error::Open(e.into()))?;
@@ -56,7 +57,7 @@ impl Scene {
     /// Generates a scene, such as `terrain,depth=9,seed=1` (`spec/generators.md`).
     ///
     /// # Errors
-    /// [`Error::Open`] for a wrong specification.
+    /// [`Error::Open`] for a wrong specification, [`Error::Threads`] as in [`Scene::open`].
     pub fn generate(specification: &str) -> Result<Self, Error> {
         start_threads()?;
         let source = format!("{}{specification}", crate::scene::generate::PREFIX);
@@ -67,7 +68,8 @@ impl Scene {
     /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one is kept.
     ///
     /// # Errors
-    /// [`Error::Build`] for no voxel, for a span of more than 2^21 along an axis, and for 2^32 voxels or nodes.
+    /// [`Error::Build`] for no voxel, for a span of more than 2^21 along an axis, for 2^32 voxels or nodes, and for too
+    /// little memory; [`Error::Threads`] as in [`Scene::open`].
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
         start_threads()?;
         let mut builder = Builder::new(BuildOptions::default());

@@ -151,7 +151,7 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
-    /// Draws a frame, unless the viewer shows it already. Errors: see [`DrawError`]; nothing is shown then.
+    /// Draws a frame, unless the viewer shows it already. Errors: see [`DrawError`].
     pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
         let setup = self.setup(camera)?;
         let was_shown = self.viewer.shows(&setup);
@@ -228,7 +228,10 @@ impl Drawable for GraphDrawing<'_> {
         };
         let mut drawn = self.draw_frame(camera)?;
         let started = Instant::now();
-        let last = self.last.take().filter(|_| drawn.was_shown);
+        let last = self
+            .last
+            .take()
+            .filter(|last| drawn.was_shown && last.setup == drawn.setup);
         let draw_ms = drawn.draw_ms;
         let pixels = match last {
             Some(last) => last.pixels,

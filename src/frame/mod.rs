@@ -121,7 +121,8 @@ impl Frame {
 /// Replaces a list of another length by one of equal entries.
 fn fit<T: Clone>(list: &mut Vec<T>, entry: T, samples: usize) -> Result<(), Shortage> {
     if list.len() != samples {
-        *list = Vec::new();
+        // Not empty, even if memory is refused: empty lists are absent.
+        *list = vec![entry.clone()];
         *list = budget::filled("the frame of a picture", entry, samples)?;
     }
     Ok(())

@@ -90,7 +90,9 @@ impl PushedVoxels {
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < PIECE => {
-                budget::reserve(VOXELS, last, 1)?;
+                let more = last.len() + 1;
+                let refused = |_| budget::refused::<PushedVoxel>(VOXELS, more);
+                last.try_reserve(1).map_err(refused)?;
                 last.push(record);
             }
             None => self.pieces.push(vec![record]),

@@ -72,21 +72,20 @@ pub fn lights(
     if !setup.options.coverage.blends() {
         return Ok(Vec::new());
     }
-    let mut lights = budget::filled("the light of all nodes", [0; 3], graph.len())?;
+    let mut lights = budget::room("the light of all nodes", graph.len())?;
     let sight = Sight::new(setup);
     let [_, _, back] = sight.axes();
     let light = Light::new(shading, sight.axes());
     let linear = Linear::tables();
-    lights
-        .par_iter_mut()
-        .zip(0..graph.len() as u32)
-        .for_each(|(lit, node)| {
-            let normal = PackedNormal::decode(graph.normal_of(node));
-            let normal = normal.map_or(back, |normal| towards_eye(normal, -back));
-            let share = light.on(normal);
-            let full = linear.decode(graph.color_of(node));
-            *lit = full.map(|channel| ((channel * share) >> 8) as u16);
-        });
+    let lit = |node: u32| {
+        let normal = PackedNormal::decode(graph.normal_of(node));
+        let normal = normal.map_or(back, |normal| towards_eye(normal, -back));
+        let share = light.on(normal);
+        let full = linear.decode(graph.color_of(node));
+        full.map(|channel| ((channel * share) >> 8) as u16)
+    };
+    let nodes = 0..graph.len() as u32;
+    nodes.into_par_iter().map(lit).collect_into_vec(&mut lights);
     Ok(lights)
 }
 

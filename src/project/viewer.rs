@@ -2,8 +2,7 @@
 //! lends the frame only for reading, and borrows the graph.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
-use crate::budget::{self, Shortage};
-use crate::frame::{Frame, NO_NODE, NO_VOXEL};
+use crate::frame::Frame;
 use crate::graph::GraphView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -60,7 +59,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
         if self.shows(setup) {
             return Ok(false);
         }
-        self.make_room(setup)?;
+        self.make_room();
         self.engine.draw(&self.graph, setup, &mut self.frame)?;
         self.shown = Some(setup.clone());
         Ok(true)
@@ -85,7 +84,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
             stats.push((FRAMES_UNCHANGED, 1));
             return Ok(stats);
         }
-        self.make_room(setup)?;
+        self.make_room();
         let graph = GraphView {
             light,
             ..self.graph
@@ -123,34 +122,19 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.stats = None;
     }
 
-    /// Makes a frame of the set-up's size, or reuses the last one's memory. Shows nothing. Errors: [`Shortage`] if the
-    /// system refuses the memory.
-    pub fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
+    /// Shows nothing. The engine then draws into the last frame's memory, if that has the same contents.
+    fn make_room(&mut self) {
         self.forget();
-        let (width, height) = (setup.width, setup.height);
         let has = match (&self.frame.records, self.frame.voxel.is_empty()) {
             (Some(_), _) => Contents::Records,
             (None, false) => Contents::Voxels,
             (None, true) => Contents::Nodes,
         };
-        if (self.frame.width, self.frame.height, has) != (width, height, self.contents) {
-            self.frame = Frame::nodes_only(0, 0);
-            let samples = width as usize * height as usize;
-            let has_voxels = self.contents != Contents::Nodes;
-            let has_records = self.contents == Contents::Records;
-            let what = "the frame of a picture";
-            self.frame = Frame {
-                width,
-                height,
-                node: budget::filled(what, NO_NODE, samples)?,
-                voxel: budget::filled(what, NO_VOXEL, if has_voxels { samples } else { 0 })?,
-                records: match has_records {
-                    true => Some(budget::filled(what, 0.0, samples)?),
-                    false => None,
-                },
-                blend: None,
+        if has != self.contents {
+            self.frame = match self.contents {
+                Contents::Nodes => Frame::nodes_only(0, 0),
+                contents => Frame::new(1, 1, contents == Contents::Records),
             };
         }
-        Ok(())
     }
 }

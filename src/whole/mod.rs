@@ -1,8 +1,9 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written without a name and named when it is whole. So a killed process leaves nothing. Where a system or a
-//! disk has no nameless files, it is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`. A
-//! signal handler must call [`remove_unfinished`] before it ends the program.
+//! A file is written without a name and named when it is whole. Where a system or a disk has no nameless files, it is
+//! written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`. A signal handler must call
+//! [`remove_unfinished`] before it ends the program. A killed process may leave a file or folder with a temporary name,
+//! which nothing removes: it could be the user's.
 
 mod temporary;
 
@@ -12,6 +13,12 @@ use std::path::{Path, PathBuf};
 
 pub use temporary::{TemporaryFolder, remove_unfinished};
 use temporary::{Unfinished, unfinished};
+
+/// Does some work during which no signal handler ends the program.
+pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
+    let _list = unfinished();
+    work()
+}
 
 /// Checks whether a file may be written, before long work. Errors: [`WholeError::Exists`] if it exists and may not be
 /// overwritten, [`WholeError::NoFolder`] without a folder for it, otherwise [`WholeError::Io`].

@@ -3,6 +3,7 @@
 //! The handler wakes a waiting thread, which reports the error, removes unfinished files and exits with the usual code.
 //! After five seconds the handler exits itself.
 
+use std::hint::black_box;
 use std::io::{self, Write};
 use std::sync::Mutex;
 
@@ -19,13 +20,13 @@ pub(super) fn reads(scene: &str) {
 /// Memory that a backtrace may take, bytes.
 const BACKTRACE: usize = 1 << 29;
 
-/// Panics print no backtrace if there is little memory. The standard library reports memory that is refused meanwhile with
-/// a backtrace, too, and waits for ever until the first is finished.
+/// Panics print no backtrace if there is little memory. The standard library reports memory that is refused meanwhile
+/// with a backtrace, too, and waits for ever until the first is finished.
 fn guard_backtraces() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         let mut room: Vec<u8> = Vec::new();
-        if room.try_reserve_exact(BACKTRACE).is_err() {
+        if room.try_reserve_exact(BACKTRACE).is_err() || black_box(&room).capacity() == 0 {
             let _ = writeln!(io::stderr(), "{panic}");
             return;
         }

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use shiftvox::budget;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{self, OpenError, Opened, SceneFile, Source};
-use shiftvox::{Error, Scene, Up};
+use shiftvox::{Error, Scene, Up, start_threads};
 
 use crate::open::{OpenOptions, open_bytes};
 
@@ -86,8 +85,4 @@ impl SceneOptions {
             None => scene,
         })
     }
-}
-
-fn start_threads() -> Result<(), Error> {
-    budget::start_threads().map_err(|reason| Error::Threads(reason.into()))
 }

@@ -1,6 +1,6 @@
 //! Faults of the disk, drawn from a seed: a system call on the files of a run fails. The run ends by itself. It writes
-//! all files, or it exits with 1, 4 or 5 and a message that names a file or its folder. Then each file is the earlier one,
-//! or whole. Nothing else is left.
+//! all files, or it exits with 1, 4 or 5 and a message that names a file or its folder. Then each file is the earlier
+//! one, or whole. Nothing else is left.
 //!
 //! `SHIFTVOX_FAULTS` is the number of faults.
 #![cfg(target_os = "linux")]
@@ -48,8 +48,8 @@ fn add_files(folder: &Path, root: &Path, all: &mut Files) {
     }
 }
 
-/// A run under strace in a folder that has some files: its exit code, its files, its folder, its messages, and the system
-/// calls of its threads.
+/// A run under strace in a folder that has some files: its exit code, its files, its folder, its messages, and the
+/// system calls of its threads.
 fn run(line: &str, earlier: &Files, fault: &str) -> (i32, Files, [String; 3]) {
     let (work, notes) = (Folder::new(), Folder::new());
     for (name, bytes) in earlier {

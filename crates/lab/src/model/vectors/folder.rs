@@ -78,16 +78,23 @@ pub(super) fn write<T>(
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
-    let before = shelter.path().join("before");
+    // Outside of the shelter, so that the old folder is not removed before the new one is in its place.
+    let before = shelter.path().with_extension("old");
     // The path may have changed meanwhile.
-    if is_replaceable(path, overwrite)? {
-        fs::rename(path, &before).map_err(|e| failed(path, e))?;
-    }
-    let renamed = fs::rename(&made, path).inspect_err(|_| {
-        // Restores the old folder, if there was one; the first error is the one to report.
-        let _ = fs::rename(&before, path);
+    let is_old = is_replaceable(path, overwrite)?;
+    let renamed = whole::undisturbed(|| {
+        if is_old {
+            fs::rename(path, &before)?;
+        }
+        fs::rename(&made, path).inspect_err(|_| {
+            // The first error is the one to report.
+            let _ = fs::rename(&before, path);
+        })
     });
     renamed.map_err(|e| failed(path, e))?;
+    if is_old {
+        let _ = fs::remove_dir_all(&before);
+    }
     Ok(result)
 }
 
