@@ -142,7 +142,7 @@ impl Unfinished {
     }
 }
 
-/// Makes something with a temporary name that tells the later one.
+/// Makes something with a temporary name that contains the later one.
 fn named<T>(
     folder: &Path,
     path: &Path,

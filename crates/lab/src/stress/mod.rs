@@ -1,5 +1,5 @@
 //! Numerical stability: frames of many word formats, cameras, scenes and rules against the oracle, the specification and
-//! the bounds on their error (`spec/lab.md`). A failure is told as a [`Case`], a line of text.
+//! the bounds on their error (`spec/lab.md`). A failing [`Case`] is a line of text.
 
 mod case;
 mod check;

@@ -42,7 +42,7 @@ fn sweep(subject: &dyn Subject, scenes: &[&str], bits: &[u32]) -> Findings {
     sweep_of(subject, &plan, &Silent).unwrap()
 }
 
-/// The check that is meant for it finds each mutation, and tells a case.
+/// The check that is meant for it finds each mutation, with a case.
 #[test]
 fn every_mutation_is_found_by_name() {
     for (mutation, expected) in [
