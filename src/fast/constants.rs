@@ -12,8 +12,10 @@ pub(super) const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 25) as f64;
 /// The same relative to the products whose differences are its coefficients (`doubles.gappa`).
 pub(super) const PRODUCT_ERROR: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// Most of the image root's width over the focal length: fields of view up to about 179.98 degrees.
+/// Most of the image root's width over the focal length: fields of view up to about 179.97 degrees.
 const MOST_WIDTH: f64 = (1 << 13) as f64;
+/// Most of that width squared over the focal length, samples, for the slopes in `f64` (`spec/fast.md`, section 2).
+const MOST_AREA: f64 = (1 << 25) as f64;
 /// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
 const COARSE_SAMPLES: f64 = 3.0;
 /// Largest size of voxels of bricks of four levels.
@@ -95,7 +97,7 @@ impl Constants {
         let across = edge.map(|e| e[0] - (middle[0] - 0.5) * e[2]);
         let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
         let unit = libm::sqrt(edge.iter().map(|e| e[2] * e[2]).sum());
-        let is_wide = root_samples * unit > MOST_WIDTH * focal;
+        let is_wide = root_samples * unit > MOST_WIDTH.min(MOST_AREA / root_samples) * focal;
         let size = [f64::from(setup.width), f64::from(setup.height), 1.0];
         if is_wide || (0..3).any(|k| is_rough(edge[(k + 1) % 3], edge[(k + 2) % 3], size)) {
             return Err("handed_for_field_of_view");

@@ -177,15 +177,16 @@ impl Constants {
     }
 }
 
-/// Whether the quadtree's root is more than 12 times as wide as its distance. There, boxes that are far from both edges
-/// of a node move little as they come nearer, and `clip_at_most`, which allows for the edges, overrates their size.
+/// Whether the quadtree's root is more than 16 times as wide as its distance.
 fn is_wide(setup: &FrameSetup) -> bool {
-    let squares = |row: [i128; 3]| row.map(|c| c * c).iter().sum::<i128>(); // host: for a constant of the frame
-    let edges = setup.edge_clip.map(|edge| edge.map(i128::from));
-    let across = squares(edges.map(|[x, _, w]| 2 * x - w)); // host: for a constant of the frame
-    squares(edges.map(|[_, _, w]| w)) > 36 * across // host: for a constant of the frame
+    let root = f64::from(1u32 << setup.levels);
+    let square = |row: [f64; 3]| row.map(|c| c * c).iter().sum::<f64>(); // host: for a constant of the frame
+    let edges = setup.edge_clip.map(|edge| edge.map(|c| c as f64));
+    // From the picture's middle, in halves of a root.
+    let middle = f64::from(setup.width) / root; // host: for a constant of the frame
+    let across = square(edges.map(|[x, _, w]| 2.0 * x - middle * w)); // host: for a constant of the frame
+    square(edges.map(|[_, _, w]| w)) > 64.0 * across // host: for a constant of the frame
 }
-
 /// The registers of `rtl/machine/frame_constants.v`, then those of planes (`rtl/stage_b/plane_constants.v`), two per
 /// constant. A level without a depth has the greatest word.
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {

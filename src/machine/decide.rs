@@ -9,7 +9,7 @@ use super::canvas::{Canvas, Paint};
 use super::constants::Constants;
 use super::counters::Counts;
 use super::planes::Silhouette;
-use super::record::{Pose, Record};
+use super::record::{Clip, ImagePlace, Pose, Record};
 use super::size;
 use super::state::Job;
 use super::to_screen;
@@ -45,13 +45,14 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
         }
     }
     match verdict(dp, c, &mut canvas.counts, record) {
-        Verdict::DrawCentre => {
-            if let Some(sample) = centre_sample(dp, c, record) {
-                canvas.draw(dp, sample, &paint(c, record, None));
-            }
-        }
-        Verdict::DrawFarthest => {
-            if let Some(sample) = farthest_sample(dp, c, record) {
+        verdict @ (Verdict::DrawCentre | Verdict::DrawFarthest) => {
+            let sample = match &record.pose {
+                Pose::Clip(clip, _) if verdict == Verdict::DrawFarthest => {
+                    farthest_sample(dp, c, record.place, clip)
+                }
+                _ => centre_sample(dp, c, record),
+            };
+            if let Some(sample) = sample {
                 canvas.draw(dp, sample, &paint(c, record, None));
             }
         }
@@ -110,23 +111,18 @@ fn centre_sample<P: Probe, L: CageCoordinate>(
     }
 }
 
-/// The sample of a record's farthest vertex, which is beyond the near plane.
+/// The sample of a cage's farthest vertex.
 fn farthest_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
-    record: &Record<L>,
+    place: ImagePlace,
+    clip: &Clip<L>,
 ) -> Option<QuadNode> {
-    let Pose::Clip(clip, _) = &record.pose else {
-        unreachable!("a record across the near plane is in clip space");
-    };
     dp.stage(Stage::Draw);
-    let [x, y, z] = clip
-        .w
-        .edges(dp)
-        .map(|edge| usize::from(!dp.is_negative(edge)));
-    let farthest = x << 2 | y << 1 | z;
-    let vertex = [&clip.x, &clip.y, &clip.w].map(|cage| cage.vertices(dp)[farthest]);
-    size::point_sample(dp, c, record.place, vertex)
+    let edges = clip.w.edges(dp);
+    let [x, y, z] = edges.map(|edge| usize::from(!dp.is_negative(edge)));
+    let vertex = [&clip.x, &clip.y, &clip.w].map(|cage| cage.vertices(dp)[x << 2 | y << 1 | z]);
+    size::point_sample(dp, c, place, vertex)
 }
 
 fn draw_solid<P: Probe, L: CageCoordinate>(
@@ -220,7 +216,12 @@ fn verdict<P: Probe, L: CageCoordinate>(
     if is_drawn {
         return draw;
     }
-    if c.is_wide && has_near_plane && record.cube.solid && is_about_one_sample(dp, c, record) {
+    if c.is_wide
+        && has_near_plane
+        && record.cube.solid
+        && let Pose::Clip(clip, _) = &record.pose
+        && size::is_about_one_sample(dp, c, record.place, clip)
+    {
         return Verdict::DrawFarthest;
     }
     if !is_at_bound {
@@ -347,16 +348,5 @@ fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
             size::clip_at_most(dp, clip, &c.size_limit, below)
         }
         Pose::Screen(screen) => size::screen_at_most(dp, screen, c.size_limit_screen),
-    }
-}
-
-fn is_about_one_sample<P: Probe, L: CageCoordinate>(
-    dp: &mut Datapath<P>,
-    c: &Constants,
-    record: &Record<L>,
-) -> bool {
-    match &record.pose {
-        Pose::Clip(clip, _) => size::clip_is_about_one_sample(dp, c, record.place, clip),
-        Pose::Screen(_) => false,
     }
 }

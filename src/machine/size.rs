@@ -32,36 +32,44 @@ pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     })
 }
 
-/// Whether what a cube shows beyond the near plane is in one column, or within half a sample of an edge of one; and in
-/// rows likewise (R7.3). Unlike [`clip_at_most`] it uses the vertices' own places.
-pub(super) fn clip_is_about_one_sample<P: Probe, L: CageCoordinate>(
+/// R7.3: whether a cube would cross a quarter of a sample at the picture's edge, but is about one sample where it is. Its
+/// part beyond the near plane lies in one column, or within half a sample of an edge of one, and in rows likewise. Unlike
+/// [`clip_at_most`], this uses the vertices' own places.
+pub(super) fn is_about_one_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     c: &Constants,
     place: ImagePlace,
     clip: &Clip<L>,
 ) -> bool {
+    let (w_min, w_max) = clip.w.span(dp);
+    let depth = dp.sub(w_max, w_min);
+    let shallow = dp.shr(w_min, c.levels + 2);
+    if !dp.lt(shallow, depth) {
+        return false;
+    }
     let below = c.levels - place.quad.level;
-    let least = dp.max(clip.w_min, c.near);
+    let least = dp.max(w_min, c.near);
     let half = dp.shr(least, below + 1);
-    [clip.x, clip.y].into_iter().all(|x| {
-        let mut from_left = x;
-        // From the node's left edge, its right one, then from bisectors.
+    [clip.x, clip.y].into_iter().all(|mut x| {
+        // Edges of the node, then bisectors.
         for edge in 0..below + 2 {
-            let from_edge = match edge.checked_sub(1) {
-                None => x,
-                Some(level) => from_left.zip(&clip.w, |x, w| {
-                    let width = dp.shr(w, level);
-                    dp.sub(x, width)
-                }),
-            };
-            let (low, high) = from_edge.span(dp);
-            if dp.is_negative(low) && !dp.is_negative(high) {
+            let beyond = x.zip(&clip.w, |x, w| {
+                let to_edge = if edge == 0 {
+                    Word::ZERO
+                } else {
+                    dp.shr(w, edge - 1)
+                };
+                dp.sub(x, to_edge)
+            });
+            let (low, high) = beyond.span(dp);
+            let is_beyond = !dp.is_negative(low);
+            if !is_beyond && !dp.is_negative(high) {
                 let most = dp.neg(low);
                 let most = dp.max(most, high);
                 return dp.lt(most, half);
             }
-            if edge > 1 && !dp.is_negative(low) {
-                from_left = from_edge;
+            if is_beyond && edge != 1 {
+                x = beyond;
             }
         }
         true

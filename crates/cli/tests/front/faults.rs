@@ -41,6 +41,13 @@ type Files = BTreeMap<PathBuf, Vec<u8>>;
 fn add_files(folder: &Path, root: &Path, all: &mut Files) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        let is_left = path
+            .file_name()
+            .unwrap()
+            .to_str()
+            .unwrap()
+            .ends_with(".tmp");
+        assert!(!is_left, "{}", path.display());
         match fs::read(&path) {
             Ok(bytes) => _ = all.insert(path.strip_prefix(root).unwrap().to_owned(), bytes),
             Err(_) => add_files(&path, root, all),
