@@ -87,7 +87,7 @@ fn all_that_does_not_fit_is_an_error() {
     };
     let limits = (24_000..=184_000).step_by(20_000);
     let runs: Vec<_> = limits.map(|kibibytes| limited(kibibytes, 1000)).collect();
-    let fitted = ["[0, 0] [0, 0, 0]", "[1, 1] [1, 1, 1]"];
-    assert_eq!([&runs[0], &runs[8]], fitted, "{runs:?}");
+    assert!(runs[0].starts_with("[0, 0]"), "{runs:?}");
+    assert_eq!(runs[8], "[1, 1] [1, 1, 1]");
     assert_eq!(limited(6_000_000, 11_000), "[0, 0]");
 }
