@@ -21,8 +21,8 @@ pub(super) struct Key {
     pub(super) threads: usize,
 }
 
-/// For `shiftvox-mesh`: starts the threads of the global pool of `rayon`, which panics where it uses one that does not start. Nothing happens
-/// inside another pool.
+/// For `shiftvox-mesh`: starts the threads of the global pool of `rayon`, which panics where it uses one that does not
+/// start. Nothing happens inside another pool. Errors: [`Error::Threads`] with the system's reason.
 pub fn start_threads() -> Result<(), Error> {
     static REFUSED: OnceLock<Option<String>> = OnceLock::new();
     if rayon::current_thread_index().is_some() {

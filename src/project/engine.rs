@@ -37,8 +37,8 @@ pub trait Engine {
         self.render(graph, setup, frame).map(drop)
     }
 
-    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` gets the size of `setup` and is
-    /// cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
+    /// Draws the samples' unlit colours. `of_node` has the colours by graph node. `colors` gets the size of `setup` and
+    /// is cleared first. Previews show this and experiments time it. Errors: as [`Engine::render`].
     fn draw_colors(
         &mut self,
         graph: &GraphView<'_>,
@@ -52,8 +52,8 @@ pub trait Engine {
         Ok(())
     }
 
-    /// Draws into `frame`, which gets the size of `setup` and is cleared first. Fails when the frame cannot be finished;
-    /// its contents then have no meaning.
+    /// Draws into `frame`, which gets the size of `setup` and is cleared first. Fails when the frame cannot be
+    /// finished; its contents then have no meaning.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
