@@ -63,6 +63,6 @@ fn all_methods_at_all_distances() {
     }
     assert_eq!(folder.text("m.csv").lines().count(), 1 + rows.len());
     let svg = folder.text("m.svg");
-    let shown = ["noise floor", "textured", "64x64"].map(|text| svg.contains(text));
+    let shown = ["noise floor", "rms, linear light", "64x64"].map(|text| svg.contains(text));
     assert_eq!(shown, [true; 3]);
 }
