@@ -311,7 +311,7 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
         assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
-        let mut row = entries.as_mut_ptr().cast();
+        let mut row: *mut __m256i = entries.as_mut_ptr().cast();
         // SAFETY: as above. The eight entries of each of eight rows exist, as was checked.
         unsafe {
             let value = _mm256_set1_epi32(value as i32);
@@ -319,8 +319,10 @@ impl Isa for Avx2 {
             for i in 0..8 {
                 let mask = _mm256_set1_epi32((mask >> (8 * i)) as i32);
                 let mask = _mm256_cmpeq_epi32(_mm256_and_si256(mask, bits), bits);
-                _mm256_maskstore_epi32(row, mask, value);
-                row = row.wrapping_add(width);
+                // Masked stores are slow on AMD.
+                let before = _mm256_loadu_si256(row);
+                _mm256_storeu_si256(row, _mm256_blendv_epi8(before, value, mask));
+                row = row.cast::<u32>().wrapping_add(width).cast();
             }
         }
     }
