@@ -52,7 +52,7 @@ fn made(
 impl Scene {
     /// Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is
     /// voxelised with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: for `coverage="alpha"`.
-    /// `up`: the up axis, by default the format's. `verify`: check also a .vxg file of more than 256 MiB in full.
+    /// `up`: the up axis, by default the format's. `verify`: check also a .vxg file of more than 1 MiB in full.
     ///
     /// Raises `Error` for a file that is missing, damaged, unknown or too large.
     #[staticmethod]

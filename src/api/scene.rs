@@ -147,7 +147,7 @@ impl Scene {
         &self.warnings
     }
 
-    /// Whether the whole file was checked, and not only the header, as of a `.vxg` file of more than 256 MiB until
+    /// Whether the whole file was checked, and not only the header, as of a `.vxg` file of more than 1 MiB until
     /// [`Scene::verify`].
     #[must_use]
     pub fn is_verified(&self) -> bool {

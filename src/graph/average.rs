@@ -19,18 +19,22 @@ static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     })
 });
 
+/// By the upper half of a light's bits: the first value that is no darker.
+static NO_DARKER: LazyLock<[u8; 4096]> = LazyLock::new(|| {
+    std::array::from_fn(|upper| LINEAR.partition_point(|&light| light < (upper as u32) << 12) as u8)
+});
+
 fn encode(linear: u64) -> u8 {
+    let linear = linear.min(FULL as u64) as u32;
     let table: &[u32; 256] = &LINEAR;
-    let above = table.partition_point(|&entry| u64::from(entry) < linear);
-    if above == 0 {
-        return 0;
+    let mut above = NO_DARKER[(linear >> 12) as usize];
+    while table[usize::from(above)] < linear {
+        above += 1;
     }
-    if above == 256 {
-        return 255;
-    }
-    let to_above = u64::from(table[above]) - linear;
-    let to_below = linear - u64::from(table[above - 1]);
-    (above - usize::from(to_above > to_below)) as u8
+    let below = above.saturating_sub(1);
+    let to_above = table[usize::from(above)] - linear;
+    let to_below = linear - table[usize::from(below)];
+    above - u8::from(to_above > to_below)
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -40,17 +44,21 @@ pub(super) struct Sum {
     normal: [i64; 3],
 }
 
+/// A unit vector, each part towards zero for both signs; zeros without a normal.
+pub(super) fn whole_normal(normal: PackedNormal) -> [i32; 3] {
+    let unit = normal.decode().unwrap_or(DVec3::ZERO);
+    unit.to_array().map(|part| (part * UNIT_NORMAL) as i32)
+}
+
 impl Sum {
-    pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: PackedNormal) {
+    pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: [i32; 3]) {
         self.count += 1;
+        let linear: &[u32; 256] = &LINEAR;
         for (light, value) in self.light.iter_mut().zip(color) {
-            *light += u64::from(LINEAR[usize::from(value)]);
+            *light += u64::from(linear[usize::from(value)]);
         }
-        if let Some(unit) = normal.decode() {
-            for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                // Towards zero, for both signs.
-                *sum += (part * UNIT_NORMAL) as i64;
-            }
+        for (sum, part) in self.normal.iter_mut().zip(normal) {
+            *sum += i64::from(part);
         }
     }
 

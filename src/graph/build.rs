@@ -3,9 +3,7 @@
 //! Voxels are sorted by Morton key. A node of level `l` begins wherever the first `3 l` bits of the key change: one
 //! scan counts the nodes of each level, a second one writes them.
 
-use rayon::prelude::*;
-
-use super::average::Sum;
+use super::average::{Sum, whole_normal};
 use super::normals::Estimate;
 use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
@@ -103,7 +101,7 @@ impl Builder {
         let depth = longest.next_power_of_two().trailing_zeros();
 
         progress.begin("sort voxels", 0);
-        let records = self.records.sorted(self.min)?;
+        let records = self.records.sorted(self.min);
         progress.end();
 
         let mut tree = Tree::build(records, depth, progress)?;
@@ -119,7 +117,7 @@ impl Builder {
             .fill(&mut tree.normal[finest..], progress);
         }
         progress.begin("average colours and normals", 0);
-        tree.average(0, 0);
+        tree.average(0, 0, &mut vec![[0; 3]; 1 << 16]);
         progress.end();
 
         let voxels = tree.color.len() as u64 - u64::from(tree.level_start[depth as usize]);
@@ -224,20 +222,25 @@ impl Tree {
     }
 
     /// Writes the averages of a node and its descendants, and returns its sum, in which each finest voxel counts once.
-    fn average(&mut self, node: u32, level: u32) -> Sum {
+    /// `known`: normals by their packed form, zeros until they are made.
+    fn average(&mut self, node: u32, level: u32, known: &mut [[i32; 3]]) -> Sum {
         let mut sum = Sum::default();
         let at = node as usize;
-        if level == self.depth {
-            sum.add_voxel(self.color[at], self.normal[at]);
+        if self.depth == 0 {
             return sum;
         }
         let first = self.first[at];
         for child in first..first + self.mask[at].count_ones() {
-            if level + 1 == self.depth {
-                sum.add_voxel(self.color[child as usize], self.normal[child as usize]);
-            } else {
-                sum.add(&self.average(child, level + 1));
+            if level + 1 < self.depth {
+                sum.add(&self.average(child, level + 1, known));
+                continue;
             }
+            let packed = self.normal[child as usize];
+            let normal = &mut known[usize::from(packed.0)];
+            if *normal == [0; 3] {
+                *normal = whole_normal(packed);
+            }
+            sum.add_voxel(self.color[child as usize], *normal);
         }
         self.color[at] = sum.color();
         self.normal[at] = sum.normal();
@@ -255,20 +258,11 @@ pub(super) fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 
 }
 
 fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildError> {
-    let begun = records
-        .par_windows(2)
-        .fold(
-            || [0u64; morton::MAX_BITS as usize + 1],
-            |mut begun, pair| {
-                let level = first_new_level(Some(pair[0].key()), pair[1].key(), depth);
-                begun[level as usize] += 1;
-                begun
-            },
-        )
-        .reduce(
-            || [0u64; morton::MAX_BITS as usize + 1],
-            |a, b| std::array::from_fn(|level| a[level] + b[level]),
-        );
+    let mut begun = [0u64; morton::MAX_BITS as usize + 1];
+    for pair in records.windows(2) {
+        let level = first_new_level(Some(pair[0].key()), pair[1].key(), depth);
+        begun[level as usize] += 1;
+    }
     // The first voxel begins a node at every level.
     let mut nodes_at_level = 1u64;
     let mut total = 0u64;

@@ -29,6 +29,7 @@ pub use layout::NodeLayout;
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
 pub use mesh_box::MeshBox;
+pub(crate) use normal::KnownNormals;
 pub use opacity::{MOST_OPACITY, Opacity, sixteenths};
 pub use store::Store;
 pub use validate::Invalid;

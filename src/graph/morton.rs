@@ -3,14 +3,26 @@
 pub(super) const MAX_BITS: u32 = 21;
 pub(super) const MAX_SIDE: u64 = 1 << MAX_BITS;
 
+/// Bytes with two zeros after each bit.
+const SPREAD: [u32; 256] = {
+    let mut table = [0; 256];
+    let mut value = 0;
+    while value < 256 {
+        let mut bit = 0;
+        while bit < 8 {
+            table[value] |= (value as u32 >> bit & 1) << (3 * bit);
+            bit += 1;
+        }
+        value += 1;
+    }
+    table
+};
+
 /// Inserts two zeros after each of 21 bits.
+#[inline]
 fn spread(value: u32) -> u64 {
-    let mut bits = u64::from(value) & 0x1f_ffff;
-    bits = (bits | bits << 32) & 0x001f_0000_0000_ffff;
-    bits = (bits | bits << 16) & 0x001f_0000_ff00_00ff;
-    bits = (bits | bits << 8) & 0x100f_00f0_0f00_f00f;
-    bits = (bits | bits << 4) & 0x10c3_0c30_c30c_30c3;
-    (bits | bits << 2) & 0x1249_2492_4924_9249
+    let byte = |shift: u32| u64::from(SPREAD[(value >> shift & 0xff) as usize]);
+    byte(0) | byte(8) << 24 | (byte(16) & 0x1fff) << 48
 }
 
 /// The Morton key of coordinates below `2^21`: per level, from the root, an octant `x << 2 | y << 1 | z`.
@@ -33,9 +45,8 @@ pub(super) fn at(key: u64) -> [u32; 3] {
 
 /// An index along three axes, modulo `2^21`, in 63 bits.
 pub(super) fn pack(index: [i32; 3]) -> u64 {
-    index.into_iter().rev().fold(0, |packed, index| {
-        packed << MAX_BITS | u64::from(index as u32) & (MAX_SIDE - 1)
-    })
+    let [x, y, z] = index.map(|c| u64::from(c as u32) & (MAX_SIDE - 1));
+    x | y << MAX_BITS | z << (2 * MAX_BITS)
 }
 
 /// The Morton key of a packed index, counted from a corner at most `2^21 - 1` below it.

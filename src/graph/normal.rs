@@ -25,25 +25,30 @@ impl PackedNormal {
             return Self::NONE;
         }
         let unit = direction / length_l1;
-        let (mut u, mut v) = (unit.x, unit.y);
-        if unit.z < 0.0 {
-            (u, v) = fold(u, v);
-        }
+        // No branch: unpredictable.
+        let [own, folded] = [(unit.x, unit.y), fold(unit.x, unit.y)];
+        let (u, v) = [own, folded][usize::from(unit.z < 0.0)];
         let floor = |x: f64| f64::from((x * STEPS + STEPS) as i32) - STEPS;
         let low_u = floor(u).clamp(-STEPS, STEPS - 1.0);
         let low_v = floor(v).clamp(-STEPS, STEPS - 1.0);
-        let mut best = (f64::NEG_INFINITY, Self::NONE);
-        for (du, dv) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
-            let (u, v) = (low_u + du, low_v + dv);
-            let point = unfold(u, v);
-            let along = unit.dot(point);
-            let likeness = along * along.abs() / point.length_squared();
-            if likeness > best.0 {
-                let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
-                best = (likeness, Self(byte(u) << 8 | byte(v)));
-            }
-        }
-        best.1
+        // The four around it together, unfolded.
+        let us = [low_u, low_u, low_u + 1.0, low_u + 1.0];
+        let vs = [low_v, low_v + 1.0, low_v, low_v + 1.0];
+        let (u, v) = (
+            four(|i| us[i] * (1.0 / STEPS)),
+            four(|i| vs[i] * (1.0 / STEPS)),
+        );
+        let z = four(|i| 1.0 - u[i].abs() - v[i].abs());
+        let folded = |own: f64, other: f64| (1.0 - other.abs()).copysign(own);
+        let x = four(|i| if z[i] < 0.0 { folded(u[i], v[i]) } else { u[i] });
+        let y = four(|i| if z[i] < 0.0 { folded(v[i], u[i]) } else { v[i] });
+        let along = four(|i| unit.x * x[i] + unit.y * y[i] + unit.z * z[i]);
+        let length_squared = four(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+        let likeness = four(|i| along[i] * along[i].abs() / length_squared[i]);
+        let better = |a: usize, b: usize| if likeness[b] > likeness[a] { b } else { a };
+        let best = better(better(0, 1), better(2, 3));
+        let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
+        Self(byte(us[best]) << 8 | byte(vs[best]))
     }
 
     /// The unit vector, if there is a normal. Any 16 bits are accepted.
@@ -62,6 +67,27 @@ impl PackedNormal {
     }
 }
 
+/// Encodes directions. Clouds repeat theirs, so the last ones are kept.
+pub(crate) struct KnownNormals(Vec<(DVec3, PackedNormal)>);
+
+impl Default for KnownNormals {
+    fn default() -> Self {
+        Self(vec![(DVec3::ZERO, PackedNormal::NONE); 1 << 12])
+    }
+}
+
+impl KnownNormals {
+    pub(crate) fn encode(&mut self, direction: DVec3) -> PackedNormal {
+        let [x, y, z] = direction.to_array().map(f64::to_bits);
+        let mixed = (x ^ y.rotate_left(21) ^ z.rotate_left(42)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let known = &mut self.0[(mixed >> 52) as usize];
+        if known.0 != direction {
+            *known = (direction, PackedNormal::encode(direction));
+        }
+        known.1
+    }
+}
+
 /// Turns the lower half of the octahedron out, and back in.
 fn fold(u: f64, v: f64) -> (f64, f64) {
     let sign = |value: f64| if value < 0.0 { -1.0 } else { 1.0 };
@@ -75,6 +101,11 @@ fn unfold(u: f64, v: f64) -> DVec3 {
         (u, v) = fold(u, v);
     }
     DVec3::new(u, v, z)
+}
+
+#[inline(always)]
+fn four(of: impl Fn(usize) -> f64) -> [f64; 4] {
+    [of(0), of(1), of(2), of(3)]
 }
 
 #[cfg(test)]

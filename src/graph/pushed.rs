@@ -1,5 +1,4 @@
-//! Pushed voxels, until they are sorted. A growing `Vec` takes up to three times its contents, so they are kept in
-//! pieces, each freed after it is copied to one array at the end.
+//! Pushed voxels, until they are sorted.
 
 use rayon::prelude::*;
 
@@ -22,8 +21,8 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
     Ok(extent)
 }
 
-/// Voxels per piece, 40 MB.
-const PIECE: usize = 1 << 21;
+/// From this number on, a list grows by a quarter. Its pages are moved, not copied, where the system can.
+const MANY: usize = 1 << 20;
 
 const VOXELS: &str = "voxels that are sorted";
 
@@ -44,14 +43,15 @@ impl PushedVoxel {
         color: [u8; 3],
         normal: PackedNormal,
     ) -> Self {
-        let record = Self {
+        let mut record = Self {
             key_high: 0,
             key_low: 0,
             sequence,
             color,
             normal,
         };
-        record.with_key(morton::pack(index))
+        record.set_key(morton::pack(index));
+        record
     }
 
     pub(super) fn key(&self) -> u64 {
@@ -63,70 +63,48 @@ impl PushedVoxel {
         u128::from(self.key()) << 32 | u128::from(!self.sequence)
     }
 
-    fn with_key(self, key: u64) -> Self {
-        Self {
-            key_high: (key >> 32) as u32,
-            key_low: key as u32,
-            ..self
-        }
-    }
-
-    fn placed(&self, min: [i32; 3]) -> Self {
-        self.with_key(morton::key_from(self.key(), min))
+    fn set_key(&mut self, key: u64) {
+        self.key_high = (key >> 32) as u32;
+        self.key_low = key as u32;
     }
 }
 
-/// All voxels pushed, 20 bytes each, and room for at most one piece.
+/// All voxels pushed, 20 bytes each.
 #[derive(Debug, Default)]
-pub(super) struct PushedVoxels {
-    pieces: Vec<Vec<PushedVoxel>>,
-}
+pub(super) struct PushedVoxels(Vec<PushedVoxel>);
 
 impl PushedVoxels {
     pub(super) fn len(&self) -> usize {
-        self.pieces.iter().map(Vec::len).sum()
+        self.0.len()
     }
 
+    #[inline]
     pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
-        match self.pieces.last_mut() {
-            Some(last) if last.len() < PIECE => {
-                let more = last.len() + 1;
-                let refused = |_| budget::refused::<PushedVoxel>(VOXELS, more);
-                last.try_reserve(1).map_err(refused)?;
-                last.push(record);
-            }
-            None => self.pieces.push(vec![record]),
-            Some(_) => {
-                let mut piece = budget::room(VOXELS, PIECE)?;
-                piece.push(record);
-                self.pieces.push(piece);
-            }
+        if self.0.len() == self.0.capacity() {
+            self.grow()?;
         }
+        self.0.push(record);
         Ok(())
     }
 
-    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays.
-    pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
-        let mut sorted = self.in_one(min)?;
-        sorted.par_sort_unstable_by_key(PushedVoxel::order);
-        sorted.dedup_by_key(|record| record.key());
-        Ok(sorted)
+    #[cold]
+    fn grow(&mut self) -> Result<(), Shortage> {
+        let length = self.len();
+        let grown = match length < MANY {
+            true => self.0.try_reserve(1),
+            false => self.0.try_reserve_exact(length / 4),
+        };
+        grown.map_err(|_| budget::refused::<PushedVoxel>(VOXELS, length + 1))
     }
 
-    /// All voxels in one array, with their Morton keys.
-    fn in_one(mut self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
-        if self.pieces.len() == 1
-            && let Some(mut only) = self.pieces.pop()
-        {
-            only.par_iter_mut()
-                .for_each(|record| *record = record.placed(min));
-            return Ok(only);
-        }
-        let mut all = budget::room(VOXELS, self.len())?;
-        for piece in self.pieces {
-            all.par_extend(piece.par_iter().map(|record| record.placed(min)));
-        }
-        Ok(all)
+    /// Sorts by Morton key from the lowest corner. Of voxels at one index, the last pushed stays.
+    pub(super) fn sorted(self, min: [i32; 3]) -> Vec<PushedVoxel> {
+        let mut sorted = self.0;
+        let place = |record: &mut PushedVoxel| record.set_key(morton::key_from(record.key(), min));
+        sorted.par_iter_mut().for_each(place);
+        sorted.par_sort_unstable_by_key(PushedVoxel::order);
+        sorted.dedup_by_key(|record| record.key());
+        sorted
     }
 }
 
@@ -135,9 +113,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_hold_little_more_than_their_voxels_and_sort() {
+    fn they_take_little_more_than_their_contents_and_sort() {
         assert_eq!(size_of::<PushedVoxel>(), 20);
-        let count = 2 * PIECE + 1000;
+        let count = 2 * MANY + 1000;
         let mut grown = PushedVoxels::default();
         for i in 0..count as u32 {
             // The last of each thousand lies where the first does, in a row that runs through all axes.
@@ -145,12 +123,11 @@ mod tests {
             let index = [at % 100, at / 100 % 200, at / 20_000].map(|c| c as i32 - 50);
             let pushed = PushedVoxel::new(index, i, [i as u8; 3], PackedNormal::NONE);
             grown.push(pushed).unwrap();
-            let room: usize = grown.pieces.iter().map(Vec::capacity).sum();
-            let first = grown.len().next_power_of_two().max(4);
-            assert!(room <= first.min(grown.len() + PIECE).max(4));
+            let length = grown.len();
+            assert!(grown.0.capacity() <= (length + MANY.min(length).max(length / 4)).max(4));
         }
-        assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
-        let grown = grown.sorted([-50; 3]).unwrap();
+        assert_eq!(grown.len(), count);
+        let grown = grown.sorted([-50; 3]);
         assert!(grown.is_sorted_by_key(PushedVoxel::key));
         // The last pushed stays.
         assert_eq!(

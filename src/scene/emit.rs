@@ -56,6 +56,9 @@ impl<'a> Emitter<'a> {
                 );
             };
             narrow[axis] = i;
+            if (self.low[axis]..=self.high[axis]).contains(&i) {
+                continue;
+            }
             let low = self.low[axis].min(i);
             let high = self.high[axis].max(i);
             let extent = i64::from(high) - i64::from(low) + 1;

@@ -30,27 +30,46 @@ impl Scalar {
         !matches!(self, Self::F32 | Self::F64)
     }
 
-    /// The number at the beginning of some bytes; missing bytes count as 0.
+    /// The numbers at the beginnings of some bytes; missing bytes count as 0.
     #[inline]
-    pub(super) fn decode(self, big_endian: bool, bytes: &[u8]) -> Number {
-        let size = self.size();
-        let mut little = [0; 8];
-        for (to, from) in little[..size].iter_mut().zip(bytes) {
-            *to = *from;
+    pub(super) fn decode<'a>(
+        self,
+        big_endian: bool,
+        numbers: impl Iterator<Item = (&'a [u8], &'a mut Number)>,
+    ) {
+        macro_rules! each {
+            ($type:ty, $number:expr) => {
+                for (bytes, number) in numbers {
+                    let bytes = bytes.first_chunk().copied().unwrap_or_default();
+                    let value = match big_endian {
+                        true => <$type>::from_be_bytes(bytes),
+                        false => <$type>::from_le_bytes(bytes),
+                    };
+                    *number = $number(value);
+                }
+            };
         }
-        if big_endian {
-            little[..size].reverse();
-        }
-        let bits = u64::from_le_bytes(little);
         match self {
-            Self::I8 => Number::Whole((bits as i8).into()),
-            Self::I16 => Number::Whole((bits as i16).into()),
-            Self::I32 => Number::Whole((bits as i32).into()),
-            Self::U8 | Self::U16 | Self::U32 | Self::I64 => Number::Whole(bits as i64),
-            Self::U64 => i64::try_from(bits).map_or(Number::Real(bits as f64), Number::Whole),
-            Self::F32 => Number::Real(f32::from_bits(bits as u32).into()),
-            Self::F64 => Number::Real(f64::from_bits(bits)),
+            Self::I8 => each!(i8, |n: i8| Number::Whole(n.into())),
+            Self::U8 => each!(u8, |n: u8| Number::Whole(n.into())),
+            Self::I16 => each!(i16, |n: i16| Number::Whole(n.into())),
+            Self::U16 => each!(u16, |n: u16| Number::Whole(n.into())),
+            Self::I32 => each!(i32, |n: i32| Number::Whole(n.into())),
+            Self::U32 => each!(u32, |n: u32| Number::Whole(n.into())),
+            Self::I64 => each!(i64, Number::Whole),
+            Self::U64 => {
+                each!(u64, |n: u64| i64::try_from(n)
+                    .map_or(Number::Real(n as f64), Number::Whole))
+            }
+            Self::F32 => each!(f32, |x: f32| Number::Real(x.into())),
+            Self::F64 => each!(f64, Number::Real),
         }
+    }
+
+    pub(super) fn decode_one(self, big_endian: bool, bytes: &[u8]) -> Number {
+        let mut number = Number::Whole(0);
+        self.decode(big_endian, std::iter::once((bytes, &mut number)));
+        number
     }
 }
 

@@ -11,7 +11,7 @@ use crate::budget;
 use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 
 /// The default limit. Of a larger file, only the pages that a picture needs are read.
-const VERIFY_BYTES: u64 = 256 << 20;
+const VERIFY_BYTES: u64 = 1 << 20;
 
 /// Least bytes per voxel: 20 while voxels are collected and sorted, 5 in the graph (`spec/graph.md`).
 const LEAST_BYTES: u64 = 25;

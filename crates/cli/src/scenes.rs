@@ -66,8 +66,7 @@ pub(super) fn open_source(
     let scene = ready(opened, name, args.mesh_up, started);
     if !scene.is_verified {
         console.note(format!(
-            "{name}: not verified: a file of this size is checked by `shiftvox info` and \
-             `convert`, which read all of it"
+            "{name}: not verified, so that only what is seen is read; `shiftvox info` checks it all"
         ));
     }
     for warning in &scene.warnings {

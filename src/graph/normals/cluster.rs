@@ -50,14 +50,17 @@ fn to_rows(word: u64) -> u64 {
 pub(in crate::graph) fn put(rows: &mut Surroundings, neighbour: usize, cluster_rows: u64) {
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
     let (to_x, from_x, count_x) = SPAN[neighbour / 9];
-    let (to_y, from_y, count_y) = SPAN[neighbour / 3 % 3];
+    let (to_y, from_y, _) = SPAN[neighbour / 3 % 3];
     let (to_z, from_z, count_z) = SPAN[neighbour % 3];
-    let keep = (1u8 << count_x) - 1;
+    let keep = ((1u64 << count_x) - 1) * 0x0101_0101;
     for k in 0..count_z {
-        for j in 0..count_y {
-            let row = cluster_rows >> ((from_z + k) * 16 + (from_y + j) * 4 + from_x);
-            rows[to_z + k][to_y + j] |= (row as u8 & keep) << to_x;
-        }
+        // A plane's four rows, each in a byte. Shifts drop those out of the surroundings.
+        let rows_of_two = cluster_rows >> (16 * (from_z + k)) & 0xffff;
+        let rows_of_two = (rows_of_two | rows_of_two << 8) & 0x00ff_00ff;
+        let four = (rows_of_two | rows_of_two << 4) & 0x0f0f_0f0f;
+        let placed = (four >> from_x & keep) << to_x >> (8 * from_y) << (8 * to_y);
+        let plane = &mut rows[to_z + k];
+        *plane = (u64::from_le_bytes(*plane) | placed).to_le_bytes();
     }
 }
 

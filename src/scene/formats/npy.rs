@@ -105,7 +105,7 @@ fn pass_on(
         let at = layout.slot(rows, row, column) * layout.width();
         layout
             .scalar
-            .decode(layout.big_endian, &block[at as usize..])
+            .decode_one(layout.big_endian, &block[at as usize..])
     };
     let offset =
         |column| layout.data + layout.slot(layout.rows, first + row, column) * layout.width();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::graph::PackedNormal;
+use crate::graph::KnownNormals;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
@@ -26,6 +26,7 @@ pub(super) fn read(
     for element in before.iter().take_while(|e| e.name != b"vertex") {
         file.skip(element)?;
     }
+    let mut known = KnownNormals::default();
     file.rows(&vertices, None, |row| {
         let part = |names: [&str; 3], k: usize| {
             format!("vertex {}, property {}", row.number, names[k])
@@ -50,7 +51,7 @@ pub(super) fn read(
         }
         let normal = normals.map(|at| DVec3::from_array(at.map(|k| Number::real(row.values[k]))));
         // A normal of length zero says that there is none.
-        let normal = normal.map(PackedNormal::encode).filter(|normal| !normal.is_none());
+        let normal = normal.map(|normal| known.encode(normal)).filter(|normal| !normal.is_none());
         emitter.voxel(index, color, normal, || (format!("vertex {}", row.number), row.offset))
     })?;
     Ok(SceneInfo {

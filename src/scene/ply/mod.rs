@@ -14,6 +14,9 @@ use source::Source;
 
 const MAX_LINE: usize = 1 << 20;
 
+/// Numbers decoded together, if a row has no more.
+const MOST_NUMBERS: usize = 2048;
+
 const CUT: &str = "the file is cut short; export or copy it again";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,8 +85,11 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         mut visit: impl FnMut(Row<'_>) -> Result<(), Problem>,
     ) -> Result<(), Problem> {
         let (mut values, mut kept) = (Vec::new(), Vec::new());
-        let has_lists = element.properties.iter().any(|p| p.list.is_some());
-        let stride = element.properties.iter().map(|p| p.scalar.size()).sum();
+        if let Encoding::Binary { big_endian } = self.header.encoding
+            && element.properties.iter().all(|p| p.list.is_none())
+        {
+            return self.plain_rows(element, big_endian, visit);
+        }
         for number in 0..element.count {
             let mut offset = self.source.offset;
             values.clear();
@@ -100,16 +106,6 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                         true
                     }
                 },
-                Encoding::Binary { big_endian } if !has_lists => {
-                    let decode = |mut bytes: &[u8]| {
-                        for property in &element.properties {
-                            values.push(property.scalar.decode(big_endian, bytes));
-                            bytes = bytes.get(property.scalar.size()..).unwrap_or(&[]);
-                        }
-                    };
-                    let read = self.source.bytes(stride, &mut self.scratch, decode)?;
-                    read.is_some()
-                }
                 Encoding::Binary { big_endian } => {
                     let mut is_whole = true;
                     for (at, property) in element.properties.iter().enumerate() {
@@ -133,6 +129,53 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                 values: &values,
                 list: &kept,
             })?;
+        }
+        Ok(())
+    }
+
+    /// Rows without lists: those in the reader's buffer together, property by property.
+    fn plain_rows(
+        &mut self,
+        element: &Element,
+        big_endian: bool,
+        mut visit: impl FnMut(Row<'_>) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        let width = element.properties.len();
+        let stride = element.properties.iter().map(|p| p.scalar.size()).sum();
+        let most = (MOST_NUMBERS / width.max(1)).max(1);
+        let mut values = vec![Number::Whole(0); most * width];
+        let mut number = 0;
+        while number < element.count {
+            let left = usize::try_from(element.count - number).unwrap_or(usize::MAX);
+            let buffered = self.source.buffered()?.checked_div(stride).unwrap_or(1);
+            let rows = buffered.clamp(1, left.min(most));
+            let offset = self.source.offset;
+            let decode = |bytes: &[u8]| {
+                let mut begin = 0;
+                for (at, property) in element.properties.iter().enumerate() {
+                    let rows = bytes
+                        .chunks_exact(stride)
+                        .zip(values.chunks_exact_mut(width));
+                    let numbers = rows.map(|(row, values)| (&row[begin..], &mut values[at]));
+                    property.scalar.decode(big_endian, numbers);
+                    begin += property.scalar.size();
+                }
+            };
+            let read = self
+                .source
+                .bytes(rows * stride, &mut self.scratch, decode)?;
+            if read.is_none() {
+                return Err(cut(element, number, self.source.offset).into());
+            }
+            for row in 0..rows {
+                visit(Row {
+                    number: number + row as u64,
+                    offset: offset + (row * stride) as u64,
+                    values: &values[row * width..][..width],
+                    list: &[],
+                })?;
+            }
+            number += rows as u64;
         }
         Ok(())
     }

@@ -86,9 +86,14 @@ impl<'a, R: BufRead> Source<'a, R> {
         Ok(Some(decoded))
     }
 
+    /// Bytes that can be read without another call of the system.
+    pub(super) fn buffered(&mut self) -> Result<usize, Problem> {
+        Ok(self.reader.fill_buf().map_err(Problem::Read)?.len())
+    }
+
     pub(super) fn number(&mut self, scalar: Scalar, big: bool) -> Result<Option<Number>, Problem> {
         self.bytes(scalar.size(), &mut Vec::new(), |bytes| {
-            scalar.decode(big, bytes)
+            scalar.decode_one(big, bytes)
         })
     }
 }
