@@ -44,21 +44,18 @@ pub(super) struct Sum {
     normal: [i64; 3],
 }
 
-/// A unit vector, each part towards zero for both signs; zeros without a normal.
-pub(super) fn whole_normal(normal: PackedNormal) -> [i32; 3] {
-    let unit = normal.decode().unwrap_or(DVec3::ZERO);
-    unit.to_array().map(|part| (part * UNIT_NORMAL) as i32)
-}
-
 impl Sum {
-    pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: [i32; 3]) {
+    pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: PackedNormal) {
         self.count += 1;
         let linear: &[u32; 256] = &LINEAR;
         for (light, value) in self.light.iter_mut().zip(color) {
             *light += u64::from(linear[usize::from(value)]);
         }
-        for (sum, part) in self.normal.iter_mut().zip(normal) {
-            *sum += i64::from(part);
+        if let Some(unit) = normal.decode() {
+            for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
+                // Towards zero, for both signs.
+                *sum += (part * UNIT_NORMAL) as i64;
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //! Voxels are sorted by Morton key. A node of level `l` begins wherever the first `3 l` bits of the key change: one
 //! scan counts the nodes of each level, a second one writes them.
 
-use super::average::{Sum, whole_normal};
+use super::average::Sum;
 use super::normals::Estimate;
 use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
@@ -117,7 +117,7 @@ impl Builder {
             .fill(&mut tree.normal[finest..], progress);
         }
         progress.begin("average colours and normals", 0);
-        tree.average(0, 0, &mut vec![[0; 3]; 1 << 16]);
+        tree.average(0, 0);
         progress.end();
 
         let voxels = tree.color.len() as u64 - u64::from(tree.level_start[depth as usize]);
@@ -222,25 +222,20 @@ impl Tree {
     }
 
     /// Writes the averages of a node and its descendants, and returns its sum, in which each finest voxel counts once.
-    /// `known`: normals by their packed form, zeros until they are made.
-    fn average(&mut self, node: u32, level: u32, known: &mut [[i32; 3]]) -> Sum {
+    fn average(&mut self, node: u32, level: u32) -> Sum {
         let mut sum = Sum::default();
         let at = node as usize;
-        if self.depth == 0 {
+        if level == self.depth {
+            sum.add_voxel(self.color[at], self.normal[at]);
             return sum;
         }
         let first = self.first[at];
         for child in first..first + self.mask[at].count_ones() {
-            if level + 1 < self.depth {
-                sum.add(&self.average(child, level + 1, known));
-                continue;
+            if level + 1 == self.depth {
+                sum.add_voxel(self.color[child as usize], self.normal[child as usize]);
+            } else {
+                sum.add(&self.average(child, level + 1));
             }
-            let packed = self.normal[child as usize];
-            let normal = &mut known[usize::from(packed.0)];
-            if *normal == [0; 3] {
-                *normal = whole_normal(packed);
-            }
-            sum.add_voxel(self.color[child as usize], *normal);
         }
         self.color[at] = sum.color();
         self.normal[at] = sum.normal();

@@ -11,7 +11,7 @@ use super::record;
 use super::runs::{Merge, Sorter};
 use super::scratch::{Scratch, Spool};
 use super::tree::{ClusterNodes, FinishedNode, TreeWriter};
-use crate::graph::average::{Sum, whole_normal};
+use crate::graph::average::Sum;
 use crate::graph::normals::fill_cluster;
 use crate::graph::{Normals, PackedNormal, Progress, morton};
 
@@ -251,7 +251,7 @@ fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> ClusterNod
         }
         let mut sum = Sum::default();
         for (&color, &normal) in voxels.by_ref().take(mask.count_ones() as usize) {
-            sum.add_voxel(color, whole_normal(normal));
+            sum.add_voxel(color, normal);
         }
         nodes.mask |= 1 << octant;
         nodes.octants.push(FinishedNode::new(mask, &sum));
