@@ -5,6 +5,7 @@
 //! `SHIFTVOX_CAMERAS` sets the number of absurd cameras.
 
 use std::fmt::Debug;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hwmodel::cycles::{
     Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
@@ -146,6 +147,20 @@ fn empty(setup: &FrameSetup) -> Frame {
     Frame::new(setup.width, setup.height, false)
 }
 
+/// Pictures under `t = inf` that depended on the order (`SPEC.md`, 5).
+static DEPENDENT: AtomicUsize = AtomicUsize::new(0);
+
+/// [`same`], or counted where the order may matter.
+fn is_same(setup: &FrameSetup, frame: &Frame, right: &Frame, what: &dyn Debug) -> bool {
+    let is_dependent = setup.options.tolerance_px.is_infinite() && frame != right;
+    if is_dependent {
+        DEPENDENT.fetch_add(1, Ordering::Relaxed);
+    } else {
+        same(frame, right, what);
+    }
+    !is_dependent
+}
+
 fn same(frame: &Frame, right: &Frame, what: &dyn Debug) {
     let mut voxels = frame.voxel.iter().zip(&right.voxel).enumerate();
     let first = voxels.find(|(_, (is, should_be))| is != should_be);
@@ -250,8 +265,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         );
     }
     let records = stat(&stats, "records");
-    // Under t = inf the picture may depend on the order, seldom in usual views (`SPEC.md`, 5).
-    if records > MOST_SIMULATED || is_absurd && options.tolerance_px.is_infinite() {
+    if records > MOST_SIMULATED {
         return Some(right);
     }
     let all = MachineOptions {
@@ -261,8 +275,8 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
     if !coverage.blends()
         && let Some((frame, more)) = again(all, &setup, 20 * MOST_SIMULATED)
     {
-        same(&frame, &right, &"without rejection");
-        assert!(records <= stat(&more, "records"));
+        let is_same = is_same(&setup, &frame, &right, &"without rejection");
+        assert!(!is_same || records <= stat(&more, "records"));
     }
     agree_in_organisations(&view, &setup, dice, &right);
     Some(right)
@@ -295,15 +309,14 @@ fn agree_in_organisations(
         });
         let mut frame = empty(&setup);
         let stats = machine.render(view, &setup, &mut frame);
-        same(&frame, right, organisation);
-        (
-            setup,
-            stats.unwrap_or_else(|trap| panic!("{trap:?} in {organisation:?}")),
-        )
+        let stats = stats.unwrap_or_else(|trap| panic!("{trap:?} in {organisation:?}"));
+        is_same(&setup, &frame, right, organisation).then_some((setup, stats))
     };
     serial(&mut any_organisation(dice));
     let mut hardware = any_hardware(dice);
-    let (setup, mut stats) = serial(&mut hardware.organisation);
+    let Some((setup, mut stats)) = serial(&mut hardware.organisation) else {
+        return;
+    };
     let mut frame = empty(&setup);
     let simulated = Machine::default()
         .simulate(view, &setup, &mut frame, &hardware, &mut NoObserver)
@@ -320,7 +333,9 @@ fn agree_in_organisations(
     match hardware.independence {
         // Records whose image nodes meet have their turns in the serial order.
         Independence::None | Independence::Image => {
-            same(&frame, right, &hardware);
+            if !is_same(&setup, &frame, right, &hardware) {
+                return;
+            }
             stats.retain(|(name, _)| *name != "deepest_stack");
             assert_eq!(counts, stats, "{hardware:?}");
         }
@@ -478,7 +493,12 @@ fn absurd_cameras_are_drawn_alike() {
     });
     let sums = jobs.reduce(Default::default, add);
     let [frames, samples, drawn] = sums;
-    println!("{cameras} cameras: {frames} frames compared, {samples} samples, {drawn} drawn");
+    let dependent = DEPENDENT.load(Ordering::Relaxed);
+    println!(
+        "{cameras} cameras: {frames} frames compared, {samples} samples, {drawn} drawn; \
+         {dependent} pictures under t = inf depended on the order"
+    );
+    assert!(dependent <= 2 + frames / 1000, "{dependent}");
     assert!(
         frames > cameras as usize / 2 && drawn > samples / 20,
         "{sums:?}"
