@@ -102,8 +102,10 @@ pub(super) fn run_bands<I: Isa>(
 
 fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
     let mut brick_blocks = BrickBlocks {
-        exist: [0; 64],
+        exist: [0; 65],
         parts: [Parts::default(); 64],
+        ready: 0,
+        octant: 0,
     };
     buffers.pixels.clear();
     let fill = Fill::clear(&buffers.grid, buffers.bounds, buffers.fill);

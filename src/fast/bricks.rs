@@ -12,7 +12,7 @@ use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
 use super::strips::STRIPS;
-use super::window::Window;
+use super::window::{Window, bits};
 
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
@@ -35,6 +35,7 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
         return;
     }
     if DEEP {
+        band.brick_blocks.ready = 0;
         brick.parts.prefetch_below(band.isa, band.graph);
     } else {
         brick.parts.prefetch(band.isa, band.graph);
@@ -65,34 +66,45 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
     if DEEP && any != 0 {
-        brick.parts.prefetch_masks(isa, band.graph);
+        prepare(band, brick, any, octant);
     }
-    let mut ready = 0u64;
     let (mut drawn, mut left) = (0u64, any);
     if !DEEP && !band.blends {
         (drawn, left) = meet_first(band, &lines, any, pair);
     }
-    let mut count = drawn.count_ones() as usize;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
-        let line = lines.line(isa, SAMPLES[bit]);
+        let sample = lines.line(isa, &SAMPLES[bit]);
+        let cells = lines.block_cells(isa, &sample);
         let mut wanted = band.candidates.0[bit];
         'sample: while wanted != 0 {
-            let number = wanted.trailing_zeros() as usize & 63;
-            wanted &= wanted - 1;
-            let (line, mut parts) = if DEEP {
-                if ready >> number & 1 == 0 {
-                    ready |= 1 << number;
-                    prepare(band, brick, number, octant);
+            let (number, line, mut parts);
+            if DEEP {
+                // Two blocks at once, without branches: which has parts is unpredictable.
+                let rest = wanted & (wanted - 1);
+                let two = [wanted, rest].map(|blocks| blocks.trailing_zeros() as usize);
+                let mut found = [0; 2];
+                for (found, block) in found.iter_mut().zip(two) {
+                    let [x, y, z] = cells.about(isa, &OFFSETS[block]);
+                    let parts = tables[0][x] & tables[1][y] & tables[2][z];
+                    *found = parts & band.brick_blocks.exist[block];
                 }
-                let line = line.about(isa, &OFFSETS[number]);
-                let [x, y, z] = lines.cells(isa, &line);
-                let parts = tables[0][x] & tables[1][y] & tables[2][z];
-                (line, parts & band.brick_blocks.exist[number])
+                let [one, other] = found;
+                let is_first = one != 0;
+                wanted = if is_first {
+                    rest
+                } else {
+                    rest & rest.wrapping_sub(1)
+                };
+                parts = if is_first { one } else { other };
+                number = if is_first { two[0] } else { two[1] } & 63;
+                line = sample.about(isa, &OFFSETS[number]);
             } else {
-                (line, 1 << number)
-            };
+                number = wanted.trailing_zeros() as usize & 63;
+                wanted &= wanted - 1;
+                (line, parts) = (sample, 1 << number);
+            }
             while parts != 0 {
                 let part = parts.trailing_zeros() as usize & 63;
                 parts &= parts - 1;
@@ -101,15 +113,16 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     continue;
                 }
                 let hit = Hit {
-                    bit: bit as u8,
                     block: number as u8,
                     part: (part as u32 ^ pair) as u8,
                 };
-                if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(band, brick, square, hit, pair) {
+                if meeting == Meeting::Doubt
+                    && !is_hit::<I, DEEP>(band, brick, square, bit, hit, pair)
+                {
                     continue;
                 }
                 if band.blends {
-                    let (is_full, levels) = blend::<I, DEEP>(band, brick, square, hit, pair);
+                    let (is_full, levels) = blend::<I, DEEP>(band, brick, square, bit, hit, pair);
                     if !is_full {
                         let same = match levels {
                             0 => u64::MAX,
@@ -124,19 +137,20 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     }
                 }
                 drawn |= 1 << bit;
-                band.hits[count & 63] = hit;
+                band.hits[bit] = hit;
                 if DEEP {
                     let node = hit.part::<I, DEEP>(band, brick).node;
-                    isa.prefetch(band.pixels.color, node as usize);
-                    band.nodes[count & 63] = node;
+                    if !band.pixels.color.is_empty() {
+                        isa.prefetch(band.pixels.color, node as usize);
+                    }
+                    band.nodes[bit] = node;
                 }
-                count += 1;
                 break 'sample;
             }
         }
     }
     if !band.blends {
-        show_hits::<I, DEEP>(band, brick, square, count, pair);
+        show_hits::<I, DEEP>(band, brick, square, drawn, pair);
     }
     band.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
@@ -148,21 +162,18 @@ fn draw_samples<I: Isa, const DEEP: bool>(
 fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
     let isa = band.isa;
     let (mut drawn, mut others) = (0u64, 0u64);
-    let (mut count, mut left) = (0, any);
+    let mut left = any;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
-        let line = lines.line(isa, SAMPLES[bit]);
+        let line = lines.line(isa, &SAMPLES[bit]);
         let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-        // Overwritten by the next hit if it is none.
-        band.hits[count & 63] = Hit {
-            bit: bit as u8,
+        band.hits[bit] = Hit {
             block: 0,
             part: (part as u32 ^ pair) as u8,
         };
-        count += usize::from(is_met);
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
@@ -204,18 +215,16 @@ fn show_hits<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
-    count: usize,
+    drawn: u64,
     pair: u32,
 ) {
     let first = band.pixels.at(square.left, square.top);
-    let count = count.min(64);
-    for i in 0..count {
-        let hit = band.hits[i];
-        let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
+    for bit in bits(drawn) {
+        let at = first + band.sample_offsets[bit] as usize;
         let node = if DEEP {
-            band.nodes[i]
+            band.nodes[bit]
         } else {
-            hit.part::<I, DEEP>(band, brick).node
+            band.hits[bit].part::<I, DEEP>(band, brick).node
         };
         let word = band.pixels.word(node);
         if let Some(shown) = band.pixels.shown.get_mut(at) {
@@ -223,10 +232,10 @@ fn show_hits<I: Isa, const DEEP: bool>(
         }
     }
     if band.pixels.wants_voxels() {
-        for i in 0..count {
-            let hit = band.hits[i];
-            let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
-            band.pixels.voxel[at] = hit.path::<I, DEEP>(band, brick, pair).1.voxel(band, brick);
+        for bit in bits(drawn) {
+            let at = first + band.sample_offsets[bit] as usize;
+            let path = band.hits[bit].path::<I, DEEP>(band, brick, pair).1;
+            band.pixels.voxel[at] = path.voxel(band, brick);
         }
     }
 }
@@ -237,12 +246,13 @@ fn blend<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
+    bit: usize,
     hit: Hit,
     pair: u32,
 ) -> (bool, u32) {
     let (node, path) = hit.path::<I, DEEP>(band, brick, pair);
     let voxel = path.voxel(band, brick);
-    let full = band.show([square.left, square.top], 1 << hit.bit, node, voxel);
+    let full = band.show([square.left, square.top], 1 << bit, node, voxel);
     (full != 0, path.levels)
 }
 
@@ -251,22 +261,42 @@ fn is_hit<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
+    bit: usize,
     hit: Hit,
     pair: u32,
 ) -> bool {
     let (_, path) = hit.path::<I, DEEP>(band, brick, pair);
-    is_covered(band, brick, square, usize::from(hit.bit), &path)
+    is_covered(band, brick, square, bit, &path)
 }
 
+/// Reads the blocks that the lines of some samples may meet.
 #[inline(always)]
-fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
-    let block = brick
-        .parts
-        .part(band.graph, number as u32 ^ (u32::from(octant) * 9));
-    let parts = &mut band.brick_blocks.parts[number & 63];
-    parts.read(band.isa, band.graph, block.node, false, 0);
-    parts.prefetch(band.isa, band.graph);
-    band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
+fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
+    let blocks = &mut *band.brick_blocks;
+    if blocks.ready == 0 {
+        brick.parts.prefetch_masks(band.isa, band.graph);
+    }
+    if blocks.octant != octant {
+        (blocks.octant, blocks.ready) = (octant, 0);
+    }
+    let (mut wanted, mut left) = (0u64, samples);
+    while left != 0 {
+        wanted |= band.candidates.0[left.trailing_zeros() as usize & 63];
+        left &= left - 1;
+    }
+    wanted &= !blocks.ready;
+    blocks.ready |= wanted;
+    while wanted != 0 {
+        let number = wanted.trailing_zeros() & 63;
+        wanted &= wanted - 1;
+        let block = brick
+            .parts
+            .part(band.graph, number ^ (u32::from(octant) * 9));
+        let parts = &mut blocks.parts[number as usize];
+        parts.read(band.isa, band.graph, block.node, false, 0);
+        parts.prefetch(band.isa, band.graph);
+        blocks.exist[number as usize] = turned_parts(band.isa, parts.exist, octant);
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
