@@ -24,8 +24,6 @@ pub(super) struct Band<'b, I> {
     pub(super) candidates: Candidates,
     /// By sample.
     pub(super) hits: [Hit; 64],
-    /// The nodes that they show. Only for bricks of four levels without blending.
-    pub(super) nodes: [u32; 64],
     pub(super) brick_blocks: &'b mut BrickBlocks,
 }
 
@@ -36,6 +34,8 @@ pub(super) struct BrickBlocks {
     pub(super) parts: [Parts; 64],
     /// Those that were read, for lines of an octant.
     pub(super) ready: u64,
+    /// By sample, parts of the block of its hit that its line may meet instead.
+    pub(super) left: [u64; 64],
     pub(super) octant: u8,
 }
 

@@ -105,6 +105,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         exist: [0; 65],
         parts: [Parts::default(); 64],
         ready: 0,
+        left: [0; 64],
         octant: 0,
     };
     buffers.pixels.clear();
@@ -122,7 +123,6 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         counters: Counters::default(),
         candidates: Candidates([0; 64]),
         hits: [Hit::default(); 64],
-        nodes: [0; 64],
         brick_blocks: &mut brick_blocks,
     };
     isa.vectorize(

@@ -4,14 +4,14 @@
 //! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. A block's
 //! parts are read when the first line needs them.
 
-use super::band::{Band, Brick, Hit, Record, voxel_at};
+use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
-use super::lines::{Lines, Meeting, OFFSETS};
+use super::lines::{BlockCells, Lines, Meeting, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::strips::STRIPS;
+use super::strips::{Row, STRIPS};
 use super::window::{Window, bits};
 
 #[inline(always)]
@@ -69,42 +69,25 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         prepare(band, brick, any, octant);
     }
     let (mut drawn, mut left) = (0u64, any);
-    if !DEEP && !band.blends {
-        (drawn, left) = meet_first(band, &lines, any, pair);
+    if !band.blends {
+        (drawn, left) = meet_first::<I, DEEP>(band, &lines, tables, any, pair);
     }
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
         let sample = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.block_cells(isa, &sample);
-        let mut wanted = band.candidates.0[bit];
-        'sample: while wanted != 0 {
-            let (number, line, mut parts);
-            if DEEP {
-                // Two blocks at once, without branches: which has parts is unpredictable.
-                let rest = wanted & (wanted - 1);
-                let two = [wanted, rest].map(|blocks| blocks.trailing_zeros() as usize);
-                let mut found = [0; 2];
-                for (found, block) in found.iter_mut().zip(two) {
-                    let [x, y, z] = cells.about(isa, &OFFSETS[block]);
-                    let parts = tables[0][x] & tables[1][y] & tables[2][z];
-                    *found = parts & band.brick_blocks.exist[block];
-                }
-                let [one, other] = found;
-                let is_first = one != 0;
-                wanted = if is_first {
-                    rest
-                } else {
-                    rest & rest.wrapping_sub(1)
-                };
-                parts = if is_first { one } else { other };
-                number = if is_first { two[0] } else { two[1] } & 63;
-                line = sample.about(isa, &OFFSETS[number]);
-            } else {
-                number = wanted.trailing_zeros() as usize & 63;
-                wanted &= wanted - 1;
-                (line, parts) = (sample, 1 << number);
+        let (mut line, mut parts) = (sample, band.candidates.0[bit]);
+        let (mut block, mut blocks) = (0, 0);
+        if DEEP {
+            (blocks, parts) = (parts, 0);
+            if !band.blends {
+                block = usize::from(band.hits[bit].block & 63);
+                parts = band.brick_blocks.left[bit];
+                line = sample.about(isa, &OFFSETS[block]);
             }
+        }
+        'sample: loop {
             while parts != 0 {
                 let part = parts.trailing_zeros() as usize & 63;
                 parts &= parts - 1;
@@ -113,7 +96,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     continue;
                 }
                 let hit = Hit {
-                    block: number as u8,
+                    block: block as u8,
                     part: (part as u32 ^ pair) as u8,
                 };
                 if meeting == Meeting::Doubt
@@ -130,23 +113,18 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                             _ => 0,
                         };
                         parts &= !same;
-                        if !DEEP {
-                            wanted &= !same;
-                        }
                         continue;
                     }
                 }
                 drawn |= 1 << bit;
                 band.hits[bit] = hit;
-                if DEEP {
-                    let node = hit.part::<I, DEEP>(band, brick).node;
-                    if !band.pixels.color.is_empty() {
-                        isa.prefetch(band.pixels.color, node as usize);
-                    }
-                    band.nodes[bit] = node;
-                }
                 break 'sample;
             }
+            if blocks == 0 {
+                break;
+            }
+            (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+            line = sample.about(isa, &OFFSETS[block]);
         }
     }
     if !band.blends {
@@ -159,27 +137,70 @@ fn draw_samples<I: Isa, const DEEP: bool>(
 /// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
 /// branches, because the outcome is unpredictable.
 #[inline(always)]
-fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
+fn meet_first<I: Isa, const DEEP: bool>(
+    band: &mut Band<'_, I>,
+    lines: &Lines<I>,
+    tables: [&Row; 3],
+    any: u64,
+    pair: u32,
+) -> (u64, u64) {
     let isa = band.isa;
     let (mut drawn, mut others) = (0u64, 0u64);
     let mut left = any;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
-        let line = lines.line(isa, &SAMPLES[bit]);
-        let parts = band.candidates.0[bit];
+        let mut line = lines.line(isa, &SAMPLES[bit]);
+        let (mut block, mut parts, mut blocks) = (0, band.candidates.0[bit], 0);
+        if DEEP {
+            blocks = parts;
+            let cells = lines.block_cells(isa, &line);
+            (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+            line = line.about(isa, &OFFSETS[block]);
+        }
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
+        let is_met = is_met & (parts != 0);
         band.hits[bit] = Hit {
-            block: 0,
+            block: block as u8,
             part: (part as u32 ^ pair) as u8,
         };
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
-        band.candidates.0[bit] = parts;
-        others |= u64::from((parts != 0) & !is_met) << bit;
+        if DEEP {
+            band.brick_blocks.left[bit] = parts;
+            band.candidates.0[bit] = blocks;
+        } else {
+            band.candidates.0[bit] = parts;
+        }
+        others |= u64::from((parts | blocks != 0) & !is_met) << bit;
     }
     (drawn, others)
+}
+
+impl BrickBlocks {
+    /// Of the next two blocks, the first that has parts that the line may meet, and these. Without branches.
+    #[inline(always)]
+    fn next<I: Isa>(
+        &self,
+        isa: I,
+        tables: [&Row; 3],
+        cells: &BlockCells<I>,
+        blocks: &mut u64,
+    ) -> (usize, u64) {
+        let rest = *blocks & blocks.wrapping_sub(1);
+        let two = [*blocks, rest].map(|blocks| blocks.trailing_zeros() as usize);
+        let mut parts = [0; 2];
+        for (parts, block) in parts.iter_mut().zip(two) {
+            let [x, y, z] = cells.about(isa, &OFFSETS[block]);
+            *parts = tables[0][x] & tables[1][y] & tables[2][z] & self.exist[block];
+        }
+        let is_first = parts[0] != 0;
+        let after = rest & rest.wrapping_sub(1);
+        *blocks = if is_first { rest } else { after };
+        let block = if is_first { two[0] } else { two[1] };
+        (block & 63, if is_first { parts[0] } else { parts[1] })
+    }
 }
 
 impl Hit {
@@ -219,13 +240,12 @@ fn show_hits<I: Isa, const DEEP: bool>(
     pair: u32,
 ) {
     let first = band.pixels.at(square.left, square.top);
-    for bit in bits(drawn) {
+    let mut left = drawn;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
         let at = first + band.sample_offsets[bit] as usize;
-        let node = if DEEP {
-            band.nodes[bit]
-        } else {
-            band.hits[bit].part::<I, DEEP>(band, brick).node
-        };
+        let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
         let word = band.pixels.word(node);
         if let Some(shown) = band.pixels.shown.get_mut(at) {
             *shown = word;
