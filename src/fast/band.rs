@@ -34,8 +34,8 @@ pub(super) struct BrickBlocks {
     pub(super) parts: [Parts; 64],
     /// Those that were read, for lines of an octant.
     pub(super) ready: u64,
-    /// By sample, parts of the block of its hit that its line may meet instead.
-    pub(super) left: [u64; 64],
+    /// By sample, those that its line may meet and that were not looked at.
+    pub(super) others: [u64; 64],
     pub(super) octant: u8,
 }
 

@@ -105,7 +105,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         exist: [0; 65],
         parts: [Parts::default(); 64],
         ready: 0,
-        left: [0; 64],
+        others: [0; 64],
         octant: 0,
     };
     buffers.pixels.clear();

@@ -1,8 +1,11 @@
 //! Bricks: nodes whose 64 grandchildren (parts) are solids. For each open sample three look-ups give the parts that its
 //! line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
-//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. A block's
-//! parts are read when the first line needs them.
+//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The blocks
+//! that lines may meet are read first, once for a brick.
+//!
+//! Which part is met is unpredictable. So each step is taken for all samples, without branches, and only the first
+//! attempt: processors overlap short steps. Few samples remain for a second one.
 
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
@@ -65,12 +68,17 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
+    let (mut drawn, mut found, mut left) = (0u64, any, 0u64);
     if DEEP && any != 0 {
         prepare(band, brick, any, octant);
+        (found, left) = first_blocks(band, &lines, tables, any);
     }
-    let (mut drawn, mut left) = (0u64, any);
-    if !band.blends {
-        (drawn, left) = meet_first::<I, DEEP>(band, &lines, tables, any, pair);
+    if band.blends {
+        left |= found;
+    } else {
+        let others;
+        (drawn, others) = meet_first::<I, DEEP>(band, &lines, found, pair);
+        left |= others;
     }
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
@@ -80,12 +88,9 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         let (mut line, mut parts) = (sample, band.candidates.0[bit]);
         let (mut block, mut blocks) = (0, 0);
         if DEEP {
-            (blocks, parts) = (parts, 0);
-            if !band.blends {
-                block = usize::from(band.hits[bit].block & 63);
-                parts = band.brick_blocks.left[bit];
-                line = sample.about(isa, &OFFSETS[block]);
-            }
+            block = usize::from(band.hits[bit].block & 63);
+            blocks = band.brick_blocks.others[bit];
+            line = sample.about(isa, &OFFSETS[block]);
         }
         'sample: loop {
             while parts != 0 {
@@ -134,45 +139,62 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
+/// Looks up the parts of a first block by sample. Returns the samples that have any, and others that have more blocks.
+#[inline(always)]
+fn first_blocks<I: Isa>(
+    band: &mut Band<'_, I>,
+    lines: &Lines<I>,
+    tables: [&Row; 3],
+    any: u64,
+) -> (u64, u64) {
+    let isa = band.isa;
+    let (mut found, mut others) = (0u64, 0u64);
+    let mut left = any;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
+        let line = lines.line(isa, &SAMPLES[bit]);
+        let cells = lines.block_cells(isa, &line);
+        let mut blocks = band.candidates.0[bit];
+        let (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+        band.hits[bit].block = block as u8;
+        band.candidates.0[bit] = parts;
+        band.brick_blocks.others[bit] = blocks;
+        found |= u64::from(parts != 0) << bit;
+        others |= u64::from(blocks != 0) << bit;
+    }
+    (found, others & !found)
+}
+
 /// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
 /// branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
-    tables: [&Row; 3],
-    any: u64,
+    found: u64,
     pair: u32,
 ) -> (u64, u64) {
     let isa = band.isa;
     let (mut drawn, mut others) = (0u64, 0u64);
-    let mut left = any;
+    let mut left = found;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
         let mut line = lines.line(isa, &SAMPLES[bit]);
-        let (mut block, mut parts, mut blocks) = (0, band.candidates.0[bit], 0);
+        let mut blocks = 0;
         if DEEP {
-            blocks = parts;
-            let cells = lines.block_cells(isa, &line);
-            (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+            let block = usize::from(band.hits[bit].block & 63);
             line = line.about(isa, &OFFSETS[block]);
+            blocks = band.brick_blocks.others[bit];
         }
+        let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-        let is_met = is_met & (parts != 0);
-        band.hits[bit] = Hit {
-            block: block as u8,
-            part: (part as u32 ^ pair) as u8,
-        };
+        band.hits[bit].part = (part as u32 ^ pair) as u8;
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
-        if DEEP {
-            band.brick_blocks.left[bit] = parts;
-            band.candidates.0[bit] = blocks;
-        } else {
-            band.candidates.0[bit] = parts;
-        }
+        band.candidates.0[bit] = parts;
         others |= u64::from((parts | blocks != 0) & !is_met) << bit;
     }
     (drawn, others)
@@ -239,6 +261,12 @@ fn show_hits<I: Isa, const DEEP: bool>(
     drawn: u64,
     pair: u32,
 ) {
+    if DEEP && !band.pixels.color.is_empty() {
+        for bit in bits(drawn) {
+            let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
+            band.isa.prefetch(band.pixels.color, node as usize);
+        }
+    }
     let first = band.pixels.at(square.left, square.top);
     let mut left = drawn;
     while left != 0 {
@@ -289,7 +317,7 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, bit, &path)
 }
 
-/// Reads the blocks that the lines of some samples may meet.
+/// Reads the blocks that the lines of some samples may meet and that were not read for the brick.
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
     let blocks = &mut *band.brick_blocks;

@@ -78,7 +78,7 @@ pub(super) struct Line<I: Isa> {
     half: I::F32x4,
 }
 
-/// A line's functions about the blocks of a node, in cells.
+/// A line's functions in cells: about the node's centre, and what a block's offset changes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlockCells<I: Isa> {
     next: I::F32x4,

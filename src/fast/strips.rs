@@ -88,9 +88,9 @@ impl Candidates {
             y.0 = y.0.add(y.1);
             z.0 = z.0.add(z.1);
         }
-        // Afterwards, as stores of single entries delay loads of vectors.
+        // Afterwards, as stores of single entries delay loads of vectors. All rows, as branches cost more.
         let mut none = 0u64;
-        for row in self.0.as_chunks::<8>().0.iter().take(rows).rev() {
+        for row in self.0.as_chunks::<8>().0.iter().rev() {
             let (halves, _) = row.as_chunks();
             let low = I::U64x4::load(isa, &halves[0]).zeros();
             let high = I::U64x4::load(isa, &halves[1]).zeros();
