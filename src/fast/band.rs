@@ -22,17 +22,21 @@ pub(super) struct Band<'b, I> {
     pub(super) blends: bool,
     pub(super) sample_offsets: [u32; 64],
     pub(super) candidates: Candidates,
+    /// By sample.
     pub(super) hits: [Hit; 64],
-    /// The node that each of them shows. Only for bricks of four levels without blending.
-    pub(super) nodes: [u32; 64],
     pub(super) brick_blocks: &'b mut BrickBlocks,
 }
 
 #[derive(Debug)]
 pub(super) struct BrickBlocks {
-    /// Masks of the parts of each block. Blocks and parts are both in order of occlusion.
-    pub(super) exist: [u64; 64],
+    /// Masks of the parts of each block, and of no block. Blocks and parts are both in order of occlusion.
+    pub(super) exist: [u64; 65],
     pub(super) parts: [Parts; 64],
+    /// Those that were read, for lines of an octant.
+    pub(super) ready: u64,
+    /// By sample, those that its line may meet and that were not looked at.
+    pub(super) others: [u64; 64],
+    pub(super) octant: u8,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,7 +60,6 @@ pub(super) struct Brick<'b> {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Hit {
-    pub(super) bit: u8,
     /// The block, in order of occlusion; no meaning in bricks of two levels.
     pub(super) block: u8,
     pub(super) part: u8,

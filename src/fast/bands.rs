@@ -102,8 +102,11 @@ pub(super) fn run_bands<I: Isa>(
 
 fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
     let mut brick_blocks = BrickBlocks {
-        exist: [0; 64],
+        exist: [0; 65],
         parts: [Parts::default(); 64],
+        ready: 0,
+        others: [0; 64],
+        octant: 0,
     };
     buffers.pixels.clear();
     let fill = Fill::clear(&buffers.grid, buffers.bounds, buffers.fill);
@@ -120,7 +123,6 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         counters: Counters::default(),
         candidates: Candidates([0; 64]),
         hits: [Hit::default(); 64],
-        nodes: [0; 64],
         brick_blocks: &mut brick_blocks,
     };
     isa.vectorize(

@@ -1,18 +1,21 @@
 //! Bricks: nodes whose 64 grandchildren (parts) are solids. For each open sample three look-ups give the parts that its
 //! line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
-//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. A block's
-//! parts are read when the first line needs them.
+//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The blocks
+//! that lines may meet are read first, once for a brick.
+//!
+//! Which part is met is unpredictable. So each step is taken for all samples, without branches, and only the first
+//! attempt: processors overlap short steps. Few samples remain for a second one.
 
-use super::band::{Band, Brick, Hit, Record, voxel_at};
+use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
-use super::lines::{Lines, Meeting, OFFSETS};
+use super::lines::{BlockCells, Lines, Meeting, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::strips::STRIPS;
-use super::window::Window;
+use super::strips::{Row, STRIPS};
+use super::window::{Window, bits};
 
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
@@ -35,6 +38,7 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
         return;
     }
     if DEEP {
+        band.brick_blocks.ready = 0;
         brick.parts.prefetch_below(band.isa, band.graph);
     } else {
         brick.parts.prefetch(band.isa, band.graph);
@@ -64,35 +68,31 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
+    let (mut drawn, mut found, mut left) = (0u64, any, 0u64);
     if DEEP && any != 0 {
-        brick.parts.prefetch_masks(isa, band.graph);
+        prepare(band, brick, any, octant);
+        (found, left) = first_blocks(band, &lines, tables, any);
     }
-    let mut ready = 0u64;
-    let (mut drawn, mut left) = (0u64, any);
-    if !DEEP && !band.blends {
-        (drawn, left) = meet_first(band, &lines, any, pair);
+    if band.blends {
+        left |= found;
+    } else {
+        let others;
+        (drawn, others) = meet_first::<I, DEEP>(band, &lines, found, pair);
+        left |= others;
     }
-    let mut count = drawn.count_ones() as usize;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
-        let line = lines.line(isa, SAMPLES[bit]);
-        let mut wanted = band.candidates.0[bit];
-        'sample: while wanted != 0 {
-            let number = wanted.trailing_zeros() as usize & 63;
-            wanted &= wanted - 1;
-            let (line, mut parts) = if DEEP {
-                if ready >> number & 1 == 0 {
-                    ready |= 1 << number;
-                    prepare(band, brick, number, octant);
-                }
-                let line = line.about(isa, &OFFSETS[number]);
-                let [x, y, z] = lines.cells(isa, &line);
-                let parts = tables[0][x] & tables[1][y] & tables[2][z];
-                (line, parts & band.brick_blocks.exist[number])
-            } else {
-                (line, 1 << number)
-            };
+        let sample = lines.line(isa, &SAMPLES[bit]);
+        let cells = lines.block_cells(isa, &sample);
+        let (mut line, mut parts) = (sample, band.candidates.0[bit]);
+        let (mut block, mut blocks) = (0, 0);
+        if DEEP {
+            block = usize::from(band.hits[bit].block & 63);
+            blocks = band.brick_blocks.others[bit];
+            line = sample.about(isa, &OFFSETS[block]);
+        }
+        'sample: loop {
             while parts != 0 {
                 let part = parts.trailing_zeros() as usize & 63;
                 parts &= parts - 1;
@@ -101,15 +101,16 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     continue;
                 }
                 let hit = Hit {
-                    bit: bit as u8,
-                    block: number as u8,
+                    block: block as u8,
                     part: (part as u32 ^ pair) as u8,
                 };
-                if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(band, brick, square, hit, pair) {
+                if meeting == Meeting::Doubt
+                    && !is_hit::<I, DEEP>(band, brick, square, bit, hit, pair)
+                {
                     continue;
                 }
                 if band.blends {
-                    let (is_full, levels) = blend::<I, DEEP>(band, brick, square, hit, pair);
+                    let (is_full, levels) = blend::<I, DEEP>(band, brick, square, bit, hit, pair);
                     if !is_full {
                         let same = match levels {
                             0 => u64::MAX,
@@ -117,58 +118,111 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                             _ => 0,
                         };
                         parts &= !same;
-                        if !DEEP {
-                            wanted &= !same;
-                        }
                         continue;
                     }
                 }
                 drawn |= 1 << bit;
-                band.hits[count & 63] = hit;
-                if DEEP {
-                    let node = hit.part::<I, DEEP>(band, brick).node;
-                    isa.prefetch(band.pixels.color, node as usize);
-                    band.nodes[count & 63] = node;
-                }
-                count += 1;
+                band.hits[bit] = hit;
                 break 'sample;
             }
+            if blocks == 0 {
+                break;
+            }
+            (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+            line = sample.about(isa, &OFFSETS[block]);
         }
     }
     if !band.blends {
-        show_hits::<I, DEEP>(band, brick, square, count, pair);
+        show_hits::<I, DEEP>(band, brick, square, drawn, pair);
     }
     band.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
 }
 
-/// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
-/// branches, because the outcome is unpredictable.
+/// Looks up the parts of a first block by sample. Returns the samples that have any, and others that have more blocks.
 #[inline(always)]
-fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
+fn first_blocks<I: Isa>(
+    band: &mut Band<'_, I>,
+    lines: &Lines<I>,
+    tables: [&Row; 3],
+    any: u64,
+) -> (u64, u64) {
     let isa = band.isa;
-    let (mut drawn, mut others) = (0u64, 0u64);
-    let (mut count, mut left) = (0, any);
+    let (mut found, mut others) = (0u64, 0u64);
+    let mut left = any;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
-        let line = lines.line(isa, SAMPLES[bit]);
+        let line = lines.line(isa, &SAMPLES[bit]);
+        let cells = lines.block_cells(isa, &line);
+        let mut blocks = band.candidates.0[bit];
+        let (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+        band.hits[bit].block = block as u8;
+        band.candidates.0[bit] = parts;
+        band.brick_blocks.others[bit] = blocks;
+        found |= u64::from(parts != 0) << bit;
+        others |= u64::from(blocks != 0) << bit;
+    }
+    (found, others & !found)
+}
+
+/// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
+/// branches, because the outcome is unpredictable.
+#[inline(always)]
+fn meet_first<I: Isa, const DEEP: bool>(
+    band: &mut Band<'_, I>,
+    lines: &Lines<I>,
+    found: u64,
+    pair: u32,
+) -> (u64, u64) {
+    let isa = band.isa;
+    let (mut drawn, mut others) = (0u64, 0u64);
+    let mut left = found;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
+        let mut line = lines.line(isa, &SAMPLES[bit]);
+        let mut blocks = 0;
+        if DEEP {
+            let block = usize::from(band.hits[bit].block & 63);
+            line = line.about(isa, &OFFSETS[block]);
+            blocks = band.brick_blocks.others[bit];
+        }
         let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-        // Overwritten by the next hit if it is none.
-        band.hits[count & 63] = Hit {
-            bit: bit as u8,
-            block: 0,
-            part: (part as u32 ^ pair) as u8,
-        };
-        count += usize::from(is_met);
+        band.hits[bit].part = (part as u32 ^ pair) as u8;
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
-        others |= u64::from((parts != 0) & !is_met) << bit;
+        others |= u64::from((parts | blocks != 0) & !is_met) << bit;
     }
     (drawn, others)
+}
+
+impl BrickBlocks {
+    /// Of the next two blocks, the first that has parts that the line may meet, and these. Without branches.
+    #[inline(always)]
+    fn next<I: Isa>(
+        &self,
+        isa: I,
+        tables: [&Row; 3],
+        cells: &BlockCells<I>,
+        blocks: &mut u64,
+    ) -> (usize, u64) {
+        let rest = *blocks & blocks.wrapping_sub(1);
+        let two = [*blocks, rest].map(|blocks| blocks.trailing_zeros() as usize);
+        let mut parts = [0; 2];
+        for (parts, block) in parts.iter_mut().zip(two) {
+            let [x, y, z] = cells.about(isa, &OFFSETS[block]);
+            *parts = tables[0][x] & tables[1][y] & tables[2][z] & self.exist[block];
+        }
+        let is_first = parts[0] != 0;
+        let after = rest & rest.wrapping_sub(1);
+        *blocks = if is_first { rest } else { after };
+        let block = if is_first { two[0] } else { two[1] };
+        (block & 63, if is_first { parts[0] } else { parts[1] })
+    }
 }
 
 impl Hit {
@@ -204,29 +258,32 @@ fn show_hits<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
-    count: usize,
+    drawn: u64,
     pair: u32,
 ) {
+    if DEEP && !band.pixels.color.is_empty() {
+        for bit in bits(drawn) {
+            let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
+            band.isa.prefetch(band.pixels.color, node as usize);
+        }
+    }
     let first = band.pixels.at(square.left, square.top);
-    let count = count.min(64);
-    for i in 0..count {
-        let hit = band.hits[i];
-        let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
-        let node = if DEEP {
-            band.nodes[i]
-        } else {
-            hit.part::<I, DEEP>(band, brick).node
-        };
+    let mut left = drawn;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
+        let at = first + band.sample_offsets[bit] as usize;
+        let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
         let word = band.pixels.word(node);
         if let Some(shown) = band.pixels.shown.get_mut(at) {
             *shown = word;
         }
     }
     if band.pixels.wants_voxels() {
-        for i in 0..count {
-            let hit = band.hits[i];
-            let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
-            band.pixels.voxel[at] = hit.path::<I, DEEP>(band, brick, pair).1.voxel(band, brick);
+        for bit in bits(drawn) {
+            let at = first + band.sample_offsets[bit] as usize;
+            let path = band.hits[bit].path::<I, DEEP>(band, brick, pair).1;
+            band.pixels.voxel[at] = path.voxel(band, brick);
         }
     }
 }
@@ -237,12 +294,13 @@ fn blend<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
+    bit: usize,
     hit: Hit,
     pair: u32,
 ) -> (bool, u32) {
     let (node, path) = hit.path::<I, DEEP>(band, brick, pair);
     let voxel = path.voxel(band, brick);
-    let full = band.show([square.left, square.top], 1 << hit.bit, node, voxel);
+    let full = band.show([square.left, square.top], 1 << bit, node, voxel);
     (full != 0, path.levels)
 }
 
@@ -251,22 +309,42 @@ fn is_hit<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
+    bit: usize,
     hit: Hit,
     pair: u32,
 ) -> bool {
     let (_, path) = hit.path::<I, DEEP>(band, brick, pair);
-    is_covered(band, brick, square, usize::from(hit.bit), &path)
+    is_covered(band, brick, square, bit, &path)
 }
 
+/// Reads the blocks that the lines of some samples may meet and that were not read for the brick.
 #[inline(always)]
-fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
-    let block = brick
-        .parts
-        .part(band.graph, number as u32 ^ (u32::from(octant) * 9));
-    let parts = &mut band.brick_blocks.parts[number & 63];
-    parts.read(band.isa, band.graph, block.node, false, 0);
-    parts.prefetch(band.isa, band.graph);
-    band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
+fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
+    let blocks = &mut *band.brick_blocks;
+    if blocks.ready == 0 {
+        brick.parts.prefetch_masks(band.isa, band.graph);
+    }
+    if blocks.octant != octant {
+        (blocks.octant, blocks.ready) = (octant, 0);
+    }
+    let (mut wanted, mut left) = (0u64, samples);
+    while left != 0 {
+        wanted |= band.candidates.0[left.trailing_zeros() as usize & 63];
+        left &= left - 1;
+    }
+    wanted &= !blocks.ready;
+    blocks.ready |= wanted;
+    while wanted != 0 {
+        let number = wanted.trailing_zeros() & 63;
+        wanted &= wanted - 1;
+        let block = brick
+            .parts
+            .part(band.graph, number ^ (u32::from(octant) * 9));
+        let parts = &mut blocks.parts[number as usize];
+        parts.read(band.isa, band.graph, block.node, false, 0);
+        parts.prefetch(band.isa, band.graph);
+        blocks.exist[number as usize] = turned_parts(band.isa, parts.exist, octant);
+    }
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -78,6 +78,23 @@ pub(super) struct Line<I: Isa> {
     half: I::F32x4,
 }
 
+/// A line's functions in cells: about the node's centre, and what a block's offset changes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BlockCells<I: Isa> {
+    next: I::F32x4,
+    last: I::F32x4,
+    middle: I::F32x4,
+}
+
+impl<I: Isa> BlockCells<I> {
+    #[inline(always)]
+    pub(super) fn about(&self, isa: I, block: &Offset) -> [usize; 3] {
+        let [next, last] = [isa.four(&block.next), isa.four(&block.last)];
+        let cells = next.fnma(self.last, last.fma(self.next, self.middle));
+        cells.indices::<CELLS>()
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
     Misses,
@@ -205,8 +222,8 @@ impl<I: Isa> Lines<I> {
     }
 
     #[inline(always)]
-    pub(super) fn line(&self, isa: I, [x, y]: [f32; 2]) -> Line<I> {
-        let (x, y) = (isa.splat(x), isa.splat(y));
+    pub(super) fn line(&self, isa: I, [x, y]: &[f32; 2]) -> Line<I> {
+        let (x, y) = (isa.splat(*x), isa.splat(*y));
         let at = |[first, step_x, step_y]: &[I::F32x4; 3]| step_x.fma(x, step_y.fma(y, *first));
         let direction = at(&self.direction);
         let (next, last) = (direction.next(), direction.last());
@@ -219,9 +236,14 @@ impl<I: Isa> Lines<I> {
     }
 
     #[inline(always)]
-    pub(super) fn cells(&self, isa: I, line: &Line<I>) -> [usize; 3] {
+    pub(super) fn block_cells(&self, isa: I, line: &Line<I>) -> BlockCells<I> {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
-        line.moment.fma(unit, isa.splat(MIDDLE)).indices::<CELLS>()
+        let unit_of_blocks = self.inverse.mul(isa.splat(4.0 * CELLS_PER_WIDTH));
+        BlockCells {
+            next: line.next.mul(unit_of_blocks),
+            last: line.last.mul(unit_of_blocks),
+            middle: line.moment.fma(unit, isa.splat(MIDDLE)),
+        }
     }
 
     #[inline(always)]
@@ -272,8 +294,9 @@ pub(super) struct Offset {
     pub(super) last: [f32; 4],
 }
 
-pub(super) static OFFSETS: [Offset; 64] = {
-    let mut table = [NO_OFFSET; 64];
+/// The last is of no part.
+pub(super) static OFFSETS: [Offset; 65] = {
+    let mut table = [NO_OFFSET; 65];
     let mut part = 0;
     while part < 64 {
         let mut j = 0;
@@ -395,7 +418,7 @@ pub(super) mod tests {
             let turned = |k: usize| directions.octant >> (2 - k) & 1 == 1;
             for sample in [0, 7, 20, 63] {
                 let [x, y] = [sample & 7, sample >> 3];
-                let line = lines.line(Scalar, [x as f32, y as f32]);
+                let line = lines.line(Scalar, &[x as f32, y as f32]);
                 let q = DVec3::new(f64::from(left + x), f64::from(top + y), 1.0);
                 let v = constants.direction.map(|d| DVec3::from(d).dot(q).abs());
                 for offset in [0, 21, 42, 63].map(|part: usize| &OFFSETS[part]) {
@@ -439,7 +462,7 @@ pub(super) mod tests {
     ) {
         let (square, centre) = (samples.square, projection.centre);
         let sign = |k: usize| 1.0 - 2.0 * f32::from(samples.octant >> (2 - k) & 1);
-        let line = lines.line(Scalar, [i as f32, j as f32]);
+        let line = lines.line(Scalar, &[i as f32, j as f32]);
         let about = line.about(Scalar, block);
         let from_centre = about.moment.sub(about.shift(Scalar, part));
         let sides = [

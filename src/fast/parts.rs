@@ -6,8 +6,8 @@ use crate::graph::GraphView;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
     pub(super) exist: u64,
+    /// The first child; the node itself unless plain.
     first: u32,
-    node: u32,
     mask: u8,
     solid: u8,
     kind: Kind,
@@ -39,7 +39,7 @@ impl Parts {
     pub(super) fn of_solid(node: u32) -> Self {
         Self {
             exist: u64::MAX,
-            node,
+            first: node,
             kind: Kind::Solid,
             ..Self::default()
         }
@@ -76,15 +76,14 @@ impl Parts {
             && graph.links.is_empty()
             && let Some(eight) = graph
                 .mask
-                .get(first as usize..)
-                .and_then(|m| m.first_chunk())
+                .get(first as usize..(first as usize).saturating_add(8))
+            && let Some(eight) = eight.first_chunk()
         {
             let [exist, bytes] = isa.expand(u64::from_le_bytes(*eight), mask);
             let filled = exist | !bytes;
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
                 self.exist = exist;
                 self.first = first;
-                self.node = node;
                 self.mask = mask;
                 self.solid = 0;
                 self.kind = Kind::Plain;
@@ -102,8 +101,7 @@ impl Parts {
             return;
         }
         *self = Self {
-            first: graph.first.get(node as usize).copied().unwrap_or(0),
-            node,
+            first: node,
             mask,
             kind: Kind::Linked,
             ..Self::default()
@@ -175,9 +173,9 @@ impl Parts {
         let outer = (part >> 3 & 7) as u8;
         let of = |node, levels| Part { node, levels };
         if self.kind == Kind::Solid {
-            return of(self.node, 0);
+            return of(self.first, 0);
         }
-        let child = graph.child(self.node, outer).unwrap_or(self.node);
+        let child = graph.child(self.first, outer).unwrap_or(self.first);
         if self.solid >> outer & 1 != 0 {
             return of(child, 1);
         }

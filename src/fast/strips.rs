@@ -15,7 +15,7 @@
 
 use std::sync::LazyLock;
 
-use super::lanes::{Floats, Isa, Lanes, U64x4};
+use super::lanes::{F32x8, Floats, Isa, Lanes, U64x4};
 use super::orders::SLABS;
 
 pub(super) const SHARES: usize = 128;
@@ -66,36 +66,37 @@ impl Candidates {
         wanted: u64,
         open: u64,
     ) -> u64 {
-        let wanted = I::U64x4::splat(isa, wanted);
         let [mut x, mut y, mut z] = [
             first_row::<I, 0>(isa, cells),
             first_row::<I, 1>(isa, cells),
             first_row::<I, 2>(isa, cells),
         ];
         let rows = 8 - open.leading_zeros() as usize / 8;
-        let (mut any, mut left) = (0u64, open);
+        let mut left = open;
         for row in self.0.as_chunks_mut::<8>().0.iter_mut().take(rows) {
-            any <<= 8;
             if left & 0xff != 0 {
-                let [x, y, z] = [
-                    isa.look_up(tables[0], x.0),
-                    isa.look_up(tables[1], y.0),
-                    isa.look_up(tables[2], z.0),
-                ];
-                let low = wanted.and(x[0]).and(y[0]).and(z[0]);
-                let high = wanted.and(x[1]).and(y[1]).and(z[1]);
-                let (halves, _) = row.as_chunks_mut();
-                halves[0] = low.values();
-                halves[1] = high.values();
-                any |= u64::from(low.zeros() | high.zeros() << 4) ^ 0xff;
+                let x = x.0.indices::<CELLS>();
+                let y = y.0.indices::<CELLS>();
+                let z = z.0.indices::<CELLS>();
+                // Gathers are slow on AMD.
+                for (i, parts) in row.iter_mut().enumerate() {
+                    *parts = wanted & tables[0][x[i]] & tables[1][y[i]] & tables[2][z[i]];
+                }
             }
             left >>= 8;
             x.0 = x.0.add(x.1);
             y.0 = y.0.add(y.1);
             z.0 = z.0.add(z.1);
         }
-        let missing = open.leading_zeros() / 8 * 8;
-        (any << (missing & 63)).swap_bytes() & open
+        // Afterwards, as stores of single entries delay loads of vectors. All rows, as branches cost more.
+        let mut none = 0u64;
+        for row in self.0.as_chunks::<8>().0.iter().rev() {
+            let (halves, _) = row.as_chunks();
+            let low = I::U64x4::load(isa, &halves[0]).zeros();
+            let high = I::U64x4::load(isa, &halves[1]).zeros();
+            none = none << 8 | u64::from(low | high << 4);
+        }
+        open & !none
     }
 }
 

@@ -94,7 +94,7 @@ fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> boo
     let detail = detail(constants, record);
     let parts = &Parts::of(isa, band.graph, record.node, is_last, detail);
     // Voxels are blended once: none may consist of several parts.
-    if !parts.are_even() && constants.opacity_eye.is_some() {
+    if constants.opacity_eye.is_some() && !parts.are_even() {
         return false;
     }
     if record.centre[2] < level.coarse_depth {

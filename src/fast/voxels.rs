@@ -97,7 +97,7 @@ fn draw_samples<I: Isa>(
         let certain = if fit { distances.below(isa, sure) } else { 0 };
         let mut covered = held & certain;
         for bit in bits(held & !certain) {
-            let line = lines.line(isa, SAMPLES[bit]);
+            let line = lines.line(isa, &SAMPLES[bit]);
             let is_met = match lines.meets(isa, &line, offset) {
                 Meeting::Misses => false,
                 Meeting::Meets => true,

@@ -60,6 +60,8 @@ pub(super) trait F32x8: Floats<8, Lane = f32> {
     /// The inverse, to 11 bits or more.
     fn reciprocal(self) -> Self;
     fn whole(self) -> [i32; 8];
+    /// As [`F32x4::indices`].
+    fn indices<const N: usize>(self) -> [usize; 8];
 }
 
 /// Sixteen `i16`. Sums and products wrap around.
@@ -77,7 +79,6 @@ pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn and(self, other: Self) -> Self;
     /// The lanes that are 0, one bit each.
     fn zeros(self) -> u32;
-    fn values(self) -> [u64; 4];
 }
 
 pub(super) trait U8x16: Lanes<16, Lane = u8> {
@@ -114,8 +115,6 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
     fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
-    /// A table's entries at [`F32x4::indices`].
-    fn look_up<const N: usize>(self, table: &[u64; N], at: Self::F32x8) -> [Self::U64x4; 2];
     /// A vector of eight bytes, and eight more of no meaning.
     fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes, one after the other, at the places of a mask's bits, and bytes of ones there.

@@ -114,6 +114,10 @@ impl F32x8 for [f32; 8] {
     fn whole(self) -> [i32; 8] {
         self.map(|c| c as i32)
     }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 8] {
+        self.map(index::<N>)
+    }
 }
 
 impl I16x16 for [i16; 16] {
@@ -137,10 +141,6 @@ impl U64x4 for [u64; 4] {
     #[inline(always)]
     fn zeros(self) -> u32 {
         bits::<4>(|i| self[i] == 0)
-    }
-    #[inline(always)]
-    fn values(self) -> [u64; 4] {
-        self
     }
 }
 
@@ -189,10 +189,6 @@ impl Isa for Scalar {
     #[inline(always)]
     fn broadcast_rounded<const LANE: i32>(self, from: [f32; 4]) -> [i16; 16] {
         [from[LANE as usize].round_ties_even() as i16; 16]
-    }
-    #[inline(always)]
-    fn look_up<const N: usize>(self, table: &[u64; N], at: [f32; 8]) -> [[u64; 4]; 2] {
-        [0, 4].map(|first| from_fn(|i| table[index::<N>(at[first + i])]))
     }
     #[inline(always)]
     fn bytes(self, eight: u64) -> [u8; 16] {

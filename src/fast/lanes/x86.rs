@@ -173,6 +173,18 @@ impl F32x8 for Floats8 {
         unsafe { _mm256_storeu_si256(whole.as_mut_ptr().cast(), _mm256_cvttps_epi32(self.0)) };
         whole
     }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 8] {
+        let mut whole = [0u32; 8];
+        // SAFETY: as above. The store is of the array's eight.
+        unsafe {
+            let last = _mm256_set1_epi32(N as i32 - 1);
+            let at = _mm256_min_epu32(_mm256_cvttps_epi32(self.0), last);
+            _mm256_storeu_si256(whole.as_mut_ptr().cast(), at);
+        }
+        // The bounds are repeated for the compiler to see.
+        whole.map(|at| at as usize % N)
+    }
 }
 
 impl I16x16 for Shorts16 {
@@ -204,13 +216,6 @@ impl U64x4 for Masks4 {
             let zeros = _mm256_cmpeq_epi64(self.0, _mm256_setzero_si256());
             _mm256_movemask_pd(_mm256_castsi256_pd(zeros)) as u32
         })
-    }
-    #[inline(always)]
-    fn values(self) -> [u64; 4] {
-        let mut values = [0; 4];
-        // SAFETY: as above. The store is of the array's four.
-        unsafe { _mm256_storeu_si256(values.as_mut_ptr().cast(), self.0) };
-        values
     }
 }
 
@@ -278,23 +283,6 @@ impl Isa for Avx2 {
                 _ => _mm_srli_si128::<4>(rounded),
             }))
         })
-    }
-    #[inline(always)]
-    fn look_up<const N: usize>(self, table: &[u64; N], at: Floats8) -> [Masks4; 2] {
-        let table = table.as_ptr().cast();
-        // SAFETY: as above. Entries are looked up below `N`, the table's length.
-        unsafe {
-            let last = _mm256_set1_epi32(N as i32 - 1);
-            let at = _mm256_min_epu32(_mm256_cvttps_epi32(at.0), last);
-            let (low, high) = (
-                _mm256_castsi256_si128(at),
-                _mm256_extracti128_si256::<1>(at),
-            );
-            [
-                Masks4(_mm256_i32gather_epi64::<8>(table, low)),
-                Masks4(_mm256_i32gather_epi64::<8>(table, high)),
-            ]
-        }
     }
     #[inline(always)]
     fn bytes(self, eight: u64) -> Bytes16 {
