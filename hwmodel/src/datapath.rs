@@ -199,14 +199,21 @@ impl<P: Probe> Datapath<P> {
 
     /// A constant of the frame.
     #[inline]
-    pub fn load(&mut self, value: i64) -> Word {
-        self.fit(TrapOp::Load, value, false)
+    pub fn load(&mut self, value: impl Into<i128>) -> Word {
+        self.constant(value.into())
     }
 
     /// A wide constant of the frame.
     #[inline]
-    pub fn load_wide(&mut self, value: i64) -> WideWord {
-        self.fit(TrapOp::Load, value, false)
+    pub fn load_wide(&mut self, value: impl Into<i128>) -> WideWord {
+        self.constant(value.into())
+    }
+
+    fn constant<T: Number>(&mut self, value: i128) -> T {
+        // Beyond 64 bits with a carry, which also tells the sign.
+        let value = value.clamp(-1 << 64, (1 << 64) - 1);
+        let raw = value as i64;
+        self.fit(TrapOp::Load, raw, i128::from(raw) != value)
     }
 
     /// `a + b`.

@@ -90,7 +90,7 @@ impl Constants {
         let outline = options.coverage.outline_rule();
         let scale = setup.sub_levels;
         let (origin_clip, edge_clip) = (setup.origin_clip, setup.edge_clip);
-        let mut word = |value: i64, shift: u32| dp.load(clamped(i128::from(value) << shift));
+        let mut word = |value: i64, shift: u32| dp.load(i128::from(value) << shift);
         let origin = origin_clip.map(|c| word(c, scale));
         let edges =
             [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(edge_clip[k][c], scale + setup.depth)));
@@ -98,7 +98,7 @@ impl Constants {
             let depth = |&w: &i64| {
                 let scaled = i128::from(w) << scale;
                 let reachable = w != i64::MAX && scaled <= i128::from(setup.format.max());
-                reachable.then(|| Word::from_host(clamped(scaled)))
+                reachable.then(|| Word::from_host(scaled as i64))
             };
             depths.iter().map(depth).collect()
         };
@@ -120,8 +120,7 @@ impl Constants {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3); // host: an index
                 let mut plane = |a: [i64; 3], b: [i64; 3]| {
-                    // Beyond 64 bits it is a number that no format holds: the load overflows.
-                    cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c))) // host: a constant of the frame
+                    cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(c)) // host: a constant of the frame
                 };
                 let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
                 axis_ab[k] = [a, b];
@@ -238,8 +237,3 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
 
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
-
-fn clamped(value: i128) -> i64 {
-    let most = if value < 0 { i64::MIN } else { i64::MAX };
-    i64::try_from(value).unwrap_or(most)
-}
