@@ -210,7 +210,7 @@ impl<P: Probe> Datapath<P> {
     }
 
     fn constant<T: Number>(&mut self, value: i128) -> T {
-        // Beyond 64 bits with a carry, which also tells the sign.
+        // Beyond 64 bits with a carry, whose sign is known.
         let value = value.clamp(-1 << 64, (1 << 64) - 1);
         let raw = value as i64;
         self.fit(TrapOp::Load, raw, i128::from(raw) != value)

@@ -163,6 +163,8 @@ fn a_panic_without_memory_ends() {
     let this = "SHIFTVOX_PANICS_WITHOUT_MEMORY";
     if std::env::var(this).is_ok() {
         guard_backtraces();
+        // For the message itself.
+        let little: Vec<u8> = Vec::with_capacity(1 << 16);
         let mut taken: Vec<Vec<u8>> = Vec::with_capacity(1 << 16);
         for size in (6..26).rev().map(|log2| 1 << log2) {
             let mut more = Vec::new();
@@ -170,6 +172,7 @@ fn a_panic_without_memory_ends() {
                 taken.push(std::mem::take(&mut more));
             }
         }
+        drop(black_box(little));
         panic!("no memory is left");
     }
     let script = "ulimit -v 200000; exec timeout 20 \"$0\" a_panic_without --nocapture";
