@@ -78,30 +78,6 @@ pub(super) struct Line<I: Isa> {
     half: I::F32x4,
 }
 
-/// A line's functions in cells: about the node's centre, and what a block's offset changes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BlockCells<I: Isa> {
-    next: I::F32x4,
-    last: I::F32x4,
-    middle: I::F32x4,
-}
-
-impl<I: Isa> BlockCells<I> {
-    #[inline(always)]
-    pub(super) fn about(&self, isa: I, block: &Offset) -> [usize; 3] {
-        let [next, last] = [isa.four(&block.next), isa.four(&block.last)];
-        let cells = next.fnma(self.last, last.fma(self.next, self.middle));
-        cells.indices::<CELLS>()
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Meeting {
-    Misses,
-    Meets,
-    Doubt,
-}
-
 #[inline(always)]
 fn greatest<F: F32x4>(four: F) -> f32 {
     four.max(four.next()).max(four.last()).values()[0]
@@ -235,17 +211,20 @@ impl<I: Isa> Lines<I> {
         }
     }
 
+    /// For [`Line::block_cells`].
     #[inline(always)]
-    pub(super) fn block_cells(&self, isa: I, line: &Line<I>) -> BlockCells<I> {
+    pub(super) fn line_in_cells(&self, isa: I, line: &Line<I>) -> Line<I> {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
         let unit_of_blocks = self.inverse.mul(isa.splat(4.0 * CELLS_PER_WIDTH));
-        BlockCells {
+        Line {
             next: line.next.mul(unit_of_blocks),
             last: line.last.mul(unit_of_blocks),
-            middle: line.moment.fma(unit, isa.splat(MIDDLE)),
+            moment: line.moment.fma(unit, isa.splat(MIDDLE)),
+            ..*line
         }
     }
 
+    /// Whether a line certainly meets a part, and whether it may. Different: in doubt.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
@@ -254,18 +233,6 @@ impl<I: Isa> Lines<I> {
             outside.add(self.doubt).signs() & 7 == 7,
             outside.sub(self.doubt).signs() & 7 == 7,
         ]
-    }
-
-    #[inline(always)]
-    pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
-        let [is_inside, may_be_inside] = self.are_inside(isa, line, offset);
-        if is_inside != may_be_inside {
-            Meeting::Doubt
-        } else if is_inside {
-            Meeting::Meets
-        } else {
-            Meeting::Misses
-        }
     }
 }
 
@@ -283,6 +250,14 @@ impl<I: Isa> Line<I> {
             moment: self.moment.sub(shift.mul(isa.splat(4.0))),
             ..*self
         }
+    }
+
+    /// Of a line in cells, those about a block.
+    #[inline(always)]
+    pub(super) fn block_cells(&self, isa: I, block: &Offset) -> [usize; 3] {
+        let [next, last] = [isa.four(&block.next), isa.four(&block.last)];
+        let cells = next.fnma(self.last, last.fma(self.next, self.moment));
+        cells.indices::<CELLS>()
     }
 }
 

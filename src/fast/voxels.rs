@@ -5,7 +5,7 @@ use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
-use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
+use super::lines::{Lines, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
@@ -98,11 +98,8 @@ fn draw_samples<I: Isa>(
         let mut covered = held & certain;
         for bit in bits(held & !certain) {
             let line = lines.line(isa, &SAMPLES[bit]);
-            let is_met = match lines.meets(isa, &line, offset) {
-                Meeting::Misses => false,
-                Meeting::Meets => true,
-                Meeting::Doubt => is_covered(band, brick, square, bit, &path),
-            };
+            let [is_met, may_be_met] = lines.are_inside(isa, &line, offset);
+            let is_met = is_met || (may_be_met && is_covered(band, brick, square, bit, &path));
             covered |= u64::from(is_met) << bit;
         }
         if covered != 0 {
