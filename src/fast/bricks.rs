@@ -14,7 +14,7 @@ use super::lines::{Line, Lines, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::strips::{Row, STRIPS};
+use super::strips::Row;
 use super::window::{Window, bits};
 
 #[inline(always)]
@@ -60,10 +60,9 @@ fn draw_samples<I: Isa, const DEEP: bool>(
 ) -> u64 {
     let (square, open, octant) = (samples.square, samples.open, samples.octant);
     let isa = band.isa;
-    let strips = &*STRIPS;
     band.counters.samples_tested += u64::from(open.count_ones());
     let lines = Lines::new(isa, band.constants, projection, samples);
-    let tables = strips.touched(lines.tables);
+    let tables = lines.strips.map(|strips| &strips.touched);
     let exist = turned_parts(isa, brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);

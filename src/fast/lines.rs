@@ -10,7 +10,9 @@ use super::directions::{LINE_ERROR, Samples};
 use super::lanes::{F32x4, Floats, Isa};
 use super::orders::along;
 use super::projection::Projection;
-use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
+use super::strips::{
+    BLIND, CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips,
+};
 
 /// Relative rounding of a centre's column in `f64` over [`LINE_ERROR`]: 2^-50 over 2^-20.
 pub(super) const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
@@ -41,7 +43,7 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 pub(super) struct Lines<I: Isa> {
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
-    pub(super) tables: [usize; 3],
+    pub(super) strips: [&'static Strips; 3],
     /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
     inverse: I::F32x4,
     pub(super) error: f32,
@@ -136,7 +138,7 @@ impl<I: Isa> Lines<I> {
             .mul(inverse)
             .fma(isa.splat(SHARE_STEPS), half_step)
             .indices::<SHARES>();
-        let mut tables = [0, 1, 2].map(|j| Strips::table(j, shares[j], 0));
+        let mut strips = [0, 1, 2].map(|j| Strips::of(0, j, shares[j]));
         let mut sees = [1.0; 4];
         let mut has_blind = false;
         let mut most = MOST_ERROR[0];
@@ -144,9 +146,9 @@ impl<I: Isa> Lines<I> {
             most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
                 if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
-                    tables[j] = Strips::table(j, shares[j], class);
+                    strips[j] = Strips::of(class, j, shares[j]);
                 } else {
-                    tables[j] = Strips::BLIND;
+                    strips[j] = &BLIND;
                     sees[j] = 0.0;
                     has_blind = true;
                 }
@@ -160,7 +162,7 @@ impl<I: Isa> Lines<I> {
         Self {
             direction: [first, columns, rows],
             moment: [moment, step_x, step_y],
-            tables,
+            strips,
             inverse,
             error: greatest(error).min(most),
             rounding: greatest(rounding),

@@ -8,7 +8,7 @@ use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
 use super::lines::{Lines, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;
-use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
+use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, Strips};
 use super::window::{Window, bits};
 
 const UNIT: f32 = 2048.0;
@@ -169,8 +169,8 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     if high.signs() & 7 != 0 {
         return 0;
     }
-    STRIPS.between(
-        lines.tables,
+    Strips::between(
+        lines.strips,
         low.indices::<CELLS>(),
         high.indices::<CELLS>(),
     )
