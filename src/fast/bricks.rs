@@ -10,11 +10,11 @@
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
-use super::lines::{BlockCells, Lines, Meeting, OFFSETS};
+use super::lines::{Line, Lines, OFFSETS};
 use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::strips::{Row, STRIPS};
+use super::strips::Row;
 use super::window::{Window, bits};
 
 #[inline(always)]
@@ -60,53 +60,46 @@ fn draw_samples<I: Isa, const DEEP: bool>(
 ) -> u64 {
     let (square, open, octant) = (samples.square, samples.open, samples.octant);
     let isa = band.isa;
-    let strips = &*STRIPS;
     band.counters.samples_tested += u64::from(open.count_ones());
     let lines = Lines::new(isa, band.constants, projection, samples);
-    let tables = strips.touched(lines.tables);
+    let tables = lines.strips.map(|strips| &strips.touched);
     let exist = turned_parts(isa, brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
-    let (mut drawn, mut found, mut left) = (0u64, any, 0u64);
+    let (mut found, mut left) = (any, 0);
     if DEEP && any != 0 {
         prepare(band, brick, any, octant);
         (found, left) = first_blocks(band, &lines, tables, any);
     }
-    if band.blends {
-        left |= found;
+    let (mut drawn, others) = if band.blends {
+        (0, found)
     } else {
-        let others;
-        (drawn, others) = meet_first::<I, DEEP>(band, &lines, found, pair);
-        left |= others;
-    }
-    while left != 0 {
-        let bit = left.trailing_zeros() as usize & 63;
-        left &= left - 1;
+        meet_first::<I, DEEP>(band, &lines, found, pair)
+    };
+    for bit in bits(left | others) {
         let sample = lines.line(isa, &SAMPLES[bit]);
-        let cells = lines.block_cells(isa, &sample);
+        let cells = lines.line_in_cells(isa, &sample);
         let (mut line, mut parts) = (sample, band.candidates.0[bit]);
         let (mut block, mut blocks) = (0, 0);
         if DEEP {
-            block = usize::from(band.hits[bit].block & 63);
+            block = u64::from(band.hits[bit].block & 63);
             blocks = band.brick_blocks.others[bit];
-            line = sample.about(isa, &OFFSETS[block]);
+            line = sample.about(isa, &OFFSETS[block as usize]);
         }
         'sample: loop {
             while parts != 0 {
                 let part = parts.trailing_zeros() as usize & 63;
                 parts &= parts - 1;
-                let meeting = lines.meets(isa, &line, &OFFSETS[part]);
-                if meeting == Meeting::Misses {
+                let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
+                if !may_be_met {
                     continue;
                 }
                 let hit = Hit {
                     block: block as u8,
                     part: (part as u32 ^ pair) as u8,
                 };
-                if meeting == Meeting::Doubt
-                    && !is_hit::<I, DEEP>(band, brick, square, bit, hit, pair)
-                {
+                if !is_met && !is_hit::<I, DEEP>(band, brick, square, bit, hit, pair) {
                     continue;
                 }
                 if band.blends {
@@ -128,8 +121,8 @@ fn draw_samples<I: Isa, const DEEP: bool>(
             if blocks == 0 {
                 break;
             }
-            (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
-            line = sample.about(isa, &OFFSETS[block]);
+            [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
+            line = sample.about(isa, &OFFSETS[block as usize]);
         }
     }
     if !band.blends {
@@ -148,15 +141,12 @@ fn first_blocks<I: Isa>(
     any: u64,
 ) -> (u64, u64) {
     let isa = band.isa;
-    let (mut found, mut others) = (0u64, 0u64);
-    let mut left = any;
-    while left != 0 {
-        let bit = left.trailing_zeros() as usize & 63;
-        left &= left - 1;
+    let (mut found, mut others) = (0, 0);
+    for bit in bits(any) {
         let line = lines.line(isa, &SAMPLES[bit]);
-        let cells = lines.block_cells(isa, &line);
-        let mut blocks = band.candidates.0[bit];
-        let (block, parts) = band.brick_blocks.next(isa, tables, &cells, &mut blocks);
+        let cells = lines.line_in_cells(isa, &line);
+        let blocks = band.candidates.0[bit];
+        let [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
         band.hits[bit].block = block as u8;
         band.candidates.0[bit] = parts;
         band.brick_blocks.others[bit] = blocks;
@@ -176,11 +166,8 @@ fn meet_first<I: Isa, const DEEP: bool>(
     pair: u32,
 ) -> (u64, u64) {
     let isa = band.isa;
-    let (mut drawn, mut others) = (0u64, 0u64);
-    let mut left = found;
-    while left != 0 {
-        let bit = left.trailing_zeros() as usize & 63;
-        left &= left - 1;
+    let (mut drawn, mut others) = (0, 0);
+    for bit in bits(found) {
         let mut line = lines.line(isa, &SAMPLES[bit]);
         let mut blocks = 0;
         if DEEP {
@@ -201,27 +188,25 @@ fn meet_first<I: Isa, const DEEP: bool>(
 }
 
 impl BrickBlocks {
-    /// Of the next two blocks, the first that has parts that the line may meet, and these. Without branches.
+    /// Of the next two blocks, the first with parts that the line may meet, these, and the blocks after it.
     #[inline(always)]
     fn next<I: Isa>(
         &self,
         isa: I,
         tables: [&Row; 3],
-        cells: &BlockCells<I>,
-        blocks: &mut u64,
-    ) -> (usize, u64) {
-        let rest = *blocks & blocks.wrapping_sub(1);
-        let two = [*blocks, rest].map(|blocks| blocks.trailing_zeros() as usize);
-        let mut parts = [0; 2];
-        for (parts, block) in parts.iter_mut().zip(two) {
-            let [x, y, z] = cells.about(isa, &OFFSETS[block]);
-            *parts = tables[0][x] & tables[1][y] & tables[2][z] & self.exist[block];
+        cells: &Line<I>,
+        mut blocks: u64,
+    ) -> [u64; 3] {
+        let mut two = [[0; 3]; 2];
+        for found in &mut two {
+            let block = blocks.trailing_zeros() as usize;
+            blocks &= blocks.wrapping_sub(1);
+            let [x, y, z] = cells.block_cells(isa, &OFFSETS[block]);
+            let parts = tables[0][x] & tables[1][y] & tables[2][z] & self.exist[block];
+            *found = [block as u64 & 63, parts, blocks];
         }
-        let is_first = parts[0] != 0;
-        let after = rest & rest.wrapping_sub(1);
-        *blocks = if is_first { rest } else { after };
-        let block = if is_first { two[0] } else { two[1] };
-        (block & 63, if is_first { parts[0] } else { parts[1] })
+        let is_first = two[0][1] != 0;
+        [0, 1, 2].map(|i| if is_first { two[0][i] } else { two[1][i] })
     }
 }
 
@@ -268,10 +253,7 @@ fn show_hits<I: Isa, const DEEP: bool>(
         }
     }
     let first = band.pixels.at(square.left, square.top);
-    let mut left = drawn;
-    while left != 0 {
-        let bit = left.trailing_zeros() as usize & 63;
-        left &= left - 1;
+    for bit in bits(drawn) {
         let at = first + band.sample_offsets[bit] as usize;
         let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
         let word = band.pixels.word(node);
@@ -327,24 +309,16 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octan
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }
-    let (mut wanted, mut left) = (0u64, samples);
-    while left != 0 {
-        wanted |= band.candidates.0[left.trailing_zeros() as usize & 63];
-        left &= left - 1;
-    }
-    wanted &= !blocks.ready;
-    blocks.ready |= wanted;
-    while wanted != 0 {
-        let number = wanted.trailing_zeros() & 63;
-        wanted &= wanted - 1;
-        let block = brick
-            .parts
-            .part(band.graph, number ^ (u32::from(octant) * 9));
-        let parts = &mut blocks.parts[number as usize];
-        parts.read(band.isa, band.graph, block.node, false, 0);
+    let wanted = bits(samples).fold(0, |wanted, bit| wanted | band.candidates.0[bit]);
+    for number in bits(wanted & !blocks.ready) {
+        let part = number as u32 ^ (u32::from(octant) * 9);
+        let node = brick.parts.part(band.graph, part).node;
+        let parts = &mut blocks.parts[number];
+        parts.read(band.isa, band.graph, node, false, 0);
         parts.prefetch(band.isa, band.graph);
-        blocks.exist[number as usize] = turned_parts(band.isa, parts.exist, octant);
+        blocks.exist[number] = turned_parts(band.isa, parts.exist, octant);
     }
+    blocks.ready |= wanted;
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -10,7 +10,9 @@ use super::directions::{LINE_ERROR, Samples};
 use super::lanes::{F32x4, Floats, Isa};
 use super::orders::along;
 use super::projection::Projection;
-use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
+use super::strips::{
+    BLIND, CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips,
+};
 
 /// Relative rounding of a centre's column in `f64` over [`LINE_ERROR`]: 2^-50 over 2^-20.
 pub(super) const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
@@ -41,7 +43,7 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
 pub(super) struct Lines<I: Isa> {
     direction: [I::F32x4; 3],
     moment: [I::F32x4; 3],
-    pub(super) tables: [usize; 3],
+    pub(super) strips: [&'static Strips; 3],
     /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
     inverse: I::F32x4,
     pub(super) error: f32,
@@ -76,30 +78,6 @@ pub(super) struct Line<I: Isa> {
     last: I::F32x4,
     moment: I::F32x4,
     half: I::F32x4,
-}
-
-/// A line's functions in cells: about the node's centre, and what a block's offset changes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BlockCells<I: Isa> {
-    next: I::F32x4,
-    last: I::F32x4,
-    middle: I::F32x4,
-}
-
-impl<I: Isa> BlockCells<I> {
-    #[inline(always)]
-    pub(super) fn about(&self, isa: I, block: &Offset) -> [usize; 3] {
-        let [next, last] = [isa.four(&block.next), isa.four(&block.last)];
-        let cells = next.fnma(self.last, last.fma(self.next, self.middle));
-        cells.indices::<CELLS>()
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Meeting {
-    Misses,
-    Meets,
-    Doubt,
 }
 
 #[inline(always)]
@@ -160,7 +138,7 @@ impl<I: Isa> Lines<I> {
             .mul(inverse)
             .fma(isa.splat(SHARE_STEPS), half_step)
             .indices::<SHARES>();
-        let mut tables = [0, 1, 2].map(|j| Strips::table(j, shares[j], 0));
+        let mut strips = [0, 1, 2].map(|j| Strips::of(0, j, shares[j]));
         let mut sees = [1.0; 4];
         let mut has_blind = false;
         let mut most = MOST_ERROR[0];
@@ -168,9 +146,9 @@ impl<I: Isa> Lines<I> {
             most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
                 if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
-                    tables[j] = Strips::table(j, shares[j], class);
+                    strips[j] = Strips::of(class, j, shares[j]);
                 } else {
-                    tables[j] = Strips::BLIND;
+                    strips[j] = &BLIND;
                     sees[j] = 0.0;
                     has_blind = true;
                 }
@@ -184,7 +162,7 @@ impl<I: Isa> Lines<I> {
         Self {
             direction: [first, columns, rows],
             moment: [moment, step_x, step_y],
-            tables,
+            strips,
             inverse,
             error: greatest(error).min(most),
             rounding: greatest(rounding),
@@ -235,17 +213,20 @@ impl<I: Isa> Lines<I> {
         }
     }
 
+    /// For [`Line::block_cells`].
     #[inline(always)]
-    pub(super) fn block_cells(&self, isa: I, line: &Line<I>) -> BlockCells<I> {
+    pub(super) fn line_in_cells(&self, isa: I, line: &Line<I>) -> Line<I> {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
         let unit_of_blocks = self.inverse.mul(isa.splat(4.0 * CELLS_PER_WIDTH));
-        BlockCells {
+        Line {
             next: line.next.mul(unit_of_blocks),
             last: line.last.mul(unit_of_blocks),
-            middle: line.moment.fma(unit, isa.splat(MIDDLE)),
+            moment: line.moment.fma(unit, isa.splat(MIDDLE)),
+            ..*line
         }
     }
 
+    /// Whether a line certainly meets a part, and whether it may. Different: in doubt.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));
@@ -254,18 +235,6 @@ impl<I: Isa> Lines<I> {
             outside.add(self.doubt).signs() & 7 == 7,
             outside.sub(self.doubt).signs() & 7 == 7,
         ]
-    }
-
-    #[inline(always)]
-    pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
-        let [is_inside, may_be_inside] = self.are_inside(isa, line, offset);
-        if is_inside != may_be_inside {
-            Meeting::Doubt
-        } else if is_inside {
-            Meeting::Meets
-        } else {
-            Meeting::Misses
-        }
     }
 }
 
@@ -283,6 +252,14 @@ impl<I: Isa> Line<I> {
             moment: self.moment.sub(shift.mul(isa.splat(4.0))),
             ..*self
         }
+    }
+
+    /// Of a line in cells, those about a block.
+    #[inline(always)]
+    pub(super) fn block_cells(&self, isa: I, block: &Offset) -> [usize; 3] {
+        let [next, last] = [isa.four(&block.next), isa.four(&block.last)];
+        let cells = next.fnma(self.last, last.fma(self.next, self.moment));
+        cells.indices::<CELLS>()
     }
 }
 

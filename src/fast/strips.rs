@@ -13,7 +13,7 @@
 //! Parts are numbered `outer << 3 | inner`, with bits turned where the line runs downwards, so that a line meets lower
 //! numbers first.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use super::lanes::{F32x8, Floats, Isa, Lanes, U64x4};
 use super::orders::SLABS;
@@ -36,19 +36,28 @@ pub(super) const MOST_ERROR: [f32; CLASSES] = [
     MARGINS[2] - ROUNDING,
 ];
 
-const PER_MARGIN: usize = 3 * SHARES;
 pub(super) type Row = [u64; CELLS];
 
+/// The strips of a function, by cell of its value.
 #[derive(Debug)]
 pub(super) struct Strips {
-    touched: Vec<Row>,
+    /// Parts whose strip touches the cell.
+    pub(super) touched: Row,
     /// Parts whose strip reaches the cell or beyond it.
-    ends_above: Vec<Row>,
+    ends_above: Row,
     /// Parts whose strip begins in the cell or below it.
-    begins_below: Vec<Row>,
+    begins_below: Row,
 }
 
-pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
+/// By margin, axis and share. Made when first used, as a small picture uses few.
+static STRIPS: [[[OnceLock<Box<Strips>>; SHARES]; 3]; CLASSES] =
+    [const { [const { [const { OnceLock::new() }; SHARES] }; 3] }; CLASSES];
+
+pub(super) static BLIND: Strips = Strips {
+    touched: [u64::MAX; CELLS],
+    ends_above: [u64::MAX; CELLS],
+    begins_below: [u64::MAX; CELLS],
+};
 
 #[derive(Debug)]
 #[repr(C, align(32))]
@@ -115,29 +124,22 @@ fn first_row<I: Isa, const FUNCTION: i32>(
 }
 
 impl Strips {
-    fn new() -> Self {
-        let mut strips = Self {
-            touched: vec![[0; CELLS]; Self::BLIND + 1],
-            ends_above: vec![[0; CELLS]; Self::BLIND + 1],
-            begins_below: vec![[0; CELLS]; Self::BLIND + 1],
-        };
-        for (class, margin) in MARGINS.into_iter().enumerate() {
-            for axis in 0..3 {
-                for share in 0..SHARES {
-                    let at = Self::table(axis, share, class);
-                    strips.fill(at, axis, share as f32 / SHARE_STEPS, margin);
-                }
-            }
-        }
-        strips.touched[Self::BLIND] = [u64::MAX; CELLS];
-        strips.ends_above[Self::BLIND] = [u64::MAX; CELLS];
-        strips.begins_below[Self::BLIND] = [u64::MAX; CELLS];
-        strips
+    /// `class` of [`MOST_ERROR`], `share` in steps.
+    #[inline(always)]
+    pub(super) fn of(class: usize, axis: usize, share: usize) -> &'static Self {
+        let new = || Self::new(axis, share as f32 / SHARE_STEPS, MARGINS[class]);
+        STRIPS[class][axis][share].get_or_init(new)
     }
 
-    fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
+    #[inline(never)]
+    fn new(axis: usize, share: f32, margin: f32) -> Box<Self> {
+        let mut strips = Box::new(Self {
+            touched: [0; CELLS],
+            ends_above: [0; CELLS],
+            begins_below: [0; CELLS],
+        });
+        let (begun, ends) = (&mut strips.begins_below, &mut strips.ends_above);
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
         for place in 0..16 {
             let (a, b) = (place & 3, place >> 2);
             let parts = SLABS[next][a] & SLABS[last][b];
@@ -150,31 +152,17 @@ impl Strips {
             begun[cell] |= begun[cell - 1];
             ends[CELLS - 1 - cell] |= ends[CELLS - cell];
         }
-        for (touched, (begun, ends)) in self.touched[at].iter_mut().zip(begun.iter().zip(ends)) {
-            *touched = *begun & *ends;
-        }
-    }
-
-    /// `share` in steps, `class` of [`MOST_ERROR`].
-    #[inline(always)]
-    pub(super) fn table(axis: usize, share: usize, class: usize) -> usize {
-        class * PER_MARGIN + axis * SHARES + share
-    }
-
-    pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
-
-    #[inline(always)]
-    pub(super) fn touched(&self, tables: [usize; 3]) -> [&Row; 3] {
-        tables.map(|table| &self.touched[table])
+        strips.touched = std::array::from_fn(|cell| begun[cell] & ends[cell]);
+        strips
     }
 
     /// The parts that lines with values from cells to cells may meet.
     #[inline(always)]
-    pub(super) fn between(&self, tables: [usize; 3], low: [usize; 3], high: [usize; 3]) -> u64 {
+    pub(super) fn between(strips: [&Self; 3], low: [usize; 3], high: [usize; 3]) -> u64 {
         let mut parts = u64::MAX;
         for j in 0..3 {
-            parts &= self.ends_above[tables[j]][low[j] % CELLS];
-            parts &= self.begins_below[tables[j]][high[j] % CELLS];
+            parts &= strips[j].ends_above[low[j] % CELLS];
+            parts &= strips[j].begins_below[high[j] % CELLS];
         }
         parts
     }
@@ -196,22 +184,21 @@ mod tests {
     }
 
     fn leave_a_part_out(class: usize, error: f64) -> bool {
-        let strips = &*STRIPS;
         let mut left_out = false;
         let steps = 2 * SHARES - 2;
         for (axis, step) in (0..3).flat_map(|axis| (0..=steps).map(move |step| (axis, step))) {
             let share = (step as f64 - 0.02 * (step & 1) as f64) / steps as f64;
             let steps = (share * f64::from(SHARE_STEPS) + 0.5) as usize;
-            let table = Strips::table(axis, steps, class);
+            let strips = Strips::of(class, axis, steps);
             for place in -2600..=2600 {
                 let value = f64::from(place) / 1000.0;
                 let parts = met(axis, share, value);
                 for wrong in [-error, 0.0, error] {
                     let cell = (value + wrong) * f64::from(CELLS_PER_WIDTH) + f64::from(MIDDLE);
                     let cell = cell.clamp(0.0, 127.0) as usize;
-                    let found = strips.touched([table; 3])[0][cell];
+                    let found = strips.touched[cell];
                     left_out |= parts & !found != 0;
-                    assert_eq!(found, strips.between([table; 3], [cell; 3], [cell; 3]));
+                    assert_eq!(found, Strips::between([strips; 3], [cell; 3], [cell; 3]));
                 }
             }
         }

@@ -5,10 +5,10 @@ use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
-use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
+use super::lines::{Lines, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;
-use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
+use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, Strips};
 use super::window::{Window, bits};
 
 const UNIT: f32 = 2048.0;
@@ -98,11 +98,8 @@ fn draw_samples<I: Isa>(
         let mut covered = held & certain;
         for bit in bits(held & !certain) {
             let line = lines.line(isa, &SAMPLES[bit]);
-            let is_met = match lines.meets(isa, &line, offset) {
-                Meeting::Misses => false,
-                Meeting::Meets => true,
-                Meeting::Doubt => is_covered(band, brick, square, bit, &path),
-            };
+            let [is_met, may_be_met] = lines.are_inside(isa, &line, offset);
+            let is_met = is_met || (may_be_met && is_covered(band, brick, square, bit, &path));
             covered |= u64::from(is_met) << bit;
         }
         if covered != 0 {
@@ -172,8 +169,8 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     if high.signs() & 7 != 0 {
         return 0;
     }
-    STRIPS.between(
-        lines.tables,
+    Strips::between(
+        lines.strips,
         low.indices::<CELLS>(),
         high.indices::<CELLS>(),
     )
