@@ -4,8 +4,8 @@
 //! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The blocks
 //! that lines may meet are read first, once for a brick.
 //!
-//! Which part is met is unpredictable. So each step is taken for all samples, without branches, and only the first
-//! attempt: processors overlap short steps. Few samples remain for a second one.
+//! Processors cannot predict the part that a line meets. So each step is taken for all samples, without branches, and
+//! only the first attempt: processors overlap short steps. Few samples remain for a second one.
 
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
