@@ -63,7 +63,7 @@ fn fast(criterion: &mut Criterion) {
                 ..SetupOptions::default()
             };
             let setup = set_up(&graph, places, 1024, &options);
-            for instructions in [Instructions::Scalar, Instructions::Avx2] {
+            for instructions in [Instructions::Scalar, Instructions::Auto] {
                 let options = FastOptions {
                     threads: 1,
                     instructions,

@@ -2,7 +2,7 @@
 //! `spec/fast.md`, section 5).
 
 use super::constants::{Constants, Level};
-use super::lanes::{F32x8, Floats, Isa, Lanes};
+use super::lanes::{Floats, Isa, Lanes, Tests};
 use super::window::{BEYOND, WINDOW_MARGIN, Window};
 
 const ROUNDING: f32 = 1.0 / (1 << 21) as f32;

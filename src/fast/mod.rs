@@ -45,7 +45,7 @@ use canvas::{FillMemory, Pixels, TileGrid};
 use constants::Constants;
 use counters::Counters;
 use exact::Exact;
-use lanes::Scalar;
+use lanes::{Isa, Scalar, Vector};
 use window::{TILE_LOG2, Window};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -56,8 +56,6 @@ pub enum Instructions {
     Auto,
     /// Plain Rust.
     Scalar,
-    /// AVX2, or plain Rust where the processor has none.
-    Avx2,
 }
 
 /// Settings, none of which changes a picture.
@@ -135,10 +133,13 @@ impl Fast {
         };
         let object = constants.rows(setup.height);
         let object = object.start >> TILE_LOG2..object.end.div_ceil(1 << TILE_LOG2);
-        Ok(Ok(match self.options.instructions.best() {
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2(isa) => run_bands(&job, buffers, isa, &object, threads),
-            InstructionSet::Scalar(isa) => run_bands(&job, buffers, isa, &object, threads),
+        let vector = match self.options.instructions {
+            Instructions::Auto => Vector::detect(),
+            Instructions::Scalar => None,
+        };
+        Ok(Ok(match vector {
+            Some(isa) => run_bands(&job, buffers, isa, &object, threads),
+            None => run_bands(&job, buffers, Scalar, &object, threads),
         }))
     }
 
@@ -217,26 +218,6 @@ impl Engine for Fast {
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.extend([("handed_to_machine", 1), (why, 1)]);
         Ok(stats)
-    }
-}
-
-enum InstructionSet {
-    #[cfg(target_arch = "x86_64")]
-    Avx2(lanes::Avx2),
-    Scalar(Scalar),
-}
-
-impl Instructions {
-    fn best(self) -> InstructionSet {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(isa) = lanes::Avx2::detect().filter(|_| self != Self::Scalar) {
-            return InstructionSet::Avx2(isa);
-        }
-        InstructionSet::Scalar(Scalar)
-    }
-
-    pub fn are_available(self) -> bool {
-        self != Self::Avx2 || !matches!(self.best(), InstructionSet::Scalar(_))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Projection of a node: its centre, the slopes of its moments, and the window around its parts.
 
 use super::constants::{Constants, Level};
-use super::lanes::{F32x4, Floats, Isa, Lanes, U64x4};
+use super::lanes::{F32x4, Floats, Isa, Lanes, Masks};
 use super::orders::{EXTENTS, SLABS};
 use super::window::{BEYOND, WINDOW_MARGIN, Window};
 

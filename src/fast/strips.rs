@@ -15,7 +15,7 @@
 
 use std::sync::OnceLock;
 
-use super::lanes::{F32x8, Floats, Isa, Lanes, U64x4};
+use super::lanes::{Floats, Isa, Lanes, Masks, Tests};
 use super::orders::SLABS;
 
 pub(super) const SHARES: usize = 128;

@@ -4,7 +4,7 @@
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
 use super::directions::{SAMPLES, Samples, each_square};
-use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
+use super::lanes::{F32x4, Floats, Isa, Lanes, Shorts};
 use super::lines::{Lines, NO_OFFSET, OFFSETS};
 use super::orders::turned_parts;
 use super::projection::Projection;

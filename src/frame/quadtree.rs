@@ -66,10 +66,11 @@ const LEVELS: usize = 32;
 
 /// Place of each level's first node among all nodes: `(4^level - 1) / 3`.
 const LEVEL_STARTS: [usize; LEVELS] = {
-    let mut starts = [0; LEVELS];
+    let mut starts = [0usize; LEVELS];
     let mut level = 1;
     while level < LEVELS {
-        starts[level] = 4 * starts[level - 1] + 1;
+        // Beyond 32 bits only where no picture of that size can exist.
+        starts[level] = starts[level - 1].wrapping_mul(4).wrapping_add(1);
         level += 1;
     }
     starts

@@ -194,7 +194,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
     let is_usual = options.bits == 64 && options.frac.is_none() && setup.has_headroom;
     let (corner, side) = cube(graph);
     let is_absurd = camera.fov_degrees > 170.0 || camera.eye.distance(corner) > 1000.0 * side;
-    for instructions in [Instructions::Scalar, Instructions::Avx2] {
+    for instructions in [Instructions::Scalar, Instructions::Auto] {
         let options = any_fast(dice, instructions, graph.depth);
         let mut fast = Fast::new(options, Box::new(Machine::default()));
         let mut frame = empty(&setup);

@@ -20,12 +20,6 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
         ..MachineOptions::default()
     };
     let refused = |message: &str, advice: &str| Err(CliError::usage(message).advise(advice));
-    if !instructions.are_available() {
-        let message =
-            format!("this processor does not have the instructions of --isa {instructions:?}");
-        return Err(CliError::new(Kind::Run, message.to_lowercase())
-            .advise("leave --isa out, or take --isa scalar: the picture is the same"));
-    }
     match args.engine.unwrap_or_default() {
         EngineName::Fast => {
             let options = FastOptions {

@@ -5,18 +5,25 @@
 //! `#[inline(always)]`.
 
 mod scalar;
-#[cfg(target_arch = "x86_64")]
-mod x86;
+#[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
+#[cfg_attr(
+    all(target_arch = "aarch64", target_endian = "little"),
+    path = "neon.rs"
+)]
+#[cfg_attr(
+    all(target_arch = "wasm32", target_feature = "simd128"),
+    path = "wasm.rs"
+)]
+mod vector;
 
 use std::fmt::Debug;
 
 pub(super) use scalar::Scalar;
-#[cfg(target_arch = "x86_64")]
-pub(super) use x86::Avx2;
+pub(super) use vector::Vector;
 
 pub(super) trait Lanes<const N: usize>: Copy + Send + Sync + Debug {
-    type Isa;
-    type Lane;
+    type Isa: Copy;
+    type Lane: Copy;
     fn load(isa: Self::Isa, values: &[Self::Lane; N]) -> Self;
     fn splat(isa: Self::Isa, value: Self::Lane) -> Self;
 }
@@ -55,17 +62,17 @@ pub(super) trait F32x4: Floats<4, Lane = f32> {
     fn whole(self) -> [i32; 4];
 }
 
-pub(super) trait F32x8: Floats<8, Lane = f32> {
+pub(super) trait Tests<const N: usize>: Floats<N, Lane = f32> {
     fn at_most(self, other: Self) -> u8;
     /// The inverse, to 11 bits or more.
     fn reciprocal(self) -> Self;
-    fn whole(self) -> [i32; 8];
+    fn whole(self) -> [i32; N];
     /// As [`F32x4::indices`].
-    fn indices<const N: usize>(self) -> [usize; 8];
+    fn indices<const M: usize>(self) -> [usize; N];
 }
 
-/// Sixteen `i16`. Sums and products wrap around.
-pub(super) trait I16x16: Lanes<16, Lane = i16> {
+/// Sums and products wrap around.
+pub(super) trait Shorts<const N: usize>: Lanes<N, Lane = i16> {
     fn add(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn abs(self) -> Self;
@@ -75,7 +82,7 @@ pub(super) trait I16x16: Lanes<16, Lane = i16> {
     fn below(self, next: Self, limit: Self) -> u32;
 }
 
-pub(super) trait U64x4: Lanes<4, Lane = u64> {
+pub(super) trait Masks<const N: usize>: Lanes<N, Lane = u64> {
     fn and(self, other: Self) -> Self;
     /// The lanes that are 0, one bit each.
     fn zeros(self) -> u32;
@@ -91,15 +98,20 @@ pub(super) trait U8x16: Lanes<16, Lane = u8> {
 
 pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type F32x4: F32x4<Isa = Self>;
-    type F32x8: F32x8<Isa = Self>;
+    type F32x8: Tests<8, Isa = Self>;
     type F64x4: Floats<4, Isa = Self, Lane = f64>;
-    type I16x16: I16x16<Isa = Self>;
-    type U64x4: U64x4<Isa = Self>;
+    type I16x16: Shorts<16, Isa = Self>;
+    type U64x4: Masks<4, Isa = Self>;
     type U8x16: U8x16<Isa = Self>;
+
+    fn detect() -> Option<Self>;
 
     /// Runs a step, an `#[inline(always)]` closure, in its own function, compiled for this set. Arguments are passed, not
     /// captured, so that the compiler knows that they do not alias.
-    fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A));
+    #[inline(never)]
+    fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
+        step(target, argument);
+    }
 
     #[inline(always)]
     fn four(self, values: &[f32; 4]) -> Self::F32x4 {
@@ -118,8 +130,25 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     /// A vector of eight bytes, and eight more of no meaning.
     fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes, one after the other, at the places of a mask's bits, and bytes of ones there.
-    fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
+    fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
+        let (mut expanded, mut ones, mut left) = (0, 0, bytes);
+        for place in (0..8).filter(|place| mask >> place & 1 != 0) {
+            ones |= 0xff << (8 * place);
+            expanded |= (left & 0xff) << (8 * place);
+            left >>= 8;
+        }
+        [expanded, ones]
+    }
     /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist.
-    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
-    fn prefetch<T>(self, entries: &[T], at: usize);
+    #[inline(always)]
+    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
+        let mut left = mask;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            entries[(bit >> 3) * width + (bit & 7)] = value;
+        }
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, _: &[T], _: usize) {}
 }

@@ -101,26 +101,26 @@ impl F32x4 for [f32; 4] {
     }
 }
 
-impl F32x8 for [f32; 8] {
+impl<const N: usize> Tests<N> for [f32; N] {
     #[inline(always)]
     fn at_most(self, other: Self) -> u8 {
-        bits::<8>(|i| self[i] <= other[i]) as u8
+        bits::<N>(|i| self[i] <= other[i]) as u8
     }
     #[inline(always)]
     fn reciprocal(self) -> Self {
         self.map(|c| 1.0 / c)
     }
     #[inline(always)]
-    fn whole(self) -> [i32; 8] {
+    fn whole(self) -> [i32; N] {
         self.map(|c| c as i32)
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 8] {
-        self.map(index::<N>)
+    fn indices<const M: usize>(self) -> [usize; N] {
+        self.map(index::<M>)
     }
 }
 
-impl I16x16 for [i16; 16] {
+impl<const N: usize> Shorts<N> for [i16; N] {
     lane_by_lane! {
         add(a, b) = a.wrapping_add(b);
         mul(a, b) = a.wrapping_mul(b);
@@ -129,18 +129,18 @@ impl I16x16 for [i16; 16] {
     }
     #[inline(always)]
     fn below(self, next: Self, limit: Self) -> u32 {
-        let [low, high] = [self, next].map(|lanes| bits::<16>(|i| lanes[i] < limit[i]));
-        low | high << 16
+        let [low, high] = [self, next].map(|lanes| bits::<N>(|i| lanes[i] < limit[i]));
+        low | high << N
     }
 }
 
-impl U64x4 for [u64; 4] {
+impl<const N: usize> Masks<N> for [u64; N] {
     lane_by_lane! {
         and(a, b) = a & b;
     }
     #[inline(always)]
     fn zeros(self) -> u32 {
-        bits::<4>(|i| self[i] == 0)
+        bits::<N>(|i| self[i] == 0)
     }
 }
 
@@ -170,9 +170,8 @@ impl Isa for Scalar {
     type U64x4 = [u64; 4];
     type U8x16 = [u8; 16];
 
-    #[inline(never)]
-    fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
-        step(target, argument);
+    fn detect() -> Option<Self> {
+        Some(Self)
     }
     #[inline(always)]
     fn narrow(self, wide: [f64; 4]) -> [f32; 4] {
@@ -194,24 +193,4 @@ impl Isa for Scalar {
     fn bytes(self, eight: u64) -> [u8; 16] {
         u128::from(eight).to_le_bytes()
     }
-    fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
-        let (mut expanded, mut ones, mut left) = (0, 0, bytes);
-        for place in (0..8).filter(|place| mask >> place & 1 != 0) {
-            ones |= 0xff << (8 * place);
-            expanded |= (left & 0xff) << (8 * place);
-            left >>= 8;
-        }
-        [expanded, ones]
-    }
-    #[inline(always)]
-    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
-        let mut left = mask;
-        while left != 0 {
-            let bit = left.trailing_zeros() as usize;
-            left &= left - 1;
-            entries[(bit >> 3) * width + (bit & 7)] = value;
-        }
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, _: &[T], _: usize) {}
 }

@@ -4,24 +4,12 @@ use super::*;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::fast) struct Avx2(());
-
-impl Avx2 {
-    pub(in crate::fast) fn detect() -> Option<Self> {
-        let found = is_x86_feature_detected!("avx2")
-            && is_x86_feature_detected!("fma")
-            && is_x86_feature_detected!("bmi1")
-            && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt")
-            && is_x86_feature_detected!("popcnt");
-        found.then_some(Self(()))
-    }
-}
+pub(in crate::fast) struct Vector(());
 
 /// An expression of intrinsics that read no memory.
 macro_rules! avx {
     ($value:expr) => {
-        // SAFETY: an `Avx2` and its lanes are only made where these features were found.
+        // SAFETY: a `Vector` and its lanes are only made where these features were found.
         unsafe { $value }
     };
 }
@@ -32,15 +20,15 @@ macro_rules! lanes {
         pub(in crate::fast) struct $name($register);
 
         impl Lanes<$n> for $name {
-            type Isa = Avx2;
+            type Isa = Vector;
             type Lane = $lane;
             #[inline(always)]
-            fn load(_: Avx2, values: &[$lane; $n]) -> Self {
+            fn load(_: Vector, values: &[$lane; $n]) -> Self {
                 // SAFETY: as above. The load is of the array's lanes.
                 unsafe { Self($load(values.as_ptr().cast())) }
             }
             #[inline(always)]
-            fn splat(_: Avx2, value: $lane) -> Self {
+            fn splat(_: Vector, value: $lane) -> Self {
                 avx!(Self($splat(value as _)))
             }
         }
@@ -158,7 +146,7 @@ impl F32x4 for Floats4 {
     }
 }
 
-impl F32x8 for Floats8 {
+impl Tests<8> for Floats8 {
     methods! {
         reciprocal() = _mm256_rcp_ps;
     }
@@ -187,7 +175,7 @@ impl F32x8 for Floats8 {
     }
 }
 
-impl I16x16 for Shorts16 {
+impl Shorts<16> for Shorts16 {
     methods! {
         add(other) = _mm256_add_epi16;
         mul(other) = _mm256_mullo_epi16;
@@ -206,7 +194,7 @@ impl I16x16 for Shorts16 {
     }
 }
 
-impl U64x4 for Masks4 {
+impl Masks<4> for Masks4 {
     methods! {
         and(other) = _mm256_and_si256;
     }
@@ -238,7 +226,7 @@ impl U8x16 for Bytes16 {
     }
 }
 
-impl Isa for Avx2 {
+impl Isa for Vector {
     type F32x4 = Floats4;
     type F32x8 = Floats8;
     type F64x4 = Doubles4;
@@ -246,6 +234,15 @@ impl Isa for Avx2 {
     type U64x4 = Masks4;
     type U8x16 = Bytes16;
 
+    fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
+        found.then_some(Self(()))
+    }
     #[inline(always)]
     fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
         #[inline(never)]
@@ -253,7 +250,7 @@ impl Isa for Avx2 {
         fn compiled<T, A>(target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
             step(target, argument);
         }
-        // SAFETY: an `Avx2` is only made where these features were found.
+        // SAFETY: a `Vector` is only made where these features were found.
         unsafe { compiled(target, argument, step) };
     }
     #[inline(always)]

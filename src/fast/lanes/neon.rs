@@ -1,0 +1,318 @@
+use std::arch::aarch64::*;
+
+use super::*;
+use halves::Pair;
+
+#[path = "halves.rs"]
+mod halves;
+
+/// NEON, which all 64-bit Arm processors have.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::fast) struct Vector;
+
+macro_rules! lanes {
+    ($($name:ident([$lane:ty; $n:literal] in $register:ty, $load:ident, $splat:ident);)*) => {$(
+        #[derive(Debug, Clone, Copy)]
+        pub(in crate::fast) struct $name($register);
+
+        impl Lanes<$n> for $name {
+            type Isa = Vector;
+            type Lane = $lane;
+            #[inline(always)]
+            fn load(_: Vector, values: &[$lane; $n]) -> Self {
+                // SAFETY: the load is of the array's lanes.
+                Self(unsafe { $load(values.as_ptr()) })
+            }
+            #[inline(always)]
+            fn splat(_: Vector, value: $lane) -> Self {
+                neon!(Self($splat(value)))
+            }
+        }
+    )*};
+}
+
+/// An expression of intrinsics that read no memory.
+macro_rules! neon {
+    ($value:expr) => {{
+        // SAFETY: all 64-bit Arm processors have these instructions.
+        #[allow(
+            unused_unsafe,
+            reason = "safe since Rust 1.87, where the target has them"
+        )]
+        unsafe {
+            $value
+        }
+    }};
+}
+lanes! {
+    Floats4([f32; 4] in float32x4_t, vld1q_f32, vdupq_n_f32);
+    Doubles2([f64; 2] in float64x2_t, vld1q_f64, vdupq_n_f64);
+    Shorts8([i16; 8] in int16x8_t, vld1q_s16, vdupq_n_s16);
+    Masks2([u64; 2] in uint64x2_t, vld1q_u64, vdupq_n_u64);
+    Bytes16([u8; 16] in uint8x16_t, vld1q_u8, vdupq_n_u8);
+}
+
+macro_rules! methods {
+    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            neon!(Self($intrinsic(self.0 $(, $other.0)*)))
+        }
+    )*};
+}
+
+macro_rules! floats {
+    ($name:ident[$n:literal]: $add:ident $sub:ident $mul:ident $div:ident
+     $fma:ident $fms:ident $neg:ident $max:ident $min:ident
+     $abs:ident $floor:ident $ceil:ident) => {
+        impl Floats<$n> for $name {
+            methods! {
+                add(other) = $add;
+                sub(other) = $sub;
+                mul(other) = $mul;
+                div(other) = $div;
+                max(other) = $max;
+                min(other) = $min;
+                abs() = $abs;
+                floor() = $floor;
+                ceil() = $ceil;
+            }
+            #[inline(always)]
+            fn fma(self, by: Self, plus: Self) -> Self {
+                neon!(Self($fma(plus.0, self.0, by.0)))
+            }
+            #[inline(always)]
+            fn fms(self, by: Self, less: Self) -> Self {
+                neon!(Self($fma($neg(less.0), self.0, by.0)))
+            }
+            #[inline(always)]
+            fn fnma(self, by: Self, from: Self) -> Self {
+                neon!(Self($fms(from.0, self.0, by.0)))
+            }
+        }
+    };
+}
+floats! { Floats4[4]: vaddq_f32 vsubq_f32 vmulq_f32 vdivq_f32
+vfmaq_f32 vfmsq_f32 vnegq_f32 vmaxnmq_f32 vminnmq_f32
+vabsq_f32 vrndmq_f32 vrndpq_f32 }
+floats! { Doubles2[2]: vaddq_f64 vsubq_f64 vmulq_f64 vdivq_f64
+vfmaq_f64 vfmsq_f64 vnegq_f64 vmaxnmq_f64 vminnmq_f64
+vabsq_f64 vrndmq_f64 vrndpq_f64 }
+
+/// Places of bytes, for lanes 1, 2, 0, 3 and 2, 0, 1, 3.
+static NEXT: [u8; 16] = [4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 12, 13, 14, 15];
+static LAST: [u8; 16] = [8, 9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7, 12, 13, 14, 15];
+
+impl Floats4 {
+    #[inline(always)]
+    fn in_order(self, places: &[u8; 16]) -> Self {
+        let Bytes16(places) = Bytes16::load(Vector, places);
+        neon!({
+            let bytes = vqtbl1q_u8(vreinterpretq_u8_f32(self.0), places);
+            Self(vreinterpretq_f32_u8(bytes))
+        })
+    }
+}
+
+/// The highest bit of each lane.
+#[inline(always)]
+fn highest(lanes: uint32x4_t) -> u32 {
+    let places = [0, 1, 2, 3];
+    // SAFETY: all 64-bit Arm processors have these instructions. The load is of the array's lanes.
+    unsafe {
+        let bits = vshrq_n_u32::<31>(lanes);
+        vaddvq_u32(vshlq_u32(bits, vld1q_s32(places.as_ptr())))
+    }
+}
+
+#[inline(always)]
+fn four(lanes: uint32x4_t) -> [u32; 4] {
+    neon!([
+        vgetq_lane_u32::<0>(lanes),
+        vgetq_lane_u32::<1>(lanes),
+        vgetq_lane_u32::<2>(lanes),
+        vgetq_lane_u32::<3>(lanes),
+    ])
+}
+
+impl F32x4 for Floats4 {
+    #[inline(always)]
+    fn flip(self, signs: Self) -> Self {
+        neon!({
+            let [own, signs] = [self, signs].map(|lanes| vreinterpretq_u32_f32(lanes.0));
+            Self(vreinterpretq_f32_u32(veorq_u32(own, signs)))
+        })
+    }
+    #[inline(always)]
+    fn next(self) -> Self {
+        self.in_order(&NEXT)
+    }
+    #[inline(always)]
+    fn last(self) -> Self {
+        self.in_order(&LAST)
+    }
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        neon!(highest(vreinterpretq_u32_f32(self.0)))
+    }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 3] {
+        let [a, b, c, _] = Tests::indices::<N>(self);
+        [a, b, c]
+    }
+    #[inline(always)]
+    fn values(self) -> [f32; 4] {
+        neon!(four(vreinterpretq_u32_f32(self.0))).map(f32::from_bits)
+    }
+    #[inline(always)]
+    fn sums(self, other: Self) -> Self {
+        neon!({
+            let pairs = vpaddq_f32(self.0, other.0);
+            Self(vpaddq_f32(pairs, pairs))
+        })
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        Tests::whole(self)
+    }
+}
+
+impl Tests<4> for Floats4 {
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u8 {
+        neon!(highest(vcleq_f32(self.0, other.0))) as u8
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self::splat(Vector, 1.0).div(self)
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        neon!(four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0)))).map(|whole| whole as i32)
+    }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 4] {
+        let at = neon!({
+            let whole = vreinterpretq_u32_s32(vcvtq_s32_f32(self.0));
+            vminq_u32(whole, vdupq_n_u32(N as u32 - 1))
+        });
+        // The bounds are repeated for the compiler to see.
+        four(at).map(|at| at as usize % N)
+    }
+}
+
+impl Shorts<8> for Shorts8 {
+    methods! {
+        add(other) = vaddq_s16;
+        mul(other) = vmulq_s16;
+        abs() = vabsq_s16;
+    }
+    #[inline(always)]
+    fn max_unsigned(self, other: Self) -> Self {
+        neon!({
+            let [own, other] = [self, other].map(|lanes| vreinterpretq_u16_s16(lanes.0));
+            Self(vreinterpretq_s16_u16(vmaxq_u16(own, other)))
+        })
+    }
+    #[inline(always)]
+    fn below(self, next: Self, limit: Self) -> u32 {
+        let bits = [1, 2, 4, 8, 16, 32, 64, 128];
+        // SAFETY: all 64-bit Arm processors have these instructions. The load is of the array's lanes.
+        let [own, next] = unsafe {
+            let bits = vld1_u8(bits.as_ptr());
+            [self, next].map(|lanes| {
+                let is_below = vmovn_u16(vcltq_s16(lanes.0, limit.0));
+                u32::from(vaddv_u8(vand_u8(is_below, bits)))
+            })
+        };
+        own | next << 8
+    }
+}
+
+impl Masks<2> for Masks2 {
+    methods! {
+        and(other) = vandq_u64;
+    }
+    #[inline(always)]
+    fn zeros(self) -> u32 {
+        neon!({
+            let zeros = vceqzq_u64(self.0);
+            (vgetq_lane_u64::<0>(zeros) & 1 | vgetq_lane_u64::<1>(zeros) & 2) as u32
+        })
+    }
+}
+
+impl U8x16 for Bytes16 {
+    methods! {
+        or(other) = vorrq_u8;
+        look_up(at) = vqtbl1q_u8;
+    }
+    #[inline(always)]
+    fn nibbles(self) -> [Self; 2] {
+        neon!([
+            Self(vandq_u8(self.0, vdupq_n_u8(15))),
+            Self(vshrq_n_u8::<4>(self.0))
+        ])
+    }
+    #[inline(always)]
+    fn low(self) -> u64 {
+        neon!(vgetq_lane_u64::<0>(vreinterpretq_u64_u8(self.0)))
+    }
+}
+
+impl Isa for Vector {
+    type F32x4 = Floats4;
+    type F32x8 = Pair<Floats4>;
+    type F64x4 = Pair<Doubles2>;
+    type I16x16 = Pair<Shorts8>;
+    type U64x4 = Pair<Masks2>;
+    type U8x16 = Bytes16;
+
+    fn detect() -> Option<Self> {
+        Some(Self)
+    }
+    #[inline(always)]
+    fn narrow(self, Pair(low, high): Self::F64x4) -> Floats4 {
+        neon!(Floats4(vcvt_high_f32_f64(vcvt_f32_f64(low.0), high.0)))
+    }
+    #[inline(always)]
+    fn join(self, low: Floats4, high: Floats4) -> Self::F32x8 {
+        Pair(low, high)
+    }
+    #[inline(always)]
+    fn broadcast<const LANE: i32>(self, from: Floats4) -> Self::F32x8 {
+        let all = neon!(Floats4(vdupq_laneq_f32::<LANE>(from.0)));
+        Pair(all, all)
+    }
+    #[inline(always)]
+    fn broadcast_rounded<const LANE: i32>(self, from: Floats4) -> Self::I16x16 {
+        let all = neon!({
+            let rounded = vqmovn_s32(vcvtnq_s32_f32(from.0));
+            Shorts8(vdupq_lane_s16::<LANE>(rounded))
+        });
+        Pair(all, all)
+    }
+    #[inline(always)]
+    fn bytes(self, eight: u64) -> Bytes16 {
+        neon!(Bytes16(vreinterpretq_u8_u64(vdupq_n_u64(eight))))
+    }
+    #[inline(always)]
+    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
+        let bits = [1, 2, 4, 8, 16, 32, 64, 128];
+        for (i, row) in entries.chunks_mut(width).take(8).enumerate() {
+            let (fours, _) = row[..8].as_chunks_mut::<4>();
+            for (four, bits) in fours.iter_mut().zip(bits.as_chunks::<4>().0) {
+                // SAFETY: all 64-bit Arm processors have these instructions. Loads and the store are of the arrays' lanes.
+                unsafe {
+                    let mask = vdupq_n_u32((mask >> (8 * i)) as u32);
+                    let mask = vtstq_u32(mask, vld1q_u32(bits.as_ptr()));
+                    let before = vld1q_u32(four.as_ptr());
+                    vst1q_u32(
+                        four.as_mut_ptr(),
+                        vbslq_u32(mask, vdupq_n_u32(value), before),
+                    );
+                }
+            }
+        }
+    }
+}

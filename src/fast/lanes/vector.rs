@@ -1,0 +1,3 @@
+//! Where there are no vector instructions.
+
+pub(in crate::fast) use super::Scalar as Vector;

@@ -1,0 +1,229 @@
+use std::arch::wasm32::*;
+
+use super::*;
+use halves::Pair;
+
+#[path = "halves.rs"]
+mod halves;
+
+/// The 128-bit vectors of WebAssembly, which has no fused multiply-add. Chosen when the program is compiled.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::fast) struct Vector;
+
+macro_rules! lanes {
+    ($($name:ident([$lane:ty; $n:literal], $load:ident($($at:literal)*), $splat:ident);)*) => {$(
+        #[derive(Debug, Clone, Copy)]
+        pub(in crate::fast) struct $name(v128);
+
+        impl Lanes<$n> for $name {
+            type Isa = Vector;
+            type Lane = $lane;
+            #[inline(always)]
+            fn load(_: Vector, values: &[$lane; $n]) -> Self {
+                Self($load($(values[$at]),*))
+            }
+            #[inline(always)]
+            fn splat(_: Vector, value: $lane) -> Self {
+                Self($splat(value))
+            }
+        }
+    )*};
+}
+lanes! {
+    Floats4([f32; 4], f32x4(0 1 2 3), f32x4_splat);
+    Doubles2([f64; 2], f64x2(0 1), f64x2_splat);
+    Shorts8([i16; 8], i16x8(0 1 2 3 4 5 6 7), i16x8_splat);
+    Masks2([u64; 2], u64x2(0 1), u64x2_splat);
+    Bytes16([u8; 16], u8x16(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15), u8x16_splat);
+}
+
+macro_rules! methods {
+    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            Self($intrinsic(self.0 $(, $other.0)*))
+        }
+    )*};
+}
+
+macro_rules! floats {
+    ($name:ident[$n:literal]: $add:ident $sub:ident $mul:ident $div:ident
+     $max:ident $min:ident $abs:ident $floor:ident $ceil:ident) => {
+        impl Floats<$n> for $name {
+            methods! {
+                add(other) = $add;
+                sub(other) = $sub;
+                mul(other) = $mul;
+                div(other) = $div;
+                max(other) = $max;
+                min(other) = $min;
+                abs() = $abs;
+                floor() = $floor;
+                ceil() = $ceil;
+            }
+            #[inline(always)]
+            fn fma(self, by: Self, plus: Self) -> Self {
+                self.mul(by).add(plus)
+            }
+            #[inline(always)]
+            fn fms(self, by: Self, less: Self) -> Self {
+                self.mul(by).sub(less)
+            }
+            #[inline(always)]
+            fn fnma(self, by: Self, from: Self) -> Self {
+                from.sub(self.mul(by))
+            }
+        }
+    };
+}
+floats! { Floats4[4]: f32x4_add f32x4_sub f32x4_mul f32x4_div
+f32x4_pmax f32x4_pmin f32x4_abs f32x4_floor f32x4_ceil }
+floats! { Doubles2[2]: f64x2_add f64x2_sub f64x2_mul f64x2_div
+f64x2_pmax f64x2_pmin f64x2_abs f64x2_floor f64x2_ceil }
+
+#[inline(always)]
+fn four(lanes: v128) -> [u32; 4] {
+    [
+        u32x4_extract_lane::<0>(lanes),
+        u32x4_extract_lane::<1>(lanes),
+        u32x4_extract_lane::<2>(lanes),
+        u32x4_extract_lane::<3>(lanes),
+    ]
+}
+
+impl F32x4 for Floats4 {
+    methods! {
+        flip(signs) = v128_xor;
+    }
+    #[inline(always)]
+    fn next(self) -> Self {
+        Self(i32x4_shuffle::<1, 2, 0, 3>(self.0, self.0))
+    }
+    #[inline(always)]
+    fn last(self) -> Self {
+        Self(i32x4_shuffle::<2, 0, 1, 3>(self.0, self.0))
+    }
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        u32::from(i32x4_bitmask(self.0))
+    }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 3] {
+        let [a, b, c, _] = Tests::indices::<N>(self);
+        [a, b, c]
+    }
+    #[inline(always)]
+    fn values(self) -> [f32; 4] {
+        four(self.0).map(f32::from_bits)
+    }
+    #[inline(always)]
+    fn sums(self, other: Self) -> Self {
+        let pairs = |a, b| {
+            let even = i32x4_shuffle::<0, 2, 4, 6>(a, b);
+            f32x4_add(even, i32x4_shuffle::<1, 3, 5, 7>(a, b))
+        };
+        let halves = pairs(self.0, other.0);
+        Self(pairs(halves, halves))
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        Tests::whole(self)
+    }
+}
+
+impl Tests<4> for Floats4 {
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u8 {
+        i32x4_bitmask(f32x4_le(self.0, other.0))
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self(f32x4_splat(1.0)).div(self)
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        four(i32x4_trunc_sat_f32x4(self.0)).map(|whole| whole as i32)
+    }
+    #[inline(always)]
+    fn indices<const N: usize>(self) -> [usize; 4] {
+        let whole = i32x4_trunc_sat_f32x4(self.0);
+        // The bounds are repeated for the compiler to see.
+        four(u32x4_min(whole, u32x4_splat(N as u32 - 1))).map(|at| at as usize % N)
+    }
+}
+
+impl Shorts<8> for Shorts8 {
+    methods! {
+        add(other) = i16x8_add;
+        mul(other) = i16x8_mul;
+        abs() = i16x8_abs;
+        max_unsigned(other) = u16x8_max;
+    }
+    #[inline(always)]
+    fn below(self, next: Self, limit: Self) -> u32 {
+        let [own, next] = [self, next].map(|lanes| i16x8_lt(lanes.0, limit.0));
+        u32::from(i8x16_bitmask(i8x16_narrow_i16x8(own, next)))
+    }
+}
+
+impl Masks<2> for Masks2 {
+    methods! {
+        and(other) = v128_and;
+    }
+    #[inline(always)]
+    fn zeros(self) -> u32 {
+        u32::from(i64x2_bitmask(i64x2_eq(self.0, u64x2_splat(0))))
+    }
+}
+
+impl U8x16 for Bytes16 {
+    methods! {
+        or(other) = v128_or;
+        look_up(at) = u8x16_swizzle;
+    }
+    #[inline(always)]
+    fn nibbles(self) -> [Self; 2] {
+        let low = v128_and(self.0, u8x16_splat(15));
+        [Self(low), Self(u8x16_shr(self.0, 4))]
+    }
+    #[inline(always)]
+    fn low(self) -> u64 {
+        u64x2_extract_lane::<0>(self.0)
+    }
+}
+
+impl Isa for Vector {
+    type F32x4 = Floats4;
+    type F32x8 = Pair<Floats4>;
+    type F64x4 = Pair<Doubles2>;
+    type I16x16 = Pair<Shorts8>;
+    type U64x4 = Pair<Masks2>;
+    type U8x16 = Bytes16;
+
+    fn detect() -> Option<Self> {
+        Some(Self)
+    }
+    #[inline(always)]
+    fn narrow(self, wide: Self::F64x4) -> Floats4 {
+        let [low, high] = [wide.0, wide.1].map(|half| f32x4_demote_f64x2_zero(half.0));
+        Floats4(i32x4_shuffle::<0, 1, 4, 5>(low, high))
+    }
+    #[inline(always)]
+    fn join(self, low: Floats4, high: Floats4) -> Self::F32x8 {
+        Pair(low, high)
+    }
+    #[inline(always)]
+    fn broadcast<const LANE: i32>(self, from: Floats4) -> Self::F32x8 {
+        Self::F32x8::splat(self, from.values()[LANE as usize])
+    }
+    #[inline(always)]
+    fn broadcast_rounded<const LANE: i32>(self, from: Floats4) -> Self::I16x16 {
+        let rounded = i32x4_trunc_sat_f32x4(f32x4_nearest(from.0));
+        let lane = four(rounded)[LANE as usize] as i32;
+        Self::I16x16::splat(self, lane.clamp(-0x8000, 0x7fff) as i16)
+    }
+    #[inline(always)]
+    fn bytes(self, eight: u64) -> Bytes16 {
+        Bytes16(u64x2(eight, 0))
+    }
+}
