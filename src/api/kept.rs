@@ -25,7 +25,8 @@ pub(super) struct Key {
 /// start. Nothing happens inside another pool. Errors: [`Error::Threads`] with the system's reason.
 pub fn start_threads() -> Result<(), Error> {
     static REFUSED: OnceLock<Option<String>> = OnceLock::new();
-    if rayon::current_thread_index().is_some() {
+    // WebAssembly has no threads: `rayon` works on the caller's.
+    if cfg!(target_family = "wasm") || rayon::current_thread_index().is_some() {
         return Ok(());
     }
     let refused = REFUSED.get_or_init(|| {

@@ -7,6 +7,7 @@ use std::path::Path;
 use hwmodel::count::Counter;
 
 use super::Error;
+#[cfg(feature = "png")]
 use crate::budget;
 use crate::picture::Buffer;
 use crate::picture::npy::{self, Values};

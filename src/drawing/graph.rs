@@ -1,13 +1,12 @@
 //! A voxel graph as a [`Drawable`], with any engine of voxels.
 
 use std::borrow::Cow;
-use std::time::Instant;
 
 use serde_json::json;
 
 use super::{
     Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples,
-    milliseconds_since, timed,
+    milliseconds_since, now, timed,
 };
 use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, GraphView};
@@ -165,10 +164,10 @@ impl<'g> GraphDrawing<'g> {
     }
 
     fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<(Stats, f64), DrawError> {
-        let started = Instant::now();
+        let started = now();
         let light = lights(self.graph, setup, self.style.shading)?;
         let stats = self.viewer.render_lit(setup, &light)?;
-        Ok((stats, milliseconds_since(started)))
+        Ok((stats, started.map_or(0.0, milliseconds_since)))
     }
 
     /// Makes something from a drawn frame. Draws the frame again with voxels if colours depend on them.
@@ -227,7 +226,7 @@ impl Drawable for GraphDrawing<'_> {
             runs => Some(timed(runs, self.frames(camera)?)?.1),
         };
         let mut drawn = self.draw_frame(camera)?;
-        let started = Instant::now();
+        let started = now();
         let last = self
             .last
             .take()
@@ -237,7 +236,7 @@ impl Drawable for GraphDrawing<'_> {
             Some(last) => last.pixels,
             None => self.resolve(&mut drawn, pixels)?,
         };
-        let resolve_ms = milliseconds_since(started) - (drawn.draw_ms - draw_ms);
+        let resolve_ms = started.map_or(0.0, milliseconds_since) - (drawn.draw_ms - draw_ms);
         self.last = Some(Drawn {
             pixels,
             pixels_drawn: self.resolver(&drawn.setup)?.drawn(),

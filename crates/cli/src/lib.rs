@@ -34,6 +34,7 @@ mod view;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 use clap::{ArgAction, ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -63,9 +64,20 @@ unfinished files and ends by that signal, which shells show as 130."
     )
 }
 
+fn version() -> &'static str {
+    static VERSION: LazyLock<String> = LazyLock::new(|| {
+        let identity = shiftvox::IDENTITY;
+        format!(
+            "{}\nidentity of the pictures {identity}",
+            env!("CARGO_PKG_VERSION")
+        )
+    });
+    &VERSION
+}
+
 /// Draws voxel files and meshes, the same to the bit on every computer.
 #[derive(Debug, Parser)]
-#[command(name = "shiftvox", version, max_term_width = 100, long_about = long_about())]
+#[command(name = "shiftvox", version = version(), max_term_width = 100, long_about = long_about())]
 struct Cli {
     #[command(flatten)]
     common: CommonArgs,

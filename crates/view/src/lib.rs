@@ -1,18 +1,26 @@
 //! A web page of scenes for a browser on this computer, and the server behind it.
 //!
-//! [`Server`] serves the page and its sockets over HTTP/1.1, with one thread per connection. A program that draws
-//! implements [`Program`].
+//! `Server` serves the page and its sockets over HTTP/1.1, with one thread per connection. A program that draws
+//! implements [`Program`]. A page without a server exchanges the same messages with a worker.
 
 #![forbid(unsafe_code)]
 
+mod message;
 mod request;
+#[cfg(feature = "server")]
 mod server;
+#[cfg(feature = "server")]
 mod socket;
 
 use serde_json::Value;
 
+pub use message::{answer, hello, message};
 pub use request::{Ask, Camera, FLAGS, Flags, Request, check_size};
+#[cfg(feature = "server")]
 pub use server::Server;
+
+/// The page. `{{nonce}}` stands for a word that a server's policy names.
+pub const PAGE: &str = include_str!("page.html");
 
 /// The fields of an answer, and the bytes of its picture if it has one.
 pub type Answer = (Value, Vec<u8>);

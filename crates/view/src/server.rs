@@ -14,9 +14,8 @@ use tungstenite::handshake::server::{Request, create_response, write_response};
 use tungstenite::http::uri::Authority;
 use tungstenite::http::{HeaderName, StatusCode, header};
 
-use crate::{Program, socket};
+use crate::{PAGE, Program, socket};
 
-const PAGE: &str = include_str!("page.html");
 /// Most sockets; a page opens two.
 const MOST_SOCKETS: usize = 8;
 /// Most connections that are not sockets.

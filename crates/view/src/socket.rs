@@ -1,19 +1,16 @@
-//! A message to a page is the length of its head in four bytes (least significant first), the head as JSON, and the
-//! picture if there is one. Requests do not queue: of those that have arrived, only the newest is answered.
+//! Requests do not queue: of those that have arrived, only the newest is answered.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-use serde_json::json;
 use tungstenite::protocol::frame::Frame;
 use tungstenite::protocol::frame::coding::{CloseCode, Data, OpCode};
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Error, Message, Utf8Bytes, WebSocket};
 
-use crate::request::{MOST_PIXELS, MOST_SAMPLES, Request};
-use crate::{Answer, Program};
+use crate::{Answer, Program, answer, hello, message};
 
 /// Of a page.
 const MOST_BYTES: usize = 4096;
@@ -64,12 +61,7 @@ fn answer_all(
     socket: &mut WebSocket<Patient>,
     program: &impl Program,
 ) -> Result<Option<(CloseCode, &'static str)>, Error> {
-    let mut hello = program.hello();
-    hello["ask"] = json!("hello");
-    hello["version"] = json!(env!("CARGO_PKG_VERSION"));
-    hello["most_pixels"] = json!(MOST_PIXELS);
-    hello["most_samples"] = json!(MOST_SAMPLES);
-    send(socket, (hello, Vec::new()))?;
+    send(socket, (hello(program), Vec::new()))?;
     socket.get_ref().0.set_read_timeout(Some(IDLE))?;
     let (mut drawer, mut newest) = (None, None::<Utf8Bytes>);
     let (mut second, mut count) = (Instant::now(), 0);
@@ -84,13 +76,13 @@ fn answer_all(
                     ErrorKind::Interrupted => continue,
                     _ => return Err(error.into()),
                 }
-                let Some(message) = newest.take() else {
+                let Some(request) = newest.take() else {
                     drawer = None;
                     continue;
                 };
                 socket.get_ref().0.set_nonblocking(false)?;
                 let drawer = drawer.get_or_insert_with(|| program.drawer());
-                let drawn = catch_unwind(AssertUnwindSafe(|| answer(drawer, &message)));
+                let drawn = catch_unwind(AssertUnwindSafe(|| answer(drawer, &request)));
                 let Ok(answer) = drawn else {
                     let reason = "the program cannot go on with this page";
                     return Ok(Some((CloseCode::Error, reason)));
@@ -120,28 +112,9 @@ fn answer_all(
 }
 
 fn send(socket: &mut WebSocket<Patient>, (head, picture): Answer) -> Result<(), Error> {
-    let head = head.to_string();
-    let mut begin = (head.len() as u32).to_le_bytes().to_vec();
-    begin.extend_from_slice(head.as_bytes());
+    let begin = message((head, Vec::new()));
     let begin = Frame::message(begin, OpCode::Data(Data::Binary), false);
     let rest = Frame::message(picture, OpCode::Data(Data::Continue), true);
     socket.write(Message::Frame(begin))?;
     socket.send(Message::Frame(rest))
-}
-
-fn answer(drawer: &mut impl FnMut(&Request) -> Result<Answer, String>, message: &str) -> Answer {
-    let request = serde_json::from_str::<Request>(message)
-        .map_err(|error| format!("this message is not understood: {error}"));
-    let mut seq = None;
-    let drawn = request.and_then(|request| {
-        seq = Some(request.seq);
-        request.check()?;
-        let (mut head, picture) = drawer(&request)?;
-        head["ask"] = json!(request.ask);
-        Ok((head, picture))
-    });
-    let refused = |reason| (json!({ "ask": "error", "error": reason }), Vec::new());
-    let (mut head, picture) = drawn.unwrap_or_else(refused);
-    head["seq"] = json!(seq);
-    (head, picture)
 }

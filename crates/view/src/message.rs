@@ -1,0 +1,49 @@
+//! Messages to a page: the length of a head in four bytes (least significant first), the head as JSON, and the picture if
+//! there is one.
+
+use serde_json::{Value, json};
+
+use crate::request::{MOST_PIXELS, MOST_SAMPLES, Request};
+use crate::{Answer, Program};
+
+/// The head of the first message.
+#[must_use]
+pub fn hello(program: &impl Program) -> Value {
+    let mut hello = program.hello();
+    hello["ask"] = json!("hello");
+    hello["version"] = json!(env!("CARGO_PKG_VERSION"));
+    hello["most_pixels"] = json!(MOST_PIXELS);
+    hello["most_samples"] = json!(MOST_SAMPLES);
+    hello
+}
+
+/// The bytes of a message.
+#[must_use]
+pub fn message((head, picture): Answer) -> Vec<u8> {
+    let head = head.to_string();
+    let mut bytes = (head.len() as u32).to_le_bytes().to_vec();
+    bytes.extend_from_slice(head.as_bytes());
+    bytes.extend_from_slice(&picture);
+    bytes
+}
+
+/// The answer of a [`Program::drawer`] to a request's text, or a refusal.
+pub fn answer(
+    drawer: &mut impl FnMut(&Request) -> Result<Answer, String>,
+    message: &str,
+) -> Answer {
+    let request = serde_json::from_str::<Request>(message)
+        .map_err(|error| format!("this message is not understood: {error}"));
+    let mut seq = None;
+    let drawn = request.and_then(|request| {
+        seq = Some(request.seq);
+        request.check()?;
+        let (mut head, picture) = drawer(&request)?;
+        head["ask"] = json!(request.ask);
+        Ok((head, picture))
+    });
+    let refused = |reason| (json!({ "ask": "error", "error": reason }), Vec::new());
+    let (mut head, picture) = drawn.unwrap_or_else(refused);
+    head["seq"] = json!(seq);
+    (head, picture)
+}

@@ -1,0 +1,179 @@
+//! Draws what a page asks for, by the library.
+
+use glam::DVec3;
+use serde_json::{Value, json};
+use shiftvox::project::Camera as Placed;
+use shiftvox::{Buffer, CageKind, Camera, Coverage, EngineKind, Renderer, Scene, Shading, View};
+use shiftvox_view::{Answer, Ask, FLAGS, Program, Request};
+
+#[derive(Debug)]
+pub(super) struct Opened {
+    name: String,
+    scene: Scene,
+}
+
+impl Opened {
+    pub(super) fn of(name: &str, bytes: &[u8]) -> Result<Self, String> {
+        let scene = match name {
+            "" => Scene::from_bytes(shiftvox::scene::BUNDLED_TREE, "tree.vox"),
+            name => Scene::from_bytes(bytes, name),
+        };
+        Ok(Self {
+            name: if name.is_empty() {
+                "assets/tree.vox"
+            } else {
+                name
+            }
+            .to_owned(),
+            scene: scene.map_err(|error| error.to_string())?,
+        })
+    }
+
+    fn picture(&self, request: &Request) -> Result<Answer, String> {
+        let started = now();
+        if request.show.as_ref().is_some_and(|show| show != "color") {
+            return Err(
+                "a page without a server shows colours only: use `shiftvox view`".to_owned(),
+            );
+        }
+        let [width, height] = request.size;
+        let camera = self.camera(request)?;
+        let renderer = settings(request)?;
+        let placed = Camera::look_at(camera.eye.into(), camera.target.into())
+            .up(camera.up.into())
+            .field_of_view(camera.fov_degrees);
+        let picture = renderer.render(&self.scene, &placed, width, height);
+        let picture = picture.map_err(|error| error.to_string())?;
+        let drawn_ms = now() - started;
+        let nodes = picture.nodes().map_err(|error| error.to_string())?;
+        let hash = request
+            .hash
+            .then(|| picture.hash().map(str::to_owned))
+            .transpose();
+        let words: Vec<_> = request
+            .words(FLAGS)
+            .chain((request.aa != 1).then(|| format!("--aa={}", request.aa)))
+            .collect();
+        let point = |point: DVec3| format!("{},{},{}", point.x, point.y, point.z);
+        let head = json!({
+            "width": width,
+            "height": height,
+            "png": false,
+            "camera": {
+                "eye": camera.eye.to_array(),
+                "target": camera.target.to_array(),
+                "up": camera.up.to_array(),
+                "fov_degrees": camera.fov_degrees,
+            },
+            "axis": self.scene.up().axis().to_array(),
+            "engine": request.flags.get("engine").map_or("fast", String::as_str),
+            "command": format!(
+                "shiftvox render '{}' {} --size={width}x{height} --eye {} --target {} --up {} --fov {} -o picture.png",
+                self.name,
+                words.join(" "),
+                point(camera.eye),
+                point(camera.target),
+                point(camera.up),
+                camera.fov_degrees,
+            ),
+            "hash": hash.map_err(|error| error.to_string())?,
+            "counters": picture.counters(),
+            "pixels_drawn": nodes.iter().filter(|&&node| node >= 0).count(),
+            "draw_ms": drawn_ms,
+        });
+        Ok((head, picture.rgba().as_flattened().to_vec()))
+    }
+
+    /// As `view` places it. Drawing rejects cameras that see nothing.
+    fn camera(&self, request: &Request) -> Result<Placed, String> {
+        let [width, height] = request.size;
+        let Some(camera) = &request.camera else {
+            let fitted = Camera::fit(&self.scene).of_size(width, height);
+            return fitted.map_err(|error| error.to_string());
+        };
+        let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
+        let point = |point: [Option<f64>; 3]| DVec3::from_array(point.map(number));
+        Ok(Placed {
+            eye: point(camera.eye),
+            target: point(camera.target),
+            up: point(camera.up),
+            fov_degrees: number(camera.fov),
+            width,
+            height,
+        })
+    }
+}
+
+impl Program for Opened {
+    fn hello(&self) -> Value {
+        json!({ "scenes": [self.name], "flags": {}, "size": null, "aa": 1, "warnings": self.scene.warnings() })
+    }
+
+    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String> {
+        |request| match request.ask {
+            Ask::Picture => self.picture(request),
+            Ask::Figures => Err(
+                "figures of the hardware: `shiftvox model`, or the page of `shiftvox view`"
+                    .to_owned(),
+            ),
+        }
+    }
+}
+
+/// The settings of a request's flags.
+fn settings(request: &Request) -> Result<Renderer, String> {
+    let mut renderer = Renderer::new()
+        .samples(request.aa)
+        .hashed(request.hash)
+        .buffers([Buffer::Node]);
+    let (mut bits, mut frac) = (64, None);
+    for (name, value) in &request.flags {
+        let wrong = || format!("--{name} has no value {value} here");
+        let number = || value.parse::<f64>().map_err(|_| wrong());
+        let whole = || value.parse::<u32>().map_err(|_| wrong());
+        renderer = match (name.as_str(), value.as_str()) {
+            ("coverage", "exact") => renderer.coverage(Coverage::Exact),
+            ("coverage", "alpha") => renderer.coverage(Coverage::Alpha),
+            ("coverage", "center") => renderer.coverage(Coverage::Center),
+            ("coverage", "any") => renderer.coverage(Coverage::Any),
+            ("cage", "frame") => renderer.cage(CageKind::Frame),
+            ("cage", "corners") => renderer.cage(CageKind::Corners),
+            ("engine", "fast") => renderer.engine(EngineKind::Fast),
+            ("engine", "machine") => renderer.engine(EngineKind::Machine),
+            ("engine", "rays") => renderer.engine(EngineKind::Rays),
+            ("shade", "lambert") => renderer.shading(Shading::Lambert),
+            ("shade", "flat") => renderer.shading(Shading::Flat),
+            ("lod", _) => renderer.level_of_detail(number()?),
+            ("tolerance", "inf") => renderer.tolerance(f64::INFINITY),
+            ("tolerance", _) => renderer.tolerance(number()?),
+            ("bits" | "frac", _) => {
+                match name.as_str() {
+                    "bits" => bits = whole()?,
+                    _ => frac = Some(whole()?),
+                }
+                renderer
+            }
+            _ => return Err(wrong()),
+        };
+    }
+    Ok(renderer.word(bits, frac))
+}
+
+/// Milliseconds of the page's clock. WebAssembly has none of its own.
+#[cfg(target_family = "wasm")]
+fn now() -> f64 {
+    mod page {
+        #[link(wasm_import_module = "page")]
+        unsafe extern "C" {
+            pub(super) safe fn now() -> f64;
+        }
+    }
+    page::now()
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn now() -> f64 {
+    use std::time::Instant;
+    static BEGIN: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+    shiftvox::drawing::milliseconds_since(*BEGIN)
+}

@@ -1,0 +1,221 @@
+//! Golden pictures: the rows of `golden.txt` are drawn to the same bits on every computer, in every build profile, with
+//! all instruction sets and any number of threads. After a change that is meant to show:
+//!
+//! ```text
+//! SHIFTVOX_BLESS=1 cargo test --release -p shiftvox-web
+//! ```
+//!
+//! Say in the commit why which rows changed, and put the new identity into `shiftvox::IDENTITY`.
+
+use glam::DVec3;
+use hwmodel::count::Counter;
+use shiftvox::Coverage;
+use shiftvox::fast::{Fast, FastOptions, Instructions};
+use shiftvox::frame::Frame;
+use shiftvox::graph::{BuildOptions, Builder, Graph, GraphView, Normals, Opacity, Silent};
+use shiftvox::machine::Machine;
+use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
+use shiftvox::rays::Rays;
+use shiftvox::scene::generate::Spec;
+use shiftvox::scene::{NoMeshes, OpenOptions, open_bytes};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128_with_seed};
+
+/// The rows, with the recorded hashes of random frames.
+pub const ROWS: &str = include_str!("golden.txt");
+const FILES: [(&str, &[u8]); 3] = [
+    ("axes.vox", include_bytes!("../../../tests/data/axes.vox")),
+    (
+        "extended.vox",
+        include_bytes!("../../../tests/data/extended.vox"),
+    ),
+    (
+        "sphere.vox",
+        include_bytes!("../../../tests/data/sphere.vox"),
+    ),
+];
+
+/// 32 bytes of XXH3, of two seeds, as hexadecimal digits.
+#[must_use]
+pub fn identity(rows: &str) -> String {
+    let half = |seed| xxh3_128_with_seed(rows.as_bytes(), seed);
+    format!("{:032x}{:032x}", half(0), half(1))
+}
+
+/// The identity of the rows as they are drawn here, then the rows that differ.
+#[must_use]
+pub fn report() -> String {
+    let drawn = draw_rows(ROWS);
+    let mut report = identity(&drawn);
+    for (drawn, expected) in drawn.lines().zip(ROWS.lines()) {
+        if drawn != expected {
+            report += &format!("\n{drawn}");
+        }
+    }
+    report
+}
+
+/// The rows with the hashes and counts of what is drawn. Lines that begin with `#` or `@` stay.
+#[must_use]
+pub fn draw_rows(rows: &str) -> String {
+    let mut used = Machine::default();
+    rows.lines()
+        .map(|row| draw_row(row, &mut used) + "\n")
+        .collect()
+}
+
+fn draw_row(row: &str, used: &mut Machine) -> String {
+    if row.starts_with(['#', '@']) {
+        return row.to_owned();
+    }
+    let (frame, counter) = draw(row, used);
+    let (drawn, all) = (frame.drawn(), frame.node.len());
+    assert!(drawn * 30 > all, "{drawn} of {all} drawn: {row}");
+    let inputs = &row[..=row.rfind('|').expect("cells")];
+    let counts = counter.map_or(String::new(), |counter| {
+        let cells: Vec<_> = counter.cells().collect();
+        let accesses: Vec<_> = counter.accesses().collect();
+        let text = format!("{cells:?} {accesses:?}");
+        format!(" {:016x}", xxh3_64(text.as_bytes()))
+    });
+    format!("{inputs} {:032x} {drawn}/{all}{counts}", hash(&frame))
+}
+
+/// The settings of a row, and whether the oracle draws it.
+fn settings(text: &str) -> (Options, bool) {
+    let mut words = text.split_whitespace();
+    let mut is_oracle = false;
+    let mut options = match words.next() {
+        Some("paper") => Options::paper(),
+        Some("center") => Options::of(Coverage::Center),
+        Some("alpha") => Options::of(Coverage::Alpha),
+        _ => Options::default(),
+    };
+    for word in words {
+        let (name, value) = word.split_once('=').expect("name=value");
+        let number = || value.parse().expect("a number");
+        match name {
+            "bits" => options.bits = number(),
+            "frac" => options.frac = Some(number()),
+            "aa" => options.aa_log2 = number(),
+            "lod" => options.lod_px = f64::from(number()),
+            "tolerance" => options.tolerance_px = f64::from(number()),
+            "cage" => options.cage = CageKind::Corners,
+            _ => is_oracle = true,
+        }
+    }
+    if text.starts_with("exact") {
+        // Down to the leaves.
+        options.lod_px = 0.0;
+    }
+    (options, is_oracle)
+}
+
+/// The frame of a row and the machine's operations and accesses. It is drawn by a new machine, by one that drew others,
+/// which draws over its own picture, and by the fast engine.
+fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
+    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+    let numbers = |cell: usize| -> Vec<f64> {
+        let numbers = cells[cell].split(' ').map(|n| n.parse().expect("a number"));
+        numbers.collect()
+    };
+    let mut graph = graph_of(cells[1]);
+    let (options, is_oracle) = settings(cells[6]);
+    if options.coverage.blends() {
+        let opacity = [[0x37; 3], [0x5f, 0x80, 0x22]].map(Opacity);
+        let opacity = opacity.into_iter().cycle().take(graph.len());
+        graph.opacity = opacity.collect::<Vec<_>>().into();
+    }
+    let light: Vec<_> = (0..graph.len() as u16)
+        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
+        .collect();
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let side = (1u64 << graph.depth) as f64;
+    let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
+    let [eye, target] = [2, 3].map(|cell| low + DVec3::from_slice(&numbers(cell)) * side);
+    let size = numbers(5);
+    let camera = Camera {
+        eye,
+        target,
+        up: DVec3::Z,
+        fov_degrees: numbers(4)[0],
+        width: size[0] as u32,
+        height: size[1] as u32,
+    };
+    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect(row);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut again = frame.clone();
+    if is_oracle {
+        Rays.render(&view, &setup, &mut frame).expect(row);
+        return (frame, None);
+    }
+    let counter = Counter::new();
+    let drawn = Machine::default().render_probed(&view, &setup, &mut frame, counter);
+    for _ in 0..2 {
+        used.render(&view, &setup, &mut again).expect(row);
+        assert!(again == frame, "a used machine: {row}");
+    }
+    for instructions in [Instructions::Auto, Instructions::Scalar] {
+        let options = FastOptions {
+            instructions,
+            ..FastOptions::default()
+        };
+        let mut fast = Fast::new(options, Box::new(Machine::default()));
+        fast.render(&view, &setup, &mut again).expect(row);
+        assert!(again == frame, "{instructions:?}: {row}");
+    }
+    (frame, Some(drawn.expect(row).1))
+}
+
+/// The graph of a generator, or of a file, without normals, which no engine reads.
+fn graph_of(name: &str) -> Graph {
+    let options = BuildOptions {
+        normals: Normals::None,
+    };
+    let mut builder = Builder::new(options);
+    if name.starts_with("gen:") {
+        let spec = Spec::parse(name).expect(name);
+        if let Some(graph) = spec.linked() {
+            return graph;
+        }
+        spec.voxels(&mut |voxel| builder.push(voxel), &Silent);
+    } else {
+        let (_, bytes) = FILES.iter().find(|(file, _)| *file == name).expect(name);
+        let options = OpenOptions::default();
+        let opened = open_bytes(bytes, name, &options, &NoMeshes, &Silent).expect(name);
+        return opened.graph;
+    }
+    builder.finish(([0.0; 3], 1.0), &Silent).expect(name)
+}
+
+/// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
+#[must_use]
+pub fn hash(frame: &Frame) -> u128 {
+    let mut hash = Xxh3::new();
+    for number in frame.voxel.iter().flatten() {
+        hash.update(&number.to_le_bytes());
+    }
+    for node in &frame.node {
+        hash.update(&node.to_le_bytes());
+    }
+    for blend in frame.blend.iter().flatten() {
+        hash.update(format!("{blend:?}").as_bytes());
+    }
+    hash.digest128()
+}
+
+#[cfg(test)]
+#[test]
+fn pictures_and_the_identity_are_those_published() {
+    let drawn = draw_rows(ROWS);
+    if std::env::var_os("SHIFTVOX_BLESS").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/golden.txt");
+        std::fs::write(path, &drawn).expect(path);
+    }
+    for (drawn, expected) in drawn.lines().zip(ROWS.lines()) {
+        assert_eq!(drawn, expected, "if that is meant, SHIFTVOX_BLESS=1");
+    }
+    assert_eq!(identity(&drawn), shiftvox::IDENTITY);
+}
