@@ -287,7 +287,7 @@ pub(super) static OFFSETS: [Offset; 65] = {
     table
 };
 
-pub(super) const NO_OFFSET: Offset = Offset {
+const NO_OFFSET: Offset = Offset {
     next: [0.0; 4],
     last: [0.0; 4],
 };
