@@ -124,10 +124,8 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
 
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
-    let (own, below) = (
-        &constants.levels[record.level as usize],
-        &constants.levels[record.level as usize + 1],
-    );
+    let own = &constants.levels[record.level as usize];
+    let below = &constants.levels[record.level as usize + 1];
     if record.centre[2] + own.half_depth < below.lod_depth {
         return 0;
     }

@@ -53,15 +53,11 @@ fn draw_samples<I: Isa>(
     // Within a square only a strip's width changes: a quarter of the tables' error.
     let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
     let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
-    let sure = if lines.has_blind {
-        0
-    } else {
-        (0.5 * UNIT - error) as i16
-    };
+    let sees = i16::from(!lines.has_blind);
+    let limits = [most, sees * (0.5 * UNIT - error) as i16];
     let size =
         [square.right - square.left, square.bottom - square.top].map(|s| isa.splat(s as f32));
     let units = lines.in_units(isa, UNIT);
-    let limits = [most, sure];
     let pair = u32::from(octant) * 9;
     let corner = [square.left, square.top];
     let offset_of = |number: usize| &OFFSETS[if is_single { 64 } else { number & 63 }];
@@ -117,15 +113,17 @@ fn square_masks<I: Isa>(
     size: [I::F32x4; 2],
     [most, sure]: [i16; 2],
 ) -> [u64; 2] {
-    let values = units.about(isa, offset);
+    let values = &units.about(isa, offset);
     let [first, step_x, step_y] = values;
-    let reach = step_x
-        .abs()
-        .fma(size[0], step_y.abs().fma(size[1], first.abs()));
+    let reach = step_y.abs().fma(size[1], first.abs());
+    let reach = step_x.abs().fma(size[0], reach);
     if isa.splat(LARGEST).sub(reach).signs() & 7 != 0 {
         return [u64::MAX, 0];
     }
-    let distances = Distances::new(isa, &values);
+    let mut distances = Distances([I::I16x16::splat(isa, 0); 4]);
+    distances.add_function::<0>(isa, values);
+    distances.add_function::<1>(isa, values);
+    distances.add_function::<2>(isa, values);
     [distances.below(isa, most), distances.below(isa, sure)]
 }
 
@@ -133,15 +131,6 @@ fn square_masks<I: Isa>(
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
-    #[inline(always)]
-    fn new(isa: I, values: &[I::F32x4; 3]) -> Self {
-        let mut distances = Self([I::I16x16::splat(isa, 0); 4]);
-        distances.add_function::<0>(isa, values);
-        distances.add_function::<1>(isa, values);
-        distances.add_function::<2>(isa, values);
-        distances
-    }
-
     #[inline(always)]
     fn add_function<const FUNCTION: i32>(&mut self, isa: I, values: &[I::F32x4; 3]) {
         let columns = I::I16x16::load(isa, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7]);
@@ -180,9 +169,6 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     if high.signs() & 7 != 0 {
         return 0;
     }
-    Strips::between(
-        lines.strips,
-        low.indices::<CELLS>(),
-        high.indices::<CELLS>(),
-    )
+    let (low, high) = (low.indices::<CELLS>(), high.indices::<CELLS>());
+    Strips::between(lines.strips, low, high)
 }

@@ -299,12 +299,8 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
         assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
-        let mut row = |i: usize| {
-            entries
-                .as_mut_ptr()
-                .wrapping_add(i * width)
-                .cast::<__m256i>()
-        };
+        let first = entries.as_mut_ptr();
+        let row = |i: usize| first.wrapping_add(i * width).cast::<__m256i>();
         // SAFETY: as above. The eight entries of each of eight rows exist, as was checked.
         unsafe {
             let value = _mm256_set1_epi32(value as i32);
