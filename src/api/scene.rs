@@ -33,6 +33,9 @@ impl Scene {
     /// signal SIGBUS on Unix, which the program `shiftvox` reports as an error and a library cannot. Replacing the file
     /// by another, as [`Scene::save_vxg`] does, is safe. [`Scene::from_bytes`] of a file that was read does not map it.
     ///
+    /// Of a `.vxg` file of more than 1 MiB, only the header is checked and only what is seen is read: see
+    /// [`Scene::verify`].
+    ///
     /// # Errors
     /// [`Error::Open`] if the file cannot be read, is damaged or of another format, or does not fit in memory.
     /// [`Error::Threads`] if `rayon`'s global threads, which all functions start that make a scene, cannot be started.

@@ -39,7 +39,7 @@ pub(super) fn draw<I: Isa, const DEEP: bool>(
     }
     if DEEP {
         band.brick_blocks.ready = 0;
-        brick.parts.prefetch_below(band.isa, band.graph);
+        brick.parts.prefetch_masks(band.isa, band.graph);
     } else {
         brick.parts.prefetch(band.isa, band.graph);
     }
@@ -303,9 +303,6 @@ fn is_hit<I: Isa, const DEEP: bool>(
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
     let blocks = &mut *band.brick_blocks;
-    if blocks.ready == 0 {
-        brick.parts.prefetch_masks(band.isa, band.graph);
-    }
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }

@@ -43,10 +43,8 @@ pub(super) struct FillMemory {
 impl FillMemory {
     pub(super) fn resize(&mut self, grid: &TileGrid) -> Result<(), Shortage> {
         let beyond = grid.tiles_across + 2;
-        resize(
-            &mut self.tiles,
-            grid.tiles_down * grid.tiles_across + beyond,
-        )?;
+        let tiles = grid.tiles_down * grid.tiles_across + beyond;
+        resize(&mut self.tiles, tiles)?;
         // Each band has its own row of blocks; there may be a band for each row of tiles.
         let block_rows = grid.tiles_down.div_ceil(TILES_PER_BLOCK) + grid.tiles_down;
         resize(&mut self.blocks, block_rows * grid.blocks_across)
@@ -163,10 +161,8 @@ impl<'p> Fill<'p> {
     #[inline(always)]
     pub(super) fn open_in_square(&self, window: &Window) -> u64 {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
-        let (more_x, more_y) = (
-            (window.right - window.left) as usize,
-            (window.bottom - window.top) as usize,
-        );
+        let more_x = (window.right - window.left) as usize;
+        let more_y = (window.bottom - window.top) as usize;
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
         let below = at.wrapping_add(self.grid.tiles_across);
         let [a, b, c, d] = match self.part.tiles.get(at..below.wrapping_add(2)) {
@@ -212,13 +208,9 @@ impl<'p> Fill<'p> {
         let right = samples >> 1 >> (7 - x) & COLUMNS[x as usize];
         self.mark_at(at, tile_x, tile_y, left << (8 * y));
         self.mark_at(at.wrapping_add(1), tile_x + 1, tile_y, right << (8 * y));
-        self.mark_at(below, tile_x, tile_y + 1, left >> 1 >> (63 - 8 * y));
-        self.mark_at(
-            below.wrapping_add(1),
-            tile_x + 1,
-            tile_y + 1,
-            right >> 1 >> (63 - 8 * y),
-        );
+        let [left, right] = [left, right].map(|samples| samples >> 1 >> (63 - 8 * y));
+        self.mark_at(below, tile_x, tile_y + 1, left);
+        self.mark_at(below.wrapping_add(1), tile_x + 1, tile_y + 1, right);
     }
 
     #[inline(always)]

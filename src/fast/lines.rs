@@ -273,7 +273,10 @@ pub(super) struct Offset {
 
 /// The last is of no part.
 pub(super) static OFFSETS: [Offset; 65] = {
-    let mut table = [NO_OFFSET; 65];
+    let mut table = [Offset {
+        next: [0.0; 4],
+        last: [0.0; 4],
+    }; 65];
     let mut part = 0;
     while part < 64 {
         let mut j = 0;
@@ -285,11 +288,6 @@ pub(super) static OFFSETS: [Offset; 65] = {
         part += 1;
     }
     table
-};
-
-pub(super) const NO_OFFSET: Offset = Offset {
-    next: [0.0; 4],
-    last: [0.0; 4],
 };
 
 #[cfg(test)]

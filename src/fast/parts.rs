@@ -130,16 +130,6 @@ impl Parts {
     }
 
     #[inline(always)]
-    pub(super) fn prefetch_below<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
-        let first = graph.first.get(self.first as usize).copied().unwrap_or(0) as usize;
-        isa.prefetch(graph.mask, first);
-        isa.prefetch(graph.mask, first + 63);
-        for sixteen in 0..5 {
-            isa.prefetch(graph.first, first + 16 * sixteen);
-        }
-    }
-
-    #[inline(always)]
     pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let part = graph.first.get(self.first as usize).copied().unwrap_or(0);
         let first = graph.first.get(part as usize).copied().unwrap_or(0) as usize;

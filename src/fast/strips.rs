@@ -23,6 +23,8 @@ pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
 pub(super) const CELLS_PER_WIDTH: f32 = 30.0;
 /// They reach 2.13 widths to either side of the node's centre.
 pub(super) const CELLS: usize = 128;
+const PER_GROUP: usize = 4;
+const GROUPS: usize = CELLS / PER_GROUP;
 pub(super) const MIDDLE: f32 = 64.0;
 
 const CLASSES: usize = 3;
@@ -43,10 +45,10 @@ pub(super) type Row = [u64; CELLS];
 pub(super) struct Strips {
     /// Parts whose strip touches the cell.
     pub(super) touched: Row,
-    /// Parts whose strip reaches the cell or beyond it.
-    ends_above: Row,
-    /// Parts whose strip begins in the cell or below it.
-    begins_below: Row,
+    /// Parts whose strip reaches some cell of a group, or beyond. Groups keep tables small: caches hold more of them.
+    ends_above: [u64; GROUPS],
+    /// Parts whose strip begins in some cell of a group, or below.
+    begins_below: [u64; GROUPS],
 }
 
 /// By margin, axis and share. Made when first used, as a small picture uses few.
@@ -55,8 +57,8 @@ static STRIPS: [[[OnceLock<Box<Strips>>; SHARES]; 3]; CLASSES] =
 
 pub(super) static BLIND: Strips = Strips {
     touched: [u64::MAX; CELLS],
-    ends_above: [u64::MAX; CELLS],
-    begins_below: [u64::MAX; CELLS],
+    ends_above: [u64::MAX; GROUPS],
+    begins_below: [u64::MAX; GROUPS],
 };
 
 #[derive(Debug)]
@@ -133,12 +135,7 @@ impl Strips {
 
     #[inline(never)]
     fn new(axis: usize, share: f32, margin: f32) -> Box<Self> {
-        let mut strips = Box::new(Self {
-            touched: [0; CELLS],
-            ends_above: [0; CELLS],
-            begins_below: [0; CELLS],
-        });
-        let (begun, ends) = (&mut strips.begins_below, &mut strips.ends_above);
+        let [mut begun, mut ends] = [[0; CELLS]; 2];
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         for place in 0..16 {
             let (a, b) = (place & 3, place >> 2);
@@ -152,8 +149,11 @@ impl Strips {
             begun[cell] |= begun[cell - 1];
             ends[CELLS - 1 - cell] |= ends[CELLS - cell];
         }
-        strips.touched = std::array::from_fn(|cell| begun[cell] & ends[cell]);
-        strips
+        Box::new(Self {
+            touched: std::array::from_fn(|cell| begun[cell] & ends[cell]),
+            ends_above: std::array::from_fn(|group| ends[group * PER_GROUP]),
+            begins_below: std::array::from_fn(|group| begun[group * PER_GROUP + PER_GROUP - 1]),
+        })
     }
 
     /// The parts that lines with values from cells to cells may meet.
@@ -161,8 +161,8 @@ impl Strips {
     pub(super) fn between(strips: [&Self; 3], low: [usize; 3], high: [usize; 3]) -> u64 {
         let mut parts = u64::MAX;
         for j in 0..3 {
-            parts &= strips[j].ends_above[low[j] % CELLS];
-            parts &= strips[j].begins_below[high[j] % CELLS];
+            parts &= strips[j].ends_above[low[j] / PER_GROUP % GROUPS];
+            parts &= strips[j].begins_below[high[j] / PER_GROUP % GROUPS];
         }
         parts
     }
@@ -198,7 +198,8 @@ mod tests {
                     let cell = cell.clamp(0.0, 127.0) as usize;
                     let found = strips.touched[cell];
                     left_out |= parts & !found != 0;
-                    assert_eq!(found, Strips::between([strips; 3], [cell; 3], [cell; 3]));
+                    let between = Strips::between([strips; 3], [cell; 3], [cell; 3]);
+                    assert_eq!(found & !between, 0);
                 }
             }
         }

@@ -124,10 +124,8 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
 
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
-    let (own, below) = (
-        &constants.levels[record.level as usize],
-        &constants.levels[record.level as usize + 1],
-    );
+    let own = &constants.levels[record.level as usize];
+    let below = &constants.levels[record.level as usize + 1];
     if record.centre[2] + own.half_depth < below.lod_depth {
         return 0;
     }
@@ -185,13 +183,38 @@ impl<'b> Children<'b> {
         self.level = level;
         self.nearest = u32::from(nearest);
         self.left = u32::from(turned(wanted, nearest));
+        self.prefetch(band);
+    }
+
+    #[inline(always)]
+    fn octant(&self) -> u8 {
+        (self.left.trailing_zeros() ^ self.nearest) as u8 & 7
+    }
+
+    /// Begins to read what the next child will need while another is drawn: its children, and the first one's.
+    #[inline(always)]
+    fn prefetch<I: Isa>(&self, band: &Band<'_, I>) {
+        let (isa, graph) = (band.isa, band.graph);
+        if self.left != 0
+            && let Some(child) = graph.child(self.record.node, self.octant())
+        {
+            let children = graph.first(child);
+            isa.prefetch(graph.mask, children as usize);
+            isa.prefetch(graph.first, children as usize);
+            let below = graph.first(children) as usize;
+            isa.prefetch(graph.mask, below);
+            for line in 0..3 {
+                isa.prefetch(graph.first, below.wrapping_add(16 * line));
+            }
+        }
     }
 
     #[inline(always)]
     fn next<I: Isa>(&mut self, band: &mut Band<'_, I>) -> Option<(Record, Window)> {
         let (record, level) = (&self.record, self.level);
-        let octant = (self.left.trailing_zeros() ^ self.nearest) as usize & 7;
+        let octant = usize::from(self.octant());
         self.left &= self.left - 1;
+        self.prefetch(band);
         let mut window = self.windows.at(octant);
         let centre = [0, 1, 2].map(|c| record.centre[c] + level.child[c][octant]);
         if self.windows.near >> octant & 1 != 0 {

@@ -5,7 +5,7 @@ use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, Isa, Lanes, Shorts};
-use super::lines::{Lines, NO_OFFSET, OFFSETS};
+use super::lines::{InUnits, Lines, OFFSETS, Offset};
 use super::orders::turned_parts;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, Strips};
@@ -53,48 +53,34 @@ fn draw_samples<I: Isa>(
     // Within a square only a strip's width changes: a quarter of the tables' error.
     let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
     let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
-    let sure = if lines.has_blind {
-        0
-    } else {
-        (0.5 * UNIT - error) as i16
-    };
+    let sees = i16::from(!lines.has_blind);
+    let limits = [most, sees * (0.5 * UNIT - error) as i16];
     let size =
         [square.right - square.left, square.bottom - square.top].map(|s| isa.splat(s as f32));
     let units = lines.in_units(isa, UNIT);
-    let largest = isa.splat(LARGEST);
     let pair = u32::from(octant) * 9;
     let corner = [square.left, square.top];
+    let offset_of = |number: usize| &OFFSETS[if is_single { 64 } else { number & 63 }];
     let (mut left, mut drawn) = (open, 0u64);
+    let mut number = wanted.trailing_zeros() as usize;
+    let mut masks = square_masks(isa, &units, offset_of(number), size, limits);
     while wanted != 0 && left != 0 {
-        let number = wanted.trailing_zeros() as usize & 63;
+        let (offset, part_number, [held, certain]) =
+            (offset_of(number), number as u32 ^ pair, masks);
         wanted &= wanted - 1;
-        let offset = if is_single {
-            &NO_OFFSET
-        } else {
-            &OFFSETS[number]
-        };
-        let values = units.about(isa, offset);
-        let [first, step_x, step_y] = values;
-        let reach = step_x
-            .abs()
-            .fma(size[0], step_y.abs().fma(size[1], first.abs()));
-        let distances = Distances::new(isa, &values);
-        let fit = largest.sub(reach).signs() & 7 == 0;
-        let held = if fit {
-            distances.below(isa, most)
-        } else {
-            u64::MAX
-        } & left;
+        // One voxel ahead, as whether a voxel is held is unpredictable.
+        number = wanted.trailing_zeros() as usize;
+        masks = square_masks(isa, &units, offset_of(number), size, limits);
+        let held = held & left;
         if held == 0 {
             continue;
         }
-        let part = brick.parts.part(band.graph, number as u32 ^ pair);
+        let part = brick.parts.part(band.graph, part_number);
         let path = Path {
             block: None,
-            part: number as u32 ^ pair,
+            part: part_number,
             levels: part.levels,
         };
-        let certain = if fit { distances.below(isa, sure) } else { 0 };
         let mut covered = held & certain;
         for bit in bits(held & !certain) {
             let line = lines.line(isa, &SAMPLES[bit]);
@@ -118,19 +104,33 @@ fn draw_samples<I: Isa>(
     drawn
 }
 
+/// The samples of a square, `size` large, that may be in all three strips of a voxel, and those that certainly are.
+#[inline(always)]
+fn square_masks<I: Isa>(
+    isa: I,
+    units: &InUnits<I>,
+    offset: &Offset,
+    size: [I::F32x4; 2],
+    [most, sure]: [i16; 2],
+) -> [u64; 2] {
+    let values = &units.about(isa, offset);
+    let [first, step_x, step_y] = values;
+    let reach = step_y.abs().fma(size[1], first.abs());
+    let reach = step_x.abs().fma(size[0], reach);
+    if isa.splat(LARGEST).sub(reach).signs() & 7 != 0 {
+        return [u64::MAX, 0];
+    }
+    let mut distances = Distances([I::I16x16::splat(isa, 0); 4]);
+    distances.add_function::<0>(isa, values);
+    distances.add_function::<1>(isa, values);
+    distances.add_function::<2>(isa, values);
+    [distances.below(isa, most), distances.below(isa, sure)]
+}
+
 /// The largest distance of the three functions from 0, by sample, two rows per vector. No meaning beyond 16 bits.
 struct Distances<I: Isa>([I::I16x16; 4]);
 
 impl<I: Isa> Distances<I> {
-    #[inline(always)]
-    fn new(isa: I, values: &[I::F32x4; 3]) -> Self {
-        let mut distances = Self([I::I16x16::splat(isa, 0); 4]);
-        distances.add_function::<0>(isa, values);
-        distances.add_function::<1>(isa, values);
-        distances.add_function::<2>(isa, values);
-        distances
-    }
-
     #[inline(always)]
     fn add_function<const FUNCTION: i32>(&mut self, isa: I, values: &[I::F32x4; 3]) {
         let columns = I::I16x16::load(isa, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7]);
@@ -169,9 +169,6 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     if high.signs() & 7 != 0 {
         return 0;
     }
-    Strips::between(
-        lines.strips,
-        low.indices::<CELLS>(),
-        high.indices::<CELLS>(),
-    )
+    let (low, high) = (low.indices::<CELLS>(), high.indices::<CELLS>());
+    Strips::between(lines.strips, low, high)
 }

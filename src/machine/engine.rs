@@ -8,7 +8,7 @@ use super::state::{MachineOptions, State};
 use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Engine, EngineError, FrameSetup, Stats, most_records};
 
 /// The scalar engine.
 #[derive(Debug, Default)]
@@ -26,7 +26,8 @@ impl Machine {
         }
     }
 
-    /// Draws a frame with a probe; see [`Engine::render`]. Fails when a word overflows under the trap policy.
+    /// Draws a frame with a probe; see [`Engine::render`]. Fails when a word overflows under the trap policy, or after
+    /// [`most_records`].
     pub fn render_probed<P: Probe>(
         &mut self,
         graph: &GraphView<'_>,
@@ -34,10 +35,11 @@ impl Machine {
         frame: &mut Frame,
         probe: P,
     ) -> Result<(Stats, P), EngineError> {
+        let most = most_records(setup);
         let drawn = with_cage!(setup, L => {
-            self.run_as::<P, L>(graph, setup, frame, probe, u64::MAX)
+            self.run_as::<P, L>(graph, setup, frame, probe, most)
         })?;
-        Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
+        drawn.ok_or(EngineError::Records(most))
     }
 
     /// Draws a frame of at most `most_records` records; with more, returns `None`, and the frame has no meaning. For

@@ -33,7 +33,8 @@ pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
 }
 
 /// R7.3: whether a cube would cross a quarter of a sample at the picture's edge, but is about one sample where it is.
-/// Its part beyond the near plane lies in one column, or within half a sample of an edge of one, and in rows likewise.
+/// The part of the cube beyond the near plane lies in one column of samples, or less than half a sample from an edge of
+/// one, and in one row likewise.
 /// Unlike [`clip_at_most`], this uses the vertices' own places.
 pub(super) fn is_about_one_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,

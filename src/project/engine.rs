@@ -20,6 +20,17 @@ pub enum EngineError {
     /// The system refuses the memory of a frame.
     #[error(transparent)]
     Memory(#[from] Shortage),
+    /// The machine stopped after this many records ([`most_records`]).
+    #[error(
+        "the picture takes more than {0} records: much of the scene is near the plane of the eye, or detail is too fine"
+    )]
+    Records(u64),
+}
+
+/// Records that a frame may take: 2^20, and 512 for each sample. Ordinary pictures take up to 80 for a sample.
+#[must_use]
+pub fn most_records(setup: &FrameSetup) -> u64 {
+    (1 << 20) + 512 * u64::from(setup.width) * u64::from(setup.height)
 }
 
 /// An engine's counts of one frame: names and numbers, in a fixed order.

@@ -41,6 +41,7 @@ fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
             return Err(failed(&path, io::Error::other("it is not a regular file")));
         }
         Err(e) if e.kind() == io::ErrorKind::InvalidFilename => return Err(failed(&path, e)),
+        Err(e) if path.is_symlink() => return Err(failed(&path, e)),
         _ => {}
     }
     check_folder(folder_of(&path))?;
@@ -74,10 +75,15 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// The file to which a path leads, which need not exist.
 fn target(path: &Path) -> PathBuf {
-    match fs::read_link(path) {
-        Ok(link) => fs::canonicalize(path).unwrap_or_else(|_| folder_of(path).join(link)),
-        Err(_) => path.to_owned(),
+    let mut path = path.to_owned();
+    while let Ok(link) = fs::read_link(&path) {
+        match fs::metadata(&path) {
+            // No file is at the end of a circle.
+            Err(e) if e.kind() != io::ErrorKind::NotFound => break,
+            _ => path = folder_of(&path).join(link),
+        }
     }
+    path
 }
 
 /// Creates a folder in an existing one; otherwise [`WholeError::NoFolder`].
@@ -266,7 +272,14 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         write(&at("deep/real"), b"one", false).unwrap();
         fs::set_permissions(at("deep/real"), fs::Permissions::from_mode(0o600)).unwrap();
-        for (link, file) in [("link", "deep/real"), ("early", "deep/new")] {
+        symlink("deep/last", at("second")).unwrap();
+        symlink("circle", at("circle")).unwrap();
+        write(&at("circle"), b"two", true).unwrap_err();
+        for (link, file) in [
+            ("link", "deep/real"),
+            ("early", "deep/new"),
+            ("first", "second"),
+        ] {
             symlink(file, at(link)).unwrap();
             assert!(matches!(write(&at(link), b"two", false), Err(Exists(_))));
             write(&at(link), b"two", true).unwrap();
@@ -275,7 +288,7 @@ mod tests {
         }
         let mode = fs::metadata(at("deep/real")).unwrap().permissions().mode();
         assert_eq!(mode & 0o777, 0o600);
-        assert_eq!(names(&at("deep")), ["new", "real"]);
+        assert_eq!(names(&at("deep")), ["last", "new", "real"]);
     }
 
     #[test]

@@ -146,6 +146,11 @@ exit_codes! {
     EngineError {
         EngineError::Trap(_) => Kind::Limit,
         EngineError::Memory(short) => return short.into(),
+        EngineError::Records(_) => {
+            return Self::new(Kind::Limit, message).advise(
+                "ask for a smaller field of view or scene, `--coverage exact` or a coarser --lod",
+            );
+        },
     }
     ResolveError {
         ResolveError::Size(..) | ResolveError::Voxel => Kind::Run,
@@ -202,9 +207,6 @@ exit_codes! {
         VectorsError::Engine(error) => return error.into(),
         VectorsError::Store(error) => return error.into(),
         VectorsError::Misfit(_) => Kind::Limit,
-        VectorsError::Foreign { .. } => {
-            return Self::new(Kind::Run, message).advise("give another name, or empty the folder");
-        },
         VectorsError::Manifest(_) => Kind::Run,
     }
     WholeError {

@@ -28,16 +28,10 @@ pub(super) struct Scene {
     pub(super) load_ms: f64,
 }
 
+/// A scene of an experiment or a model: all of it is verified.
 pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
-    let started = Instant::now();
-    open_source(
-        Source::find(name)?,
-        name,
-        args,
-        Verify::IfSmall,
-        started,
-        console,
-    )
+    let (started, source) = (Instant::now(), Source::find(name)?);
+    open_source(source, name, args, Verify::All, started, console)
 }
 
 /// The part of a graph file that is verified before use.

@@ -18,7 +18,7 @@ use crate::machine::record_loop::check_trap;
 use crate::machine::state::MachineOptions;
 use crate::machine::state::State;
 use crate::machine::watch::{Event, Watch};
-use crate::project::{EngineError, FrameSetup, Stats};
+use crate::project::{EngineError, FrameSetup, Stats, most_records};
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulated {
@@ -102,6 +102,7 @@ impl Machine {
             open: 0,
             most_open: 0,
             shown: 0,
+            most_records: most_records(setup),
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let most_open = steps.most_open;
@@ -164,6 +165,7 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     most_open: u64,
     /// The tile whose view is in place.
     shown: usize,
+    most_records: u64,
 }
 
 /// Of a stored parent and of its child, of different classes.
@@ -285,6 +287,9 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     }
 
     fn trap(&self) -> Result<(), EngineError> {
+        if self.state.canvas.counts.records > self.most_records {
+            return Err(EngineError::Records(self.most_records));
+        }
         check_trap(&self.state.dp)
     }
 }

@@ -19,7 +19,7 @@ use crate::machine::record::{Pose, Record};
 use crate::machine::state::State;
 use crate::machine::watch::{Event, Watch};
 use crate::project::vector::cross;
-use crate::project::{CageKind, EngineError, FrameSetup};
+use crate::project::{CageKind, EngineError, FrameSetup, most_records};
 
 hwmodel::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -264,7 +264,10 @@ impl Machine {
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         with_cage!(setup, L => {
             let mut state = State::<_, L, _>::new(options, graph, setup, canvas, NoProbe, watch);
-            state.draw_by_tiles(u64::MAX)?;
+            let most = most_records(setup);
+            if !state.draw_by_tiles(most)? {
+                return Err(EngineError::Records(most));
+            }
             Ok(state.finish().2.spans)
         })
     }

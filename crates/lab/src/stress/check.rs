@@ -84,8 +84,8 @@ pub(super) fn check(
             }
             return outcome;
         }
-        Err(EngineError::Memory(short)) => {
-            return Outcome::new(End::Refused(short.to_string()), 0);
+        Err(refused @ (EngineError::Memory(_) | EngineError::Records(_))) => {
+            return Outcome::new(End::Refused(refused.to_string()), 0);
         }
         Err(EngineError::Trap(trap)) => {
             let mut outcome = Outcome::new(End::Trapped(trap.to_string()), 0);

@@ -1,4 +1,4 @@
-//! A folder of files that appears completely or not at all.
+//! A folder of files that appear when all of them are whole.
 
 use std::fs;
 use std::io;
@@ -16,61 +16,28 @@ pub(super) fn failed(path: &Path, source: io::Error) -> VectorsError {
     })
 }
 
-/// Whether there is a folder that may be replaced: an empty one or, with `overwrite`, one of vectors.
-fn is_replaceable(path: &Path, overwrite: bool) -> Result<bool, VectorsError> {
-    let kind = match fs::symlink_metadata(path) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(false),
-        Err(e) => return Err(failed(path, e)),
-        Ok(metadata) => metadata.file_type(),
-    };
-    let refused = |other: &str| match overwrite {
-        false => Err(VectorsError::Store(WholeError::Exists(path.to_owned()))),
-        true => Err(VectorsError::Foreign {
-            path: path.to_owned(),
-            other: other.to_owned(),
-        }),
-    };
-    if !kind.is_dir() {
-        return refused("it is not a folder");
-    }
-    let (mut names, mut others) = (Vec::new(), Vec::new());
-    for entry in fs::read_dir(path).map_err(|e| failed(path, e))? {
-        let entry = entry.map_err(|e| failed(path, e))?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        let end = name.rsplit('.').next().unwrap_or_default();
-        if !is_file || !["jsonl", "hex"].contains(&end) && name != MANIFEST {
-            others.push(name.clone());
-        }
-        names.push(name);
-    }
-    match others.first() {
-        _ if names.is_empty() => Ok(true),
-        Some(other) => refused(other),
-        None if !overwrite || !names.iter().any(|name| name == MANIFEST) => {
-            refused("there is no manifest")
-        }
-        None => Ok(true),
-    }
-}
-
 /// Checks before long work that vectors may be written to a folder.
 ///
 /// # Errors
-/// [`WholeError::Exists`] if the folder may not be overwritten; [`VectorsError::Foreign`] if it may, but holds other
-/// things.
+/// [`WholeError::Exists`] if there are files and none may be replaced, others where no folder can be made.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), VectorsError> {
-    is_replaceable(path, overwrite)?;
+    let is_empty = || fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
+    if !overwrite && fs::symlink_metadata(path).is_ok() && !is_empty() {
+        return Err(WholeError::Exists(path.to_owned()).into());
+    }
+    if fs::symlink_metadata(path).is_ok() && !path.is_dir() {
+        return Err(failed(path, io::ErrorKind::NotADirectory.into()));
+    }
     Ok(whole::check_folder(whole::folder_of(path))?)
 }
 
-/// Fills a folder under a temporary name beside its place, then renames it.
+/// Fills a temporary folder beside the folder's place, then moves its files. Files of other names stay.
 pub(super) fn write<T>(
     path: &Path,
     overwrite: bool,
     fill: impl FnOnce(&Path) -> Result<T, VectorsError>,
 ) -> Result<T, VectorsError> {
-    is_replaceable(path, overwrite)?;
+    check_free(path, overwrite)?;
     let parent = whole::folder_of(path);
     whole::make_folder(parent)?;
     // Removed with everything left in it, whatever happens.
@@ -78,37 +45,17 @@ pub(super) fn write<T>(
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
-    // Outside of the shelter, so that the old folder is not removed before the new one is in its place.
-    let before = shelter.path().with_extension("old");
-    // The path may have changed meanwhile.
-    let is_old = is_replaceable(path, overwrite)?;
-    let renamed = whole::undisturbed(|| {
-        if is_old {
-            fs::rename(path, &before)?;
+    check_free(path, overwrite)?;
+    let moved = whole::undisturbed(|| {
+        if !path.exists() {
+            return fs::rename(&made, path);
         }
-        fs::rename(&made, path).inspect_err(|_| {
-            // The first error is the one to report.
-            let _ = fs::rename(&before, path);
-        })
+        for entry in fs::read_dir(&made)? {
+            let name = entry?.file_name();
+            fs::rename(made.join(&name), path.join(&name))?;
+        }
+        Ok(())
     });
-    renamed.map_err(|e| failed(path, e))?;
-    if is_old {
-        let _ = fs::remove_dir_all(&before);
-    }
+    moved.map_err(|e| failed(path, e))?;
     Ok(result)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_folders_with_a_manifest_are_replaced() {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("centre.jsonl"), b"mine").unwrap();
-        let refused = check_free(folder.path(), true);
-        assert!(matches!(refused, Err(VectorsError::Foreign { .. })));
-        fs::write(folder.path().join(MANIFEST), b"{}").unwrap();
-        check_free(folder.path(), true).unwrap();
-    }
 }

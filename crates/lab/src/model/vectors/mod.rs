@@ -11,7 +11,7 @@ mod manifest;
 mod ports;
 mod recorder;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use hwmodel::Overflow;
 use hwmodel::cycles::Organisation;
@@ -48,16 +48,13 @@ pub struct Recorded {
     pub rows: u64,
 }
 
-/// Why there are no vectors. An older folder in their place is unchanged.
+/// Why there are no vectors.
 #[derive(Debug, thiserror::Error)]
 pub enum VectorsError {
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]
     Store(#[from] WholeError),
-    /// The folder holds other files. It is not replaced even on demand.
-    #[error("{path} holds more than vectors ({other}), so it is not replaced")]
-    Foreign { path: PathBuf, other: String },
     #[error("a value at block {0} does not fit its wires: use wider words")]
     Misfit(&'static str),
     #[error("{0}")]

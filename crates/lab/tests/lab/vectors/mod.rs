@@ -153,11 +153,11 @@ fn written(
     let folder = shelter.path().join("vectors");
     let request = Request {
         scene: "a test",
+        overwrite: false,
         records,
         overflow: Overflow::Trap,
         organisation: Organisation::default(),
         folder: &folder,
-        overwrite: false,
     };
     let recorded = vectors::write(graph, setup, &request).unwrap();
     (shelter, folder, recorded)
