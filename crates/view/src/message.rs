@@ -47,3 +47,42 @@ pub fn answer(
     head["seq"] = json!(seq);
     (head, picture)
 }
+
+/// A scene's name, quoted for bash and zsh.
+#[must_use]
+pub fn quoted(name: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:,=".contains(letter);
+    if !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain) {
+        return name.to_owned();
+    }
+    let begin = if name.starts_with('-') { "./" } else { "" };
+    if !name.contains(char::is_control) {
+        return format!("'{begin}{}'", name.replace('\'', r"'\''"));
+    }
+    let escaped = |letter: char| match letter {
+        letter if letter.is_ascii_control() || letter == '\'' || letter == '\\' => {
+            format!("\\x{:02x}", u32::from(letter))
+        }
+        letter => letter.to_string(),
+    };
+    format!(
+        "$'{begin}{}'",
+        name.chars().map(escaped).collect::<String>()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_come_through_a_shell() {
+        for (name, expected) in [
+            ("a/b.vox", "a/b.vox"),
+            ("gen:menger,depth=3", "gen:menger,depth=3"),
+            ("it's $HOME.vox", r"'it'\''s $HOME.vox'"),
+            ("-o.vox", "'./-o.vox'"),
+            ("'\n.vox", r"$'\x27\x0a.vox'"),
+        ] {
+            assert_eq!(super::quoted(name), expected);
+        }
+    }
+}

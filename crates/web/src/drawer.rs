@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 use shiftvox::project::Camera as Placed;
 use shiftvox::{Buffer, CageKind, Camera, Coverage, EngineKind, Renderer, Scene, Shading, View};
-use shiftvox_view::{Answer, Ask, FLAGS, Program, Request};
+use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, quoted};
 
 #[derive(Debug)]
 pub(super) struct Opened {
@@ -50,11 +50,19 @@ impl Opened {
             .hash
             .then(|| picture.hash().map(str::to_owned))
             .transpose();
-        let words: Vec<_> = request
-            .words(FLAGS)
-            .chain((request.aa != 1).then(|| format!("--aa={}", request.aa)))
-            .collect();
         let point = |point: DVec3| format!("{},{},{}", point.x, point.y, point.z);
+        let mut command = vec!["shiftvox render".to_owned(), quoted(&self.name)];
+        command.extend(request.words(FLAGS));
+        command.extend((request.aa != 1).then(|| format!("--aa={}", request.aa)));
+        command.push(format!("--size={width}x{height}"));
+        for (name, of) in [
+            ("eye", camera.eye),
+            ("target", camera.target),
+            ("up", camera.up),
+        ] {
+            command.push(format!("--{name} {}", point(of)));
+        }
+        command.push(format!("--fov {} -o picture.png", camera.fov_degrees));
         let head = json!({
             "width": width,
             "height": height,
@@ -67,15 +75,7 @@ impl Opened {
             },
             "axis": self.scene.up().axis().to_array(),
             "engine": request.flags.get("engine").map_or("fast", String::as_str),
-            "command": format!(
-                "shiftvox render '{}' {} --size={width}x{height} --eye {} --target {} --up {} --fov {} -o picture.png",
-                self.name,
-                words.join(" "),
-                point(camera.eye),
-                point(camera.target),
-                point(camera.up),
-                camera.fov_degrees,
-            ),
+            "command": command.join(" "),
             "hash": hash.map_err(|error| error.to_string())?,
             "counters": picture.counters(),
             "pixels_drawn": nodes.iter().filter(|&&node| node >= 0).count(),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::{self, Buffer, Pixels};
 use shiftvox::project::Camera;
-use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request};
+use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, quoted};
 
 use super::flags::{self, MODEL_FLAGS};
 use super::{Shared, overlay};
@@ -155,7 +155,7 @@ impl Shared {
         words: impl Iterator<Item = String>,
         camera: &Camera,
     ) -> String {
-        let mut all = vec![format!("shiftvox {verb}"), flags::quoted(scene)];
+        let mut all = vec![format!("shiftvox {verb}"), quoted(scene)];
         all.extend(self.scene_words.iter().cloned().chain(words));
         all.push(format!("--size={}x{}", camera.width, camera.height));
         all.push(camera_line(camera));

@@ -14,7 +14,7 @@ const STILL: &str = "view.camera && shown.still === view.version && fast.isFree"
 const MIDDLE: [f64; 2] = [430.0, 400.0];
 
 /// The page's picture is that of its command, by its hash and by each pixel. Returns the command.
-fn assert_is_renders(browser: &mut Browser) -> String {
+pub(crate) fn assert_is_renders(browser: &mut Browser) -> String {
     browser.wait(STILL);
     browser.wait("$('command').value.startsWith('shiftvox render')");
     let command = browser.text("$('command').value");

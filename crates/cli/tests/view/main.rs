@@ -6,3 +6,4 @@ mod chromium;
 mod pictures;
 mod program;
 mod refusals;
+mod without_server;
