@@ -1,17 +1,19 @@
 //! Files that are used in place, mapped or held: the common parts of `.vxg`, `.far` and `.tvx`. A header of fixed
 //! length with a checksum, then sections, each aligned to 64 bytes with zeros between.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use bytemuck::Pod;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::Invalid;
 use super::map::map;
+use super::{Invalid, Opacity, PackedNormal};
 use crate::bounded;
 
 pub const ALIGNMENT: u64 = 64;
@@ -36,8 +38,6 @@ pub enum FileError {
         expected: String,
         advice: &'static str,
     },
-    #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
-    ByteOrder { file: PathBuf, ending: &'static str },
     #[error("the graph cannot be stored: {0}")]
     Graph(#[from] Invalid),
 }
@@ -136,6 +136,62 @@ impl Bytes {
     }
 }
 
+/// Items of files. They are little-endian there, and used in place where that is the processor's order.
+pub trait Stored: Pod {
+    /// The counts and widths, bytes, of the numbers of an item.
+    const NUMBERS: &'static [(usize, usize)];
+}
+
+macro_rules! stored {
+    ($($item:ty: $count:literal x $width:literal;)*) => {
+        $(impl Stored for $item {
+            const NUMBERS: &'static [(usize, usize)] = &[($count, $width)];
+        })*
+    };
+}
+stored! {
+    u8: 1 x 1;
+    u32: 1 x 4;
+    [u8; 3]: 3 x 1;
+    PackedNormal: 1 x 2;
+    Opacity: 3 x 1;
+}
+
+/// Turns items from the order of a file to that of the processor, or back.
+pub fn turn<T: Stored>(bytes: &mut [u8]) {
+    if cfg!(target_endian = "big") {
+        reverse(bytes, T::NUMBERS);
+    }
+}
+
+fn reverse(bytes: &mut [u8], numbers: &[(usize, usize)]) {
+    let mut left = bytes;
+    for &(count, width) in numbers.iter().cycle() {
+        if left.is_empty() {
+            return;
+        }
+        let (these, rest) = left.split_at_mut(count * width);
+        these.chunks_exact_mut(width).for_each(<[u8]>::reverse);
+        left = rest;
+    }
+}
+
+/// Items as in a file.
+pub fn to_file<T: Stored>(items: &[T]) -> Cow<'_, [u8]> {
+    let mut bytes = Cow::Borrowed(bytemuck::cast_slice(items));
+    if cfg!(target_endian = "big") {
+        turn::<T>(bytes.to_mut());
+    }
+    bytes
+}
+
+/// Items from the bytes of a file.
+pub fn from_file<T: Stored>(bytes: &[u8]) -> Vec<T> {
+    let mut items = bytemuck::pod_collect_to_vec(bytes);
+    turn::<T>(bytemuck::cast_slice_mut(&mut items));
+    items
+}
+
 pub fn range([begin, end]: [u64; 2]) -> Range<usize> {
     begin as usize..end as usize
 }
@@ -167,16 +223,6 @@ pub(super) mod at {
 }
 
 impl Format {
-    pub(super) fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
-        if cfg!(target_endian = "big") {
-            return Err(FileError::ByteOrder {
-                file: path.to_owned(),
-                ending: self.ending,
-            });
-        }
-        Ok(())
-    }
-
     /// A header. `fields` receives a function that puts bytes at an offset.
     pub fn header(
         &self,
@@ -206,7 +252,6 @@ impl Format {
         file_bytes: u64,
         path: &'f Path,
     ) -> Result<Fields<'f>, FileError> {
-        self.check_byte_order(path)?;
         let other = |offset: usize, expected: String, advice: &'static str| FileError::Malformed {
             file: path.to_owned(),
             section: "header",
@@ -334,4 +379,20 @@ pub fn write<'s>(
         written = end;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_records_are_turned() {
+        let bytes: Vec<u8> = (0..14).collect();
+        let mut turned = bytes.clone();
+        let numbers = [(1, 4), (1, 1), (1, 2)];
+        reverse(&mut turned, &numbers);
+        assert_eq!(turned, [3, 2, 1, 0, 4, 6, 5, 10, 9, 8, 7, 11, 13, 12]);
+        reverse(&mut turned, &numbers);
+        assert_eq!(turned, bytes);
+    }
 }

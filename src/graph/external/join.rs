@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use super::scratch::{Scratch, Spool};
 use super::tree::LevelArrays;
+use crate::graph::PackedNormal;
+use crate::graph::file::turn;
 use crate::graph::{BuildError, Graph, Placement};
 
 pub(super) struct Built {
@@ -73,6 +75,9 @@ impl Sections {
                         let first = base.wrapping_add(u32::from_ne_bytes(*number));
                         *number = first.to_le_bytes();
                     }
+                }
+                if section == 4 {
+                    turn::<PackedNormal>(piece);
                 }
                 put(piece)
             })?;

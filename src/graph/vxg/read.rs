@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use bytemuck::Pod;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -12,7 +11,7 @@ use super::format::{
     FORMAT, HEADER_BYTES, KINDS, MAX_LEVEL_STARTS, MESH_Y_UP, NO_MESH, SECTIONS, Section, VERSION,
     at, entry_at, layout,
 };
-use crate::graph::file::{self, Fields, range};
+use crate::graph::file::{self, Fields, Stored, from_file, range};
 use crate::graph::map::advise;
 use crate::graph::{Graph, Invalid, MeshBox, Placement, Store};
 
@@ -26,6 +25,12 @@ pub fn open(path: &Path) -> Result<Graph, VxgError> {
         let expected = format!("a file of {} bytes, not {}", opened.bytes, map.len());
         let offset = at::FILE_BYTES as u64;
         return Err(VxgError::damaged(path, "header", offset, expected));
+    }
+    if cfg!(target_endian = "big") {
+        // Numbers are turned, so all is read.
+        let graph = header.graph(&Source::Held(&map), path)?;
+        header.verify_sections(&graph, &map, path)?;
+        return Ok(graph);
     }
     advise(&map, false);
     header.graph(&Source::Mapped(&map), path)
@@ -64,15 +69,11 @@ enum Source<'f> {
 }
 
 impl Source<'_> {
-    fn array<T: Pod>(&self, section: &Section) -> Store<T> {
+    fn array<T: Stored>(&self, section: &Section) -> Store<T> {
         let place = range(section.place());
         match self {
             Self::Mapped(map) => Store::Mapped(Arc::clone(map), place),
-            Self::Held(bytes) => {
-                let items = bytes[place].chunks_exact(size_of::<T>());
-                let items: Vec<T> = items.map(bytemuck::pod_read_unaligned).collect();
-                items.into()
-            }
+            Self::Held(bytes) => from_file::<T>(&bytes[place]).into(),
         }
     }
 }

@@ -12,14 +12,13 @@ use super::format::{
     VERSION_WITH_OPACITY, at, entry_at, layout,
 };
 use crate::graph::Graph;
-use crate::graph::file::ALIGNMENT;
+use crate::graph::file::{ALIGNMENT, to_file};
 use crate::whole::{self, WholeError};
 
 /// Writes a graph to a file that appears when complete. Missing folders are created. Fails when the graph breaks an
 /// invariant, when `path` exists and `overwrite` is false, or when the system refuses.
 pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
     graph.validate()?;
-    FORMAT.check_byte_order(path)?;
     let fill = |file: &mut File| {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_unchecked(graph, &mut out).and_then(|()| out.flush())
@@ -104,7 +103,6 @@ fn put_sections(
 pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
     let file = Path::new("(output)");
     graph.validate()?;
-    FORMAT.check_byte_order(file)?;
     write_unchecked(graph, out).map_err(|source| VxgError::Io {
         file: file.into(),
         doing: "write",
@@ -113,22 +111,22 @@ pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
 }
 
 fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
-    let mut contents: Vec<&[u8]> = vec![
-        &graph.mask,
-        bytemuck::cast_slice(&graph.first),
-        bytemuck::cast_slice(&graph.links),
-        graph.color.as_flattened(),
-        bytemuck::cast_slice(&graph.normal),
+    let mut contents = vec![
+        to_file(&graph.mask),
+        to_file(&graph.first),
+        to_file(&graph.links),
+        to_file(&graph.color),
+        to_file(&graph.normal),
     ];
     if !graph.opacity.is_empty() {
-        contents.push(bytemuck::cast_slice(&graph.opacity));
+        contents.push(to_file(&graph.opacity));
     }
     let lengths: Vec<u64> = contents.iter().map(|bytes| bytes.len() as u64).collect();
     let (_, file_bytes) = layout(lengths.iter().copied());
     // Once for the checksums, which come before the sections.
-    let table = put_sections(&lengths, &mut io::sink(), |i, put| put(contents[i]))?;
+    let table = put_sections(&lengths, &mut io::sink(), |i, put| put(&contents[i]))?;
     out.write_all(&header(graph, &table, file_bytes))?;
-    put_sections(&lengths, out, |i, put| put(contents[i]))?;
+    put_sections(&lengths, out, |i, put| put(&contents[i]))?;
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use super::blend::{DIRECTIONS, by_cosines, by_squares};
 use crate::geometry::point;
 use crate::{linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
+use shiftvox::graph::file::Stored;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ShaderKind {
@@ -335,6 +336,20 @@ pub struct Node {
     pub is_flat: u8,
     /// Zero.
     pub spare: u8,
+}
+
+impl Stored for Node {
+    const NUMBERS: &'static [(usize, usize)] = &[
+        (10, 4),
+        (4, 1),
+        (5, 4),
+        (1, 8),
+        (12, 4),
+        (1, 8),
+        (3, 4),
+        (1, 2),
+        (2, 1),
+    ];
 }
 
 /// Bytes of the position of a vertex of one node, and of one that nodes share.

@@ -6,6 +6,7 @@ use glam::DVec3;
 use crate::geometry::{plane_normal, point};
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
 use shiftvox::graph::PackedNormal;
+use shiftvox::graph::file::Stored;
 
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -49,6 +50,18 @@ impl Primitive {
             alpha: 1.0,
         }
     }
+}
+
+impl Stored for Primitive {
+    const NUMBERS: &'static [(usize, usize)] = &[(9, 4), (3, 2), (10, 1)];
+}
+
+impl Stored for VoxelRecord {
+    const NUMBERS: &'static [(usize, usize)] = &[(4, 2), (4, 4)];
+}
+
+impl Stored for Texel {
+    const NUMBERS: &'static [(usize, usize)] = &[(4, 1), (1, 2)];
 }
 
 /// A voxel that is not empty.

@@ -7,7 +7,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::FarData;
 use crate::far::record::NODE_BYTES;
-use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
+use shiftvox::graph::file::{self, Format, HEADER_BYTES, Stored, section_after};
 
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
@@ -38,6 +38,10 @@ pub(super) struct Fields {
     pub(super) more_spare: [u8; 8],
 }
 
+impl Stored for Fields {
+    const NUMBERS: &'static [(usize, usize)] = &[(7, 8), (2, 4), (8, 1), (1, 8), (16, 1)];
+}
+
 /// Opacities are blended by cosines, normals and materials by their squares.
 pub(super) const BLENDS: [u8; 2] = [1, 0];
 
@@ -53,7 +57,7 @@ pub(in crate::far) fn write_parts(
     out: &mut dyn Write,
     copy: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let nodes: &[u8] = bytemuck::cast_slice(&data.nodes);
+    let nodes = file::to_file(&data.nodes);
     let [node_place, [begin, end]] = layout(data.nodes.len() as u64, data_bytes);
     let settings = &data.settings;
     let fields = Fields {
@@ -66,15 +70,15 @@ pub(in crate::far) fn write_parts(
         grid: settings.grid,
         blends: BLENDS,
         y_up: u8::from(settings.y_up),
-        nodes_checksum: xxh3_64(nodes),
+        nodes_checksum: xxh3_64(&nodes),
         bevels: settings.bevels,
         ..Zeroable::zeroed()
     };
     let header = FORMAT.header(FORMAT.versions[0], end, |put| {
-        put(FIELDS, bytemuck::bytes_of(&fields))
+        put(FIELDS, &file::to_file(&[fields]))
     });
     // The zeros before the data are written before an empty section.
-    let sections = [(node_place, nodes), ([begin; 2], &[][..])];
+    let sections = [(node_place, &nodes[..]), ([begin; 2], &[][..])];
     file::write(&FORMAT, &header, sections.into_iter(), out)?;
     copy(out)
 }

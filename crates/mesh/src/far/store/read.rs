@@ -88,7 +88,7 @@ impl FarFile {
             let expected = format!("checksum {:016x} of the hierarchy", header.nodes_checksum);
             return Err(damaged("hierarchy", place[0], expected));
         }
-        let nodes: Vec<Node> = bytemuck::pod_collect_to_vec(node_bytes);
+        let nodes: Vec<Node> = file::from_file(node_bytes);
         check(&nodes, section[1] - section[0], header.triangles).map_err(|(node, expected)| {
             let offset = place[0] + (node * size_of::<Node>()) as u64;
             let expected = format!("node {node} to have {expected}");
@@ -231,7 +231,7 @@ const CENTRE: u64 = (FIELDS + offset_of!(Fields, centre)) as u64;
 fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, FarError> {
     let header = FORMAT.read(beginning, file_bytes, path)?;
     let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
-    let fields: Fields = bytemuck::pod_read_unaligned(&bytes);
+    let fields = file::from_file::<Fields>(&bytes)[0];
     let ends = format!("sections that end with the file at byte {file_bytes}");
     let [_, [_, end]] = layout(fields.nodes, fields.data_bytes);
     let is_finite = fields.centre.iter().all(|c| c.is_finite());

@@ -4,12 +4,12 @@
 
 use std::io::{self, Write};
 
-use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
+use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::textured::record::{Primitive, Texel, VoxelRecord};
 use crate::textured::{Element, GridData, TexturedData};
-use shiftvox::graph::file::{self, Format, HEADER_BYTES, section_after};
+use shiftvox::graph::file::{self, Format, HEADER_BYTES, Stored, section_after, to_file};
 
 pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
@@ -35,6 +35,14 @@ pub(super) struct Fields {
     pub(super) bevels: [u8; 8],
     pub(super) primitives_checksum: u64,
     pub(super) grids_checksum: u64,
+}
+
+impl Stored for Fields {
+    const NUMBERS: &'static [(usize, usize)] = &[(7, 8), (1, 4), (20, 1), (2, 8)];
+}
+
+impl Stored for GridEntry {
+    const NUMBERS: &'static [(usize, usize)] = &[(4, 4), (8, 8)];
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -104,11 +112,11 @@ impl Layout {
 pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     let entries: Vec<GridEntry> = data.grids.iter().map(entry).collect();
     let layout = Layout::of(data.primitives.len() as u64, &entries);
-    let mut sections: Vec<&[u8]> = vec![cast_slice(&entries), cast_slice(&data.primitives)];
+    let mut sections = vec![to_file(&entries), to_file(&data.primitives)];
     for grid in &data.grids {
-        sections.push(cast_slice(&grid.voxels));
-        sections.push(cast_slice(&grid.lists));
-        sections.push(cast_slice(&grid.textures));
+        sections.push(to_file(&grid.voxels));
+        sections.push(to_file(&grid.lists));
+        sections.push(to_file(&grid.textures));
     }
     let fields = Fields {
         primitives: data.primitives.len() as u64,
@@ -118,13 +126,14 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         y_up: u8::from(data.y_up),
         spare: [0; 11],
         bevels: data.bevels,
-        primitives_checksum: xxh3_64(cast_slice(&data.primitives)),
-        grids_checksum: xxh3_64(cast_slice(&entries)),
+        primitives_checksum: xxh3_64(&to_file(&data.primitives)),
+        grids_checksum: xxh3_64(&to_file(&entries)),
     };
     let header = FORMAT.header(FORMAT.versions[0], layout.end(), |put| {
-        put(FIELDS, bytes_of(&fields))
+        put(FIELDS, &to_file(&[fields]))
     });
-    file::write(&FORMAT, &header, layout.sections().zip(sections), out)
+    let sections = layout.sections().zip(sections.iter().map(|bytes| &**bytes));
+    file::write(&FORMAT, &header, sections, out)
 }
 
 pub fn encode(data: &TexturedData) -> io::Result<Vec<u8>> {
@@ -145,8 +154,8 @@ fn entry(grid: &GridData) -> GridEntry {
         textures: grid.textures.len() as u64 / face.max(1),
         projected: grid.projected,
         projected_afresh: grid.projected_afresh,
-        voxels_checksum: xxh3_64(cast_slice(&grid.voxels)),
-        lists_checksum: xxh3_64(cast_slice(&grid.lists)),
-        textures_checksum: xxh3_64(cast_slice(&grid.textures)),
+        voxels_checksum: xxh3_64(&to_file(&grid.voxels)),
+        lists_checksum: xxh3_64(&to_file(&grid.lists)),
+        textures_checksum: xxh3_64(&to_file(&grid.textures)),
     }
 }

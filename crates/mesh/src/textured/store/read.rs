@@ -16,7 +16,7 @@ use crate::textured::levels::Levels;
 use crate::textured::record::{Primitive, Texel, VoxelRecord, list_of};
 use crate::textured::{CellGrid, Element};
 use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, Stored, range, to_file, turn};
 use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
 #[derive(Debug)]
@@ -55,6 +55,10 @@ impl TexturedFile {
             return Err(TexturedError::damaged(path, "grids", offset, expected));
         }
         FORMAT.check_padding(all, layout.sections(), path)?;
+        let bytes = match cfg!(target_endian = "big") {
+            true => turned(all, &layout),
+            false => bytes,
+        };
         let mut file = Self {
             path: path.to_owned(),
             is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
@@ -76,7 +80,7 @@ impl TexturedFile {
 
     fn check_primitives(&self) -> Result<(), TexturedError> {
         let place = self.layout.primitives;
-        self.check_sum("primitives", place, self.header.primitives_checksum)?;
+        self.check_sum::<Primitive>("primitives", place, self.header.primitives_checksum)?;
         check_primitives(self.primitives(), self.bounds()).map_err(|(number, expected)| {
             let offset = place[0] + (number * size_of::<Primitive>()) as u64;
             self.damaged("primitives", offset, expected)
@@ -85,8 +89,8 @@ impl TexturedFile {
 
     fn check_grid(&self, number: usize) -> Result<(), TexturedError> {
         let (entry, [voxels, lists, _]) = (&self.entries[number], self.layout.grids[number]);
-        self.check_sum("voxels", voxels, entry.voxels_checksum)?;
-        self.check_sum("lists", lists, entry.lists_checksum)?;
+        self.check_sum::<VoxelRecord>("voxels", voxels, entry.voxels_checksum)?;
+        self.check_sum::<u32>("lists", lists, entry.lists_checksum)?;
         let (grid, primitives) = (self.grid(number), self.primitives().len());
         let checked = check(entry, grid.voxels(), grid.lists(), primitives);
         checked.map_err(|(section, record, expected)| {
@@ -98,13 +102,13 @@ impl TexturedFile {
         })
     }
 
-    fn check_sum(
+    fn check_sum<T: Stored>(
         &self,
         section: &'static str,
         place: [u64; 2],
         checksum: u64,
     ) -> Result<(), TexturedError> {
-        if xxh3_64(self.section(place)) == checksum {
+        if xxh3_64(&to_file::<T>(self.section(place))) == checksum {
             return Ok(());
         }
         Err(self.damaged(section, place[0], format!("checksum {checksum:016x}")))
@@ -239,7 +243,7 @@ impl<'f> Grid<'f> {
         }
         let place = self.places()[2];
         let checksum = self.entry().textures_checksum;
-        self.file.check_sum("textures", place, checksum)?;
+        self.file.check_sum::<Texel>("textures", place, checksum)?;
         if !self.texels().iter().all(Texel::is_sound) {
             return Err(self.file.damaged("textures", place[0], "sound texels"));
         }
@@ -248,10 +252,22 @@ impl<'f> Grid<'f> {
     }
 }
 
+/// A file with the numbers of its sections in the processor's order.
+fn turned(all: &[u8], layout: &Layout) -> Bytes {
+    let mut all = all.to_vec();
+    turn::<Primitive>(&mut all[range(layout.primitives)]);
+    for &[voxels, lists, texels] in &layout.grids {
+        turn::<VoxelRecord>(&mut all[range(voxels)]);
+        turn::<u32>(&mut all[range(lists)]);
+        turn::<Texel>(&mut all[range(texels)]);
+    }
+    Bytes::held(&all)
+}
+
 fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields, TexturedError> {
     let header = FORMAT.read(beginning, file_bytes, path)?;
     let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
-    let fields: Fields = bytemuck::pod_read_unaligned(&bytes);
+    let fields = file::from_file::<Fields>(&bytes)[0];
     let grids = format!("1 to {MOST_GRIDS} grids, not {}", fields.grids);
     let [low, high] = [fields.low, fields.high].map(DVec3::from_array);
     let extent = (high - low).max_element();
@@ -292,7 +308,7 @@ fn read_entries(header: &Fields, all: &[u8], path: &Path) -> Result<Vec<GridEntr
     if xxh3_64(bytes) != checksum {
         return Err(damaged(0, format!("checksum {checksum:016x}")));
     }
-    let entries: Vec<GridEntry> = bytemuck::pod_collect_to_vec(bytes);
+    let entries: Vec<GridEntry> = file::from_file(bytes);
     for (number, entry) in entries.iter().enumerate() {
         let is_finer = number == 0 || entries[number - 1].cells < entry.cells;
         let order = is_finer.then_some(()).ok_or("grids from coarse to fine");
