@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use super::args::{EngineArgs, EngineName};
-use super::error::{CliError, Kind};
+use super::error::CliError;
 use shiftvox::fast::{Fast, FastOptions, Switches};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::Engine;
