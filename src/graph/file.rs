@@ -360,17 +360,10 @@ impl Fields<'_> {
 }
 
 pub fn write<'s>(
-    format: &Format,
     header: &[u8],
     sections: impl Iterator<Item = ([u64; 2], &'s [u8])>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    if cfg!(target_endian = "big") {
-        return Err(io::Error::other(format!(
-            "{} files are not written on machines of this byte order",
-            format.ending
-        )));
-    }
     out.write_all(header)?;
     let mut written = header.len() as u64;
     for ([begin, end], bytes) in sections {

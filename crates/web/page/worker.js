@@ -4,10 +4,14 @@
 const program = WebAssembly.instantiateStreaming(fetch("shiftvox.wasm"), { page: { now: () => performance.now() } });
 
 onmessage = async ({ data }) => {
-  const { exports: shiftvox } = (await program).instance;
-  const put = (bytes) => new Uint8Array(shiftvox.memory.buffer, shiftvox.room(bytes.length), bytes.length).set(bytes);
-  let length;
+  let shiftvox, length;
+  const put = (bytes) => {
+    // Memory may grow, which makes a new buffer.
+    const at = shiftvox.room(bytes.length);
+    new Uint8Array(shiftvox.memory.buffer, at, bytes.length).set(bytes);
+  };
   try {
+    shiftvox = (await program).instance.exports;
     if (typeof data === "string") {
       put(new TextEncoder().encode(data));
       length = shiftvox.ask();
@@ -19,7 +23,7 @@ onmessage = async ({ data }) => {
       length = shiftvox.open(name.length);
     }
   } catch (error) {
-    // A panic, or memory that is refused: the instance cannot go on.
+    // No program, no memory left, or a fault of the program: this worker cannot go on.
     return close(postMessage(String(error)));
   }
   const answer = new Uint8Array(shiftvox.memory.buffer, shiftvox.answer(), length).slice().buffer;

@@ -5,6 +5,8 @@
 //! `#[inline(always)]`.
 
 mod scalar;
+#[cfg(test)]
+mod tests;
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(
     all(target_arch = "aarch64", target_endian = "little"),

@@ -299,8 +299,9 @@ impl Isa for Vector {
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
         let bits = [1, 2, 4, 8, 16, 32, 64, 128];
-        for (i, row) in entries.chunks_mut(width).take(8).enumerate() {
-            let (fours, _) = row[..8].as_chunks_mut::<4>();
+        assert!(width.saturating_mul(7).saturating_add(8) <= entries.len());
+        for i in 0..8 {
+            let (fours, _) = entries[i * width..][..8].as_chunks_mut::<4>();
             for (four, bits) in fours.iter_mut().zip(bits.as_chunks::<4>().0) {
                 // SAFETY: all 64-bit Arm processors have these instructions. Loads and the store are of the arrays' lanes.
                 unsafe {

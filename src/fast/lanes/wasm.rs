@@ -55,11 +55,18 @@ macro_rules! floats {
                 sub(other) = $sub;
                 mul(other) = $mul;
                 div(other) = $div;
-                max(other) = $max;
-                min(other) = $min;
                 abs() = $abs;
                 floor() = $floor;
                 ceil() = $ceil;
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                // The other where one is no number, as AVX has it.
+                Self($max(other.0, self.0))
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                Self($min(other.0, self.0))
             }
             #[inline(always)]
             fn fma(self, by: Self, plus: Self) -> Self {

@@ -73,6 +73,11 @@ fn the_page_without_a_server_shows_what_render_draws() {
     browser.wait("document.title.startsWith('tests/data/axes.vox')");
     assert!(assert_is_renders(browser).contains("tests/data/axes.vox"));
     browser.value(&open("'nonsense'", "wrong.vox"));
-    browser.wait("$('error').textContent.includes('wrong.vox')");
+    browser.wait("$('of-file').textContent.includes('wrong.vox')");
+    // Memory grows.
+    browser.value(&open("new Uint8Array(64 << 20)", "large.vox"));
+    browser.wait("$('of-file').textContent.includes('large.vox')");
+    browser.drag([430.0, 400.0], [500.0, 360.0], "left");
+    assert!(assert_is_renders(browser).contains("tests/data/axes.vox"));
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

@@ -79,7 +79,7 @@ pub(in crate::far) fn write_parts(
     });
     // The zeros before the data are written before an empty section.
     let sections = [(node_place, &nodes[..]), ([begin; 2], &[][..])];
-    file::write(&FORMAT, &header, sections.into_iter(), out)?;
+    file::write(&header, sections.into_iter(), out)?;
     copy(out)
 }
 

@@ -133,7 +133,7 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         put(FIELDS, &to_file(&[fields]))
     });
     let sections = layout.sections().zip(sections.iter().map(|bytes| &**bytes));
-    file::write(&FORMAT, &header, sections, out)
+    file::write(&header, sections, out)
 }
 
 pub fn encode(data: &TexturedData) -> io::Result<Vec<u8>> {
