@@ -54,7 +54,7 @@ pub fn report() -> String {
     report
 }
 
-/// The rows with the hashes and counts of what is drawn. Lines that begin with `#` or `@` stay.
+/// The rows, with hashes and counts of the drawn pictures. Lines that begin with `#` or `@` stay.
 #[must_use]
 pub fn draw_rows(rows: &str) -> String {
     let mut used = Machine::default();

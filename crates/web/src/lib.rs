@@ -1,7 +1,7 @@
 //! The renderer for a page without a server, compiled to WebAssembly and run in a worker of the browser.
 //!
-//! A message's bytes are written to [`room`]. [`open`], [`ask`] and [`identity`] read them and return the length of
-//! their answer, which is at [`answer`] and has the form of the messages of `shiftvox view`.
+//! A message's bytes are written to [`room`]. [`open`], [`ask`] and [`identity`] read them and return the length of their
+//! answer. It is at [`answer`], in the form of the messages of `shiftvox view`.
 
 #![allow(unsafe_code, reason = "names of exports")]
 

@@ -26,7 +26,7 @@ fn eight<F: Tests<8>>(of: F) -> String {
     )
 }
 
-/// What all operations make of the lanes of a seed.
+/// The results of all operations, of lanes drawn from a seed.
 fn results<I: Isa>(isa: I, seed: u64) -> String {
     let mut numbers = Numbers(SplitMix::new(seed));
     let [a, b, c] = [(); 3].map(|()| isa.four(&numbers.floats()));
