@@ -19,7 +19,7 @@ pub use request::{Ask, Camera, FLAGS, Flags, Request, check_size};
 #[cfg(feature = "server")]
 pub use server::Server;
 
-/// The page. `{{nonce}}` stands for a word that a server's policy names.
+/// The page. The server replaces `{{nonce}}` by a random number, which its policy of scripts names.
 pub const PAGE: &str = include_str!("page.html");
 
 /// The fields of an answer, and the bytes of its picture if it has one.
