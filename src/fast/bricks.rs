@@ -11,7 +11,6 @@ use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
 use super::lines::{Line, Lines, OFFSETS};
-use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
 use super::strips::Row;
@@ -63,7 +62,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     band.counters.samples_tested += u64::from(open.count_ones());
     let lines = Lines::new(isa, band.constants, projection, samples);
     let tables = lines.strips.map(|strips| &strips.touched);
-    let exist = turned_parts(isa, brick.parts.exist, octant);
+    let exist = isa.turned(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
@@ -313,7 +312,7 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octan
         let parts = &mut blocks.parts[number];
         parts.read(band.isa, band.graph, node, false, 0);
         parts.prefetch(band.isa, band.graph);
-        blocks.exist[number] = turned_parts(band.isa, parts.exist, octant);
+        blocks.exist[number] = band.isa.turned(parts.exist, octant);
     }
     blocks.ready |= wanted;
 }

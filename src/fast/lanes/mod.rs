@@ -81,21 +81,12 @@ pub(super) trait U64x4: Lanes<4, Lane = u64> {
     fn zeros(self) -> u32;
 }
 
-pub(super) trait U8x16: Lanes<16, Lane = u8> {
-    fn or(self, other: Self) -> Self;
-    fn nibbles(self) -> [Self; 2];
-    /// By lane, this table's entry of the number `at`, which is below 16.
-    fn look_up(self, at: Self) -> Self;
-    fn low(self) -> u64;
-}
-
 pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type F32x4: F32x4<Isa = Self>;
     type F32x8: F32x8<Isa = Self>;
     type F64x4: Floats<4, Isa = Self, Lane = f64>;
     type I16x16: I16x16<Isa = Self>;
     type U64x4: U64x4<Isa = Self>;
-    type U8x16: U8x16<Isa = Self>;
 
     /// Runs a step, an `#[inline(always)]` closure, in its own function, compiled for this set. Arguments are passed, not
     /// captured, so that the compiler knows that they do not alias.
@@ -115,10 +106,10 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
     fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
-    /// A vector of eight bytes, and eight more of no meaning.
-    fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes, one after the other, at the places of a mask's bits, and bytes of ones there.
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
+    /// [`turned_parts`](super::orders::turned_parts).
+    fn turned(self, parts: u64, octant: u8) -> u64;
     /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist.
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
     fn prefetch<T>(self, entries: &[T], at: usize);

@@ -3,6 +3,7 @@
 use std::array::from_fn;
 
 use super::*;
+use crate::fast::orders::turned_parts;
 
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fast) struct Scalar;
@@ -144,31 +145,12 @@ impl U64x4 for [u64; 4] {
     }
 }
 
-impl U8x16 for [u8; 16] {
-    lane_by_lane! {
-        or(a, b) = a | b;
-    }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        [self.map(|byte| byte & 15), self.map(|byte| byte >> 4)]
-    }
-    #[inline(always)]
-    fn look_up(self, at: Self) -> Self {
-        at.map(|at| self[usize::from(at & 15)])
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        u64::from_le_bytes(from_fn(|i| self[i]))
-    }
-}
-
 impl Isa for Scalar {
     type F32x4 = [f32; 4];
     type F32x8 = [f32; 8];
     type F64x4 = [f64; 4];
     type I16x16 = [i16; 16];
     type U64x4 = [u64; 4];
-    type U8x16 = [u8; 16];
 
     #[inline(never)]
     fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
@@ -190,10 +172,6 @@ impl Isa for Scalar {
     fn broadcast_rounded<const LANE: i32>(self, from: [f32; 4]) -> [i16; 16] {
         [from[LANE as usize].round_ties_even() as i16; 16]
     }
-    #[inline(always)]
-    fn bytes(self, eight: u64) -> [u8; 16] {
-        u128::from(eight).to_le_bytes()
-    }
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
         let (mut expanded, mut ones, mut left) = (0, 0, bytes);
         for place in (0..8).filter(|place| mask >> place & 1 != 0) {
@@ -202,6 +180,10 @@ impl Isa for Scalar {
             left >>= 8;
         }
         [expanded, ones]
+    }
+    #[inline(always)]
+    fn turned(self, parts: u64, octant: u8) -> u64 {
+        turned_parts(parts, octant)
     }
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {

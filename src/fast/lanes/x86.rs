@@ -1,6 +1,7 @@
 use std::arch::x86_64::*;
 
 use super::*;
+use crate::fast::orders::turned_parts;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +53,6 @@ lanes! {
     Doubles4([f64; 4] in __m256d, _mm256_loadu_pd, _mm256_set1_pd);
     Shorts16([i16; 16] in __m256i, _mm256_loadu_si256, _mm256_set1_epi16);
     Masks4([u64; 4] in __m256i, _mm256_loadu_si256, _mm256_set1_epi64x);
-    Bytes16([u8; 16] in __m128i, _mm_loadu_si128, _mm_set1_epi8);
 }
 
 macro_rules! methods {
@@ -219,24 +219,19 @@ impl U64x4 for Masks4 {
     }
 }
 
-impl U8x16 for Bytes16 {
-    methods! {
-        or(other) = _mm_or_si128;
-        look_up(at) = _mm_shuffle_epi8;
+/// By octant: the outer octants' order, and a mask's lower and upper half turned.
+static TURNS: [[[u8; 16]; 3]; 8] = {
+    let mut table = [[[0; 16]; 3]; 8];
+    let mut i = 0;
+    while i < 128 {
+        let (octant, at) = (i as u8 >> 4, i & 15);
+        table[i >> 4][0][at] = (at as u8 & 7) ^ octant;
+        table[i >> 4][1][at] = (turned_parts(at as u64, octant) >> (8 * octant)) as u8;
+        table[i >> 4][2][at] = (turned_parts((at as u64) << 4, octant) >> (8 * octant)) as u8;
+        i += 1;
     }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        avx!({
-            let half = _mm_set1_epi8(15);
-            let upper = _mm_and_si128(_mm_srli_epi16::<4>(self.0), half);
-            [Self(_mm_and_si128(self.0, half)), Self(upper)]
-        })
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        avx!(_mm_cvtsi128_si64(self.0) as u64)
-    }
-}
+    table
+};
 
 impl Isa for Avx2 {
     type F32x4 = Floats4;
@@ -244,7 +239,6 @@ impl Isa for Avx2 {
     type F64x4 = Doubles4;
     type I16x16 = Shorts16;
     type U64x4 = Masks4;
-    type U8x16 = Bytes16;
 
     #[inline(always)]
     fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
@@ -285,16 +279,25 @@ impl Isa for Avx2 {
         })
     }
     #[inline(always)]
-    fn bytes(self, eight: u64) -> Bytes16 {
-        avx!(Bytes16(_mm_cvtsi64_si128(eight as i64)))
-    }
-    #[inline(always)]
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
         avx!({
             let places = _pdep_u64(u64::from(mask), 0x0101_0101_0101_0101);
             let ones = (places << 8).wrapping_sub(places);
             [_pdep_u64(bytes, ones), ones]
         })
+    }
+    #[inline(always)]
+    fn turned(self, parts: u64, octant: u8) -> u64 {
+        let tables = &TURNS[usize::from(octant & 7)];
+        // SAFETY: as above. The loads are of the tables' bytes.
+        unsafe {
+            let [outer, low, high] = [0, 1, 2].map(|i| _mm_loadu_si128(tables[i].as_ptr().cast()));
+            let bytes = _mm_shuffle_epi8(_mm_cvtsi64_si128(parts as i64), outer);
+            let half = _mm_set1_epi8(15);
+            let low = _mm_shuffle_epi8(low, _mm_and_si128(bytes, half));
+            let upper = _mm_and_si128(_mm_srli_epi16::<4>(bytes), half);
+            _mm_cvtsi128_si64(_mm_or_si128(low, _mm_shuffle_epi8(high, upper))) as u64
+        }
     }
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
