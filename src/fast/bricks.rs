@@ -5,7 +5,7 @@
 //! that lines may meet are read first, once for a brick.
 //!
 //! Processors cannot predict the part that a line meets. So each step is taken for all samples, without branches, and
-//! only the first attempt: processors overlap short steps. Few samples remain for a second one.
+//! only the first two attempts: processors overlap short steps. Few samples remain for a third one.
 
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
@@ -15,6 +15,9 @@ use super::parts::Part;
 use super::projection::Projection;
 use super::strips::Row;
 use super::window::{Window, bits};
+
+/// Parts that lines are compared with for all samples together.
+const ATTEMPTS: u32 = 2;
 
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
@@ -66,17 +69,22 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
-    let (mut found, mut left) = (any, 0);
+    let (mut found, mut left, mut drawn) = (any, 0, 0);
     if DEEP && any != 0 {
         prepare(band, brick, any, octant);
-        (found, left) = first_blocks(band, &lines, tables, any);
+        [found, left] = next_blocks(band, &lines, tables, any);
     }
-    let (mut drawn, others) = if band.blends {
-        (0, found)
-    } else {
-        meet_first::<I, DEEP>(band, &lines, found, pair)
-    };
-    for bit in bits(left | others) {
+    let attempts = if band.blends { 0 } else { ATTEMPTS };
+    for _ in 0..attempts {
+        let [met, again, beyond] = meet_first::<I, DEEP>(band, &lines, found, pair);
+        drawn |= met;
+        found = again;
+        if DEEP {
+            let [begun, rest] = next_blocks(band, &lines, tables, left | beyond);
+            (found, left) = (again | begun, rest);
+        }
+    }
+    for bit in bits(left | found) {
         let sample = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.line_in_cells(isa, &sample);
         let (mut line, mut parts) = (sample, band.candidates.0[bit]);
@@ -131,20 +139,20 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// Looks up the parts of a first block by sample. Returns the samples that have any, and others that have more blocks.
+/// Looks up the parts of a next block by sample. Returns the samples that have any, and others that have more blocks.
 #[inline(always)]
-fn first_blocks<I: Isa>(
+fn next_blocks<I: Isa>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     tables: [&Row; 3],
     any: u64,
-) -> (u64, u64) {
+) -> [u64; 2] {
     let isa = band.isa;
     let (mut found, mut others) = (0, 0);
     for bit in bits(any) {
         let line = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.line_in_cells(isa, &line);
-        let blocks = band.candidates.0[bit];
+        let blocks = band.brick_blocks.others[bit];
         let [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
         band.hits[bit].block = block as u8;
         band.candidates.0[bit] = parts;
@@ -152,20 +160,20 @@ fn first_blocks<I: Isa>(
         found |= u64::from(parts != 0) << bit;
         others |= u64::from(blocks != 0) << bit;
     }
-    (found, others & !found)
+    [found, others & !found]
 }
 
-/// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
-/// branches, because the outcome is unpredictable.
+/// Splits samples: those whose lines meet the first part that they may meet, those that may meet others, and those that
+/// may only meet other blocks. Without branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     found: u64,
     pair: u32,
-) -> (u64, u64) {
+) -> [u64; 3] {
     let isa = band.isa;
-    let (mut drawn, mut others) = (0, 0);
+    let (mut drawn, mut again, mut beyond) = (0, 0, 0);
     for bit in bits(found) {
         let mut line = lines.line(isa, &SAMPLES[bit]);
         let mut blocks = 0;
@@ -181,9 +189,10 @@ fn meet_first<I: Isa, const DEEP: bool>(
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
-        others |= u64::from((parts | blocks != 0) & !is_met) << bit;
+        again |= u64::from((parts != 0) & !is_met) << bit;
+        beyond |= u64::from((parts == 0) & (blocks != 0) & !is_met) << bit;
     }
-    (drawn, others)
+    [drawn, again, beyond]
 }
 
 impl BrickBlocks {
@@ -298,14 +307,17 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, bit, &path)
 }
 
-/// Reads the blocks that the lines of some samples may meet and that were not read for the brick.
+/// Lists the blocks that the lines of some samples may meet, and reads those that were not read for the brick.
 #[inline(always)]
 fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
     let blocks = &mut *band.brick_blocks;
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }
-    let wanted = bits(samples).fold(0, |wanted, bit| wanted | band.candidates.0[bit]);
+    let wanted = bits(samples).fold(0, |wanted, bit| {
+        blocks.others[bit] = band.candidates.0[bit];
+        wanted | band.candidates.0[bit]
+    });
     for number in bits(wanted & !blocks.ready) {
         let part = number as u32 ^ (u32::from(octant) * 9);
         let node = brick.parts.part(band.graph, part).node;
