@@ -120,7 +120,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         sample_offsets: std::array::from_fn(|i| ((i >> 3) * buffers.pixels.width + (i & 7)) as u32),
         pixels: buffers.pixels,
         counters: Counters::default(),
-        candidates: Candidates([0; 64]),
+        candidates: Candidates([0; 64], [[[0; 8]; 8]; 3]),
         hits: [Hit::default(); 64],
         brick_blocks: &mut brick_blocks,
     };

@@ -67,12 +67,12 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let tables = lines.strips.map(|strips| &strips.touched);
     let exist = isa.turned(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
-    let any = band.candidates.look_up(isa, tables, &cells, exist, open);
+    let [any, all] = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
     let (mut found, mut left, mut drawn) = (any, 0, 0);
     if DEEP && any != 0 {
-        prepare(band, brick, any, octant);
-        [found, left] = next_blocks(band, &lines, tables, any);
+        prepare(band, brick, all, octant);
+        [found, left] = next_blocks(band, &lines, tables, any, true);
     }
     let attempts = if band.blends { 0 } else { ATTEMPTS };
     for _ in 0..attempts {
@@ -80,7 +80,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         drawn |= met;
         found = again;
         if DEEP {
-            let [begun, rest] = next_blocks(band, &lines, tables, left | beyond);
+            let [begun, rest] = next_blocks(band, &lines, tables, left | beyond, false);
             (found, left) = (again | begun, rest);
         }
     }
@@ -146,13 +146,17 @@ fn next_blocks<I: Isa>(
     lines: &Lines<I>,
     tables: [&Row; 3],
     any: u64,
+    is_first: bool,
 ) -> [u64; 2] {
     let isa = band.isa;
     let (mut found, mut others) = (0, 0);
     for bit in bits(any) {
         let line = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.line_in_cells(isa, &line);
-        let blocks = band.brick_blocks.others[bit];
+        let blocks = match is_first {
+            true => band.candidates.0[bit],
+            false => band.brick_blocks.others[bit],
+        };
         let [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
         band.hits[bit].block = block as u8;
         band.candidates.0[bit] = parts;
@@ -307,17 +311,13 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, bit, &path)
 }
 
-/// Lists the blocks that the lines of some samples may meet, and reads those that were not read for the brick.
+/// Reads the wanted blocks that were not read for the brick.
 #[inline(always)]
-fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
+fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, wanted: u64, octant: u8) {
     let blocks = &mut *band.brick_blocks;
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }
-    let wanted = bits(samples).fold(0, |wanted, bit| {
-        blocks.others[bit] = band.candidates.0[bit];
-        wanted | band.candidates.0[bit]
-    });
     for number in bits(wanted & !blocks.ready) {
         let part = number as u32 ^ (u32::from(octant) * 9);
         let node = brick.parts.part(band.graph, part).node;

@@ -61,7 +61,7 @@ pub(super) trait F32x8: Floats<8, Lane = f32> {
     fn reciprocal(self) -> Self;
     fn whole(self) -> [i32; 8];
     /// As [`F32x4::indices`].
-    fn indices<const N: usize>(self) -> [usize; 8];
+    fn indices<const N: usize>(self) -> [u32; 8];
 }
 
 /// Sixteen `i16`. Sums and products wrap around.

@@ -116,8 +116,8 @@ impl F32x8 for [f32; 8] {
         self.map(|c| c as i32)
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 8] {
-        self.map(index::<N>)
+    fn indices<const N: usize>(self) -> [u32; 8] {
+        self.map(|at| index::<N>(at) as u32)
     }
 }
 

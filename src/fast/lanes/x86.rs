@@ -174,7 +174,7 @@ impl F32x8 for Floats8 {
         whole
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 8] {
+    fn indices<const N: usize>(self) -> [u32; 8] {
         let mut whole = [0u32; 8];
         // SAFETY: as above. The store is of the array's eight.
         unsafe {
@@ -182,8 +182,7 @@ impl F32x8 for Floats8 {
             let at = _mm256_min_epu32(_mm256_cvttps_epi32(self.0), last);
             _mm256_storeu_si256(whole.as_mut_ptr().cast(), at);
         }
-        // The bounds are repeated for the compiler to see.
-        whole.map(|at| at as usize % N)
+        whole
     }
 }
 
