@@ -265,9 +265,14 @@ fn show_hits<I: Isa, const DEEP: bool>(
         }
     }
     let first = band.pixels.at(square.left, square.top);
+    let first_node = brick.parts.first_node(band.graph).filter(|_| !DEEP);
     for bit in bits(drawn) {
         let at = first + band.sample_offsets[bit] as usize;
-        let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
+        let hit = band.hits[bit];
+        let node = match first_node {
+            Some(first) => brick.parts.after(first, u32::from(hit.part)),
+            None => hit.part::<I, DEEP>(band, brick).node,
+        };
         let word = band.pixels.word(node);
         if let Some(shown) = band.pixels.shown.get_mut(at) {
             *shown = word;

@@ -140,11 +140,23 @@ impl Parts {
         if self.kind != Kind::Plain {
             return self.look_up(graph, part);
         }
-        let before = self.exist & ((1 << (part & 63)) - 1);
         Part {
-            node: graph.first(self.first).wrapping_add(before.count_ones()),
+            node: self.after(graph.first(self.first), part),
             levels: 2,
         }
+    }
+
+    /// The first part's node, if those of others follow from it.
+    #[inline(always)]
+    pub(super) fn first_node(&self, graph: &GraphView<'_>) -> Option<u32> {
+        (self.kind == Kind::Plain).then(|| graph.first(self.first))
+    }
+
+    /// A part's node, from the first one.
+    #[inline(always)]
+    pub(super) fn after(&self, first: u32, part: u32) -> u32 {
+        let before = self.exist & ((1 << (part & 63)) - 1);
+        first.wrapping_add(before.count_ones())
     }
 
     #[inline(never)]
