@@ -1,8 +1,8 @@
 //! Bricks: nodes whose 64 grandchildren (parts) are solids. For each open sample three look-ups give the parts that its
 //! line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
-//! Where voxels are hardly larger than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The blocks
-//! that lines may meet are read first, once for a brick.
+//! Where voxels are hardly larger than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The
+//! blocks that lines may meet are read first, once for a brick.
 //!
 //! Processors cannot predict the part that a line meets. So each step is taken for all samples, without branches, and
 //! only the first two attempts: processors overlap short steps. Few samples remain for a third one.
