@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Switches;
 use super::band::{Band, BrickBlocks, Hit};
-use super::canvas::{Fill, FillPart, Pixels, TileGrid};
+use super::canvas::{Fill, Pixels};
 use super::constants::Constants;
 use super::counters::Counters;
 use super::exact::Exact;
@@ -23,9 +23,9 @@ pub(super) struct Job<'j> {
 }
 
 pub(super) struct BandBuffers<'p> {
-    pub(super) grid: TileGrid,
+    pub(super) tiles_across: usize,
     pub(super) bounds: Window,
-    pub(super) fill: FillPart<'p>,
+    pub(super) tiles: &'p mut [u64],
     pub(super) pixels: Pixels<'p>,
 }
 
@@ -47,16 +47,15 @@ impl BandBuffers<'_> {
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
         let voxels = samples.min(self.pixels.voxel.len());
         let blends = samples.min(self.pixels.blend.len());
-        let first = (self.bounds.top >> TILE_LOG2) as usize;
-        let (fill, fill_rest) = self.fill.split(&self.grid, first, rows);
+        let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * self.tiles_across);
         let (shown, shown_rest) = self.pixels.shown.split_at_mut(samples);
         let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
         let (blend, blend_rest) = self.pixels.blend.split_at_mut(blends);
         let (width, color) = (self.pixels.width, self.pixels.color);
-        let part = |bounds: Window, fill, shown, voxel, blend| Self {
-            grid: self.grid,
+        let part = |bounds: Window, tiles, shown, voxel, blend| Self {
+            tiles_across: self.tiles_across,
             bounds,
-            fill,
+            tiles,
             pixels: Pixels {
                 width,
                 top: bounds.top,
@@ -72,8 +71,8 @@ impl BandBuffers<'_> {
         };
         let lower = Window { top, ..self.bounds };
         (
-            part(upper, fill, shown, voxel, blend),
-            part(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
+            part(upper, tiles, shown, voxel, blend),
+            part(lower, tiles_rest, shown_rest, voxel_rest, blend_rest),
         )
     }
 }
@@ -109,7 +108,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         octant: 0,
     };
     buffers.pixels.clear();
-    let fill = Fill::clear(&buffers.grid, buffers.bounds, buffers.fill);
+    let fill = Fill::clear(buffers.tiles_across, buffers.bounds, buffers.tiles);
     let mut band = Band {
         isa,
         constants: job.constants,
@@ -121,7 +120,7 @@ fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters 
         sample_offsets: std::array::from_fn(|i| ((i >> 3) * buffers.pixels.width + (i & 7)) as u32),
         pixels: buffers.pixels,
         counters: Counters::default(),
-        candidates: Candidates([0; 64]),
+        candidates: Candidates([0; 64], [[[0; 8]; 8]; 3]),
         hits: [Hit::default(); 64],
         brick_blocks: &mut brick_blocks,
     };

@@ -1,21 +1,23 @@
 //! Bricks: nodes whose 64 grandchildren (parts) are solids. For each open sample three look-ups give the parts that its
 //! line may meet, nearest first (`strips.rs`); it shows the first that the line meets (`lines.rs`).
 //!
-//! Where voxels are smaller than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The blocks
-//! that lines may meet are read first, once for a brick.
+//! Where voxels are hardly larger than samples, the parts are blocks, each with 64 parts: the same look-ups twice. The
+//! blocks that lines may meet are read first, once for a brick.
 //!
 //! Processors cannot predict the part that a line meets. So each step is taken for all samples, without branches, and
-//! only the first attempt: processors overlap short steps. Few samples remain for a second one.
+//! only the first two attempts: processors overlap short steps. Few samples remain for a third one.
 
 use super::band::{Band, Brick, BrickBlocks, Hit, Record, voxel_at};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::Isa;
 use super::lines::{Line, Lines, OFFSETS};
-use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
 use super::strips::Row;
 use super::window::{Window, bits};
+
+/// Parts that lines are compared with for all samples together.
+const ATTEMPTS: u32 = 2;
 
 #[inline(always)]
 pub(super) fn draw<I: Isa, const DEEP: bool>(
@@ -63,21 +65,26 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     band.counters.samples_tested += u64::from(open.count_ones());
     let lines = Lines::new(isa, band.constants, projection, samples);
     let tables = lines.strips.map(|strips| &strips.touched);
-    let exist = turned_parts(isa, brick.parts.exist, octant);
+    let exist = isa.turned(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
-    let any = band.candidates.look_up(isa, tables, &cells, exist, open);
+    let [any, all] = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
-    let (mut found, mut left) = (any, 0);
+    let (mut found, mut left, mut drawn) = (any, 0, 0);
     if DEEP && any != 0 {
-        prepare(band, brick, any, octant);
-        (found, left) = first_blocks(band, &lines, tables, any);
+        prepare(band, brick, all, octant);
+        [found, left] = next_blocks(band, &lines, tables, any, true);
     }
-    let (mut drawn, others) = if band.blends {
-        (0, found)
-    } else {
-        meet_first::<I, DEEP>(band, &lines, found, pair)
-    };
-    for bit in bits(left | others) {
+    let attempts = if band.blends { 0 } else { ATTEMPTS };
+    for _ in 0..attempts {
+        let [met, again, beyond] = meet_first::<I, DEEP>(band, &lines, found, pair);
+        drawn |= met;
+        found = again;
+        if DEEP {
+            let [begun, rest] = next_blocks(band, &lines, tables, left | beyond, false);
+            (found, left) = (again | begun, rest);
+        }
+    }
+    for bit in bits(left | found) {
         let sample = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.line_in_cells(isa, &sample);
         let (mut line, mut parts) = (sample, band.candidates.0[bit]);
@@ -132,20 +139,24 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// Looks up the parts of a first block by sample. Returns the samples that have any, and others that have more blocks.
+/// Looks up the parts of a next block by sample. Returns the samples that have any, and others that have more blocks.
 #[inline(always)]
-fn first_blocks<I: Isa>(
+fn next_blocks<I: Isa>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     tables: [&Row; 3],
     any: u64,
-) -> (u64, u64) {
+    is_first: bool,
+) -> [u64; 2] {
     let isa = band.isa;
     let (mut found, mut others) = (0, 0);
     for bit in bits(any) {
         let line = lines.line(isa, &SAMPLES[bit]);
         let cells = lines.line_in_cells(isa, &line);
-        let blocks = band.candidates.0[bit];
+        let blocks = match is_first {
+            true => band.candidates.0[bit],
+            false => band.brick_blocks.others[bit],
+        };
         let [block, parts, blocks] = band.brick_blocks.next(isa, tables, &cells, blocks);
         band.hits[bit].block = block as u8;
         band.candidates.0[bit] = parts;
@@ -153,20 +164,20 @@ fn first_blocks<I: Isa>(
         found |= u64::from(parts != 0) << bit;
         others |= u64::from(blocks != 0) << bit;
     }
-    (found, others & !found)
+    [found, others & !found]
 }
 
-/// Splits samples: those whose lines meet the first part that they may meet, and those that may meet others. Without
-/// branches, because the outcome is unpredictable.
+/// Splits samples: those whose lines meet the first part that they may meet, those that may meet others, and those that
+/// may only meet other blocks. Without branches, because the outcome is unpredictable.
 #[inline(always)]
 fn meet_first<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     lines: &Lines<I>,
     found: u64,
     pair: u32,
-) -> (u64, u64) {
+) -> [u64; 3] {
     let isa = band.isa;
-    let (mut drawn, mut others) = (0, 0);
+    let (mut drawn, mut again, mut beyond) = (0, 0, 0);
     for bit in bits(found) {
         let mut line = lines.line(isa, &SAMPLES[bit]);
         let mut blocks = 0;
@@ -182,9 +193,10 @@ fn meet_first<I: Isa, const DEEP: bool>(
         drawn |= u64::from(is_met) << bit;
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
         band.candidates.0[bit] = parts;
-        others |= u64::from((parts | blocks != 0) & !is_met) << bit;
+        again |= u64::from((parts != 0) & !is_met) << bit;
+        beyond |= u64::from((parts == 0) & (blocks != 0) & !is_met) << bit;
     }
-    (drawn, others)
+    [drawn, again, beyond]
 }
 
 impl BrickBlocks {
@@ -253,9 +265,14 @@ fn show_hits<I: Isa, const DEEP: bool>(
         }
     }
     let first = band.pixels.at(square.left, square.top);
+    let first_node = brick.parts.first_node(band.graph).filter(|_| !DEEP);
     for bit in bits(drawn) {
         let at = first + band.sample_offsets[bit] as usize;
-        let node = band.hits[bit].part::<I, DEEP>(band, brick).node;
+        let hit = band.hits[bit];
+        let node = match first_node {
+            Some(first) => brick.parts.after(first, u32::from(hit.part)),
+            None => hit.part::<I, DEEP>(band, brick).node,
+        };
         let word = band.pixels.word(node);
         if let Some(shown) = band.pixels.shown.get_mut(at) {
             *shown = word;
@@ -299,21 +316,20 @@ fn is_hit<I: Isa, const DEEP: bool>(
     is_covered(band, brick, square, bit, &path)
 }
 
-/// Reads the blocks that the lines of some samples may meet and that were not read for the brick.
+/// Reads the wanted blocks that were not read for the brick.
 #[inline(always)]
-fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, samples: u64, octant: u8) {
+fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, wanted: u64, octant: u8) {
     let blocks = &mut *band.brick_blocks;
     if blocks.octant != octant {
         (blocks.octant, blocks.ready) = (octant, 0);
     }
-    let wanted = bits(samples).fold(0, |wanted, bit| wanted | band.candidates.0[bit]);
     for number in bits(wanted & !blocks.ready) {
         let part = number as u32 ^ (u32::from(octant) * 9);
         let node = brick.parts.part(band.graph, part).node;
         let parts = &mut blocks.parts[number];
         parts.read(band.isa, band.graph, node, false, 0);
         parts.prefetch(band.isa, band.graph);
-        blocks.exist[number] = turned_parts(band.isa, parts.exist, octant);
+        blocks.exist[number] = band.isa.turned(parts.exist, octant);
     }
     blocks.ready |= wanted;
 }

@@ -19,7 +19,7 @@ const MOST_AREA: f64 = (1 << 25) as f64;
 /// Least size of voxels drawn one by one (`voxels.rs`), samples. This and the next two are measured.
 const COARSE_SAMPLES: f64 = 3.0;
 /// Largest size of voxels of bricks of four levels.
-const FINE_SAMPLES: f64 = 0.75;
+const FINE_SAMPLES: f64 = 1.1;
 /// Least size of a cube drawn by its planes (`planes.rs`).
 const LARGE_SAMPLES: f64 = 24.0;
 

@@ -41,7 +41,7 @@ use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use bands::{BandBuffers, Job, run_bands};
-use canvas::{FillMemory, Pixels, TileGrid};
+use canvas::Pixels;
 use constants::Constants;
 use counters::Counters;
 use exact::Exact;
@@ -70,7 +70,8 @@ pub struct FastOptions {
 pub struct Fast {
     options: FastOptions,
     fallback: Box<dyn Engine + Send>,
-    fill: FillMemory,
+    /// Masks of open samples.
+    tiles: Vec<u64>,
     prepared: Option<Prepared>,
 }
 
@@ -89,7 +90,7 @@ impl Fast {
         Self {
             options,
             fallback,
-            fill: FillMemory::default(),
+            tiles: Vec::new(),
             prepared: None,
         }
     }
@@ -119,16 +120,15 @@ impl Fast {
             graph,
             switches: &self.options.switches,
         };
-        let grid = TileGrid::new(setup.width, setup.height);
-        self.fill.resize(&grid)?;
+        canvas::resize(&mut self.tiles, setup.width, setup.height)?;
         let threads = match self.options.threads {
             0 => rayon::current_num_threads(),
             threads => threads,
         };
         let buffers = BandBuffers {
-            grid,
+            tiles_across: canvas::tiles_across(setup.width),
             bounds: Window::of([0, 0, setup.width as i32 - 1, setup.height as i32 - 1]),
-            fill: self.fill.part(),
+            tiles: &mut self.tiles,
             pixels,
         };
         let object = constants.rows(setup.height);

@@ -1,58 +1,27 @@
-//! Tables of octants (rule R9), and the slabs of a node's 64 parts.
+//! Order by octants (rule R9), and the slabs of a node's 64 parts.
 
-use super::lanes::{Isa, Lanes, U8x16};
+/// Distances between the parts that a bit of an octant swaps, and the lower ones of them.
+const SWAPS: [(u32, u64); 6] = [
+    (1, 0x5555_5555_5555_5555),
+    (2, 0x3333_3333_3333_3333),
+    (4, 0x0f0f_0f0f_0f0f_0f0f),
+    (8, 0x00ff_00ff_00ff_00ff),
+    (16, 0x0000_ffff_0000_ffff),
+    (32, 0xffff_ffff),
+];
 
-/// Child masks, turned by octant: bit `c` is child `c ^ octant`.
-static TURNED: [[u8; 256]; 8] = {
-    let mut table = [[0u8; 256]; 8];
-    let mut octant = 0;
-    while octant < 8 {
-        let mut mask = 0;
-        while mask < 256 {
-            let mut child = 0;
-            while child < 8 {
-                table[octant][mask] |= ((mask >> (child ^ octant)) as u8 & 1) << child;
-                child += 1;
-            }
-            mask += 1;
+/// A mask of parts, turned by octant: bit `p` is part `p ^ 9 octant`.
+pub(super) const fn turned_parts(mut parts: u64, octant: u8) -> u64 {
+    let mut i = 0;
+    while i < 6 {
+        let (places, lower) = SWAPS[i];
+        if octant >> (i % 3) & 1 != 0 {
+            parts = (parts & lower) << places | parts >> places & lower;
         }
-        octant += 1;
+        i += 1;
     }
-    table
-};
-
-#[inline(always)]
-pub(super) fn turned(mask: u8, octant: u8) -> u8 {
-    TURNED[usize::from(octant & 7)][usize::from(mask)]
+    parts
 }
-
-#[inline(always)]
-pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
-    let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
-    let [lower, upper] = isa
-        .bytes(parts)
-        .look_up(I::U8x16::load(isa, outer))
-        .nibbles();
-    let low = I::U8x16::load(isa, low).look_up(lower);
-    low.or(I::U8x16::load(isa, high).look_up(upper)).low()
-}
-
-/// By octant: the outer octants' order, and a mask's lower and upper half turned.
-static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
-    let mut table = [[[0u8; 16]; 3]; 8];
-    let mut octant = 0;
-    while octant < 8 {
-        let mut i = 0;
-        while i < 16 {
-            table[octant][0][i] = (i as u8 & 7) ^ octant as u8;
-            table[octant][1][i] = TURNED[octant][i];
-            table[octant][2][i] = TURNED[octant][i << 4];
-            i += 1;
-        }
-        octant += 1;
-    }
-    table
-};
 
 pub(super) const fn along(part: usize, axis: usize) -> usize {
     (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1

@@ -8,17 +8,16 @@ pub(super) struct Parts {
     pub(super) exist: u64,
     /// The first child; the node itself unless plain.
     first: u32,
-    mask: u8,
     solid: u8,
     kind: Kind,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Kind {
+    /// All children have children, whose lists follow each other.
     #[default]
     Plain,
-    /// Parts are named by the graph's links, or a child is solid.
-    Linked,
+    Other,
     Solid,
 }
 
@@ -29,11 +28,6 @@ pub(super) struct Part {
 }
 
 const ONES: u64 = 0x0101_0101_0101_0101;
-
-#[inline(always)]
-fn rank(mask: u32, place: u32) -> u32 {
-    (mask & ((1 << place) - 1)).count_ones()
-}
 
 impl Parts {
     pub(super) fn of_solid(node: u32) -> Self {
@@ -73,7 +67,7 @@ impl Parts {
             && mask != 0
             && detail == 0
             && !is_last
-            && graph.links.is_empty()
+            && graph.is_in_order
             && let Some(eight) = graph
                 .mask
                 .get(first as usize..(first as usize).saturating_add(8))
@@ -84,7 +78,6 @@ impl Parts {
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
                 self.exist = exist;
                 self.first = first;
-                self.mask = mask;
                 self.solid = 0;
                 self.kind = Kind::Plain;
                 return;
@@ -102,8 +95,7 @@ impl Parts {
         }
         *self = Self {
             first: node,
-            mask,
-            kind: Kind::Linked,
+            kind: Kind::Other,
             ..Self::default()
         };
         for octant in (0..8u8).filter(|octant| mask >> octant & 1 != 0) {
@@ -148,14 +140,23 @@ impl Parts {
         if self.kind != Kind::Plain {
             return self.look_up(graph, part);
         }
-        let outer = part >> 3 & 7;
-        let child = self.first.wrapping_add(rank(u32::from(self.mask), outer));
-        let first = graph.first.get(child as usize).copied().unwrap_or(0);
-        let below = (self.exist >> (8 * outer)) as u32 & 0xff;
         Part {
-            node: first.wrapping_add(rank(below, part & 7)),
+            node: self.after(graph.first(self.first), part),
             levels: 2,
         }
+    }
+
+    /// The first part's node, if those of others follow from it.
+    #[inline(always)]
+    pub(super) fn first_node(&self, graph: &GraphView<'_>) -> Option<u32> {
+        (self.kind == Kind::Plain).then(|| graph.first(self.first))
+    }
+
+    /// A part's node, from the first one.
+    #[inline(always)]
+    pub(super) fn after(&self, first: u32, part: u32) -> u32 {
+        let before = self.exist & ((1 << (part & 63)) - 1);
+        first.wrapping_add(before.count_ones())
     }
 
     #[inline(never)]

@@ -15,8 +15,9 @@
 
 use std::sync::OnceLock;
 
-use super::lanes::{Floats, Isa, Lanes, Masks, Tests};
+use super::lanes::{Floats, Isa, Lanes, Tests};
 use super::orders::SLABS;
+use super::window::bits;
 
 pub(super) const SHARES: usize = 128;
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
@@ -61,13 +62,14 @@ pub(super) static BLIND: Strips = Strips {
     begins_below: [u64::MAX; GROUPS],
 };
 
+/// Parts by sample, and the cells of its three functions.
 #[derive(Debug)]
 #[repr(C, align(32))]
-pub(super) struct Candidates(pub(super) [u64; 64]);
+pub(super) struct Candidates(pub(super) [u64; 64], pub(super) [[[u32; 8]; 8]; 3]);
 
 impl Candidates {
-    /// Looks up the parts among `wanted` by open sample. Returns the samples that have any. `cells`: the functions in cells,
-    /// at the first sample, and their slopes by column and by row.
+    /// Looks up the parts among `wanted` by open sample. Returns the samples that have any, and the parts of all. `cells`:
+    /// the functions in cells, at the first sample, and their slopes by column and by row.
     #[inline(always)]
     pub(super) fn look_up<I: Isa>(
         &mut self,
@@ -76,38 +78,32 @@ impl Candidates {
         cells: &[I::F32x4; 3],
         wanted: u64,
         open: u64,
-    ) -> u64 {
+    ) -> [u64; 2] {
         let [mut x, mut y, mut z] = [
             first_row::<I, 0>(isa, cells),
             first_row::<I, 1>(isa, cells),
             first_row::<I, 2>(isa, cells),
         ];
         let rows = 8 - open.leading_zeros() as usize / 8;
-        let mut left = open;
-        for row in self.0.as_chunks_mut::<8>().0.iter_mut().take(rows) {
-            if left & 0xff != 0 {
-                let x = x.0.indices::<CELLS>();
-                let y = y.0.indices::<CELLS>();
-                let z = z.0.indices::<CELLS>();
-                // Gathers are slow on AMD.
-                for (i, parts) in row.iter_mut().enumerate() {
-                    *parts = wanted & tables[0][x[i]] & tables[1][y[i]] & tables[2][z[i]];
-                }
-            }
-            left >>= 8;
+        for row in 0..rows {
+            self.1[0][row] = x.0.indices::<CELLS>();
+            self.1[1][row] = y.0.indices::<CELLS>();
+            self.1[2][row] = z.0.indices::<CELLS>();
             x.0 = x.0.add(x.1);
             y.0 = y.0.add(y.1);
             z.0 = z.0.add(z.1);
         }
-        // Afterwards, as stores of single entries delay loads of vectors. All rows, as branches cost more.
-        let mut none = 0u64;
-        for row in self.0.as_chunks::<8>().0.iter().rev() {
-            let (halves, _) = row.as_chunks();
-            let low = I::U64x4::load(isa, &halves[0]).zeros();
-            let high = I::U64x4::load(isa, &halves[1]).zeros();
-            none = none << 8 | u64::from(low | high << 4);
+        // Gathers are slow on AMD.
+        let [x, y, z] = self.1.each_ref().map(|rows| rows.as_flattened());
+        let (mut any, mut all) = (0, 0);
+        for bit in bits(open) {
+            let cell = |of: &[u32]| of[bit] as usize % CELLS;
+            let parts = wanted & tables[0][cell(x)] & tables[1][cell(y)] & tables[2][cell(z)];
+            self.0[bit] = parts;
+            any |= u64::from(parts != 0) << bit;
+            all |= parts;
         }
-        open & !none
+        [any, all]
     }
 }
 

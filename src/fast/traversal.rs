@@ -5,7 +5,6 @@ use super::band::{Band, Brick, Record, voxel_at};
 use super::child_windows::ChildWindows;
 use super::constants::{Constants, Level};
 use super::lanes::Isa;
-use super::orders::turned;
 use super::parts::Parts;
 use super::window::Window;
 use super::{bricks, planes, voxels};
@@ -182,7 +181,7 @@ impl<'b> Children<'b> {
         self.record = *record;
         self.level = level;
         self.nearest = u32::from(nearest);
-        self.left = u32::from(turned(wanted, nearest));
+        self.left = band.isa.turned(u64::from(wanted) << (8 * nearest), nearest) as u32;
         self.prefetch(band);
     }
 

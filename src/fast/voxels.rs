@@ -6,7 +6,6 @@ use super::bricks::{Path, is_covered};
 use super::directions::{SAMPLES, Samples, each_square};
 use super::lanes::{F32x4, Floats, Isa, Lanes, Shorts};
 use super::lines::{InUnits, Lines, OFFSETS, Offset};
-use super::orders::turned_parts;
 use super::projection::Projection;
 use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, Strips};
 use super::window::{Window, bits};
@@ -45,7 +44,7 @@ fn draw_samples<I: Isa>(
     let mut wanted = if is_single {
         1
     } else {
-        candidates(isa, &lines, square) & turned_parts(isa, brick.parts.exist, octant)
+        candidates(isa, &lines, square) & isa.turned(brick.parts.exist, octant)
     };
     if wanted == 0 {
         return 0;

@@ -146,6 +146,7 @@ impl Graph {
             links: &self.links,
             opacity: &self.opacity,
             light: &[],
+            is_in_order: self.is_level_ordered() && self.links.is_empty(),
         }
     }
 }
@@ -160,6 +161,8 @@ pub struct GraphView<'g> {
     pub opacity: &'g [Opacity],
     /// Linear light by node, 0 to 65535 per channel (`SPEC.md`, section 11). Empty: white.
     pub light: &'g [[u16; 3]],
+    /// A tree stored level by level, in which each child list follows that of the node before.
+    pub is_in_order: bool,
 }
 
 impl GraphView<'_> {

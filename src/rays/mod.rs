@@ -129,12 +129,10 @@ mod tests {
         // Sierpinski's tetrahedron.
         let graph = GraphView {
             depth: 4,
-            root: 0,
             mask: &[0b0110_1001],
             first: &[0],
             links: &[0; 4],
-            opacity: &[],
-            light: &[],
+            ..GraphView::default()
         };
         let draw = |setup: &FrameSetup, is_narrow| {
             assert_eq!(RayFrame::new(setup).fits_i128(), is_narrow);

@@ -69,7 +69,7 @@ impl<V: Tests<4>> Tests<8> for Pair<V> {
         both(self.0.whole(), self.1.whole())
     }
     #[inline(always)]
-    fn indices<const M: usize>(self) -> [usize; 8] {
+    fn indices<const M: usize>(self) -> [u32; 8] {
         both(self.0.indices::<M>(), self.1.indices::<M>())
     }
 }

@@ -20,6 +20,8 @@ mod vector;
 
 use std::fmt::Debug;
 
+use super::orders::turned_parts;
+
 pub(super) use scalar::Scalar;
 pub(super) use vector::Vector;
 
@@ -70,7 +72,7 @@ pub(super) trait Tests<const N: usize>: Floats<N, Lane = f32> {
     fn reciprocal(self) -> Self;
     fn whole(self) -> [i32; N];
     /// As [`F32x4::indices`].
-    fn indices<const M: usize>(self) -> [usize; N];
+    fn indices<const M: usize>(self) -> [u32; N];
 }
 
 /// Sums and products wrap around.
@@ -90,21 +92,12 @@ pub(super) trait Masks<const N: usize>: Lanes<N, Lane = u64> {
     fn zeros(self) -> u32;
 }
 
-pub(super) trait U8x16: Lanes<16, Lane = u8> {
-    fn or(self, other: Self) -> Self;
-    fn nibbles(self) -> [Self; 2];
-    /// By lane, this table's entry of the number `at`, which is below 16.
-    fn look_up(self, at: Self) -> Self;
-    fn low(self) -> u64;
-}
-
 pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     type F32x4: F32x4<Isa = Self>;
     type F32x8: Tests<8, Isa = Self>;
     type F64x4: Floats<4, Isa = Self, Lane = f64>;
     type I16x16: Shorts<16, Isa = Self>;
     type U64x4: Masks<4, Isa = Self>;
-    type U8x16: U8x16<Isa = Self>;
 
     fn detect() -> Option<Self>;
 
@@ -129,8 +122,6 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
     fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
     /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
     fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
-    /// A vector of eight bytes, and eight more of no meaning.
-    fn bytes(self, eight: u64) -> Self::U8x16;
     /// Bytes, one after the other, at the places of a mask's bits, and bytes of ones there.
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
         let (mut expanded, mut ones, mut left) = (0, 0, bytes);
@@ -140,6 +131,11 @@ pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
             left >>= 8;
         }
         [expanded, ones]
+    }
+    /// [`turned_parts`].
+    #[inline(always)]
+    fn turned(self, parts: u64, octant: u8) -> u64 {
+        turned_parts(parts, octant)
     }
     /// Writes a value to 8 x 8 entries by mask, eight bits per row; rows begin `width` apart. Panics unless all exist.
     #[inline(always)]

@@ -49,7 +49,6 @@ lanes! {
     Doubles2([f64; 2] in float64x2_t, vld1q_f64, vdupq_n_f64);
     Shorts8([i16; 8] in int16x8_t, vld1q_s16, vdupq_n_s16);
     Masks2([u64; 2] in uint64x2_t, vld1q_u64, vdupq_n_u64);
-    Bytes16([u8; 16] in uint8x16_t, vld1q_u8, vdupq_n_u8);
 }
 
 macro_rules! methods {
@@ -106,11 +105,11 @@ static LAST: [u8; 16] = [8, 9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7, 12, 13, 14, 15];
 impl Floats4 {
     #[inline(always)]
     fn in_order(self, places: &[u8; 16]) -> Self {
-        let Bytes16(places) = Bytes16::load(Vector, places);
-        neon!({
-            let bytes = vqtbl1q_u8(vreinterpretq_u8_f32(self.0), places);
+        // SAFETY: all 64-bit Arm processors have these instructions. The load is of the array's bytes.
+        unsafe {
+            let bytes = vqtbl1q_u8(vreinterpretq_u8_f32(self.0), vld1q_u8(places.as_ptr()));
             Self(vreinterpretq_f32_u8(bytes))
-        })
+        }
     }
 }
 
@@ -157,7 +156,8 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [usize; 3] {
-        let [a, b, c, _] = Tests::indices::<N>(self);
+        // The bounds are repeated for the compiler to see.
+        let [a, b, c, _] = Tests::indices::<N>(self).map(|at| at as usize % N);
         [a, b, c]
     }
     #[inline(always)]
@@ -191,13 +191,11 @@ impl Tests<4> for Floats4 {
         neon!(four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0)))).map(|whole| whole as i32)
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 4] {
-        let at = neon!({
+    fn indices<const N: usize>(self) -> [u32; 4] {
+        four(neon!({
             let whole = vreinterpretq_u32_s32(vcvtq_s32_f32(self.0));
             vminq_u32(whole, vdupq_n_u32(N as u32 - 1))
-        });
-        // The bounds are repeated for the compiler to see.
-        four(at).map(|at| at as usize % N)
+        }))
     }
 }
 
@@ -242,31 +240,12 @@ impl Masks<2> for Masks2 {
     }
 }
 
-impl U8x16 for Bytes16 {
-    methods! {
-        or(other) = vorrq_u8;
-        look_up(at) = vqtbl1q_u8;
-    }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        neon!([
-            Self(vandq_u8(self.0, vdupq_n_u8(15))),
-            Self(vshrq_n_u8::<4>(self.0))
-        ])
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        neon!(vgetq_lane_u64::<0>(vreinterpretq_u64_u8(self.0)))
-    }
-}
-
 impl Isa for Vector {
     type F32x4 = Floats4;
     type F32x8 = Pair<Floats4>;
     type F64x4 = Pair<Doubles2>;
     type I16x16 = Pair<Shorts8>;
     type U64x4 = Pair<Masks2>;
-    type U8x16 = Bytes16;
 
     fn detect() -> Option<Self> {
         Some(Self)
@@ -291,10 +270,6 @@ impl Isa for Vector {
             Shorts8(vdupq_lane_s16::<LANE>(rounded))
         });
         Pair(all, all)
-    }
-    #[inline(always)]
-    fn bytes(self, eight: u64) -> Bytes16 {
-        neon!(Bytes16(vreinterpretq_u8_u64(vdupq_n_u64(eight))))
     }
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {

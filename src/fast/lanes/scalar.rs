@@ -115,8 +115,8 @@ impl<const N: usize> Tests<N> for [f32; N] {
         self.map(|c| c as i32)
     }
     #[inline(always)]
-    fn indices<const M: usize>(self) -> [usize; N] {
-        self.map(index::<M>)
+    fn indices<const M: usize>(self) -> [u32; N] {
+        self.map(|at| index::<M>(at) as u32)
     }
 }
 
@@ -144,31 +144,12 @@ impl<const N: usize> Masks<N> for [u64; N] {
     }
 }
 
-impl U8x16 for [u8; 16] {
-    lane_by_lane! {
-        or(a, b) = a | b;
-    }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        [self.map(|byte| byte & 15), self.map(|byte| byte >> 4)]
-    }
-    #[inline(always)]
-    fn look_up(self, at: Self) -> Self {
-        at.map(|at| self[usize::from(at & 15)])
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        u64::from_le_bytes(from_fn(|i| self[i]))
-    }
-}
-
 impl Isa for Scalar {
     type F32x4 = [f32; 4];
     type F32x8 = [f32; 8];
     type F64x4 = [f64; 4];
     type I16x16 = [i16; 16];
     type U64x4 = [u64; 4];
-    type U8x16 = [u8; 16];
 
     fn detect() -> Option<Self> {
         Some(Self)
@@ -188,9 +169,5 @@ impl Isa for Scalar {
     #[inline(always)]
     fn broadcast_rounded<const LANE: i32>(self, from: [f32; 4]) -> [i16; 16] {
         [from[LANE as usize].round_ties_even() as i16; 16]
-    }
-    #[inline(always)]
-    fn bytes(self, eight: u64) -> [u8; 16] {
-        u128::from(eight).to_le_bytes()
     }
 }

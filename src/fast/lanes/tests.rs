@@ -93,15 +93,8 @@ fn results<I: Isa>(isa: I, seed: u64) -> String {
     }
     let masks = I::U64x4::load(isa, &numbers.bits(|bits| bits & 3));
     text += &format!("{:x}\n", masks.and(I::U64x4::splat(isa, seed & 3)).zeros());
-    let table = I::U8x16::load(isa, &numbers.bits(|bits| bits as u8));
-    let [lower, upper] = isa
-        .bytes(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
-        .nibbles();
-    text += &format!(
-        "{:x} {:x}\n",
-        table.look_up(lower).low(),
-        table.or(table.look_up(upper)).low()
-    );
+    let parts = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    text += &format!("{:x}\n", isa.turned(parts, seed as u8 & 7));
     text += &format!(
         "{:x?}\n",
         isa.expand(seed.wrapping_mul(0x0123_4567_89ab_cdef), seed as u8)

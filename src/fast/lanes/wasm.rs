@@ -34,7 +34,6 @@ lanes! {
     Doubles2([f64; 2], f64x2(0 1), f64x2_splat);
     Shorts8([i16; 8], i16x8(0 1 2 3 4 5 6 7), i16x8_splat);
     Masks2([u64; 2], u64x2(0 1), u64x2_splat);
-    Bytes16([u8; 16], u8x16(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15), u8x16_splat);
 }
 
 macro_rules! methods {
@@ -116,7 +115,8 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [usize; 3] {
-        let [a, b, c, _] = Tests::indices::<N>(self);
+        // The bounds are repeated for the compiler to see.
+        let [a, b, c, _] = Tests::indices::<N>(self).map(|at| at as usize % N);
         [a, b, c]
     }
     #[inline(always)]
@@ -152,10 +152,9 @@ impl Tests<4> for Floats4 {
         four(i32x4_trunc_sat_f32x4(self.0)).map(|whole| whole as i32)
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 4] {
+    fn indices<const N: usize>(self) -> [u32; 4] {
         let whole = i32x4_trunc_sat_f32x4(self.0);
-        // The bounds are repeated for the compiler to see.
-        four(u32x4_min(whole, u32x4_splat(N as u32 - 1))).map(|at| at as usize % N)
+        four(u32x4_min(whole, u32x4_splat(N as u32 - 1)))
     }
 }
 
@@ -183,29 +182,12 @@ impl Masks<2> for Masks2 {
     }
 }
 
-impl U8x16 for Bytes16 {
-    methods! {
-        or(other) = v128_or;
-        look_up(at) = u8x16_swizzle;
-    }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        let low = v128_and(self.0, u8x16_splat(15));
-        [Self(low), Self(u8x16_shr(self.0, 4))]
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        u64x2_extract_lane::<0>(self.0)
-    }
-}
-
 impl Isa for Vector {
     type F32x4 = Floats4;
     type F32x8 = Pair<Floats4>;
     type F64x4 = Pair<Doubles2>;
     type I16x16 = Pair<Shorts8>;
     type U64x4 = Pair<Masks2>;
-    type U8x16 = Bytes16;
 
     fn detect() -> Option<Self> {
         Some(Self)
@@ -228,9 +210,5 @@ impl Isa for Vector {
         let rounded = i32x4_trunc_sat_f32x4(f32x4_nearest(from.0));
         let lane = four(rounded)[LANE as usize] as i32;
         Self::I16x16::splat(self, lane.clamp(-0x8000, 0x7fff) as i16)
-    }
-    #[inline(always)]
-    fn bytes(self, eight: u64) -> Bytes16 {
-        Bytes16(u64x2(eight, 0))
     }
 }

@@ -40,7 +40,6 @@ lanes! {
     Doubles4([f64; 4] in __m256d, _mm256_loadu_pd, _mm256_set1_pd);
     Shorts16([i16; 16] in __m256i, _mm256_loadu_si256, _mm256_set1_epi16);
     Masks4([u64; 4] in __m256i, _mm256_loadu_si256, _mm256_set1_epi64x);
-    Bytes16([u8; 16] in __m128i, _mm_loadu_si128, _mm_set1_epi8);
 }
 
 macro_rules! methods {
@@ -162,7 +161,7 @@ impl Tests<8> for Floats8 {
         whole
     }
     #[inline(always)]
-    fn indices<const N: usize>(self) -> [usize; 8] {
+    fn indices<const N: usize>(self) -> [u32; 8] {
         let mut whole = [0u32; 8];
         // SAFETY: as above. The store is of the array's eight.
         unsafe {
@@ -170,8 +169,7 @@ impl Tests<8> for Floats8 {
             let at = _mm256_min_epu32(_mm256_cvttps_epi32(self.0), last);
             _mm256_storeu_si256(whole.as_mut_ptr().cast(), at);
         }
-        // The bounds are repeated for the compiler to see.
-        whole.map(|at| at as usize % N)
+        whole
     }
 }
 
@@ -207,24 +205,19 @@ impl Masks<4> for Masks4 {
     }
 }
 
-impl U8x16 for Bytes16 {
-    methods! {
-        or(other) = _mm_or_si128;
-        look_up(at) = _mm_shuffle_epi8;
+/// By octant: the outer octants' order, and a mask's lower and upper half turned.
+static TURNS: [[[u8; 16]; 3]; 8] = {
+    let mut table = [[[0; 16]; 3]; 8];
+    let mut i = 0;
+    while i < 128 {
+        let (octant, at) = (i as u8 >> 4, i & 15);
+        table[i >> 4][0][at] = (at as u8 & 7) ^ octant;
+        table[i >> 4][1][at] = (turned_parts(at as u64, octant) >> (8 * octant)) as u8;
+        table[i >> 4][2][at] = (turned_parts((at as u64) << 4, octant) >> (8 * octant)) as u8;
+        i += 1;
     }
-    #[inline(always)]
-    fn nibbles(self) -> [Self; 2] {
-        avx!({
-            let half = _mm_set1_epi8(15);
-            let upper = _mm_and_si128(_mm_srli_epi16::<4>(self.0), half);
-            [Self(_mm_and_si128(self.0, half)), Self(upper)]
-        })
-    }
-    #[inline(always)]
-    fn low(self) -> u64 {
-        avx!(_mm_cvtsi128_si64(self.0) as u64)
-    }
-}
+    table
+};
 
 impl Isa for Vector {
     type F32x4 = Floats4;
@@ -232,7 +225,6 @@ impl Isa for Vector {
     type F64x4 = Doubles4;
     type I16x16 = Shorts16;
     type U64x4 = Masks4;
-    type U8x16 = Bytes16;
 
     fn detect() -> Option<Self> {
         let found = is_x86_feature_detected!("avx2")
@@ -282,16 +274,25 @@ impl Isa for Vector {
         })
     }
     #[inline(always)]
-    fn bytes(self, eight: u64) -> Bytes16 {
-        avx!(Bytes16(_mm_cvtsi64_si128(eight as i64)))
-    }
-    #[inline(always)]
     fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
         avx!({
             let places = _pdep_u64(u64::from(mask), 0x0101_0101_0101_0101);
             let ones = (places << 8).wrapping_sub(places);
             [_pdep_u64(bytes, ones), ones]
         })
+    }
+    #[inline(always)]
+    fn turned(self, parts: u64, octant: u8) -> u64 {
+        let tables = &TURNS[usize::from(octant & 7)];
+        // SAFETY: as above. The loads are of the tables' bytes.
+        unsafe {
+            let [outer, low, high] = [0, 1, 2].map(|i| _mm_loadu_si128(tables[i].as_ptr().cast()));
+            let bytes = _mm_shuffle_epi8(_mm_cvtsi64_si128(parts as i64), outer);
+            let half = _mm_set1_epi8(15);
+            let low = _mm_shuffle_epi8(low, _mm_and_si128(bytes, half));
+            let upper = _mm_and_si128(_mm_srli_epi16::<4>(bytes), half);
+            _mm_cvtsi128_si64(_mm_or_si128(low, _mm_shuffle_epi8(high, upper))) as u64
+        }
     }
     #[inline(always)]
     fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
