@@ -69,6 +69,16 @@ pub struct Camera {
     pub fov: Option<f64>,
 }
 
+impl Camera {
+    /// Eye, target, up and degrees; what is `null` is NaN, with which a camera sees nothing.
+    #[must_use]
+    pub fn numbers(&self) -> ([[f64; 3]; 3], f64) {
+        let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
+        let points = [self.eye, self.target, self.up].map(|point| point.map(number));
+        (points, number(self.fov))
+    }
+}
+
 /// Refuses a picture that is too large, with `aa` samples per pixel and axis.
 ///
 /// # Errors

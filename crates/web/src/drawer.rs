@@ -91,13 +91,13 @@ impl Opened {
             let fitted = Camera::fit(&self.scene).of_size(width, height);
             return fitted.map_err(|error| error.to_string());
         };
-        let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
-        let point = |point: [Option<f64>; 3]| DVec3::from_array(point.map(number));
+        let (points, fov_degrees) = camera.numbers();
+        let [eye, target, up] = points.map(DVec3::from_array);
         Ok(Placed {
-            eye: point(camera.eye),
-            target: point(camera.target),
-            up: point(camera.up),
-            fov_degrees: number(camera.fov),
+            eye,
+            target,
+            up,
+            fov_degrees,
             width,
             height,
         })

@@ -191,8 +191,7 @@ fn graph_of(name: &str) -> Graph {
 }
 
 /// XXH3-128 of all voxels, then all nodes, then what is blended, little-endian.
-#[must_use]
-pub fn hash(frame: &Frame) -> u128 {
+fn hash(frame: &Frame) -> u128 {
     let mut hash = Xxh3::new();
     for number in frame.voxel.iter().flatten() {
         hash.update(&number.to_le_bytes());

@@ -33,14 +33,13 @@ pub(super) fn settings(request: &Request) -> Result<Settings, CliError> {
 
 /// The camera of a request, if it has one. Drawing rejects cameras that see nothing.
 pub(super) fn camera(request: &Request) -> Option<Camera> {
-    let place = request.camera.as_ref()?;
-    let number = |number: Option<f64>| number.unwrap_or(f64::NAN);
-    let point = |point: [Option<f64>; 3]| DVec3::from_array(point.map(number));
+    let (points, fov_degrees) = request.camera.as_ref()?.numbers();
+    let [eye, target, up] = points.map(DVec3::from_array);
     Some(Camera {
-        eye: point(place.eye),
-        target: point(place.target),
-        up: point(place.up),
-        fov_degrees: number(place.fov),
+        eye,
+        target,
+        up,
+        fov_degrees,
         width: request.size[0],
         height: request.size[1],
     })
