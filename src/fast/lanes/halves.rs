@@ -2,16 +2,6 @@
 
 use super::super::*;
 
-/// Methods of one intrinsic each, of a register and others.
-macro_rules! methods {
-    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
-        #[inline(always)]
-        fn $name(self $(, $other: Self)*) -> Self {
-            Self($intrinsic(self.0 $(, $other.0)*))
-        }
-    )*};
-}
-
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fast) struct Pair<V>(pub(super) V, pub(super) V);
 

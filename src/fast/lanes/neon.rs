@@ -3,7 +3,6 @@ use std::arch::aarch64::*;
 use super::*;
 use halves::Pair;
 
-#[macro_use]
 #[path = "halves.rs"]
 mod halves;
 
@@ -26,10 +25,18 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn splat(_: Vector, value: $lane) -> Self {
-                Self($splat(value))
+                neon!(Self($splat(value)))
             }
         }
     )*};
+}
+
+/// An expression of intrinsics that read no memory.
+macro_rules! neon {
+    ($value:expr) => {
+        // SAFETY: all 64-bit Arm processors have these instructions.
+        unsafe { $value }
+    };
 }
 
 lanes! {
@@ -37,6 +44,15 @@ lanes! {
     Doubles2([f64; 2] in float64x2_t, vld1q_f64, vdupq_n_f64);
     Shorts8([i16; 8] in int16x8_t, vld1q_s16, vdupq_n_s16);
     Masks2([u64; 2] in uint64x2_t, vld1q_u64, vdupq_n_u64);
+}
+
+macro_rules! methods {
+    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            neon!(Self($intrinsic(self.0 $(, $other.0)*)))
+        }
+    )*};
 }
 
 macro_rules! floats {
@@ -57,15 +73,15 @@ macro_rules! floats {
             }
             #[inline(always)]
             fn fma(self, by: Self, plus: Self) -> Self {
-                Self($fma(plus.0, self.0, by.0))
+                neon!(Self($fma(plus.0, self.0, by.0)))
             }
             #[inline(always)]
             fn fms(self, by: Self, less: Self) -> Self {
-                Self($fma($neg(less.0), self.0, by.0))
+                neon!(Self($fma($neg(less.0), self.0, by.0)))
             }
             #[inline(always)]
             fn fnma(self, by: Self, from: Self) -> Self {
-                Self($fms(from.0, self.0, by.0))
+                neon!(Self($fms(from.0, self.0, by.0)))
             }
         }
     };
@@ -105,21 +121,21 @@ fn highest(lanes: uint32x4_t) -> u32 {
 
 #[inline(always)]
 fn four(lanes: uint32x4_t) -> [u32; 4] {
-    [
+    neon!([
         vgetq_lane_u32::<0>(lanes),
         vgetq_lane_u32::<1>(lanes),
         vgetq_lane_u32::<2>(lanes),
         vgetq_lane_u32::<3>(lanes),
-    ]
+    ])
 }
 
 impl F32x4 for Floats4 {
     #[inline(always)]
     fn flip(self, signs: Self) -> Self {
-        {
+        neon!({
             let [own, signs] = [self, signs].map(|lanes| vreinterpretq_u32_f32(lanes.0));
             Self(vreinterpretq_f32_u32(veorq_u32(own, signs)))
-        }
+        })
     }
     #[inline(always)]
     fn next(self) -> Self {
@@ -131,7 +147,7 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn signs(self) -> u32 {
-        highest(vreinterpretq_u32_f32(self.0))
+        neon!(highest(vreinterpretq_u32_f32(self.0)))
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [usize; 3] {
@@ -141,14 +157,14 @@ impl F32x4 for Floats4 {
     }
     #[inline(always)]
     fn values(self) -> [f32; 4] {
-        four(vreinterpretq_u32_f32(self.0)).map(f32::from_bits)
+        neon!(four(vreinterpretq_u32_f32(self.0))).map(f32::from_bits)
     }
     #[inline(always)]
     fn sums(self, other: Self) -> Self {
-        {
+        neon!({
             let pairs = vpaddq_f32(self.0, other.0);
             Self(vpaddq_f32(pairs, pairs))
-        }
+        })
     }
     #[inline(always)]
     fn whole(self) -> [i32; 4] {
@@ -159,7 +175,7 @@ impl F32x4 for Floats4 {
 impl Tests<4> for Floats4 {
     #[inline(always)]
     fn at_most(self, other: Self) -> u8 {
-        highest(vcleq_f32(self.0, other.0)) as u8
+        neon!(highest(vcleq_f32(self.0, other.0))) as u8
     }
     #[inline(always)]
     fn reciprocal(self) -> Self {
@@ -167,14 +183,14 @@ impl Tests<4> for Floats4 {
     }
     #[inline(always)]
     fn whole(self) -> [i32; 4] {
-        four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0))).map(|whole| whole as i32)
+        neon!(four(vreinterpretq_u32_s32(vcvtq_s32_f32(self.0)))).map(|whole| whole as i32)
     }
     #[inline(always)]
     fn indices<const N: usize>(self) -> [u32; 4] {
-        four({
+        four(neon!({
             let whole = vreinterpretq_u32_s32(vcvtq_s32_f32(self.0));
             vminq_u32(whole, vdupq_n_u32(N as u32 - 1))
-        })
+        }))
     }
 }
 
@@ -186,10 +202,10 @@ impl Shorts<8> for Shorts8 {
     }
     #[inline(always)]
     fn max_unsigned(self, other: Self) -> Self {
-        {
+        neon!({
             let [own, other] = [self, other].map(|lanes| vreinterpretq_u16_s16(lanes.0));
             Self(vreinterpretq_s16_u16(vmaxq_u16(own, other)))
-        }
+        })
     }
     #[inline(always)]
     fn below(self, next: Self, limit: Self) -> u32 {
@@ -212,10 +228,10 @@ impl Masks<2> for Masks2 {
     }
     #[inline(always)]
     fn zeros(self) -> u32 {
-        {
+        neon!({
             let zeros = vceqzq_u64(self.0);
             (vgetq_lane_u64::<0>(zeros) & 1 | vgetq_lane_u64::<1>(zeros) & 2) as u32
-        }
+        })
     }
 }
 
@@ -231,7 +247,7 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn narrow(self, Pair(low, high): Self::F64x4) -> Floats4 {
-        Floats4(vcvt_high_f32_f64(vcvt_f32_f64(low.0), high.0))
+        neon!(Floats4(vcvt_high_f32_f64(vcvt_f32_f64(low.0), high.0)))
     }
     #[inline(always)]
     fn join(self, low: Floats4, high: Floats4) -> Self::F32x8 {
@@ -239,15 +255,15 @@ impl Isa for Vector {
     }
     #[inline(always)]
     fn broadcast<const LANE: i32>(self, from: Floats4) -> Self::F32x8 {
-        let all = Floats4(vdupq_laneq_f32::<LANE>(from.0));
+        let all = neon!(Floats4(vdupq_laneq_f32::<LANE>(from.0)));
         Pair(all, all)
     }
     #[inline(always)]
     fn broadcast_rounded<const LANE: i32>(self, from: Floats4) -> Self::I16x16 {
-        let all = {
+        let all = neon!({
             let rounded = vqmovn_s32(vcvtnq_s32_f32(from.0));
             Shorts8(vdupq_lane_s16::<LANE>(rounded))
-        };
+        });
         Pair(all, all)
     }
     #[inline(always)]

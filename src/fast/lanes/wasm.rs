@@ -3,7 +3,6 @@ use std::arch::wasm32::*;
 use super::*;
 use halves::Pair;
 
-#[macro_use]
 #[path = "halves.rs"]
 mod halves;
 
@@ -35,6 +34,15 @@ lanes! {
     Doubles2([f64; 2], f64x2(0 1), f64x2_splat);
     Shorts8([i16; 8], i16x8(0 1 2 3 4 5 6 7), i16x8_splat);
     Masks2([u64; 2], u64x2(0 1), u64x2_splat);
+}
+
+macro_rules! methods {
+    ($($name:ident($($other:ident),*) = $intrinsic:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            Self($intrinsic(self.0 $(, $other.0)*))
+        }
+    )*};
 }
 
 macro_rules! floats {
