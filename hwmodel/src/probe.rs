@@ -50,6 +50,14 @@ named! {
         FillUpdate = "fill update",
         ToScreen = "to screen",
         Blend = "blend",
+        /// Of a ray caster: the step from a ray to the next.
+        RayNext = "next ray",
+        /// Whether and where a ray enters the object.
+        RaySetup = "ray set-up",
+        /// A cell of a ray: into it, or on to the next one.
+        RayStep = "ray step",
+        /// The end of a ray at a voxel.
+        RayHit = "ray hit",
     }
 }
 

@@ -10,4 +10,5 @@ pub mod model;
 pub mod quality;
 pub mod report;
 pub mod reproduce;
+pub mod rival;
 pub mod stress;

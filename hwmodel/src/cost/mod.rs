@@ -4,7 +4,7 @@ mod rows;
 mod sums;
 mod table;
 
-pub use rows::{CostError, Goal, Quantity};
+pub use rows::{CostError, Goal, Quantity, Spread};
 pub use sums::{
     Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
     operation_of,

@@ -86,6 +86,9 @@ struct File {
     #[serde(default)]
     quadratic: Vec<String>,
     #[serde(default)]
+    follows: BTreeMap<String, String>,
+    spread: Option<Spread>,
+    #[serde(default)]
     sources: BTreeMap<String, String>,
     #[serde(default)]
     row: Vec<FileRow>,
@@ -100,6 +103,28 @@ pub(super) struct CostRow {
     pub(super) source: String,
     pub(super) derived: bool,
     pub(super) file: String,
+}
+
+/// How uncertain figures are: for each origin the factor of one standard deviation of the figure's logarithm.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spread {
+    /// Of a row that its source states.
+    pub stated: f64,
+    /// Of a row that is derived from another one's source, beside that row's own.
+    pub derived: f64,
+    /// Of a figure below the first or above the last row, beside the rows' own.
+    pub extrapolated: f64,
+}
+
+impl Default for Spread {
+    fn default() -> Self {
+        Self {
+            stated: 1.0,
+            derived: 1.0,
+            extrapolated: 1.0,
+        }
+    }
 }
 
 pub(super) type Key = (Quantity, String, Option<Goal>);
@@ -151,8 +176,16 @@ impl FileRow {
     }
 }
 
-/// Quadratic operations, and rows.
-pub(super) fn parse(file: &str, text: &str) -> Result<(Vec<String>, Rows), CostError> {
+/// A file of rows.
+#[derive(Debug)]
+pub(super) struct Parsed {
+    pub(super) quadratic: Vec<String>,
+    pub(super) follows: BTreeMap<String, String>,
+    pub(super) spread: Option<Spread>,
+    pub(super) rows: Rows,
+}
+
+pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     let parsed: File = toml::from_str(text)
         .map_err(|error| CostError(format!("{file} is no cost table: {error}")))?;
     let mut rows = Rows::new();
@@ -195,5 +228,23 @@ pub(super) fn parse(file: &str, text: &str) -> Result<(Vec<String>, Rows), CostE
     for together in rows.values_mut() {
         together.sort_by_key(|row| (row.width, row.bytes));
     }
-    Ok((parsed.quadratic, rows))
+    if let Some(Spread {
+        stated,
+        derived,
+        extrapolated,
+    }) = parsed.spread
+        && ![stated, derived, extrapolated]
+            .iter()
+            .all(|factor| (1.0..=100.0).contains(factor))
+    {
+        return Err(CostError(format!(
+            "{file}: factors of [spread] are 1 to 100"
+        )));
+    }
+    Ok(Parsed {
+        quadratic: parsed.quadratic,
+        follows: parsed.follows,
+        spread: parsed.spread,
+        rows,
+    })
 }

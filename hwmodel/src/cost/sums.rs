@@ -74,8 +74,6 @@ pub struct Breakdown {
     /// In order of operation and width, or of the bill.
     pub lines: Vec<Line>,
     pub total: f64,
-    pub low: f64,
-    pub high: f64,
 }
 
 impl Breakdown {
@@ -83,8 +81,6 @@ impl Breakdown {
     pub fn push(&mut self, name: &str, operation: &str, width: u32, times: u64, each: Cost) {
         let factor = times as f64;
         self.total += factor * each.value;
-        self.low += factor * each.low;
-        self.high += factor * each.high;
         self.lines.push(Line {
             name: name.to_owned(),
             operation: operation.to_owned(),

@@ -1,10 +1,12 @@
 //! The table: shipped rows, a user's rows over them, and interpolation.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Quantity, Rows, parse};
+use super::rows::{
+    AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Parsed, Quantity, Rows, Spread, parse,
+};
 
 /// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -54,6 +56,8 @@ pub struct Cost {
 pub struct CostTable {
     rows: Rows,
     quadratic: BTreeSet<String>,
+    follows: BTreeMap<String, String>,
+    spread: Spread,
 }
 
 const FARTHEST: f64 = 4.0;
@@ -72,14 +76,35 @@ impl CostTable {
     /// # Errors
     /// When the text is not a cost table, or a row is invalid or occurs twice.
     pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
-        let (quadratic, rows) = parse(file, text)?;
+        let Parsed {
+            quadratic,
+            follows,
+            spread,
+            rows,
+        } = parse(file, text)?;
         self.rows.retain(|(quantity, operation, goal), _| {
             let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
             !is_replaced(*goal) && !is_replaced(None)
         });
+        // A user's row stands for itself.
+        for (_, operation, _) in rows.keys() {
+            self.follows.remove(operation);
+        }
         self.rows.extend(rows);
         self.quadratic.extend(quadratic);
+        self.follows.extend(follows);
+        self.spread = spread.unwrap_or(self.spread);
         Ok(self)
+    }
+
+    /// The operation from whose price another operation's price is derived, if from one.
+    pub fn follows(&self, operation: &str) -> Option<&str> {
+        self.follows.get(operation).map(String::as_str)
+    }
+
+    /// How uncertain figures are.
+    pub fn spread(&self) -> Spread {
+        self.spread
     }
 
     /// Area of a unit, in NAND2 equivalents.

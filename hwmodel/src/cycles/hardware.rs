@@ -44,6 +44,9 @@ pub struct Hardware {
     pub organisation: Organisation,
     pub stack: Stack,
     pub node_cache: Cache,
+    /// A small cache of nodes before the node cache, one for each lane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node_buffer: Option<Cache>,
     pub attribute_cache: Cache,
     pub fill_vectors: Banks,
     pub pixels: Pixels,
@@ -298,10 +301,15 @@ impl Hardware {
             let key = key.unwrap_or(class.name());
             return Err(HardwareError(format!("`{key}` {problem}")));
         }
-        for (name, cache) in [
+        let buffer = self.node_buffer.as_ref();
+        let caches = [
             ("node_cache", &self.node_cache),
             ("attribute_cache", &self.attribute_cache),
-        ] {
+        ];
+        for (name, cache) in caches
+            .into_iter()
+            .chain(buffer.map(|of| ("node_buffer", of)))
+        {
             let Cache {
                 line_bytes,
                 ways,

@@ -191,27 +191,8 @@ impl CacheState {
 
     #[inline]
     fn look_up(&mut self, address: u64, issued: u64, outer: &mut OuterPort) -> Served {
-        let hit = issued + u64::from(self.of.hit_latency);
-        let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
-        let number = byte >> self.of.line_bytes.trailing_zeros();
-        let ways = self.of.ways as usize;
-        let start = (number % self.sets) as usize * ways;
-        let set = &mut self.lines[start..start + ways];
-        if let Some(way) = set.iter().position(|line| line.number == number) {
-            let line = set[way];
-            set.copy_within(0..way, 1);
-            set[0] = line;
-            let late = line.ready > hit;
-            self.delayed += u64::from(late);
-            return Served {
-                issued,
-                done: hit.max(line.ready),
-                cause: if late {
-                    Cause::CacheMiss
-                } else {
-                    Cause::MemoryPort
-                },
-            };
+        if let Some(served) = self.find(address, issued) {
+            return served;
         }
         let slot = (self.misses % self.slots.len() as u64) as usize;
         self.misses += 1;
@@ -221,16 +202,74 @@ impl CacheState {
         let away = u64::from(self.of.miss_latency).max(moving);
         let done = begun + u64::from(self.of.hit_latency) + away;
         self.slots[slot] = done;
-        set.copy_within(0..ways - 1, 1);
-        set[0] = Line {
-            number,
-            ready: done,
-        };
+        self.put(address, done);
         Served {
             issued: begun,
             done,
             cause: Cause::CacheMiss,
         }
+    }
+
+    /// An access to a buffer before another cache, which serves its misses.
+    #[inline]
+    fn access_before(
+        &mut self,
+        address: u64,
+        at: u64,
+        (behind, outer): (&mut Self, &mut OuterPort),
+    ) -> Served {
+        let issued = self.port.book(at);
+        if let Some(served) = self.find(address, issued) {
+            return served;
+        }
+        self.misses += 1;
+        let found = issued + u64::from(self.of.hit_latency);
+        let served = behind.access(address, found, outer);
+        self.put(address, served.done);
+        Served { issued, ..served }
+    }
+
+    fn line_number(&self, address: u64) -> u64 {
+        let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
+        byte >> self.of.line_bytes.trailing_zeros()
+    }
+
+    fn set(&mut self, number: u64) -> &mut [Line] {
+        let ways = self.of.ways as usize;
+        let start = (number % self.sets) as usize * ways;
+        &mut self.lines[start..start + ways]
+    }
+
+    /// An access whose line is there or on its way.
+    #[inline]
+    fn find(&mut self, address: u64, issued: u64) -> Option<Served> {
+        let hit = issued + u64::from(self.of.hit_latency);
+        let number = self.line_number(address);
+        let set = self.set(number);
+        let way = set.iter().position(|line| line.number == number)?;
+        let line = set[way];
+        set.copy_within(0..way, 1);
+        set[0] = line;
+        let late = line.ready > hit;
+        self.delayed += u64::from(late);
+        Some(Served {
+            issued,
+            done: hit.max(line.ready),
+            cause: if late {
+                Cause::CacheMiss
+            } else {
+                Cause::MemoryPort
+            },
+        })
+    }
+
+    /// Replaces the least recently used line of the set.
+    #[inline]
+    fn put(&mut self, address: u64, ready: u64) {
+        let number = self.line_number(address);
+        let set = self.set(number);
+        set.copy_within(0..set.len() - 1, 1);
+        set[0] = Line { number, ready };
     }
 
     pub(super) fn report(&self) -> CacheReport {
@@ -239,11 +278,7 @@ impl CacheState {
             accesses,
             misses: self.misses,
             delayed_hits: self.delayed,
-            hit_rate: if accesses == 0 {
-                1.0
-            } else {
-                1.0 - self.misses as f64 / accesses as f64
-            },
+            hit_rate: hit_rate(accesses, self.misses),
             bytes_in: self.misses * u64::from(self.of.line_bytes),
         }
     }
@@ -251,6 +286,13 @@ impl CacheState {
     pub(super) fn miss_bound(&self) -> u64 {
         let each = u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
         self.misses * each / self.slots.len() as u64
+    }
+}
+
+fn hit_rate(accesses: u64, misses: u64) -> f64 {
+    match accesses {
+        0 => 1.0,
+        _ => 1.0 - misses as f64 / accesses as f64,
     }
 }
 
@@ -348,6 +390,8 @@ pub(super) struct Memories {
     pub(super) stacks: Vec<Port>,
     stack_latency: u64,
     pub(super) nodes: CacheState,
+    /// By lane.
+    buffers: Vec<CacheState>,
     pub(super) attributes: CacheState,
     fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
@@ -366,11 +410,28 @@ impl Memories {
             stacks: vec![Port::new(hardware.stack.ports); stacks],
             stack_latency: u64::from(hardware.stack.latency),
             nodes: CacheState::new(hardware.node_cache),
+            buffers: hardware.node_buffer.map_or_else(Vec::new, |of| {
+                (0..stacks).map(|_| CacheState::new(of)).collect()
+            }),
             attributes: CacheState::new(hardware.attribute_cache),
             fill: vec![BanksState::new(hardware.fill_vectors); fills],
             pixels: PixelsState::new(hardware.pixels),
             outer: OuterPort::new(hardware.outer_memory),
         }
+    }
+
+    pub(super) fn buffer_report(&self) -> Option<CacheReport> {
+        let reports = self.buffers.iter().map(CacheState::report);
+        let (accesses, misses, delayed_hits, bytes_in) = reports
+            .map(|of| (of.accesses, of.misses, of.delayed_hits, of.bytes_in))
+            .reduce(|a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2, a.3 + b.3))?;
+        Some(CacheReport {
+            accesses,
+            misses,
+            delayed_hits,
+            hit_rate: hit_rate(accesses, misses),
+            bytes_in,
+        })
     }
 
     pub(super) fn fill_accesses(&self) -> (u64, u64) {
@@ -395,7 +456,12 @@ impl Memories {
                     cause: Cause::MemoryPort,
                 }
             }
-            Memory::Node => self.nodes.access(access.address, at, &mut self.outer),
+            Memory::Node => match self.buffers.get_mut(lane) {
+                None => self.nodes.access(access.address, at, &mut self.outer),
+                Some(buffer) => {
+                    buffer.access_before(access.address, at, (&mut self.nodes, &mut self.outer))
+                }
+            },
             Memory::Attribute => self.attributes.access(access.address, at, &mut self.outer),
             Memory::FillVector => {
                 let of = lane % self.fill.len();
@@ -435,6 +501,11 @@ impl Latencies {
         for memory in Memory::ALL {
             let [read, write] = alone[memory as usize];
             worst[memory as usize] = 1 + read.max(write);
+        }
+        if let Some(buffer) = hardware.node_buffer {
+            let hit = u64::from(buffer.hit_latency);
+            alone[Memory::Node as usize] = [hit; 2];
+            worst[Memory::Node as usize] += hit;
         }
         for (memory, cache) in caches {
             // Its own line, and the one before it at the port.

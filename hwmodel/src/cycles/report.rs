@@ -173,6 +173,9 @@ pub struct CycleReport {
     pub stages: Vec<StageReport>,
     pub context_cycles: ContextReport,
     pub node_cache: CacheReport,
+    /// Of all lanes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node_buffer: Option<CacheReport>,
     pub attribute_cache: CacheReport,
     pub fill_reads: u64,
     pub fill_writes: u64,

@@ -93,6 +93,7 @@ impl Totals {
                 ..self.idle_cycles
             },
             node_cache: memories.nodes.report(),
+            node_buffer: memories.buffer_report(),
             attribute_cache: memories.attributes.report(),
             fill_reads,
             fill_writes,

@@ -103,6 +103,10 @@ const ROUND: [Stage; STAGES] = [
     Stage::Draw,
     Stage::Blend,
     Stage::FillUpdate,
+    Stage::RayNext,
+    Stage::RaySetup,
+    Stage::RayStep,
+    Stage::RayHit,
 ];
 
 #[derive(Debug, Clone, Copy, Default)]

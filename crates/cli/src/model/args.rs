@@ -12,8 +12,8 @@ use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
 use shiftvox::bounded;
 use shiftvox::project::SetupOptions;
-use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::cost::Prices;
+use shiftvox_lab::rival::Rival;
 
 #[derive(Debug, Args)]
 pub(crate) struct ModelArgs {
@@ -58,9 +58,12 @@ pub(super) struct HardwareArgs {
     /// Count shifts by constants as shifters, not as wires
     #[arg(long)]
     shifters: bool,
-    /// Order of the ray caster's rays [default: the one of least energy]
-    #[arg(long, value_enum, value_name = "ORDER")]
-    pub(super) ray_order: Option<RayOrder>,
+    /// TOML file of the ray caster beside which designs are measured
+    #[arg(long, value_name = "FILE")]
+    rival: Option<PathBuf>,
+    /// Print the description of the ray caster and exit
+    #[arg(long)]
+    pub(super) print_rival: bool,
 }
 
 #[derive(Debug, Args)]
@@ -142,6 +145,24 @@ impl ModelArgs {
 }
 
 impl HardwareArgs {
+    /// The ray caster's description as TOML: the shipped one with its comments, or the user's.
+    pub(super) fn rival_text(&self) -> Result<String, CliError> {
+        match &self.rival {
+            Some(path) => read(path),
+            None => Ok(Rival::SHIPPED.to_owned()),
+        }
+    }
+
+    pub(super) fn rival(&self) -> Result<Rival, CliError> {
+        Rival::from_toml(&self.rival_text()?).map_err(|error| {
+            let error = CliError::input(error);
+            match &self.rival {
+                Some(path) => error.at(path.display()),
+                None => error,
+            }
+        })
+    }
+
     pub(super) fn prices(&self) -> Result<Prices, CliError> {
         let mut table = CostTable::load_shipped().map_err(CliError::input)?;
         if let Some(path) = &self.costs {

@@ -36,7 +36,7 @@ pub(crate) fn brief(
     let cycles = &simulated.cycles;
     let design = LightDesign::price(graph, &setup, &counted, cycles, &hardware, &prices)?;
     // From pJ.
-    let energy = design.cost.total().times(1e-6);
+    let energy = design.cost.total() * 1e-6;
     Ok(json!({
         "hardware": hardware.name,
         "bits": setup.format.bits(),

@@ -33,6 +33,9 @@ pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     if args.hardware.print_hw {
         return console.data(args.hardware_text()?.trim_end());
     }
+    if args.hardware.print_rival {
+        return console.data(args.hardware.rival_text()?.trim_end());
+    }
     output::check(args)?;
     vectors::check(args)?;
     let hardware = args.hardware()?;
@@ -84,8 +87,8 @@ fn find(
     };
     let true_setup = frame::true_setup(graph, &camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
-    let order = args.hardware.ray_order;
-    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, order, &exact)?;
+    let designs = (&args.hardware.rival()?, &hardware);
+    let ray_caster = ray_caster::measure(graph, &setup, designs, prices, &exact)?;
     progress.end();
     let drawn = Drawn {
         graph,

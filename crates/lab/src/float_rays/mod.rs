@@ -7,19 +7,12 @@
 //! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
 //! where the ray runs upwards; in mirrored space it runs downwards on every axis.
 
-mod arithmetic;
 mod caster;
-mod counted;
-mod order;
 
-pub use arithmetic::FloatStep;
-use arithmetic::Plain;
 use caster::Caster;
-pub use counted::{FloatRayCounts, RayRead, count};
-pub use order::RayOrder;
 
 use shiftvox::frame::Frame;
-use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::graph::GraphView;
 use shiftvox::project::vector::cross;
 use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
 
@@ -51,7 +44,6 @@ impl Engine for FloatRays {
             graph,
             last_level: setup.depth.min(MAX_LEVEL),
             depth: setup.depth,
-            layout: NodeLayout::default(),
         };
         let (mut steps, mut drawn) = (0, 0);
         let width = frame.width as usize;
@@ -59,8 +51,7 @@ impl Engine for FloatRays {
         for (j, nodes) in rows.enumerate() {
             for (i, node) in nodes.iter_mut().enumerate() {
                 let (origin, direction) = rays.of_sample(i as u32, j as u32);
-                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps, &mut Plain)
-                {
+                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps) {
                     *node = seen;
                     // None where the frame is of nodes alone.
                     if let Some(to) = frame.voxel.get_mut(j * width + i) {
@@ -132,4 +123,33 @@ impl Rays {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::measure::CoverageError;
+    use crate::rival::views;
+    use shiftvox::frame::NO_NODE;
+    use shiftvox::rays::Rays as Oracle;
+
+    #[test]
+    fn it_sees_what_the_oracle_sees() {
+        for (name, graph, setup) in views() {
+            let mut exact = Frame::new(setup.width, setup.height, false);
+            let mut plain = exact.clone();
+            // It has no level of detail.
+            let whole = setup.without_detail();
+            Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+            let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
+            let error = CoverageError::between(&plain.voxel, &exact.voxel);
+            let is_near = error.covered > 0 && error.differing() * 5000 <= error.pixels;
+            assert!(is_near, "{name}: {error:?}");
+            let mut samples = plain.voxel.iter().zip(&plain.node);
+            assert!(samples.all(|(voxel, node)| (voxel[3] < 0) == (*node == NO_NODE)));
+            assert_eq!(stats[1], ("samples_drawn", plain.drawn() as u64));
+            assert!(stats[2].1 < 200 * stats[0].1, "{stats:?}");
+        }
+    }
 }

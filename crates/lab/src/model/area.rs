@@ -10,16 +10,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
+use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
+use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, stack_bits};
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
-use super::range::Range;
-use super::ray_cycles::{self, RayHardware};
 use super::record::context_bits;
+use crate::rival::{Cast, Rival};
 use shiftvox::project::FrameSetup;
 
 /// Area of a design, NAND2 equivalents, line by line.
@@ -29,15 +30,12 @@ pub struct DesignArea {
     pub registers: Breakdown,
     pub memories: Breakdown,
     pub control: Breakdown,
-    /// All of it: the middle of its range.
     pub total: f64,
-    pub low: f64,
-    pub high: f64,
 }
 
 impl DesignArea {
-    pub fn range(&self) -> Range {
-        Range::new((self.total, self.low, self.high))
+    pub fn parts(&self) -> [&Breakdown; 4] {
+        [&self.units, &self.registers, &self.memories, &self.control]
     }
 
     fn finish(mut self, prices: &Prices) -> Result<Self, CostError> {
@@ -45,10 +43,7 @@ impl DesignArea {
         let logic = self.units.total + self.registers.total;
         self.control
             .push("control", "control", 1, logic.round() as u64, share);
-        let parts = [&self.units, &self.registers, &self.memories, &self.control];
-        let sum = parts.map(Range::from).into_iter();
-        let sum = sum.fold(Range::default(), |a, b| a + b);
-        (self.total, self.low, self.high) = (sum.value, sum.low, sum.high);
+        self.total = self.parts().map(|part| part.total).into_iter().sum();
         Ok(self)
     }
 
@@ -97,9 +92,10 @@ impl DesignArea {
 /// Registers of contexts are billed by bytes.
 const REGISTER_BITS: u32 = 8;
 const ADDRESS_BITS: u32 = 32;
-/// Bits of a ray in its context. Three words each: slopes, planes' constants, corner, next direction. A word each: entry,
-/// exit, exit of the parent, side. Then node, mask, two octants, level.
-const RAY_BITS: u64 = 32 * (3 + 3 + 3 + 4 + 3) + 32 + 8 + 3 + 3 + 5;
+/// Words of a ray in its context: the direction times the cell's side, and three comparisons of planes.
+const RAY_WORDS: u64 = 6;
+/// Its other bits: three places of the cell, its level, the mirrored axes, the entry, and the sample.
+const RAY_BITS: u64 = 3 * 24 + 5 + 3 + 2 + 24;
 const BRICK_BITS: u64 = 64 + 32;
 
 /// Bits beside a cache's lines: the rest of the address, whether the line is
@@ -123,9 +119,32 @@ pub fn light(
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
+    let mut area = units(&counted.counter, &counted.shifts, cycles, hardware, prices)?;
+    let record_bits = counted.record_bits();
+    let each = context_bits(setup, record_bits, hardware.organisation);
+    let contexts = hardware.all_contexts() * each;
+    area.register_bits("records of the contexts", contexts, prices)?;
+    for (name, bits) in [
+        ("record stack", stack_bits(hardware, record_bits)),
+        ("fill vectors", fill_store_bits(setup, hardware)),
+        ("accumulators", accumulator_bits(setup)),
+    ] {
+        area.memory(name, bits, prices)?;
+    }
+    caches(area, hardware, prices)
+}
+
+/// The units of all stages, as far as a frame uses them.
+fn units(
+    counter: &Counter,
+    shifts: &ShiftProbe,
+    cycles: &CycleReport,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<DesignArea, CostError> {
     let mut area = DesignArea::default();
     let lanes = u64::from(hardware.lanes);
-    let cells = counted.counter.cells();
+    let cells = counter.cells();
     let used: BTreeSet<(Stage, OpClass)> = cells.map(|cell| (cell.stage, cell.class)).collect();
     let report_of = |stage: Stage| cycles.stages.iter().find(|of| of.stage == stage);
     for (stage, class) in used {
@@ -145,7 +164,7 @@ pub fn light(
         area.units(stage.name(), kind, count, depth(&unit), prices)?;
     }
     let shift = operation_of(OpClass::Shift, ShiftUnits::Variable);
-    for ((stage, width), times) in shifters(counted, hardware, prices) {
+    for ((stage, width), times) in shifters(counter, shifts, hardware, prices) {
         // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
         let cycles_of = |of: &StageReport| match hardware.sequential {
             true => of.alone,
@@ -156,33 +175,21 @@ pub fn light(
         let count = lanes * times.div_ceil(busy);
         area.units(&name, (shift, width), count, 0, prices)?;
     }
-    let record_bits = counted.record_bits();
-    let each = context_bits(setup, record_bits, hardware.organisation);
-    let contexts = hardware.all_contexts() * each;
-    area.register_bits("records of the contexts", contexts, prices)?;
-    for (name, bits) in [
-        ("record stack", stack_bits(hardware, record_bits)),
-        ("fill vectors", fill_store_bits(setup, hardware)),
-        ("accumulators", accumulator_bits(setup)),
-    ] {
-        area.memory(name, bits, prices)?;
-    }
-    caches(area, hardware, prices)
+    Ok(area)
 }
 
 /// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
 fn shifters(
-    counted: &Counted,
+    counter: &Counter,
+    shifts: &ShiftProbe,
     hardware: &Hardware,
     prices: &Prices,
 ) -> BTreeMap<(Stage, u32), u64> {
     match prices.shifts {
-        ShiftUnits::Wires if hardware.sequential => counted.shifts.variable_in_steps(),
-        ShiftUnits::Wires => counted.shifts.variable(),
+        ShiftUnits::Wires if hardware.sequential => shifts.variable_in_steps(),
+        ShiftUnits::Wires => shifts.variable(),
         ShiftUnits::Variable => {
-            let mut cells = counted
-                .counter
-                .sum_by(|cell| (cell.class, cell.stage, cell.bits));
+            let mut cells = counter.sum_by(|cell| (cell.class, cell.stage, cell.bits));
             cells.retain(|key, _| key.0 == OpClass::Shift);
             let shifts = cells.into_iter();
             shifts
@@ -193,26 +200,34 @@ fn shifters(
 }
 
 pub fn of_rays(
-    rays: &RayHardware,
+    cast: &Cast,
+    rival: &Rival,
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
-    let mut area = DesignArea::default();
+    let (counter, shifts, cycles) = (&cast.counter, &cast.shifts, &cast.cycles);
+    let mut area = units(counter, shifts, cycles, hardware, prices)?;
+    let (word, wide) = (
+        u64::from(cast.format.bits()),
+        u64::from(cast.format.wide().bits()),
+    );
+    // Six sums of each lane, and what they change by, right and down.
     let lanes = u64::from(hardware.lanes);
-    for (&step, unit) in &rays.units {
-        let Some((operation, _)) = ray_cycles::operation(step) else {
-            continue;
-        };
-        let count = lanes * u64::from(unit.count);
-        // An iterative unit keeps its remainder in registers that its row has.
-        let depth = if unit.interval > 1 { 0 } else { depth(unit) };
-        area.units(step.name(), (operation, unit.width), count, depth, prices)?;
-    }
-    let bits = RAY_BITS + u64::from(hardware.organisation.bricks) * BRICK_BITS;
-    let contexts = lanes * u64::from(rays.contexts) * bits;
+    area.register_bits("sums of the rays", lanes * 3 * 6 * wide, prices)?;
+    let node = if hardware.organisation.bricks {
+        64 + BRICK_BITS
+    } else {
+        64
+    };
+    let contexts = hardware.all_contexts() * (RAY_WORDS * word + RAY_BITS + node);
     area.register_bits("rays of the contexts", contexts, prices)?;
-    let stacks = lanes * ray_cycles::stack_bits(rays);
+    let stacks = hardware.all_contexts() * 8 * rival.stack_bytes();
     area.memory("stacks of rays", stacks, prices)?;
+    if let Some(buffer) = &hardware.node_buffer {
+        for _ in 0..hardware.lanes {
+            area.cache("node buffer", buffer, prices)?;
+        }
+    }
     caches(area, hardware, prices)
 }
 
@@ -229,7 +244,6 @@ fn caches(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwmodel::cost::Line;
 
     #[test]
     fn tags_by_hand() {
@@ -256,32 +270,13 @@ mod tests {
         for (found, expected) in [
             (area.units.total, 3.0 * 232.9),
             (area.registers.total, 6.0 * 128.0 + 3.0 * 32.0),
-            // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2.
-            (area.memories.low, 236.3),
-            (area.memories.high, 582.3),
-            // 10 to 30 % of 698.7 + 864, rounded.
-            (area.control.low, 156.3),
-            (area.low, 698.7 + 864.0 + 236.3 + 156.3),
+            // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2: the middle.
+            (area.memories.total, 409.3),
+            // 20 % of 698.7 + 864, rounded.
+            (area.control.total, 312.6),
+            (area.total, 698.7 + 864.0 + 409.3 + 312.6),
         ] {
             assert!((found - expected).abs() < 1e-6, "{found}, {expected}");
         }
-        assert!(area.low < area.total && area.total < area.high);
-    }
-
-    #[test]
-    fn a_divider_of_many_cycles_has_no_pipeline() {
-        let hardware = Hardware::preset("paper").unwrap();
-        let rays = RayHardware::shipped();
-        let area = of_rays(&rays, &hardware, &Prices::shipped().unwrap()).unwrap();
-        let times = |lines: &[Line], name: &str| {
-            let mut named = lines.iter().filter(|line| line.name.contains(name));
-            named.next().map(|line| line.times)
-        };
-        assert_eq!(times(&area.registers.lines, "divide"), None);
-        assert_eq!(times(&area.registers.lines, "float_add"), Some(4 * 2));
-        assert_eq!(
-            times(&area.memories.lines, "stacks of rays"),
-            Some(16 * 24 * 64)
-        );
     }
 }

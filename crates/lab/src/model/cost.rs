@@ -14,7 +14,6 @@ use serde::Serialize;
 
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
-use super::range::Range;
 use shiftvox::project::FrameSetup;
 
 /// The tables, and choices that do not follow from counts.
@@ -45,10 +44,13 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    pub fn total(&self) -> Range {
-        let parts = [&self.operations, &self.on_chip, &self.outer];
-        let parts = parts.into_iter().map(Range::from);
-        parts.fold(Range::default(), |sum, part| sum + part)
+    pub fn parts(&self) -> [&Breakdown; 3] {
+        [&self.operations, &self.on_chip, &self.outer]
+    }
+
+    /// Energy of the frame, pJ.
+    pub fn total(&self) -> f64 {
+        self.parts().map(|part| part.total).into_iter().sum()
     }
 }
 

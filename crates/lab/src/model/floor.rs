@@ -15,7 +15,6 @@ use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
 
 use super::cost::{OuterTraffic, outer_energy};
-use super::range::Range;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{Graph, NodeLayout};
 
@@ -25,10 +24,10 @@ pub struct Floor {
     pub attribute_lines: u64,
     /// Samples that show something.
     pub pixels: u64,
-    pub nodes_pj: Range,
-    pub attributes_pj: Range,
-    pub pixels_pj: Range,
-    pub energy_pj: Range,
+    pub nodes_pj: f64,
+    pub attributes_pj: f64,
+    pub pixels_pj: f64,
+    pub energy_pj: f64,
 }
 
 /// The bound for a frame, the node format and the cache lines of a hardware.
@@ -82,7 +81,7 @@ pub fn floor(
     let lines = |lines: usize, cache: &hwmodel::cycles::Cache| {
         8 * u64::from(cache.line_bytes) * lines as u64
     };
-    let price = |traffic: OuterTraffic| outer_energy(&traffic, table).map(|sum| Range::from(&sum));
+    let price = |traffic: OuterTraffic| outer_energy(&traffic, table).map(|sum| sum.total);
     let none = OuterTraffic::default();
     let nodes_pj = price(OuterTraffic {
         node_bits: lines(nodes.len(), &hardware.node_cache),
@@ -149,7 +148,7 @@ mod tests {
             // Attributes 3 and 4 in lines of one; 48 bits of pixels are a word.
             assert_eq!((found.node_lines, found.attribute_lines), (node_lines, 2));
             let price = (node_lines as f64 * 2.0 + 2.0 + 1.0) * 1950.0;
-            assert!((found.energy_pj.value - price).abs() < 1e-6);
+            assert!((found.energy_pj - price).abs() < 1e-6);
         }
     }
 }

@@ -1,7 +1,8 @@
-//! The hardware model: the cost of a frame on the light hardware, beside a ray caster with multipliers.
+//! The hardware model: the cost of a frame on the light hardware, beside a ray caster.
 //!
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
 //! - [`cost`] and [`area`] price the counts.
+//! - [`verdict`] compares both, with what is uncertain about prices.
 //! - [`clock`] compares units with the clock.
 //! - [`mod@floor`] is a bound for all designs.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
@@ -10,7 +11,6 @@
 
 pub mod area;
 pub mod clock;
-pub mod compare;
 pub mod cost;
 pub mod design;
 pub mod explore;
@@ -19,14 +19,13 @@ pub mod floor;
 pub mod frame;
 pub mod heat;
 pub mod plots;
-pub mod range;
 pub mod ray_caster;
-pub mod ray_cycles;
 pub mod record;
 pub mod report;
 pub mod safe;
 pub mod tables;
 pub mod vectors;
+pub mod verdict;
 
 use hwmodel::cost::CostError;
 use hwmodel::cycles::HardwareError;

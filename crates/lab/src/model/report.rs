@@ -13,7 +13,6 @@ use serde_json::{Value, json};
 use super::ModelError;
 use super::area::DesignArea;
 use super::clock::ClockCheck;
-use super::compare::{self, ComparedLine, Design};
 use super::cost::{self, FrameCost, Prices};
 use super::design::LightDesign;
 use super::fill_bits;
@@ -21,6 +20,7 @@ use super::floor::{self, Floor};
 use super::frame::{self, Counted};
 use super::ray_caster::RayCasterReport;
 use super::record::{self, NumberWidths, RecordField};
+use super::verdict::{self, ComparedLine, Design};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
@@ -107,7 +107,7 @@ impl Report {
             cycles: ray_caster.cycles.cycles,
             frames_per_second: ray_caster.cycles.frames_per_second,
         };
-        let comparison = compare::lines(light, rival);
+        let comparison = verdict::lines(light, rival, prices);
         let differing_samples = counted.differing(picture);
         let counter = &counted.counter;
         let curve = |(memory, curve): &(Memory, hwmodel::memory::MissCurve)| MissCurve {

@@ -46,10 +46,9 @@ pub const SHORT: [TableSpec; 5] = [
         columns: "resource !cycles percent_of_the_frame=share:100:1",
     },
     TableSpec {
-        title: "Both designs, with low and high ends; leakage is unknown",
+        title: "Both designs; the ratio's median and 90 % interval by what is uncertain about prices",
         rows: "comparison",
-        columns: "what unit light_hardware=light.value low=light.low high=light.high ray_caster=ray_caster.value \
-                  its_low=ray_caster.low its_high=ray_caster.high less",
+        columns: "what unit light ray_caster ratio median low high p_light_less decides turns_at",
     },
 ];
 

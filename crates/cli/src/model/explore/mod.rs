@@ -28,6 +28,7 @@ use shiftvox_lab::model::explore::front::{self, FrontPoint};
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
 use shiftvox_lab::model::explore::{self, Explored};
+use shiftvox_lab::rival::Rival;
 
 struct Explorations {
     scene: String,
@@ -54,6 +55,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
     }
     super::output::check(args)?;
     let prices = args.hardware.prices()?;
+    let rival = args.hardware.rival()?;
     let names = subjects::names_or(&args.scenes, &[subjects::BUNDLED]);
     let size = args.size.pair();
     let scene_args = args.rules.scene_args(&args.scene);
@@ -63,7 +65,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
             return Err(CliError::usage(format!("{name}: a scene twice")));
         }
         let subject = subjects::open(name, &args.camera, &scene_args, size, console)?;
-        let header = header(&subject, args, &space, &prices);
+        let header = header(&subject, args, &space, (&prices, &rival));
         scenes.push((subject, header));
     }
     let headers: Vec<Value> = scenes.iter().map(|(_, header)| header.clone()).collect();
@@ -84,6 +86,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         space: &space,
         picked,
         prices: &prices,
+        rival: &rival,
         console,
     };
     let mut found = Vec::new();
@@ -161,7 +164,12 @@ fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Res
 }
 
 /// The header of results, which must be equal for results to be reused.
-fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -> Value {
+fn header(
+    subject: &Subject,
+    args: &ModelArgs,
+    space: &Space,
+    (prices, rival): (&Prices, &Rival),
+) -> Value {
     let graph = &subject.graph;
     let digest = |of: &[u8]| format!("{:016x}", xxh3_64(of));
     document::document(
@@ -181,7 +189,7 @@ fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -
             "height": args.size.height,
             "options": format!("{:?}", args.setup_options()),
             "overflow": format!("{:?}", args.rules.overflow()),
-            "ray_order": args.hardware.ray_order,
+            "rival": digest(format!("{rival:?}").as_bytes()),
         }),
     )
 }
@@ -191,6 +199,7 @@ struct Asked<'a> {
     space: &'a Space,
     picked: Range<usize>,
     prices: &'a Prices,
+    rival: &'a Rival,
     console: &'a Console,
 }
 
@@ -205,6 +214,7 @@ fn measure(
         space,
         picked,
         prices,
+        rival,
         console,
     } = asked;
     let wanted = picked.clone().filter(|number| !known.contains_key(number));
@@ -230,7 +240,7 @@ fn measure(
         camera: &camera,
         options: &options,
         overflow: args.rules.overflow(),
-        order: args.hardware.ray_order,
+        rival,
         prices,
     };
     let mut next = picked.start;

@@ -22,25 +22,26 @@ const MOST_PRINTED: usize = 64;
 const POINTS: TableSpec = TableSpec {
     title: "Points",
     rows: "points",
-    columns: "point hardware=hardware_says front time_ms cycles area_nand2=area_nand2.value::0 \
-              energy_uj=energy_pj.value:1e-6:1 wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1 \
-              less_energy records=counts.records record_bits=counts.record_bits limits reason",
+    columns: "point hardware=hardware_says front time_ms cycles area_nand2::0 \
+              energy_uj=energy_pj:1e-6:1 wrong_samples ray_caster_uj=ray_caster.energy_pj:1e-6:1 \
+              p_light_less=verdict.p_light_less records=counts.records record_bits=counts.record_bits limits reason",
 };
 
 const ROWS: TableSpec = TableSpec {
     title: "Points",
     rows: "points",
-    columns: "scene point hardware=hardware_says front reason cycles time_ms area_nand2=area_nand2.value \
-              area_low=area_nand2.low area_high=area_nand2.high energy_pj=energy_pj.value energy_low=energy_pj.low \
-              energy_high=energy_pj.high wrong_samples meets_clock limits ray_caster_cycles=ray_caster.cycles \
-              ray_caster_energy_pj=ray_caster.energy_pj.value ray_caster_area_nand2=ray_caster.area_nand2.value",
+    columns: "scene point hardware=hardware_says front reason cycles time_ms area_nand2 energy_pj \
+              wrong_samples meets_clock limits ray_caster_cycles=ray_caster.cycles \
+              ray_caster_energy_pj=ray_caster.energy_pj ray_caster_area_nand2=ray_caster.area_nand2 \
+              ratio_low=verdict.low ratio_median=verdict.median ratio_high=verdict.high \
+              p_light_less=verdict.p_light_less decides=verdict.decides turns_at=verdict.turns_at",
 };
 
 const FRONT: TableSpec = TableSpec {
     title: "",
     rows: "front",
-    columns: "point hardware=hardware_says time_ms area_nand2=area_nand2.value::0 energy_uj=energy_pj.value:1e-6:1 \
-              wrong_samples ray_caster_uj=ray_caster.energy_pj.value:1e-6:1",
+    columns: "point hardware=hardware_says time_ms area_nand2::0 energy_uj=energy_pj:1e-6:1 \
+              wrong_samples ray_caster_uj=ray_caster.energy_pj:1e-6:1",
 };
 
 pub(super) fn write(
@@ -174,7 +175,7 @@ fn panel(of: &Explorations) -> Panel {
         let label = numbers.contains(&line.point);
         let point = Point {
             x: figures.time_ms,
-            y: figures.energy_pj.value / 1e6,
+            y: figures.energy_pj / 1e6,
             label: label.then(|| line.point.to_string()),
         };
         let name = line.values.get("hardware").and_then(Value::as_str);
@@ -187,12 +188,12 @@ fn panel(of: &Explorations) -> Panel {
         let share = rival.cycles as f64 / figures.cycles.max(1) as f64;
         rays.push(Point::from((
             figures.time_ms * share,
-            rival.energy_pj.value / 1e6,
+            rival.energy_pj / 1e6,
         )));
     }
     series.push(Series {
         grey: true,
-        ..Series::dots("ray casters beside them, at their fastest", rays)
+        ..Series::dots("ray casters beside them", rays)
     });
     Panel::Chart(Chart {
         title: format!(

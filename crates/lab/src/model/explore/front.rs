@@ -22,8 +22,8 @@ type Measured<'a> = (&'a PointLine, [f64; 4]);
 fn measures(figures: &PointFigures) -> [f64; 4] {
     [
         figures.time_ms,
-        figures.area_nand2.value,
-        figures.energy_pj.value,
+        figures.area_nand2,
+        figures.energy_pj,
         figures.wrong_samples as f64,
     ]
 }

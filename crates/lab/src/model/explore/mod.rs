@@ -2,7 +2,7 @@
 //!
 //! [`space`] describes the designs, and [`mod@front`] finds the Pareto-optimal ones. [`lines`] is the format of results.
 //!
-//! Points share results that depend on a part of them only: see `machine_key` and `ray_key`. Where parents lie on the
+//! Points share results that depend on a part of them only: see `machine_key` and `Shared::ray_key`. Where parents lie on the
 //! stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only their cycles are
 //! simulated per point.
 
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::{Mutex, PoisonError};
 
-use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
+use hwmodel::cycles::{CycleReport, Hardware, NoObserver, Recording, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -25,11 +25,10 @@ use super::design::LightDesign;
 use super::fill_bits;
 use super::floor;
 use super::frame::{self, Counted};
-use super::range::{Range, Winner};
-use super::ray_caster::{self, OrderEnergy, RayRun};
-use super::ray_cycles::RayHardware;
+use super::ray_caster;
 use super::safe::Format;
-use crate::float_rays::RayOrder;
+use super::verdict::{self, Verdict};
+use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
@@ -43,8 +42,7 @@ pub struct Explored<'a> {
     /// Rules and words, where the points do not set others.
     pub options: &'a SetupOptions,
     pub overflow: Overflow,
-    /// The order of the ray caster's rays; by default, for each point the order of least energy.
-    pub order: Option<RayOrder>,
+    pub rival: &'a Rival,
     pub prices: &'a Prices,
 }
 
@@ -60,8 +58,8 @@ pub enum PointOutcome {
 pub struct PointFigures {
     pub cycles: u64,
     pub time_ms: f64,
-    pub area_nand2: Range,
-    pub energy_pj: Range,
+    pub area_nand2: f64,
+    pub energy_pj: f64,
     /// Samples that differ from the exact picture in any way.
     pub wrong_samples: u64,
     /// Samples that differ from the serial machine's picture.
@@ -69,18 +67,15 @@ pub struct PointFigures {
     pub meets_clock: bool,
     pub limits: String,
     pub counts: PointCounts,
-    pub operations_pj: Range,
-    pub on_chip_pj: Range,
-    pub outer_pj: Range,
+    pub operations_pj: f64,
+    pub on_chip_pj: f64,
+    pub outer_pj: f64,
     pub units_nand2: f64,
     pub format: Format,
     pub ray_caster: RivalFigures,
-    pub less_energy: Winner,
-    /// The design with less energy if both pay the same low, or the same high, price for outer memory.
-    pub less_at_equal_prices: Winner,
-    pub floor_pj: Range,
-    /// Whether the floor exceeds half of the ray caster's energy at both ends of the prices.
-    pub half_is_impossible: bool,
+    /// On the energy of the frame.
+    pub verdict: Verdict,
+    pub floor_pj: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -107,13 +102,12 @@ pub struct PointCounts {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RivalFigures {
-    pub order: RayOrder,
-    /// Cycles of the frame: a lower bound.
     pub cycles: u64,
     pub node_misses: u64,
-    pub area_nand2: Range,
-    pub energy_pj: Range,
-    pub orders: Vec<OrderEnergy>,
+    pub area_nand2: f64,
+    pub energy_pj: f64,
+    pub on_chip_pj: f64,
+    pub wrong_samples: u64,
 }
 
 type OrReason<T> = Result<T, String>;
@@ -132,9 +126,8 @@ struct Shared<'a> {
     setups: BTreeMap<String, OrReason<(FrameSetup, Format)>>,
     /// The machine's counts, by [`machine_key`].
     counted: BTreeMap<String, OrReason<(Counted, Option<Turns>)>>,
-    /// Sizes of the node cache, and the rays in every order, by [`ray_key`].
-    rays: BTreeMap<String, (Vec<u32>, Vec<RayRun>)>,
-    ray_hardware: RayHardware,
+    /// Rays, by [`Shared::ray_key`].
+    rays: BTreeMap<String, Cast>,
 }
 
 /// Measures points. `sink` receives them in order, each as soon as all points before it are measured.
@@ -203,11 +196,10 @@ impl<'a> Shared<'a> {
             setups: BTreeMap::new(),
             counted: BTreeMap::new(),
             rays: BTreeMap::new(),
-            ray_hardware: RayHardware::shipped(),
         };
-        // By key, a point that has it; of rays, with all sizes of its cache.
+        // By key, a point that has it.
         let mut machines = BTreeMap::<String, &Point>::new();
-        let mut casts = BTreeMap::<String, (&Point, Vec<u32>)>::new();
+        let mut casts = BTreeMap::<String, &Point>::new();
         for point in points {
             let size = point.drawing.size;
             let camera = Camera {
@@ -230,12 +222,7 @@ impl<'a> Shared<'a> {
             let key = format!("{:?}", point.drawing);
             shared.setups.entry(key).or_insert_with(setup);
             machines.entry(machine_key(point)).or_insert(point);
-            let cast = casts.entry(ray_key(point));
-            let (_, sizes) = cast.or_insert_with(|| (point, Vec::new()));
-            let bytes = point.hardware.node_cache.bytes;
-            if !sizes.contains(&bytes) {
-                sizes.push(bytes);
-            }
+            casts.entry(shared.ray_key(point)).or_insert(point);
         }
         let is_recorded = |point: &&&Point| {
             let organisation = point.hardware.organisation;
@@ -258,21 +245,26 @@ impl<'a> Shared<'a> {
             (key, draw())
         };
         let counted = machines.into_par_iter().map(count).collect();
-        let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
-        let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
+        let cast = |(key, point): (String, &Point)| {
             let (setup, _) = shared.setup(point).ok()?;
-            let exact = &shared.exact[&point.drawing.size];
-            let cast = |&order: &RayOrder| {
-                ray_caster::cast(of.graph, setup, &point.hardware, &sizes, order, exact)
-            };
-            let runs = orders.iter().map(cast).collect::<Result<_, ModelError>>();
-            Some(runs.map(|runs| (key, (sizes, runs))))
+            let hardware = of.rival.beside(&point.hardware);
+            Some(rival::cast(of.graph, setup, of.rival, &hardware).map(|cast| (key, cast)))
         };
         let rays = casts.into_par_iter().filter_map(cast);
         let rays = rays.collect::<Result<_, ModelError>>()?;
         (shared.counted, shared.rays) = (counted, rays);
         progress.end();
         Ok(shared)
+    }
+
+    /// Everything on which rays and their cycles depend.
+    fn ray_key(&self, point: &Point) -> String {
+        let hardware = Hardware {
+            name: String::new(),
+            clock_mhz: 1.0,
+            ..self.of.rival.beside(&point.hardware)
+        };
+        format!("{:?} {hardware:?}", point.drawing)
     }
 
     fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
@@ -327,23 +319,20 @@ impl<'a> Shared<'a> {
         let (graph, hardware, prices) = (self.of.graph, &point.hardware, self.of.prices);
         let exact = &self.exact[&point.drawing.size];
         let light = LightDesign::price(graph, setup, counted, cycles, hardware, prices)?;
-        let (sizes, runs) = &self.rays[&ray_key(point)];
-        let bytes = hardware.node_cache.bytes;
-        let at = sizes.iter().position(|&size| size == bytes).unwrap_or(0);
-        let rays = ray_caster::cheapest(runs, at, hardware, &self.ray_hardware, prices)?;
+        let cast = &self.rays[&self.ray_key(point)];
+        let beside = self.of.rival.beside(hardware);
+        let rays = ray_caster::price(cast, (self.of.rival, &beside), prices, exact)?;
         let error = frame::error(&counted.frame, exact);
         let accesses = counted.counter.accesses_by(|cell| cell.memory);
         let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
         let fill = of(Memory::FillVector);
         let counter = &counted.counter;
-        let (energy, rival) = (light.cost.total(), rays.cost.total());
         let floor_pj = floor::floor(graph, exact, hardware, &prices.table)?.energy_pj;
-        let half = rival.times(0.5);
         Ok(PointOutcome::Drawn(Box::new(PointFigures {
             cycles: cycles.cycles,
             time_ms: cycles.cycles as f64 / (hardware.clock_mhz * 1e3),
-            area_nand2: light.area.range(),
-            energy_pj: energy,
+            area_nand2: light.area.total,
+            energy_pj: light.cost.total(),
             wrong_samples: error.differing(),
             differing_samples: *differing_samples,
             meets_clock: light.clock.misses().next().is_none(),
@@ -363,22 +352,20 @@ impl<'a> Shared<'a> {
                 missing: error.missing,
                 wrong_voxel: error.wrong_voxel,
             },
-            operations_pj: Range::from(&light.cost.operations),
-            on_chip_pj: Range::from(&light.cost.on_chip),
-            outer_pj: Range::from(&light.cost.outer),
+            operations_pj: light.cost.operations.total,
+            on_chip_pj: light.cost.on_chip.total,
+            outer_pj: light.cost.outer.total,
             units_nand2: light.area.units.total,
             format: *format,
-            less_energy: Winner::by_ranges(energy, rival),
-            less_at_equal_prices: Winner::at_equal_prices(energy, rival),
+            verdict: verdict::of_energy(&light.cost, &rays.cost, &prices.table),
             floor_pj,
-            half_is_impossible: floor_pj.low > half.low && floor_pj.high > half.high,
             ray_caster: RivalFigures {
-                order: rays.order,
                 cycles: rays.cycles.cycles,
-                node_misses: rays.node_misses,
-                area_nand2: rays.area.range(),
-                energy_pj: rival,
-                orders: rays.orders,
+                node_misses: rays.cycles.node_cache.misses,
+                area_nand2: rays.area.total,
+                energy_pj: rays.cost.total(),
+                on_chip_pj: rays.cost.operations.total + rays.cost.on_chip.total,
+                wrong_samples: rays.error.differing(),
             },
         })))
     }
@@ -387,19 +374,4 @@ impl<'a> Shared<'a> {
 /// Everything on which the machine's counts depend.
 fn machine_key(point: &Point) -> String {
     format!("{:?} {:?}", point.drawing, point.hardware.organisation)
-}
-
-/// Everything on which the rays' counts depend, except the size of the node cache.
-fn ray_key(point: &Point) -> String {
-    let hardware = &point.hardware;
-    let format = |of: &Cache| (of.ways, of.line_bytes, of.entry_bytes);
-    format!(
-        "{:?} {} {} {} {:?} {:?}",
-        point.drawing,
-        hardware.organisation.leaf_masks,
-        hardware.organisation.bricks,
-        hardware.attribute_cache.bytes,
-        format(&hardware.node_cache),
-        format(&hardware.attribute_cache)
-    )
 }

@@ -1,0 +1,282 @@
+//! The light hardware beside the ray caster, with what is uncertain about prices.
+//!
+//! A price is its figure times a factor whose logarithm is normally distributed. The table's `[spread]` has its standard
+//! deviation, and a range `[low, high]` of a row is its 90 % interval. Factors are *shared*: both designs pay the same
+//! price for the same operation, at all widths. An operation whose price is derived from another's also has that one's
+//! factor. So a high price of outer memory is high for both. Prices are drawn [`DRAWS`] times from a fixed seed.
+
+use std::collections::BTreeMap;
+
+use hwmodel::cost::{Breakdown, Cost, CostTable, Fit, Line};
+use serde::{Deserialize, Serialize};
+
+use super::area::DesignArea;
+use super::cost::{FrameCost, Prices};
+
+/// Number of draws.
+pub const DRAWS: usize = 4000;
+/// A normal variable lies within this many standard deviations of its mean in 90 % of all cases.
+const NINETY: f64 = 1.6449;
+
+/// One design's figures.
+#[derive(Debug, Clone, Copy)]
+pub struct Design<'a> {
+    pub cost: &'a FrameCost,
+    pub area: &'a DesignArea,
+    pub cycles: u64,
+    pub frames_per_second: f64,
+}
+
+/// The light hardware's share of the ray caster's figure.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The probability that the light hardware needs less, of the draws.
+    pub p_light_less: f64,
+    /// The median of the ratio.
+    pub median: f64,
+    /// 90 % of the ratios lie between `low` and `high`.
+    pub low: f64,
+    pub high: f64,
+    /// The price that moves the ratio most.
+    pub decides: String,
+    /// By which factor the ratio changes when that price grows by one standard deviation.
+    pub moves: f64,
+    /// That price times this factor, all others being the table's, makes both equal; none does if it is absent.
+    pub turns_at: Option<f64>,
+}
+
+/// One figure of both designs.
+#[derive(Debug, Clone, Serialize)]
+pub struct ComparedLine {
+    pub what: &'static str,
+    pub unit: &'static str,
+    pub light: f64,
+    pub ray_caster: f64,
+    /// The first over the second.
+    pub ratio: Option<f64>,
+    /// None where prices do not matter.
+    #[serde(flatten)]
+    pub verdict: Option<Verdict>,
+}
+
+/// Both designs, figure by figure.
+pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<ComparedLine> {
+    let both = [light, ray_caster];
+    let energies = |parts: fn(&FrameCost) -> Vec<&Breakdown>| both.map(|of| parts(of.cost));
+    let line = |what, unit, [light, ray_caster]: [f64; 2]| ComparedLine {
+        what,
+        unit,
+        light,
+        ray_caster,
+        ratio: (ray_caster > 0.0).then_some(light / ray_caster),
+        verdict: None,
+    };
+    let priced = |what, unit, factor: f64, bills: [Vec<&Breakdown>; 2], of: Priced| {
+        let totals = [&bills[0], &bills[1]].map(|bill| total(bill) * factor);
+        ComparedLine {
+            verdict: Some(verdict(&bills, of, &prices.table)),
+            ..line(what, unit, totals)
+        }
+    };
+    let micro = 1e-6;
+    let bits = both.map(|of| of.cost.traffic.bits() as f64);
+    let area = both.map(|of| of.area.parts().to_vec());
+    let energy = Priced::Energy;
+    let parts: [(_, fn(&FrameCost) -> Vec<&Breakdown>); 5] = [
+        ("energy of operations", |of| vec![&of.operations]),
+        ("energy of memories on the chip", |of| vec![&of.on_chip]),
+        ("energy on the chip", |of| vec![&of.operations, &of.on_chip]),
+        ("energy of outer memory", |of| vec![&of.outer]),
+        ("energy of the frame", |of| of.parts().to_vec()),
+    ];
+    let mut lines: Vec<ComparedLine> = parts
+        .into_iter()
+        .map(|(what, of)| priced(what, "uJ", micro, energies(of), energy))
+        .collect();
+    lines.push(line("cycles", "", both.map(|of| of.cycles as f64)));
+    let power = |of: Design<'_>| of.cost.total() * of.frames_per_second / 1e12;
+    lines.push(line(
+        "power at its own speed, without leakage",
+        "W",
+        both.map(power),
+    ));
+    lines.push(line(
+        "traffic to outer memory",
+        "MB a frame",
+        bits.map(|bits| bits / 8e6),
+    ));
+    lines.push(priced("area", "NAND2", 1.0, area, Priced::Area(prices)));
+    lines
+}
+
+/// The verdict on the energy of a frame.
+pub fn of_energy(light: &FrameCost, ray_caster: &FrameCost, table: &CostTable) -> Verdict {
+    let bills = [light, ray_caster].map(|of| of.parts().to_vec());
+    verdict(&bills, Priced::Energy, table)
+}
+
+fn total(bill: &[&Breakdown]) -> f64 {
+    bill.iter().map(|part| part.total).sum()
+}
+
+/// What the lines of a bill are priced in.
+#[derive(Debug, Clone, Copy)]
+enum Priced<'a> {
+    Energy,
+    Area(&'a Prices),
+}
+
+impl Priced<'_> {
+    /// The figure of an operation from which another one's is derived.
+    fn of_leader(self, leader: &str, line: &Line, table: &CostTable) -> Option<Cost> {
+        match self {
+            // A memory's price is for its size, which its row states.
+            Self::Energy if leader.starts_with("sram") => Some(line.each.clone()),
+            Self::Energy => table.energy(leader, line.width).ok(),
+            Self::Area(prices) => table.area(leader, line.width, prices.goal).ok(),
+        }
+    }
+}
+
+/// Factors of prices: name, and standard deviation of the logarithm.
+#[derive(Debug, Default)]
+struct Factors {
+    numbers: BTreeMap<String, usize>,
+    deviations: Vec<f64>,
+}
+
+impl Factors {
+    fn number(&mut self, name: String, deviation: f64) -> usize {
+        *self.numbers.entry(name).or_insert_with(|| {
+            self.deviations.push(deviation);
+            self.deviations.len() - 1
+        })
+    }
+
+    /// The factors of a line's price.
+    fn of_line(&mut self, line: &Line, priced: Priced<'_>, table: &CostTable) -> Vec<usize> {
+        let spread = table.spread();
+        let mut found = Vec::new();
+        let leader = table.follows(&line.operation);
+        let own = match leader {
+            Some(_) if line.each.derived => spread.derived.ln(),
+            Some(_) => spread.stated.ln(),
+            None => deviation(&line.each, table),
+        };
+        if own > 0.0 {
+            found.push(self.number(line.operation.clone(), own));
+        }
+        if line.each.fit == Fit::Extrapolated {
+            let name = format!("{}, beyond the rows", line.operation);
+            found.push(self.number(name, spread.extrapolated.ln()));
+        }
+        if let Some(leader) = leader
+            && let Some(cost) = priced.of_leader(leader, line, table)
+        {
+            found.push(self.number(leader.to_owned(), deviation(&cost, table)));
+        }
+        found
+    }
+}
+
+/// Of a price that is derived from no other operation's.
+fn deviation(cost: &Cost, table: &CostTable) -> f64 {
+    if 0.0 < cost.low && cost.low < cost.high {
+        return (cost.high / cost.low).ln() / (2.0 * NINETY);
+    }
+    match cost.derived {
+        true => table.spread().derived.ln(),
+        false => table.spread().stated.ln(),
+    }
+}
+
+/// An amount and the factors that it has.
+type Term = (f64, Vec<usize>);
+
+fn sum(terms: &[Term], factors: &[f64]) -> f64 {
+    let of = |(amount, of): &Term| {
+        of.iter()
+            .fold(*amount, |product, &at| product * factors[at])
+    };
+    terms.iter().map(of).sum()
+}
+
+fn verdict(bills: &[Vec<&Breakdown>; 2], priced: Priced<'_>, table: &CostTable) -> Verdict {
+    let mut factors = Factors::default();
+    let terms: [Vec<Term>; 2] = [&bills[0], &bills[1]].map(|bill| {
+        // Lines with the same factors are one term.
+        let mut terms = BTreeMap::<Vec<usize>, f64>::new();
+        for line in bill.iter().flat_map(|part| &part.lines) {
+            let of = factors.of_line(line, priced, table);
+            *terms.entry(of).or_default() += line.total;
+        }
+        terms.into_iter().map(|(of, amount)| (amount, of)).collect()
+    });
+    let deviations = &factors.deviations;
+    let ratio_at = |drawn: &[f64]| sum(&terms[0], drawn) / sum(&terms[1], drawn);
+    let mut normal = Normal(SEED);
+    let mut drawn = vec![1.0; deviations.len()];
+    let mut ratios: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            for (factor, deviation) in drawn.iter_mut().zip(deviations) {
+                *factor = libm::exp(deviation * normal.next());
+            }
+            ratio_at(&drawn)
+        })
+        .collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let less = ratios.iter().filter(|&&ratio| ratio < 1.0).count();
+    let at = |share: f64| ratios[(share * (DRAWS - 1) as f64).round() as usize];
+    // One price at a time.
+    let figure = ratio_at(&vec![1.0; deviations.len()]);
+    let moved = factors.numbers.iter().map(|(name, &number)| {
+        let mut one = vec![1.0; deviations.len()];
+        one[number] = deviations[number].exp();
+        (ratio_at(&one) / figure, name, number)
+    });
+    let size = |moves: f64| moves.ln().abs();
+    let decides = moved.max_by(|a, b| size(a.0).total_cmp(&size(b.0)));
+    let (moves, name, number) = decides
+        .map_or((1.0, String::new(), None), |(moves, name, number)| {
+            (moves, name.clone(), Some(number))
+        });
+    let turns_at = number.and_then(|number| {
+        let [light, rival] = [0, 1].map(|of: usize| {
+            let with = terms[of].iter().filter(|(_, of)| of.contains(&number));
+            let with: f64 = with.map(|(amount, _)| amount).sum();
+            (with, total(&bills[of]) - with)
+        });
+        let factor = (rival.1 - light.1) / (light.0 - rival.0);
+        (factor.is_finite() && factor > 0.0).then_some(factor)
+    });
+    Verdict {
+        p_light_less: less as f64 / DRAWS as f64,
+        median: at(0.5),
+        low: at(0.05),
+        high: at(0.95),
+        decides: name,
+        moves,
+        turns_at,
+    }
+}
+
+const SEED: u64 = 1;
+
+/// Standard normal numbers: the sum of twelve uniform ones, less 6 (at most 6 in magnitude).
+struct Normal(u64);
+
+impl Normal {
+    fn next(&mut self) -> f64 {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            // SplitMix64 (Steele, Lea, Flood 2014).
+            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = self.0;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            z ^= z >> 31;
+            sum += (z >> 11) as f64 / (1u64 << 53) as f64;
+        }
+        sum
+    }
+}

@@ -1,0 +1,209 @@
+//! The ray caster's pictures, and its work worked out by hand.
+
+use glam::DVec3;
+use hwmodel::cycles::Hardware;
+use hwmodel::{Memory, OpClass, Stage};
+
+use super::{Cast, RayOrder, Rival, cast};
+use crate::measure::CoverageError;
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, Silent};
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::rays::Rays as Oracle;
+use shiftvox_mesh::open::{OpenOptions, open};
+
+/// Eye and target in sides of the object's cube.
+fn view(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, FrameSetup) {
+    let spec = format!("gen:{spec}");
+    let graph = open(&spec, &OpenOptions::default(), &Silent).unwrap().graph;
+    let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
+    let in_world = |at: [f64; 3]| low + DVec3::from_array(at) * f64::from(1u32 << graph.depth);
+    let camera = Camera {
+        eye: in_world(eye),
+        target: in_world(target),
+        up: DVec3::Z,
+        fov_degrees: 60.0,
+        width: side,
+        height: side,
+    };
+    let options = SetupOptions::default();
+    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+    (graph, setup)
+}
+
+/// Views in all octants of direction, from outside, far away and within.
+pub(crate) fn views() -> Vec<(String, Graph, FrameSetup)> {
+    let outside = [
+        ([1.6, -0.7, 1.25], [0.5, 0.5, 0.3]),
+        ([0.47, -0.95, 0.53], [0.475, 0.5, 0.475]),
+        ([-0.6, 1.4, -0.8], [0.5, 0.5, 0.5]),
+        ([1.3, 1.9, 0.6], [0.4, 0.5, 0.5]),
+        ([-1.3, -0.4, 1.6], [0.4, 0.5, 0.5]),
+        ([6.0, -14.0, 8.0], [0.5, 0.5, 0.4]),
+    ];
+    let inside = [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]].map(|eye| (eye, [0.9, 0.8, 0.3]));
+    // Odd sizes have a ray through the middle, here along an axis.
+    let along = [([0.7, -4.0, 0.6], [0.7, 0.0, 0.6])];
+    let mut all = Vec::new();
+    for (spec, side, views) in [
+        ("terrain,depth=8", 256, &outside[..]),
+        ("menger,depth=4", 256, &outside),
+        ("menger,depth=3", 256, &inside),
+        ("sierpinski,depth=9", 256, &inside),
+        ("sphere,depth=6", 256, &inside),
+        ("sphere,depth=1", 17, &along),
+    ] {
+        for &(eye, target) in views {
+            let (graph, setup) = view(spec, eye, target, side);
+            all.push((format!("{spec} from {eye:?}"), graph, setup));
+        }
+    }
+    all
+}
+
+fn cast_with((graph, setup): (&Graph, &FrameSetup), rival: &Rival, design: &str) -> Cast {
+    let hardware = rival.beside(&Hardware::preset(design).unwrap());
+    cast(graph, setup, rival, &hardware).unwrap()
+}
+
+#[test]
+fn it_sees_what_the_oracle_sees() {
+    let rival = Rival {
+        bits: 48,
+        ..Rival::shipped()
+    };
+    for (name, graph, setup) in views() {
+        let mut exact = Frame::new(setup.width, setup.height, false);
+        let whole = setup.without_detail();
+        Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+        let found = cast_with((&graph, &setup), &rival, "light");
+        let error = CoverageError::between(&found.frame.voxel, &exact.voxel);
+        // Rays along a boundary: where both sides are as near, either is right.
+        let is_near = error.covered > 0 && error.differing() <= 2;
+        assert!(is_near, "{name}: {error:?}");
+        assert_eq!(found.frame.drawn() as u64, found.cycles.pixels, "{name}");
+    }
+}
+
+/// Every setting that is not about numbers leaves the picture as it is.
+#[test]
+fn the_picture_does_not_depend_on_order_buffer_or_nodes() {
+    let (graph, setup) = view("terrain,depth=6", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3], 96);
+    let shipped = Rival::shipped();
+    let scene = (&graph, &setup);
+    let first = cast_with(scene, &shipped, "light");
+    let reads = |of: &Cast| of.counter.accesses_by(|cell| cell.memory)[&Memory::Node].reads;
+    for (rival, design) in [
+        (
+            Rival {
+                order: RayOrder::Rows,
+                ..shipped.clone()
+            },
+            "light",
+        ),
+        (
+            Rival {
+                order: RayOrder::Tiles,
+                contexts: 3,
+                ..shipped.clone()
+            },
+            "light",
+        ),
+        (
+            Rival {
+                node_buffer: None,
+                ..shipped.clone()
+            },
+            "light",
+        ),
+        (shipped.clone(), "paper"),
+    ] {
+        let found = cast_with(scene, &rival, design);
+        assert_eq!(found.frame, first.frame);
+        let (ops, all) = (found.counter.ops(), first.counter.ops());
+        assert_eq!(ops, all);
+        let node_cache = found.cycles.node_cache.accesses;
+        match found.cycles.node_buffer {
+            Some(buffer) => {
+                assert_eq!(
+                    (buffer.accesses, buffer.misses),
+                    (reads(&found), node_cache)
+                );
+            }
+            None => assert_eq!(node_cache, reads(&found)),
+        }
+        // `paper` has no bricks and no marks of leaves.
+        assert_eq!(reads(&found) > reads(&first), design == "paper");
+    }
+    assert!(first.cycles.node_buffer.unwrap().hit_rate > 0.5);
+}
+
+/// A solid cube is seen from a corner by one ray, along its diagonal.
+#[test]
+fn the_work_of_a_ray_by_hand() {
+    let shipped = Rival::shipped();
+    let (graph, setup) = view("sphere,depth=2", [2.5, 2.0, 1.5], [0.5, 0.5, 0.5], 1);
+    let found = cast_with((&graph, &setup), &shipped, "light");
+    let of = |stage: Stage, class: OpClass| -> u64 {
+        let sums = found.counter.sum_by(|cell| (cell.stage, cell.class));
+        sums.get(&(stage, class)).copied().unwrap_or(0)
+    };
+    use Stage::{RayHit, RayNext, RaySetup};
+    // The first ray is loaded; there is no other.
+    assert_eq!(of(RayNext, OpClass::Add), 0);
+    // All components are negative: three magnitudes, three moments turned. The ray comes from beyond three planes,
+    // each against the upper planes of two axes, and the later ones against the planes before.
+    let (adds, subs) = (of(RaySetup, OpClass::Add), of(RaySetup, OpClass::Sub));
+    assert_eq!(
+        (adds + subs, of(RaySetup, OpClass::Shift)),
+        (3 + 3 + 6 + 2, 3)
+    );
+    assert_eq!(of(RayHit, OpClass::Add), 0);
+    let accesses = found.counter.accesses_by(|cell| cell.memory);
+    assert_eq!(
+        (
+            accesses[&Memory::Attribute].reads,
+            accesses[&Memory::Pixel].writes
+        ),
+        (1, 1)
+    );
+    // The brick that is the root: two words.
+    assert_eq!(accesses[&Memory::Node].reads, 2);
+    assert_eq!(found.cycles.pixels, 1);
+}
+
+#[test]
+fn wrong_descriptions_are_refused() {
+    let with = |from: &str, to: &str| {
+        assert!(Rival::SHIPPED.contains(from));
+        Rival::from_toml(&Rival::SHIPPED.replacen(from, to, 1))
+            .unwrap_err()
+            .to_string()
+    };
+    for (from, to, says) in [
+        (
+            "bits = 32 ",
+            "bits = 7 ",
+            "bits: a word has 16 to 64 bits, not 7",
+        ),
+        ("\"morton\"", "\"hilbert\"", "unknown variant `hilbert`"),
+        (
+            "contexts = 8 ",
+            "contexts = 0 ",
+            "contexts is 0; it must be 1 to 64",
+        ),
+        (
+            "line_bytes = 8 ",
+            "line_bytes = 24 ",
+            "node_buffer.line_bytes is 24; it must be a power of two",
+        ),
+        (
+            "latency = 0, interval = 1, width = 48",
+            "latency = 0, interval = 0, width = 48",
+            "interval is 0",
+        ),
+    ] {
+        let error = with(from, to);
+        assert!(error.contains(says), "{error}");
+    }
+}
