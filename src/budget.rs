@@ -152,8 +152,8 @@ mod tests {
         let limits = "Limit  Soft\nMax address space         1024 9 bytes\n";
         assert_eq!(address_space(limits), Some(1024));
         assert_eq!(address_space(&limits.replace("1024", "unlimited")), None);
-        let error = filled("a test", 7u64, usize::MAX / 16).expect_err("too large");
-        assert_eq!(error.needed, usize::MAX as u64 / 16 * 8);
+        let error = filled("a test", 7u64, usize::MAX / 8).expect_err("too large");
+        assert_eq!(error.needed, usize::MAX as u64 / 8 * 8);
         assert_eq!(filled("a test", 7u8, 3), Ok(vec![7; 3]));
         assert!(check("a test", u64::MAX).is_err() || available().is_none());
         assert_eq!(check("a test", 1), Ok(()));

@@ -36,7 +36,7 @@ def figures(scene, values, **options):
         point = shiftvox.explore(scene, space=space, **options)[1]
     if point["outcome"] != "drawn":
         return None
-    return point["time_ms"], point["area_nand2"]["value"], point["energy_pj"]["value"], point["wrong_samples"]
+    return point["time_ms"], point["area_nand2"], point["energy_pj"], point["wrong_samples"]
 
 
 def search(scene, trials, space=SPACE, study=None, seed=None, **options):

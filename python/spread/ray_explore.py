@@ -47,5 +47,5 @@ if __name__ == "__main__":
     ray.init(ignore_reinit_error=True, include_dashboard=False)
     found = explore(asked.scene, asked.results, asked.per_task, space=asked.space, size=asked.size)
     for point in found[-1]["front"]:
-        energy, area = point["energy_pj"]["value"] / 1e6, point["area_nand2"]["value"]
+        energy, area = point["energy_pj"] / 1e6, point["area_nand2"]
         print(f"{point['point']:5} {point['time_ms']:8.3f} ms {area:10,.0f} NAND2 {energy:7.1f} uJ  {point['hardware_says']}")

@@ -86,7 +86,7 @@ impl CostTable {
             let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
             !is_replaced(*goal) && !is_replaced(None)
         });
-        // A user's row stands for itself.
+        // A user's row follows no other.
         for (_, operation, _) in rows.keys() {
             self.follows.remove(operation);
         }

@@ -12,8 +12,7 @@ fn sum(array: &Value, key: &str) -> f64 {
 
 #[test]
 fn the_report_adds_up() {
-    let found =
-        Folder::new().json("model gen:menger,depth=3 --size 64 --hw paper --ray-order rows");
+    let found = Folder::new().json("model gen:menger,depth=3 --size 64 --hw paper");
     let at = |pointer: &str| number(found.pointer(pointer).unwrap());
     let list = |pointer: &str| found.pointer(pointer).unwrap().as_array().unwrap();
     let of_order = |class: &str| {
@@ -53,21 +52,28 @@ fn the_report_adds_up() {
             "{unit}"
         );
     }
-    // Power follows from energy and speed, and the ends of the ranges decide which design has less.
-    let of = |what: &str| {
+    let line = |what: &str| {
         let mut lines = list("/comparison").iter();
-        number(&lines.find(|line| line["what"] == what).unwrap()["light"]["value"])
+        lines.find(|line| line["what"] == what).unwrap().clone()
     };
+    // Power follows from energy and speed.
+    let of = |what: &str| number(&line(what)["light"]);
     let rate = at("/simulated/cycles/frames_per_second");
     let power = of("power at its own speed, without leakage");
     let expected = of("energy of the frame") * 1e-6 * rate;
     assert!((power - expected).abs() < 1e-9 * power.max(1.0));
-    for line in list("/comparison") {
-        for design in ["light", "ray_caster"] {
-            let range = ["low", "value", "high"].map(|end| number(&line[design][end]));
-            assert!(range.is_sorted(), "{line}");
-        }
-        assert_eq!(line["overlap"], line["less"] == "neither");
+    // The price that decides makes both designs equal where the report says so.
+    for what in ["energy on the chip", "energy of the frame", "area"] {
+        let line = line(what);
+        let ends = ["low", "median", "high"].map(|end| number(&line[end]));
+        assert!(ends.is_sorted() && ends[0] < ends[2], "{line}");
+        let less = number(&line["p_light_less"]);
+        assert_eq!(ends[1] < 1.0, less > 0.5, "{line}");
+        assert!(
+            line["decides"]
+                .as_str()
+                .is_some_and(|name| !name.is_empty())
+        );
     }
 }
 

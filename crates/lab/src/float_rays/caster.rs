@@ -114,7 +114,7 @@ impl Caster<'_> {
             for k in 0..3 {
                 if cell_exit >= leaves[k] {
                     turned |= 4 >> k;
-                    low[k] = low[k] - side;
+                    low[k] -= side;
                 }
             }
             near = cell_exit;

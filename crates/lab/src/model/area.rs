@@ -211,7 +211,7 @@ pub fn of_rays(
         u64::from(cast.format.bits()),
         u64::from(cast.format.wide().bits()),
     );
-    // Six sums of each lane, and what they change by, right and down.
+    // Six sums of each lane, and their steps right and down.
     let lanes = u64::from(hardware.lanes);
     area.register_bits("sums of the rays", lanes * 3 * 6 * wide, prices)?;
     let node = if hardware.organisation.bricks {

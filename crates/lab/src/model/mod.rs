@@ -2,7 +2,7 @@
 //!
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
 //! - [`cost`] and [`area`] price the counts.
-//! - [`verdict`] compares both, with what is uncertain about prices.
+//! - [`verdict`] compares both at uncertain prices.
 //! - [`clock`] compares units with the clock.
 //! - [`mod@floor`] is a bound for all designs.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.

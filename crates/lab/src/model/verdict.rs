@@ -1,4 +1,4 @@
-//! The light hardware beside the ray caster, with what is uncertain about prices.
+//! The light hardware beside the ray caster, at uncertain prices.
 //!
 //! A price is its figure times a factor whose logarithm is normally distributed. The table's `[spread]` has its standard
 //! deviation, and a range `[low, high]` of a row is its 90 % interval. Factors are *shared*: both designs pay the same
@@ -43,6 +43,8 @@ pub struct Verdict {
     pub moves: f64,
     /// That price times this factor, all others being the table's, makes both equal; none does if it is absent.
     pub turns_at: Option<f64>,
+    /// Of the frame's energy: the same for the price of outer memory.
+    pub outer_turns_at: Option<f64>,
 }
 
 /// One figure of both designs.
@@ -59,10 +61,12 @@ pub struct ComparedLine {
     pub verdict: Option<Verdict>,
 }
 
+type Parts = fn(&FrameCost) -> Vec<&Breakdown>;
+
 /// Both designs, figure by figure.
 pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<ComparedLine> {
     let both = [light, ray_caster];
-    let energies = |parts: fn(&FrameCost) -> Vec<&Breakdown>| both.map(|of| parts(of.cost));
+    let energies = |parts: Parts| both.map(|of| parts(of.cost));
     let line = |what, unit, [light, ray_caster]: [f64; 2]| ComparedLine {
         what,
         unit,
@@ -82,17 +86,17 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
     let bits = both.map(|of| of.cost.traffic.bits() as f64);
     let area = both.map(|of| of.area.parts().to_vec());
     let energy = Priced::Energy;
-    let parts: [(_, fn(&FrameCost) -> Vec<&Breakdown>); 5] = [
-        ("energy of operations", |of| vec![&of.operations]),
-        ("energy of memories on the chip", |of| vec![&of.on_chip]),
-        ("energy on the chip", |of| vec![&of.operations, &of.on_chip]),
-        ("energy of outer memory", |of| vec![&of.outer]),
-        ("energy of the frame", |of| of.parts().to_vec()),
+    let part = |what, of: Parts| priced(what, "uJ", micro, energies(of), energy);
+    let mut lines = vec![
+        part("energy of operations", |of| vec![&of.operations]),
+        part("energy of memories on the chip", |of| vec![&of.on_chip]),
+        part("energy on the chip", |of| vec![&of.operations, &of.on_chip]),
+        part("energy of outer memory", |of| vec![&of.outer]),
+        part("energy of the frame", |of| of.parts().to_vec()),
     ];
-    let mut lines: Vec<ComparedLine> = parts
-        .into_iter()
-        .map(|(what, of)| priced(what, "uJ", micro, energies(of), energy))
-        .collect();
+    if let Some(ComparedLine { verdict, .. }) = lines.last_mut() {
+        *verdict = Some(of_energy(light.cost, ray_caster.cost, &prices.table));
+    }
     lines.push(line("cycles", "", both.map(|of| of.cycles as f64)));
     let power = |of: Design<'_>| of.cost.total() * of.frames_per_second / 1e12;
     lines.push(line(
@@ -111,15 +115,26 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
 
 /// The verdict on the energy of a frame.
 pub fn of_energy(light: &FrameCost, ray_caster: &FrameCost, table: &CostTable) -> Verdict {
-    let bills = [light, ray_caster].map(|of| of.parts().to_vec());
-    verdict(&bills, Priced::Energy, table)
+    let both = [light, ray_caster];
+    let on_chip = both.map(|of| of.operations.total + of.on_chip.total);
+    let outer = both.map(|of| of.outer.total);
+    Verdict {
+        outer_turns_at: equal_at(outer, on_chip),
+        ..verdict(&both.map(|of| of.parts().to_vec()), Priced::Energy, table)
+    }
+}
+
+/// The factor of a price at which both designs need the same: from the totals at that price and at all others.
+fn equal_at(at_price: [f64; 2], others: [f64; 2]) -> Option<f64> {
+    let factor = (others[1] - others[0]) / (at_price[0] - at_price[1]);
+    (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
 fn total(bill: &[&Breakdown]) -> f64 {
     bill.iter().map(|part| part.total).sum()
 }
 
-/// What the lines of a bill are priced in.
+/// The quantity of a bill.
 #[derive(Debug, Clone, Copy)]
 enum Priced<'a> {
     Energy,
@@ -246,8 +261,7 @@ fn verdict(bills: &[Vec<&Breakdown>; 2], priced: Priced<'_>, table: &CostTable) 
             let with: f64 = with.map(|(amount, _)| amount).sum();
             (with, total(&bills[of]) - with)
         });
-        let factor = (rival.1 - light.1) / (light.0 - rival.0);
-        (factor.is_finite() && factor > 0.0).then_some(factor)
+        equal_at([light.0, rival.0], [light.1, rival.1])
     });
     Verdict {
         p_light_less: less as f64 / DRAWS as f64,
@@ -257,6 +271,7 @@ fn verdict(bills: &[Vec<&Breakdown>; 2], priced: Priced<'_>, table: &CostTable) 
         decides: name,
         moves,
         turns_at,
+        outer_turns_at: None,
     }
 }
 
@@ -278,5 +293,92 @@ impl Normal {
             sum += (z >> 11) as f64 / (1u64 << 53) as f64;
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::cost::OuterTraffic;
+
+    fn bill(table: &CostTable, lines: &[(&str, u32, u64)]) -> Breakdown {
+        let mut sum = Breakdown::default();
+        for &(operation, width, times) in lines {
+            let each = table.energy(operation, width).unwrap();
+            sum.push(operation, operation, width, times, each);
+        }
+        sum
+    }
+
+    fn cost(operations: Breakdown, outer: Breakdown) -> FrameCost {
+        FrameCost {
+            operations,
+            on_chip: Breakdown::default(),
+            outer,
+            traffic: OuterTraffic::default(),
+        }
+    }
+
+    /// Numbers of adders and words of outer memory, in pJ: 0.1 and 1950.
+    fn between(light: [u64; 2], ray_caster: [u64; 2]) -> Verdict {
+        let table = CostTable::load_shipped().unwrap();
+        let [light, ray_caster] = [light, ray_caster].map(|[adds, reads]| {
+            let operations = bill(&table, &[("add", 32, adds)]);
+            cost(operations, bill(&table, &[("dram_read", 64, reads)]))
+        });
+        of_energy(&light, &ray_caster, &table)
+    }
+
+    #[test]
+    fn a_shared_price_does_not_make_a_verdict_uncertain() {
+        // Half of each: the ratio is 0.5 at all prices.
+        let half = between([10_000, 1], [20_000, 2]);
+        let ratios = [half.low, half.median, half.high];
+        assert!(
+            ratios.iter().all(|ratio| (ratio - 0.5).abs() < 1e-12),
+            "{half:?}"
+        );
+        assert_eq!(half.p_light_less, 1.0);
+        assert_eq!(between([20_000, 2], [10_000, 1]).p_light_less, 0.0);
+    }
+
+    #[test]
+    fn one_uncertain_price_by_hand() {
+        // Adders alone against outer memory alone, both 1,950 pJ: equal at the table's prices.
+        let found = between([19_500, 0], [0, 1]);
+        assert!((found.p_light_less - 0.5).abs() < 0.03, "{found:?}");
+        assert!((found.median - 1.0).abs() < 0.02, "{found:?}");
+        // Deviations of logarithms: ln(1.15) of a stated row, and ln 2 over 3.29 of a range from 1,300 to 2,600. The
+        // ratio's is the root of the sum of squares, 0.253; of its logarithms 90 % lie within 1.645 of those.
+        let end = (1.6449f64 * (0.1398f64.powi(2) + 0.2107f64.powi(2)).sqrt()).exp();
+        assert!((found.high / end - 1.0).abs() < 0.03, "{found:?}, {end}");
+        assert!((found.low * end - 1.0).abs() < 0.03, "{found:?}, {end}");
+        assert_eq!(
+            (found.decides.as_str(), found.turns_at),
+            ("dram_read", Some(1.0))
+        );
+        // Twice the adders and half the words: equal where a word costs twice as much.
+        assert_eq!(between([39_000, 1], [0, 2]).outer_turns_at, Some(2.0));
+        assert_eq!(between([39_000, 2], [0, 1]).outer_turns_at, None);
+    }
+
+    #[test]
+    fn derived_prices_follow_their_leader() {
+        let table = CostTable::load_shipped().unwrap();
+        let verdict = |light: &str, rival: &str| {
+            let bills = [light, rival].map(|operation| bill(&table, &[(operation, 32, 1)]));
+            verdict(&[vec![&bills[0]], vec![&bills[1]]], Priced::Energy, &table)
+        };
+        // The adder's own factor cancels, the other's remains: ln(1.3).
+        let found = verdict("sub", "add");
+        let width = (found.high / found.low).ln() / (2.0 * NINETY);
+        assert!((width / 1.3f64.ln() - 1.0).abs() < 0.03, "{found:?}");
+        // Without a common leader, both factors remain.
+        let found = verdict("add", "multiply");
+        let width = (found.high / found.low).ln() / (2.0 * NINETY);
+        assert!(
+            (width / (2f64.sqrt() * 1.15f64.ln()) - 1.0).abs() < 0.03,
+            "{found:?}"
+        );
     }
 }

@@ -34,7 +34,8 @@ const ROWS: TableSpec = TableSpec {
               wrong_samples meets_clock limits ray_caster_cycles=ray_caster.cycles \
               ray_caster_energy_pj=ray_caster.energy_pj ray_caster_area_nand2=ray_caster.area_nand2 \
               ratio_low=verdict.low ratio_median=verdict.median ratio_high=verdict.high \
-              p_light_less=verdict.p_light_less decides=verdict.decides turns_at=verdict.turns_at",
+              p_light_less=verdict.p_light_less decides=verdict.decides turns_at=verdict.turns_at \
+              outer_turns_at=verdict.outer_turns_at",
 };
 
 const FRONT: TableSpec = TableSpec {
@@ -69,7 +70,10 @@ pub(super) fn write(
         tables,
         more_tables: Vec::new(),
         preface: format!("`{}`\n", Context::now().command),
-        panels: found.iter().map(panel).collect(),
+        panels: found
+            .iter()
+            .map(|of| shares(of).unwrap_or_else(|| panel(of)))
+            .collect(),
     };
     write_page("Hardware designs", &results, &[], args, console)?;
     export::write_files(&results, &args.export, console)?;
@@ -156,6 +160,47 @@ fn front_table(of: &Explorations, front: &Value, args: &ModelArgs) -> Table {
         title,
         ..FRONT.of(&json!({ "front": standing_out }))
     }
+}
+
+/// Over sizes of the picture, where they vary: whose energy is less, a curve for each of the other values.
+fn shares(of: &Explorations) -> Option<Panel> {
+    let mut curves = Vec::<Series>::new();
+    for line in &of.points {
+        let size = line.values.get("size")?.as_f64()?;
+        let Some(figures) = line.figures() else {
+            continue;
+        };
+        let others = PointLine {
+            values: line
+                .values
+                .clone()
+                .into_iter()
+                .filter(|(key, _)| key != "size")
+                .collect(),
+            ..line.clone()
+        };
+        let name = values(&others, &of.points);
+        let point = Point::from((size, figures.verdict.median));
+        match curves.iter_mut().find(|curve| curve.name == name) {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Series {
+                line: true,
+                ..Series::dots(name, vec![point])
+            }),
+        }
+    }
+    let axis = |label: &str, scale| Axis {
+        label: label.to_owned(),
+        scale,
+    };
+    curves.first().filter(|curve| curve.points.len() > 1)?;
+    Some(Panel::Chart(Chart {
+        title: format!("{}: energy of the frame, light over ray caster", of.scene),
+        x: axis("side of the picture, pixels", Scale::Log),
+        y: axis("ratio", Scale::Log),
+        series: curves,
+        level: Some((1.0, "equal".to_owned())),
+    }))
 }
 
 /// Energy over time: a series per hardware description, and the ray caster beside each point.

@@ -12,8 +12,8 @@ pub const MAX_POINTS: usize = 1 << 16;
 
 pub const SPACES: [(&str, &str); 7] = [
     ("bundled", include_str!("spaces/bundled.toml")),
-    ("caches", include_str!("spaces/caches.toml")),
     ("lanes", include_str!("spaces/lanes.toml")),
+    ("map", include_str!("spaces/map.toml")),
     ("rules", include_str!("spaces/rules.toml")),
     ("sizes", include_str!("spaces/sizes.toml")),
     ("steps", include_str!("spaces/steps.toml")),
