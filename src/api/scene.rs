@@ -264,6 +264,10 @@ mod tests {
         assert!(!scene.is_verified() && scene.graph.voxels == made.graph.voxels);
         scene.verify().expect("sound");
         assert!(scene.is_verified() && scene.up() == Up::Y);
+        if cfg!(target_endian = "big") {
+            // The scene is not mapped, but a copy in the order of the processor, which was checked.
+            return;
+        }
         // Another program changes the last byte of a section, in place, and then the header.
         for (at, section) in [(bytes.len() - 1, "section NRML"), (30, "header")] {
             bytes[at] ^= 1;
