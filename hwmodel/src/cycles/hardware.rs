@@ -302,6 +302,25 @@ impl Hardware {
             return Err(HardwareError(format!("`{key}` {problem}")));
         }
         let buffer = self.node_buffer.as_ref();
+        if let Some(buffer) = buffer {
+            let cache = &self.node_cache;
+            if buffer.entry_bytes != cache.entry_bytes {
+                let range = format!("{}, as in the node cache", cache.entry_bytes);
+                return Err(out_of_range(
+                    "node_buffer.entry_bytes",
+                    buffer.entry_bytes,
+                    &range,
+                ));
+            }
+            if buffer.line_bytes > cache.line_bytes {
+                let range = format!("at most {}, as in the node cache", cache.line_bytes);
+                return Err(out_of_range(
+                    "node_buffer.line_bytes",
+                    buffer.line_bytes,
+                    &range,
+                ));
+            }
+        }
         let caches = [
             ("node_cache", &self.node_cache),
             ("attribute_cache", &self.attribute_cache),

@@ -112,7 +112,12 @@ fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
 
 pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
     let text = text_named(name, folder)?;
-    Hardware::from_toml(&text).map_err(|error| CliError::input(error).at(name))
+    let hardware = Hardware::from_toml(&text).map_err(|error| CliError::input(error).at(name))?;
+    if hardware.node_buffer.is_some() {
+        let why = "node_buffer: only a ray caster has one (--rival)";
+        return Err(CliError::input(why).at(name));
+    }
+    Ok(hardware)
 }
 
 const BITS: u32 = 32;

@@ -211,9 +211,9 @@ pub fn of_rays(
         u64::from(cast.format.bits()),
         u64::from(cast.format.wide().bits()),
     );
-    // Six sums of each lane, and their steps right and down.
     let lanes = u64::from(hardware.lanes);
-    area.register_bits("sums of the rays", lanes * 3 * 6 * wide, prices)?;
+    area.register_bits("sums of the rays", lanes * 6 * wide, prices)?;
+    area.memory("steps of the sums", lanes * cast.steps * 6 * wide, prices)?;
     let node = if hardware.organisation.bricks {
         64 + BRICK_BITS
     } else {

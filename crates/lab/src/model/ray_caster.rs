@@ -94,6 +94,14 @@ fn on_chip(
         sum.push(name, operation, bits, times, each);
         Ok(())
     };
+    let rays = cast
+        .counter
+        .records_by_level()
+        .next()
+        .map_or(0, |(_, rays)| rays);
+    let sums = 6 * cast.format.wide().bits();
+    let bytes = (cast.steps * u64::from(sums)).div_ceil(8).max(1);
+    push("steps of the sums", "sram_read", bytes, sums, rays / 2)?;
     let (nodes, attributes) = (&hardware.node_cache, &hardware.attribute_cache);
     let (reads, _) = accesses(&cast.counter, Memory::Node);
     let from_cache = match (&hardware.node_buffer, cast.cycles.node_buffer) {

@@ -58,6 +58,11 @@ impl Rival {
     pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
         let rival: Self = toml::from_str(text).map_err(|error| HardwareError(error.to_string()))?;
         Format::new(rival.bits, 0).map_err(|error| HardwareError(format!("bits: {error}")))?;
+        let stack = &rival.stack;
+        if !(1..=32).contains(&stack.entries) || !(64..=4096).contains(&stack.entry_bits) {
+            let why = "stack: a ray has 1 to 32 entries of 64 to 4096 bits";
+            return Err(HardwareError(why.to_owned()));
+        }
         // Beside a design that ships, its own numbers alone can be wrong.
         rival.beside(&Hardware::preset("light")?).check()?;
         Ok(rival)

@@ -128,12 +128,17 @@ impl Ray {
             }
             Entry::Plane(at) if at == k => true,
             // The lower plane of its entry against the middle of this axis.
+            // Operands by the axis of the entry, one of two.
             Entry::Plane(at) if k == (at + 1) % 3 => {
+                dp.select(true, half[at], half[at]);
+                dp.select(true, half[at], half[at]);
                 let lower = dp.sub(self.earlier[at], self.across[k]);
                 let passed = dp.add(lower, half[at]);
                 is_negative(dp, passed)
             }
             Entry::Plane(at) => {
+                dp.select(true, half[at], half[at]);
+                dp.select(true, half[at], half[at]);
                 let lower = dp.add(self.earlier[k], self.across[k]);
                 let passed = dp.sub(half[at], lower);
                 is_negative(dp, passed)
@@ -153,7 +158,10 @@ impl Ray {
     /// Moves the plane at which the cell ends along an axis by its side, up or down.
     fn move_upper<P: Probe>(&mut self, dp: &mut Datapath<P>, k: usize, up: bool) {
         let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+        // Each sum adds or subtracts one of two components.
         let [of_next, of_last] = [self.across[next], self.across[last]];
+        let of_next = dp.select(true, of_next, self.across[k]);
+        let of_last = dp.select(false, self.across[k], of_last);
         if up {
             self.earlier[k] = dp.add(self.earlier[k], of_next);
             self.earlier[last] = dp.sub(self.earlier[last], of_last);

@@ -197,6 +197,17 @@ fn wrong_descriptions_are_refused() {
             "line_bytes = 24 ",
             "node_buffer.line_bytes is 24; it must be a power of two",
         ),
+        ("entries = 24 ", "entries = 0 ", "a ray has 1 to 32 entries"),
+        (
+            "entry_bytes = 8 ",
+            "entry_bytes = 1 ",
+            "node_buffer.entry_bytes is 1; it must be 8, as in the node cache",
+        ),
+        (
+            "line_bytes = 8 ",
+            "line_bytes = 128 ",
+            "node_buffer.line_bytes is 128; it must be at most 64",
+        ),
         (
             "latency = 0, interval = 1, width = 48",
             "latency = 0, interval = 0, width = 48",

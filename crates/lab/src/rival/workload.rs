@@ -1,5 +1,7 @@
 //! A frame of rays as a workload of the cycle model, with everything counted.
 
+use std::collections::BTreeSet;
+
 use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Child, CycleReport, Hardware, ImageNode, NoObserver, TurnLog};
 use hwmodel::shifts::ShiftProbe;
@@ -26,6 +28,8 @@ pub struct Cast {
     pub shifts: ShiftProbe,
     /// Words, and the wide words of the sums.
     pub format: Format,
+    /// Distances from ray to ray: each has six sums that the hardware keeps.
+    pub steps: u64,
 }
 
 type Probes = (TurnLog, (Counter, ShiftProbe));
@@ -39,6 +43,13 @@ pub fn cast(
 ) -> Result<Cast, ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     frame.clear();
+    if setup.depth > rival.stack.entries {
+        let why = format!(
+            "stack.entries is {}; the scene has {} levels",
+            rival.stack.entries, setup.depth
+        );
+        return Err(cycles::HardwareError(why).into());
+    }
     let plain = Format::new(rival.bits, 0)
         .map_err(|error| cycles::HardwareError(format!("bits of the ray caster: {error}")))?;
     let view = View::new(setup, rival.bits, plain.wide().bits());
@@ -50,6 +61,13 @@ pub fn cast(
     rival
         .order
         .for_each(setup.width, setup.height, |i, j| samples.push((i, j)));
+    let steps: BTreeSet<(i64, i64)> = samples
+        .windows(2)
+        .map(|pair| {
+            let [from, to] = [pair[0], pair[1]].map(|(i, j)| (i64::from(i), i64::from(j)));
+            (to.0 - from.0, to.1 - from.1)
+        })
+        .collect();
     let mut rays = Rays {
         graph: &graph,
         layout: NodeLayout::new(&graph, organisation.leaf_masks, organisation.bricks),
@@ -70,6 +88,7 @@ pub fn cast(
         counter,
         shifts,
         format,
+        steps: steps.len() as u64,
     })
 }
 
@@ -199,6 +218,10 @@ impl Rays<'_> {
             .low
             .iter()
             .fold(0u8, |bits, low| bits << 1 | (low >> ray.size & 1) as u8);
+        // A bit of each place, of 24, by the level.
+        for _ in 0..3 {
+            self.dp.and_bits(24, 0, 0);
+        }
         // The octant, and its bit of the node's mask.
         let octant = self.dp.xor_bits(3, octant, ray.mirror);
         let mask = self.graph.mask(above[level]);

@@ -10,7 +10,7 @@ use clap::Args;
 #[command(next_help_heading = "Explore")]
 pub(in crate::model) struct ExploreArgs {
     /// Measure many designs and find the Pareto-optimal ones in time, area, energy and wrong samples. SPACE is bundled,
-    /// caches, lanes, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes. --json
+    /// lanes, map, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes. --json
     /// prints one line per point
     #[arg(long, value_name = "SPACE", conflicts_with_all = ["heat", "trace", "vectors"])]
     pub(in crate::model) explore: Option<String>,
