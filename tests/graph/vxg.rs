@@ -119,7 +119,8 @@ fn every_truncation_and_damaged_byte_is_found_and_harmless() {
                 let message = vxg::verify(&path).unwrap_err().to_string();
                 assert!(vxg::from_bytes(&bytes).is_err());
                 let opened = vxg::open(&path);
-                if place < 512 {
+                // Where numbers are turned, all of a file is checked when it is opened.
+                if place < 512 || cfg!(target_endian = "big") {
                     assert!(opened.is_err(), "header byte {place}");
                 } else {
                     exercise(&opened.unwrap());

@@ -51,7 +51,7 @@ impl Finest {
             let key = record::key(voxel);
             let normal = record::normal(voxel);
             finest.color.push(&record::color(voxel))?;
-            finest.own_normal.push(&normal.0.to_le_bytes())?;
+            finest.own_normal.push(&normal.0.to_ne_bytes())?;
             finest.lacking |= normal.is_none();
             finest.voxels += 1;
             if finest.voxels.is_multiple_of(STEP) {

@@ -35,7 +35,8 @@ pub(super) struct ClusterNodes {
     pub(super) sum: Sum,
 }
 
-/// Masks, first children (`u32`, numbers within their level), colours and normals of a level.
+/// Masks, first children (`u32`, numbers within their level), colours and normals of a level, in the order of bytes of
+/// the processor.
 pub(super) type LevelArrays = [Spool; 4];
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -140,7 +141,7 @@ impl TreeWriter {
         masks.push(&[node.mask])?;
         firsts.push(&(first as u32).to_ne_bytes())?;
         colors.push(&node.color)?;
-        normals.push(&node.normal.0.to_le_bytes())
+        normals.push(&node.normal.0.to_ne_bytes())
     }
 
     pub(super) fn finish(mut self) -> io::Result<(Vec<LevelArrays>, Vec<u64>)> {
