@@ -10,4 +10,4 @@ for contexts in (2, 4, 8):
     found = shiftvox.model("bundled", size=64, hw="mine.toml")
     cycles = found["simulated"]["cycles"]["cycles"]
     energy = next(line for line in found["comparison"] if line["what"] == "energy of the frame")
-    print(f"{contexts} contexts: {cycles:9,} cycles, {found['area']['total']:9,.0f} NAND2, {energy['light']['value']:.0f} uJ")
+    print(f"{contexts} contexts: {cycles:9,} cycles, {found['area']['total']:9,.0f} NAND2, {energy['light']:.0f} uJ")
