@@ -1,4 +1,4 @@
-//! A frame of the [rival](crate::rival), priced by the same tables.
+//! A frame of the [rival], priced by the same tables.
 
 use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable};
