@@ -187,7 +187,9 @@ impl TurnLog {
 
     fn end_step(&mut self, next: Stage) {
         let last = std::mem::replace(&mut self.stage, next);
-        if self.met[last.number()] != 0 {
+        if self.met[last.number()] != 0
+            && let Some(last) = self.stages[last.number()]
+        {
             let mut over = std::mem::take(&mut self.over);
             self.take_stage(last, &mut over);
             self.over = over;
