@@ -89,7 +89,7 @@ impl Breakdown {
     }
 }
 
-/// Operations added up by what they are priced as: an operation of the table, and how often.
+/// Operations added up. `priced` gives the operation of the table that prices a cell, and how many it stands for.
 pub fn tallies(counter: &Counter, priced: impl Fn(&OpCount) -> (&'static str, u64)) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
     for cell in counter.cells() {
