@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::{Breakdown, Cost, CostError, CostTable, Goal, Line};
 
-/// What an estimator is told of a component.
+/// Name and size of a component.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Attributes {
     /// The component's name: its design and its own, such as `light.add_32`.
@@ -56,7 +56,7 @@ impl Estimator for CostTable {
 }
 
 impl Line {
-    /// The kind of the line's component, its action, and what an estimator is told; none for wires.
+    /// The kind of the line's component, its action, its name and size. Wires are no component.
     pub fn request(&self, design: &str) -> Option<(&str, &'static str, Attributes)> {
         let width = self.width;
         let (component, action, name) = match self.operation.as_str() {

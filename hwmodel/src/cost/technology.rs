@@ -1,16 +1,15 @@
 //! Energy in another process and at another voltage.
 //!
-//! *Switching*: HSpice runs of the same circuits in predictive models of each process, to which Stillmaker and Baas fitted
-//! a parabola of the supply voltage (Scaling equations for the accurate prediction of CMOS device performance from 180 nm
-//! to 7 nm, Integration 58, 2017, table 5, high-performance models). A price is multiplied by the parabola's value over
-//! that at 45 nm and 0.9 V, where the shipped prices are. They have no 28 nm; it lies between the logarithms of 32 and
-//! 20 nm, by the logarithm of the size.
+//! *Switching*. Stillmaker and Baas simulated the same circuits in predictive models of each process, and fitted a
+//! parabola of the supply voltage (Integration 58, 2017, table 5, high-performance models; REFERENCES.md). A price is
+//! multiplied by the parabola's value over that at 45 nm and 0.9 V, where the shipped prices are. They have no 28 nm.
+//! Its logarithm is taken between those of 32 and 20 nm, in proportion to the logarithm of the size.
 //!
-//! *Leakage*: the off-current of a micrometre of transistor is the same in all processes, as in the ITRS's targets for
+//! *Leakage*. The off-current of a micrometre of transistor is the same in all processes, as in the ITRS's targets for
 //! high-performance logic, and widths shrink with the process. So a gate's leakage follows the size times the voltage.
 //! This is an assumption; off-currents also grow with the voltage and tenfold with heat.
 //!
-//! *Outer memory* is another chip, and keeps its price.
+//! *Outer memory*. It is another chip, and keeps its price.
 
 use serde::{Deserialize, Serialize};
 

@@ -31,7 +31,7 @@ impl Dram {
     }
 }
 
-/// Requests by what they found in their bank.
+/// Requests by the state of their bank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RowReport {
     /// Their row was open.
@@ -54,7 +54,7 @@ pub struct OuterRequest {
     pub write: bool,
 }
 
-/// What a request moves. Each region begins at a multiple of 2^30 bytes, in this order.
+/// Data in outer memory. Each region begins at a multiple of 2^30 bytes, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Region {
     Nodes,
@@ -97,7 +97,7 @@ pub(super) struct OuterPort {
     pub(super) busy: u64,
     banks: Vec<Bank>,
     rows: RowReport,
-    /// All requests, if an observer wants them.
+    /// All requests, if an observer watches them.
     pub(super) log: Option<Vec<OuterRequest>>,
 }
 
@@ -215,7 +215,7 @@ impl OuterPort {
 /// Bytes of a request in [`RequestLog::write_ramulator`].
 const BURST_BYTES: u64 = 64;
 
-/// Keeps the requests to outer memory, if they are wanted.
+/// Keeps the requests to outer memory, if asked for.
 #[derive(Debug, Clone, Default)]
 pub struct RequestLog {
     wanted: bool,

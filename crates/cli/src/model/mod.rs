@@ -124,7 +124,7 @@ fn simulate(
     });
     let mut watched = (RequestLog::new(files.export_ramulator.is_some()), ticks);
     let mut text = Vec::new();
-    let mut run =
+    let run =
         |observer: &mut dyn Observer| frame::simulate(&view, setup, hardware, overflow, observer);
     let drawn = match &files.trace {
         None => run(&mut watched)?,
