@@ -48,7 +48,7 @@ pub trait Observer {
     }
 
     /// At the end, all requests to outer memory.
-    fn requests(&mut self, _: Vec<OuterRequest>) {}
+    fn requests(&mut self, _: &[OuterRequest]) {}
 
     /// Cycle and number of records, every few thousand records.
     fn progress(&mut self, _cycle: u64, _records: u64) {}
@@ -90,16 +90,9 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.watches_requests() || self.1.watches_requests()
     }
 
-    fn requests(&mut self, requests: Vec<OuterRequest>) {
-        match self.1.watches_requests() {
-            false => self.0.requests(requests),
-            true => {
-                if self.0.watches_requests() {
-                    self.0.requests(requests.clone());
-                }
-                self.1.requests(requests);
-            }
-        }
+    fn requests(&mut self, requests: &[OuterRequest]) {
+        self.0.requests(requests);
+        self.1.requests(requests);
     }
 
     fn progress(&mut self, cycle: u64, records: u64) {

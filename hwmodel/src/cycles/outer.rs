@@ -252,8 +252,8 @@ impl Observer for RequestLog {
         self.wanted
     }
 
-    fn requests(&mut self, requests: Vec<OuterRequest>) {
-        self.requests = requests;
+    fn requests(&mut self, requests: &[OuterRequest]) {
+        self.requests = requests.to_vec();
         self.requests.sort_by_key(|request| request.cycle);
     }
 }
@@ -318,7 +318,7 @@ mod tests {
             port.book_spilled(90, 8 * 65, write);
         }
         let mut log = RequestLog::new(true);
-        log.requests(port.log.take().unwrap());
+        log.requests(&port.log.take().unwrap());
         let mut text = Vec::new();
         log.write_ramulator(&mut text).unwrap();
         let expected = "0x40000080 R\n0x400000c0 R\n0x80000040 W\n\

@@ -1,6 +1,6 @@
 //! Leakage and the clock of a whole design, by its area and cycles.
 
-use hwmodel::cost::{CostError, CostTable, Standing};
+use hwmodel::cost::{CostError, Standing};
 use hwmodel::cycles::CycleReport;
 
 use super::area::DesignArea;
@@ -35,15 +35,8 @@ impl FrameCost {
                 *part = part.priced_by(design, by.as_ref())?;
             }
         }
-        self.stand(&standing(area), cycles, &prices.table)
-    }
-
-    fn stand(
-        mut self,
-        parts: &Standing,
-        cycles: &CycleReport,
-        table: &CostTable,
-    ) -> Result<Self, CostError> {
+        let parts = standing(area);
+        let table = &prices.table;
         self.leakage = parts.leakage(cycles.cycles, cycles.clock_mhz, table)?;
         self.clock = parts.clock(cycles.cycles, table)?;
         Ok(self)
@@ -53,12 +46,13 @@ impl FrameCost {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hwmodel::cost::{CostTable, Goal};
 
     /// Two adders of 232.9 NAND2, 32 bits of registers of 128, 1000 bits of memory, and 20 % of 593.8 for control.
     #[test]
     fn parts_by_hand() {
         let table = CostTable::load_shipped().unwrap();
-        let goal = hwmodel::cost::Goal::Area;
+        let goal = Goal::Area;
         let each = |operation, width| table.area(operation, width, goal).unwrap();
         let mut area = DesignArea::default();
         area.units.push("centre", "add", 32, 2, each("add", 32));

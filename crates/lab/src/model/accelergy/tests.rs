@@ -6,85 +6,32 @@ use super::*;
 fn frame() -> FrameCost {
     let table = CostTable::load_shipped().unwrap();
     let mut cost = FrameCost::default();
-    let push = |sum: &mut Breakdown, name: &str, operation: &str, width, bytes, times| {
-        let each = match bytes {
-            Some(bytes) => table.memory_energy(operation, bytes, width),
-            None => table.energy(operation, width),
+    for (name, operation, width, times) in [
+        ("add", "add", 32, 100),
+        ("shift_wires", "shift_wires", 33, 7),
+        ("stack, voxel", "sram_read", 64, 5),
+        ("stack, voxel", "sram_write", 64, 3),
+        ("lines of nodes", "dram_read", 64, 2),
+    ] {
+        let bytes = operation.starts_with("sram").then_some(8192);
+        let (sum, each) = match bytes {
+            Some(bytes) => (
+                &mut cost.on_chip,
+                table.memory_energy(operation, bytes, width),
+            ),
+            None if width == 64 => (&mut cost.outer, table.energy(operation, width)),
+            None => (&mut cost.operations, table.energy(operation, width)),
         };
         sum.push(name, operation, width, times, each.unwrap());
         sum.of_bytes(bytes);
-    };
-    push(&mut cost.operations, "add", "add", 32, None, 100);
-    push(
-        &mut cost.operations,
-        "shift_wires",
-        "shift_wires",
-        33,
-        None,
-        7,
-    );
-    let bytes = Some(8192);
-    push(&mut cost.on_chip, "stack, voxel", "sram_read", 64, bytes, 5);
-    push(
-        &mut cost.on_chip,
-        "stack, voxel",
-        "sram_write",
-        64,
-        bytes,
-        3,
-    );
-    push(&mut cost.outer, "lines of nodes", "dram_read", 64, None, 2);
+    }
     cost
 }
 
-/// As Accelergy's examples have them.
-const COUNTS: &str = "architecture:
-  version: 0.3
-  subtree:
-  - name: shiftvox
-    attributes:
-      technology: 45nm
-      voltage: 0.9
-    subtree:
-    - name: light
-      local:
-      - name: add_32
-        class: intadder
-        attributes:
-          datawidth: 32
-      - name: dram_64
-        class: DRAM
-        attributes:
-          width: 64
-      - name: stack_voxel_64
-        class: SRAM
-        attributes:
-          width: 64
-          depth: 1024
-action_counts:
-  version: 0.3
-  local:
-  - name: shiftvox.light.add_32
-    action_counts:
-    - name: add
-      counts: 100
-  - name: shiftvox.light.dram_64
-    action_counts:
-    - name: read
-      counts: 2
-  - name: shiftvox.light.stack_voxel_64
-    action_counts:
-    - name: read
-      arguments:
-        data_delta: 1
-        address_delta: 1
-      counts: 5
-    - name: write
-      arguments:
-        data_delta: 1
-        address_delta: 1
-      counts: 3
-";
+/// Written by hand as in Accelergy's examples.
+const COUNTS: &str = include_str!("counts.yaml");
+/// As Accelergy writes it: with copies, other actions, and accesses that change nothing.
+const TABLE: &str = include_str!("table.yaml");
 
 #[test]
 fn components_and_counts_by_hand() {
@@ -92,47 +39,6 @@ fn components_and_counts_by_hand() {
     assert_eq!(text, COUNTS);
     serde_saphyr::from_str::<Value>(&text).unwrap();
 }
-
-/// A table as Accelergy writes it: with copies, other actions, and accesses that change nothing.
-const TABLE: &str = "
-ERT:
-  version: 0.3
-  tables:
-  - name: shiftvox.ray_caster.add_32
-    actions:
-    - name: add
-      arguments: null
-      energy: 99
-  - name: shiftvox.light.add_32[0..3]
-    actions:
-    - name: idle
-      arguments: null
-      energy: 0
-    - name: add
-      arguments: null
-      energy: 0.25
-  - name: shiftvox.light.stack_voxel_64
-    actions:
-    - name: read
-      arguments:
-        address_delta: 0
-        data_delta: 0
-      energy: 4
-    - name: read
-      arguments:
-        address_delta: 1
-        data_delta: 1
-      energy: 8
-    - name: write
-      arguments:
-        address_delta: 1
-        data_delta: 1
-      energy: 9
-  - name: shiftvox.light.dram_64
-    actions:
-    - name: read
-      energy: 1000
-";
 
 fn totals(cost: &FrameCost, by: &dyn Estimator) -> Result<[f64; 3], CostError> {
     let price = |part: &Breakdown| Ok(part.priced_by("light", by)?.total);
