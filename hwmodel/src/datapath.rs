@@ -29,7 +29,7 @@ impl<P: Probe> Datapath<P> {
             policy,
             spare: [64 - format.bits(), 64 - format.wide().bits()],
             place: StageLevel {
-                stage: Stage::Pop,
+                stage: Stage::default(),
                 level: 0,
             },
             record: 0,
@@ -79,8 +79,11 @@ impl<P: Probe> Datapath<P> {
 
     /// Enters a stage.
     #[inline(always)]
-    pub fn stage(&mut self, stage: Stage) {
-        self.place.stage = stage;
+    pub fn stage(&mut self, stage: impl Into<Stage>) {
+        self.place.stage = stage.into();
+        if P::ENABLED {
+            self.probe.stage(self.place.stage);
+        }
     }
 
     /// Begins a dependent step ([`Probe::next_step`]).
@@ -93,8 +96,9 @@ impl<P: Probe> Datapath<P> {
 
     /// Does work of another stage ([`Probe::beside`]).
     #[inline(always)]
-    pub fn beside<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
-        let before = std::mem::replace(&mut self.place.stage, stage);
+    pub fn beside<T>(&mut self, stage: impl Into<Stage>, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.place.stage;
+        self.stage(stage);
         if P::ENABLED {
             self.probe.beside(true);
         }

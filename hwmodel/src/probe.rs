@@ -4,7 +4,7 @@ use std::panic::Location;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Format, Signal};
+use crate::{Format, Signal, Stage};
 
 named! {
     /// Operations of the datapath.
@@ -23,41 +23,6 @@ named! {
         Logic = "logic",
         /// A trial subtraction and a select.
         DivideStep = "divide step",
-    }
-}
-
-named! {
-    /// The stages of the record loop, in the order in which a record meets them.
-    #[derive(
-        Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
-    )]
-    #[serde(rename_all = "snake_case")]
-    #[repr(u8)]
-    pub enum Stage {
-        #[default]
-        Pop = "pop",
-        Filled = "filled?",
-        OnePixel = "one pixel?",
-        Centre = "centre",
-        Order = "octant and order",
-        /// The vertices that the children share.
-        VertexPool = "vertex pool",
-        ChildBox = "child box",
-        /// The smallest unfilled quadtree node that holds the box.
-        QuadtreeFit = "quadtree fit",
-        Push = "push",
-        Draw = "draw",
-        FillUpdate = "fill update",
-        ToScreen = "to screen",
-        Blend = "blend",
-        /// Of a ray caster: the step from a ray to the next.
-        RayNext = "next ray",
-        /// Whether and where a ray enters the object.
-        RaySetup = "ray set-up",
-        /// A cell of a ray: into it, or on to the next one.
-        RayStep = "ray step",
-        /// The end of a ray at a voxel.
-        RayHit = "ray hit",
     }
 }
 
@@ -177,6 +142,9 @@ macro_rules! probe {
 probe! {
     /// A datapath of this format is built around the probe.
     fn begin(self, format: Format) {}
+
+    /// The datapath enters a stage.
+    fn stage(self, stage: Stage) {}
 
     /// `times` operations on words of `bits` bits.
     fn op(self, class: OpClass, bits: u32, place: StageLevel, times: u32) {}

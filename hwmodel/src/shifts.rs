@@ -65,9 +65,10 @@ impl Seen {
 /// use hwmodel::shifts::{ShiftKind, ShiftProbe};
 /// use hwmodel::{Datapath, Format, Overflow, Stage};
 ///
+/// let draw = Stage::new(0, "draw");
 /// let mut probe = ShiftProbe::new();
 /// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
-/// dp.stage(Stage::Draw);
+/// dp.stage(draw);
 /// for level in [1, 2] {
 ///     dp.begin_record(0, level);
 ///     for times in [1, 2, 3] {
@@ -83,7 +84,7 @@ impl Seen {
 /// use ShiftKind::{Frame, Level, Operation, Wires};
 /// assert_eq!(kinds, [Wires, Frame, Level, Operation, Wires]);
 /// // Three kinds need a shifter, six times each.
-/// assert_eq!(probe.variable(), [((Stage::Draw, 24), 18)].into());
+/// assert_eq!(probe.variable(), [((draw, 24), 18)].into());
 /// # Ok::<(), hwmodel::FormatError>(())
 /// ```
 #[derive(Debug, Clone, Default)]
@@ -235,16 +236,17 @@ mod tests {
         let format = Format::new(24, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, &mut probe);
         let word = dp.load(1);
-        for stage in [Stage::ChildBox, Stage::Push] {
+        let [pool, child_box, push] = [0, 1, 2].map(|number| Stage::new(number, "test"));
+        for stage in [child_box, push] {
             dp.stage(stage);
             dp.add(word, word);
-            dp.beside(Stage::VertexPool, |dp| dp.shl(word, 2));
+            dp.beside(pool, |dp| dp.shl(word, 2));
         }
         dp.shl(word, 3);
         let of = |stage, times| ((stage, 24), times);
-        let by_stage = [of(Stage::VertexPool, 2), of(Stage::Push, 1)];
+        let by_stage = [of(pool, 2), of(push, 1)];
         assert_eq!(probe.variable(), BTreeMap::from(by_stage));
-        let in_steps = [of(Stage::ChildBox, 1), of(Stage::Push, 2)];
+        let in_steps = [of(child_box, 1), of(push, 2)];
         assert_eq!(probe.variable_in_steps(), BTreeMap::from(in_steps));
     }
 }

@@ -1,7 +1,8 @@
 //! Blending, under the rule `alpha` (`SPEC.md`, R11). A side counts by the square of its cosine, which is unbiased over
 //! all directions. Products are sums of shifts over one factor's bits, at most nine.
 
-use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Word};
 
 use super::blocks::{Block, LEVEL_BITS};
 use super::constants::BlendEye;
@@ -181,7 +182,7 @@ impl BlendColor {
         opacity: Opacity,
         light: [u16; 3],
     ) -> Option<Self> {
-        dp.stage(Stage::Blend);
+        dp.stage(RecordStage::Blend);
         dp.read(Memory::Attribute, u64::from(cube.node));
         let sides = VisibleSides::new(dp, eye, &cube.min, &cube.max);
         let high = std::array::from_fn(|k| {
@@ -201,7 +202,7 @@ impl BlendColor {
         at: u64,
         sample: &mut Blend,
     ) -> [bool; 2] {
-        dp.stage(Stage::Blend);
+        dp.stage(RecordStage::Blend);
         dp.read(Memory::Accumulator, at);
         let left = Narrow::from_host(u32::from(sample.left));
         let half = Narrow::from_host(ALL_LEFT >> 1);

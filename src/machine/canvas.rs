@@ -1,6 +1,7 @@
 //! The picture and its fill vectors (image-order paper, 3.3).
 
-use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Memory, Probe, Short};
 
 use super::alpha::BlendColor;
 use super::blocks::{ADDRESS_BITS, Port};
@@ -31,7 +32,7 @@ impl Canvas<'_> {
     /// Draws one sample, unless it is full.
     #[inline]
     pub(super) fn draw<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode, paint: &Paint) {
-        dp.stage(Stage::Draw);
+        dp.stage(RecordStage::Draw);
         let vector = self.fill.read(dp, sample);
         if dp.and_bits(4, vector, FULL) == FULL {
             self.counts.samples_already_drawn += 1;
@@ -80,7 +81,7 @@ impl Canvas<'_> {
         let [is_first, is_full] = color.add_to(dp, at as u64, &mut blend[at]);
         self.counts.samples_blended += 1;
         if is_first {
-            dp.stage(Stage::Draw);
+            dp.stage(RecordStage::Draw);
             self.put(dp, at, paint);
         }
         is_full
@@ -133,7 +134,7 @@ impl Canvas<'_> {
         mut silhouette: Silhouette,
         is_found: &mut impl FnMut(&mut Self, &mut Datapath<P>, QuadNode) -> bool,
     ) -> Result<(), u32> {
-        dp.stage(Stage::Draw);
+        dp.stage(RecordStage::Draw);
         let below = self.fill.levels() - quad.level;
         let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {

@@ -1,8 +1,9 @@
 //! Children, in the order of R9 (`SPEC.md`; image-order paper, 3.2), and their vertices (3.4). Those before the eye whose
 //! box has an unfilled quadtree node are pushed (3.5).
 
+use crate::machine::stages::RecordStage;
 use hwmodel::cycles::StackHolds;
-use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
+use hwmodel::{Datapath, Memory, Probe, Short, Word};
 
 use super::blocks::{Block, Port};
 use super::cage::CageCoordinate;
@@ -24,7 +25,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         // A tile begins at level 0, also after another tile.
         dp.resume(0);
         canvas.fill.begin_tile(dp, tile);
-        dp.stage(Stage::Push);
+        dp.stage(RecordStage::Push);
         let c = &job.constants;
         let [x, y, w] = [0, 1, 2].map(|k| L::from_frame(dp, c.origin[k], c.edges[k]));
         let (w_min, w_max) = w.span(dp);
@@ -63,7 +64,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         canvas.counts.subdivided += 1;
         let (centre, order) = centre_and_order(dp, job, &record.cube);
 
-        dp.stage(Stage::VertexPool);
+        dp.stage(RecordStage::VertexPool);
         match &record.pose {
             Pose::Clip(clip, planes) => {
                 let x = pool(dp, &clip.x);
@@ -136,7 +137,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         let (w_min, w_max) = child_span(dp, &w);
         let planes = if c.outline.has_planes() {
             let parent_level = child.cube.level - 1;
-            dp.beside(Stage::VertexPool, |dp| {
+            dp.beside(RecordStage::VertexPool, |dp| {
                 planes::of_child(dp, c, planes, parent_level, octant)
             })
         } else {
@@ -196,7 +197,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
             counts.rejected_by_quadtree += 1;
             return false;
         };
-        dp.stage(Stage::Push);
+        dp.stage(RecordStage::Push);
         let record = Record {
             cube,
             place,
@@ -221,11 +222,11 @@ pub(super) fn centre_and_order<P: Probe>(
     job: &Job<'_>,
     cube: &Cube,
 ) -> ([Word; 3], [u8; 8]) {
-    dp.stage(Stage::Centre);
+    dp.stage(RecordStage::Centre);
     let centre: [Word; 3] = std::array::from_fn(|k| dp.midpoint(cube.min[k], cube.max[k]));
     dp.tap(Block::Centre, &(cube.min, cube.max), &centre);
 
-    dp.stage(Stage::Order);
+    dp.stage(RecordStage::Order);
     let eye = job.constants.eye_floor;
     let octant = (0..3).fold(0u8, |bits, k| {
         // The centre is on the positive side where the eye is below it.
@@ -262,7 +263,7 @@ pub(super) fn child_cube<P: Probe>(
         counts.absent_children += 1;
         return None;
     };
-    dp.stage(Stage::ChildBox);
+    dp.stage(RecordStage::ChildBox);
     let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
     let min = std::array::from_fn(|k| dp.select(upper[k], centre[k], parent.min[k]));
     let max = std::array::from_fn(|k| dp.select(upper[k], parent.max[k], centre[k]));
@@ -302,7 +303,7 @@ pub(super) fn is_behind<P: Probe>(
     counts: &mut Counts,
     w_max: Word,
 ) -> bool {
-    dp.stage(Stage::ChildBox);
+    dp.stage(RecordStage::ChildBox);
     let is_behind = match constants.outline {
         OutlineRule::Silhouette => !dp.is_positive(w_max),
         OutlineRule::Box | OutlineRule::Centre => dp.lt(w_max, constants.near),

@@ -1,6 +1,7 @@
 //! The drawing rules (`SPEC.md`, R7, and R10, termination): a record is drawn, dropped or subdivided.
 
-use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Memory, Probe, Short};
 
 use super::alpha::BlendColor;
 use super::blocks::{ADDRESS_BITS, Block, Port};
@@ -33,7 +34,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
         record.pose = Pose::Screen(to_screen::change(dp, c, place, clip));
     }
 
-    dp.stage(Stage::OnePixel);
+    dp.stage(RecordStage::OnePixel);
     let cube = &mut record.cube;
     // With leaf masks, a record reads its node only if it is subdivided.
     let is_read_late = job.layout.leaf_masks;
@@ -69,7 +70,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
         }
         Verdict::Subdivide => {
             if is_read_late && !record.cube.solid {
-                dp.stage(Stage::OnePixel);
+                dp.stage(RecordStage::OnePixel);
                 read_node(dp, job, record.cube.node, record.cube.level);
             }
             return true;
@@ -97,7 +98,7 @@ fn centre_sample<P: Probe, L: CageCoordinate>(
     c: &Constants,
     record: &Record<L>,
 ) -> Option<QuadNode> {
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     match &record.pose {
         Pose::Clip(clip, _) => {
             let w = clip.w.centre(dp);
@@ -118,7 +119,7 @@ fn farthest_sample<P: Probe, L: CageCoordinate>(
     place: ImagePlace,
     clip: &Clip<L>,
 ) -> Option<QuadNode> {
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     let edges = clip.w.edges(dp);
     let [x, y, z] = edges.map(|edge| usize::from(!dp.is_negative(edge)));
     let vertex = [&clip.x, &clip.y, &clip.w].map(|cage| cage.vertices(dp)[x << 2 | y << 1 | z]);
@@ -135,14 +136,14 @@ fn draw_solid<P: Probe, L: CageCoordinate>(
         unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
     };
     canvas.counts.solids_drawn += 1;
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     let (c, cube) = (&job.constants, &record.cube);
     let mut color = None;
     if let Some(eye) = &c.blend_eye {
         let node = cube.node;
         let (opacity, light) = (job.graph.opacity_of(node), job.graph.light_of(node));
         color = BlendColor::of_voxel(dp, eye, &c.eye_floor, cube, opacity, light);
-        dp.stage(Stage::Draw);
+        dp.stage(RecordStage::Draw);
         if color.is_none() {
             return;
         }
@@ -265,7 +266,7 @@ fn is_seen<P: Probe, L: CageCoordinate>(
     let Pose::Clip(clip, planes) = &record.pose else {
         unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
     };
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     let silhouette = Silhouette::new(dp, c, &record.cube, planes, clip.w_min);
     dp.next_step(0);
     canvas.sees(dp, record.place.quad, silhouette)

@@ -5,8 +5,9 @@
 
 use std::cell::Cell;
 
+use crate::machine::stages::RecordStage;
 use hwmodel::cycles::Organisation;
-use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+use hwmodel::{Datapath, Memory, Probe, Short};
 
 use super::blocks::{Block, Port};
 use super::quadrants::only;
@@ -49,7 +50,7 @@ impl<'f> FillStore<'f> {
         if !P::ENABLED {
             return;
         }
-        dp.stage(Stage::FillUpdate);
+        dp.stage(RecordStage::FillUpdate);
         let below_words = if self.is_joined { LEVELS_BELOW } else { 0 };
         for level in 0..=self.levels() - below_words {
             let (below, above) = (
@@ -85,7 +86,7 @@ impl<'f> FillStore<'f> {
 
     #[inline(always)]
     pub(super) fn is_full<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode) -> bool {
-        dp.stage(Stage::Filled);
+        dp.stage(RecordStage::Filled);
         if !self.rejects_full {
             return false;
         }
@@ -134,7 +135,7 @@ impl<'f> FillStore<'f> {
     /// Sets a sample's vector, and in each ancestor the bit of a quadrant that became full.
     #[inline(always)]
     pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
-        dp.stage(Stage::FillUpdate);
+        dp.stage(RecordStage::FillUpdate);
         let (mut quad, mut bits) = (sample, FULL);
         if self.is_in_word(sample) {
             match self.mark_in_word(dp, sample) {
@@ -176,7 +177,7 @@ impl<'f> FillStore<'f> {
         let (mut node, mut bits) = (sample.ancestor(sample.level - 1), 1 << sample.in_parent());
         // Four gates per quadrant, of which one changes.
         let before = self.peek(node);
-        dp.beside(Stage::FillUpdate, |dp| {
+        dp.beside(RecordStage::FillUpdate, |dp| {
             dp.or_bits(4, before, bits);
             dp.and_bits(4, before, FULL);
         });

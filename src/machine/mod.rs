@@ -43,6 +43,7 @@ mod record_loop;
 mod shifts;
 mod size;
 mod smallest_node;
+mod stages;
 mod state;
 mod to_screen;
 mod undrawn;
@@ -58,4 +59,5 @@ pub use instruments::{
     Cage, Coordinates, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
     Simulated, cages_along, narrowed, proven_widths,
 };
+pub use stages::{RecordStage, check_hardware};
 pub use state::MachineOptions;

@@ -16,8 +16,9 @@
 //!
 //! *Tiles*: the object is drawn once per tile of the picture, with everything outside full from the start.
 
+use crate::machine::stages::RecordStage;
 use hwmodel::cycles::StackHolds;
-use hwmodel::{Datapath, Memory, Probe, Stage, Word};
+use hwmodel::{Datapath, Memory, Probe, Word};
 
 use super::blocks::Port;
 use super::cage::CageCoordinate;
@@ -167,7 +168,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
         let (dp, counts) = (&mut self.dp, &mut self.canvas.counts);
         dp.resume(parent.record.cube.level);
-        dp.stage(Stage::Push);
+        dp.stage(RecordStage::Push);
         dp.write(Memory::Stack, address);
         counts.deepest_stack = counts.deepest_stack.max(address + 1);
         parent.expanded = None;
@@ -193,14 +194,14 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let (dp, fill) = (&mut self.dp, &self.canvas.fill);
         fill.begin_turn();
         dp.resume(entry.level);
-        dp.stage(Stage::Pop);
+        dp.stage(RecordStage::Pop);
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, entry);
         if fill.is_full(dp, from.place.quad.ancestor(entry.quad_level)) {
             self.canvas.counts.already_full += 1;
             return None;
         }
-        dp.stage(Stage::Pop);
+        dp.stage(RecordStage::Pop);
         let record = path::back(dp, &self.job.constants, entry, from);
         if P::TAPS {
             show_restored(dp, record);
@@ -224,7 +225,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             Some(expanded) => expanded,
             None => {
                 if std::mem::take(&mut parent.is_stored) {
-                    dp.stage(Stage::Pop);
+                    dp.stage(RecordStage::Pop);
                     dp.read(Memory::Stack, address);
                     Port::Pop.tap(dp, address, &parent.entry());
                     if canvas.fill.is_full(dp, parent.record.place.quad) {
@@ -249,8 +250,11 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             };
             let from = record.place;
             let child = Child { cube, from };
-            let mut grow =
-                |seed| dp.beside(Stage::VertexPool, |dp| L::grow(dp, seed, octant as usize));
+            let mut grow = |seed| {
+                dp.beside(RecordStage::VertexPool, |dp| {
+                    L::grow(dp, seed, octant as usize)
+                })
+            };
             let is_seen = match &record.pose {
                 Pose::Clip(_, planes) => {
                     let cage = expanded.seeds.each_ref().map(grow);
@@ -299,7 +303,7 @@ fn expand<P: Probe, L: CageCoordinate>(
     record: &Record<L>,
 ) -> Expanded<L> {
     let (centre, order) = centre_and_order(dp, job, &record.cube);
-    let seeds = dp.beside(Stage::VertexPool, |dp| match &record.pose {
+    let seeds = dp.beside(RecordStage::VertexPool, |dp| match &record.pose {
         Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
         Pose::Screen(screen) => {
             let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));

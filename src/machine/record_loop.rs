@@ -1,6 +1,7 @@
 //! The record loop (image-order paper, 3.1 to 3.6).
 
-use hwmodel::{Datapath, Memory, Probe, Stage};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Memory, Probe};
 
 use super::blocks::Port;
 use super::cage::CageCoordinate;
@@ -44,7 +45,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         canvas.fill.begin_turn();
         canvas.counts.records += 1;
         watch.see(Event::<L>::Turn(quad));
-        dp.stage(Stage::Pop);
+        dp.stage(RecordStage::Pop);
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, record);
 

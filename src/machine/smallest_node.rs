@@ -9,7 +9,8 @@
 //!     else: this is the node
 //! ```
 
-use hwmodel::{Datapath, Probe, Stage, Word};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Probe, Word};
 
 use super::blocks::{Block, node_wires};
 use super::cage::CageCoordinate;
@@ -29,7 +30,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
     clip: &mut Clip<L>,
     planes: &mut Planes,
 ) -> Option<ImagePlace> {
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     let mut quad = place.quad;
     let inside = place.inside || is_inside(dp, constants, quad, clip)?;
     loop {
@@ -66,7 +67,7 @@ pub(super) fn screen<P: Probe>(
     place: ImagePlace,
     spans: &Spans,
 ) -> Option<ImagePlace> {
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     let mut quad = place.quad;
     let inside = place.inside || is_screen_inside(dp, constants, quad, spans)?;
     loop {

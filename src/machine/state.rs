@@ -1,7 +1,8 @@
 //! The record loop's state. Each step takes the parts that it reads or writes.
 
+use crate::machine::stages::RecordStage;
 use hwmodel::cycles::Organisation;
-use hwmodel::{Datapath, Overflow, Probe, Stage};
+use hwmodel::{Datapath, Overflow, Probe};
 
 use super::canvas::Canvas;
 use super::constants::Constants;
@@ -68,7 +69,7 @@ impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
         watch: W,
     ) -> Self {
         let mut dp = Datapath::new(setup.format, options.overflow, probe);
-        dp.stage(Stage::Push);
+        dp.stage(RecordStage::Push);
         let mut organisation = options.organisation;
         if !setup.options.coverage.draws_outlines() {
             organisation = organisation.without_outlines();

@@ -1,6 +1,7 @@
 //! The change from clip to screen space (`SPEC.md`, R5): the only place where the machine divides.
 
-use hwmodel::{Datapath, Probe, Short, Stage, Word};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Probe, Short, Word};
 
 use super::blocks::{Block, LEVEL_BITS, PLACES_BITS};
 use super::cage::CageCoordinate;
@@ -24,7 +25,7 @@ pub(super) fn may_change<P: Probe, L: CageCoordinate>(
     let Some(least) = constants.screen_depth[level as usize] else {
         return false;
     };
-    dp.stage(Stage::ToScreen);
+    dp.stage(RecordStage::ToScreen);
     let deep = !dp.lt(clip.w_min, least);
     dp.tap(Block::ChangeDepth, &(clip.w_min, least), &deep);
     deep && (place.inside || within_guard(dp, constants, place, clip))

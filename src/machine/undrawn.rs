@@ -1,6 +1,7 @@
 //! The first undrawn sample of a box, for records across a bisector (`SPEC.md`, R6) and for `any`.
 
-use hwmodel::{Datapath, Probe, Stage};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Probe};
 
 use super::cage::CageCoordinate;
 use super::constants::Constants;
@@ -34,7 +35,7 @@ fn first_inlined<P: Probe, B: ImageBox>(
     mut quad: QuadNode,
     mut of: B,
 ) -> Result<QuadNode, u32> {
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     loop {
         let open = !fill.read(dp, quad) & FULL;
         if quad.level == constants.levels {

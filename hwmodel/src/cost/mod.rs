@@ -12,7 +12,7 @@ pub use leakage::Standing;
 pub use rows::{CostError, Goal, Quantity, Spread};
 pub use sums::{
     Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
-    operation_of,
+    operation_of, tallies,
 };
 pub use table::{Cost, CostTable, Fit};
 pub use technology::Technology;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{Cost, CostError, CostTable};
-use crate::count::{Accesses, Counter};
+use crate::count::{Accesses, Counter, OpCount};
 use crate::memory::Widths;
-use crate::{Memory, OpClass, Stage};
+use crate::{Memory, OpClass};
 
 /// Implementation of shifts by a constant or by a level's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -36,9 +36,6 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
         OpClass::DivideStep => "divide_step",
     }
 }
-
-/// Exclusive ors of the stage *order* with constants: one inversion of the octant, and wires.
-const ORDERED_OCTANTS: u64 = 8;
 
 /// A number of operations of one kind.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -103,15 +100,12 @@ impl Breakdown {
     }
 }
 
-fn tallies(counter: &Counter, shifts: ShiftUnits) -> Vec<Tally> {
+/// Operations added up by what they are priced as: an operation of the table, and how often.
+pub fn tallies(counter: &Counter, priced: impl Fn(&OpCount) -> (&'static str, u64)) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
-    let cells = counter.sum_by(|cell| (cell.stage, cell.class, cell.bits));
-    for ((stage, class, bits), times) in cells {
-        let (operation, times) = match (stage, class) {
-            (Stage::Order, OpClass::Logic) => ("invert", times.div_ceil(ORDERED_OCTANTS)),
-            _ => (operation_of(class, shifts), times),
-        };
-        *sums.entry((operation, bits)).or_default() += times;
+    for cell in counter.cells() {
+        let (operation, times) = priced(&cell);
+        *sums.entry((operation, cell.bits)).or_default() += times;
     }
     let tally = |((operation, width), times): ((&str, u32), u64)| Tally {
         operation: operation.to_owned(),
@@ -129,7 +123,7 @@ fn tallies(counter: &Counter, shifts: ShiftUnits) -> Vec<Tally> {
 /// use hwmodel::{OpClass, Probe, Stage, StageLevel};
 ///
 /// let mut counter = Counter::new();
-/// let place = StageLevel { stage: Stage::Centre, level: 0 };
+/// let place = StageLevel { stage: Stage::new(0, "blur"), level: 0 };
 /// counter.op(OpClass::Add, 32, place, 1000);
 /// counter.op(OpClass::Shift, 33, place, 1000); // wires
 /// let energy = energy_of(&counter, &CostTable::load_shipped()?, ShiftUnits::Wires)?;
@@ -141,7 +135,10 @@ pub fn energy_of(
     table: &CostTable,
     shifts: ShiftUnits,
 ) -> Result<Breakdown, CostError> {
-    energy_of_tallies(&tallies(counter, shifts), table)
+    let tallies = tallies(counter, |cell| {
+        (operation_of(cell.class, shifts), cell.times)
+    });
+    energy_of_tallies(&tallies, table)
 }
 
 /// Energy of operations of any kind, in picojoules.

@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::Format;
-use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
+use crate::probe::{Memory, OpClass, Operand, Probe, StageLevel};
+use crate::{Format, MAX_STAGES, Stage};
 
 /// Octree levels; deeper ones count as the last.
 pub const LEVELS: usize = 64;
 
 const CLASSES: usize = OpClass::ALL.len();
-const STAGES: usize = Stage::ALL.len();
+const STAGES: usize = MAX_STAGES;
 const MEMORIES: usize = Memory::ALL.len();
 
 /// Counts of one stage: operations by class, short operands by number of bits, or accesses by memory.
@@ -42,6 +42,8 @@ pub struct Counter {
     pub(super) settled: Vec<[CountRow; ROWS]>,
     pub(super) tables: BTreeMap<u32, Table>,
     pub(super) records: [u64; LEVELS],
+    /// With the names under which they were entered.
+    pub(super) stages: [Stage; STAGES],
 }
 
 impl Default for Counter {
@@ -57,6 +59,7 @@ impl Default for Counter {
             settled: vec![[CountRow::default(); ROWS]; LEVELS],
             tables: BTreeMap::new(),
             records: [0; LEVELS],
+            stages: std::array::from_fn(|number| Stage::new(number as u8, "unnamed")),
         }
     }
 }
@@ -112,8 +115,9 @@ impl Counter {
     /// Counts operations whose kind of operand is not known at compile time.
     #[inline(never)]
     fn count(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
+        self.stages[place.stage.number()] = place.stage;
         let counts = &mut self.table(bits)[clamped(place.level)];
-        counts[place.stage as usize][class as usize] += u64::from(times);
+        counts[place.stage.number()][class as usize] += u64::from(times);
     }
 }
 
@@ -134,6 +138,11 @@ impl Probe for Counter {
         }
     }
 
+    #[inline(always)]
+    fn stage(&mut self, stage: Stage) {
+        self.stages[stage.number()] = stage;
+    }
+
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         self.count(class, bits, place, times);
@@ -141,7 +150,7 @@ impl Probe for Counter {
 
     #[inline(always)]
     fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
-        let stage = place.stage as usize;
+        let stage = place.stage.number();
         let first = match operand {
             Operand::Word => SIZED[0],
             Operand::Carry => SIZED[1],
@@ -157,12 +166,12 @@ impl Probe for Counter {
 
     #[inline(always)]
     fn read(&mut self, memory: Memory, _address: u64, place: StageLevel) {
-        self.count_fresh(READS + place.stage as usize, memory as usize);
+        self.count_fresh(READS + place.stage.number(), memory as usize);
     }
 
     #[inline(always)]
     fn write(&mut self, memory: Memory, _address: u64, place: StageLevel) {
-        self.count_fresh(WRITES + place.stage as usize, memory as usize);
+        self.count_fresh(WRITES + place.stage.number(), memory as usize);
     }
 
     #[inline(always)]

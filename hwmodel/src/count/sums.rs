@@ -6,10 +6,11 @@ use std::ops::AddAssign;
 use serde::{Deserialize, Serialize};
 
 use super::counter::{CountRow, Counter, LEVELS, READS, SETS, SHORT, SIZED, WRITES};
-use crate::probe::{Memory, OpClass, Stage};
+use crate::Stage;
+use crate::probe::{Memory, OpClass};
 
 /// Number of operations of one kind at one place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[expect(missing_docs, reason = "names of the other fields say what they are")]
 pub struct OpCount {
     pub class: OpClass,
@@ -40,7 +41,7 @@ impl AddAssign for Accesses {
 }
 
 /// Accesses to one memory from one place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[expect(missing_docs, reason = "as in `OpCount`")]
 pub struct AccessCount {
     pub memory: Memory,
@@ -52,7 +53,8 @@ pub struct AccessCount {
 
 impl Counter {
     /// Operations of one class in one stage.
-    pub fn ops_at(&self, stage: Stage, class: OpClass) -> u64 {
+    pub fn ops_at(&self, stage: impl Into<Stage>, class: OpClass) -> u64 {
+        let stage = stage.into();
         self.sum(|cell| cell.stage == stage && cell.class == class)
     }
 
@@ -131,14 +133,14 @@ impl Counter {
         let table = self.tables.get(&bits);
         let sized = SIZED.into_iter().zip(self.widths);
         let sized: Vec<usize> = sized.filter(|row| row.1 == bits).map(|row| row.0).collect();
-        let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
+        let places = (0..LEVELS).flat_map(|level| self.stages.map(|stage| (level, stage)));
         let cells = places.flat_map(move |(level, stage)| {
-            let mut row = table.map_or([0; 8], |table| table[level][stage as usize]);
+            let mut row = table.map_or([0; 8], |table| table[level][stage.number()]);
             for first in &sized {
-                add(&mut row, &self.row(level, first + stage as usize));
+                add(&mut row, &self.row(level, first + stage.number()));
             }
             if bits < 8 {
-                let logic = self.row(level, SHORT + stage as usize)[bits as usize];
+                let logic = self.row(level, SHORT + stage.number())[bits as usize];
                 row[OpClass::Logic as usize] += logic;
             }
             OpClass::ALL.map(|class| OpCount {
@@ -154,10 +156,10 @@ impl Counter {
 
     /// All accesses, by level, then stage and memory.
     pub fn accesses(&self) -> impl Iterator<Item = AccessCount> + '_ {
-        let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
+        let places = (0..LEVELS).flat_map(|level| self.stages.map(|stage| (level, stage)));
         let cells = places.flat_map(move |(level, stage)| {
             let [reads, writes] =
-                [READS, WRITES].map(|first| self.row(level, first + stage as usize));
+                [READS, WRITES].map(|first| self.row(level, first + stage.number()));
             Memory::ALL.map(|memory| AccessCount {
                 memory,
                 stage,
@@ -183,12 +185,14 @@ impl Counter {
     /// Adds the counts of another counter to this one's.
     pub fn merge(&mut self, other: &Self) {
         for cell in other.cells() {
+            self.stages[cell.stage.number()] = cell.stage;
             let counts = &mut self.table(cell.bits)[cell.level as usize];
-            counts[cell.stage as usize][cell.class as usize] += cell.times;
+            counts[cell.stage.number()][cell.class as usize] += cell.times;
         }
         for cell in other.accesses() {
+            self.stages[cell.stage.number()] = cell.stage;
             let rows = &mut self.settled[cell.level as usize];
-            let (stage, memory) = (cell.stage as usize, cell.memory as usize);
+            let (stage, memory) = (cell.stage.number(), cell.memory as usize);
             rows[READS + stage][memory] += cell.accesses.reads;
             rows[WRITES + stage][memory] += cell.accesses.writes;
         }

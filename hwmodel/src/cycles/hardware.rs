@@ -38,9 +38,9 @@ pub struct Hardware {
     #[serde(default)]
     pub wires: Vec<OpClass>,
     pub units: BTreeMap<OpClass, Unit>,
-    /// Units of single stages where they differ.
+    /// Units of single stages where they differ, by [`Stage::key`].
     #[serde(default)]
-    pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
+    pub stages: BTreeMap<String, BTreeMap<OpClass, Unit>>,
     #[serde(default)]
     pub organisation: Organisation,
     pub stack: Stack,
@@ -242,14 +242,25 @@ impl Hardware {
     }
 
     /// The units of a class in a stage's block, if it is not wires.
-    pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
-        if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
+    pub fn unit(&self, stage: impl Into<Stage>, class: OpClass) -> Option<Unit> {
+        let units = self.stages.get(&stage.into().key());
+        if let Some(unit) = units.and_then(|units| units.get(&class)) {
             return Some(*unit);
         }
         if self.wires.contains(&class) {
             return None;
         }
         self.units.get(&class).copied()
+    }
+
+    /// Reports the first stage that a program does not have.
+    pub fn check_stages(&self, known: &[Stage]) -> Result<(), HardwareError> {
+        let known: Vec<String> = known.iter().map(|stage| stage.key()).collect();
+        let unknown = self.stages.keys().find(|key| !known.contains(key));
+        unknown.map_or(Ok(()), |key| {
+            let known = known.join(", ");
+            Err(HardwareError(format!("[stages.{key}] is none of {known}")))
+        })
     }
 
     /// Rule 13 of [the parent module](super).

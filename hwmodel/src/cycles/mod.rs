@@ -4,15 +4,18 @@
 //! out in cycles. So a record that runs early finds fewer samples drawn than serially, as on the hardware. A
 //! [`Recording`] can replace the workload in some cases.
 //!
+//! A design of another kind lists its own stages ([`stages!`](crate::stages)), and uses the memories that it has: a stack,
+//! two caches (`Node`, `Attribute`), banks of on-chip memory (`FillVector`) and an output (`Pixel`). A *record* is whatever
+//! the design works on. `examples/box_filter.rs` models one in 60 lines.
+//!
 //! # Rules
 //!
 //! All times are whole cycles. The same input gives the same output.
 //!
 //! 1. **Hardware.** A design has [`Hardware::lanes`]. Each lane has a stack, one block per stage, and [`Hardware::contexts`] with
 //!    one record each at a time. Caches, fill vectors and pixels are shared by all lanes.
-//! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in this order: pop, filled?,
-//!    to screen, one pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw, blend, fill update. Stages
-//!    without work are left out. Other records see the effects of a turn from its first cycle.
+//! 2. **Turn.** All work of a record in one stage is one *visit*. Visits follow each other in the order of the stages'
+//!    numbers. Stages without work are left out. Other records see the effects of a turn from its first cycle.
 //! 3. **Block.** A visit begins in cycle *s*, when earlier visits have entered the block and it is free. An operation of
 //!    *b* bits is `ceil(b / width)` passes. Issuing a class of operation takes `ceil(passes / count) * interval` cycles;
 //!    the largest of these, at least 1, is the *occupancy*. The *latency* is the largest of the used classes. Results
@@ -23,8 +26,8 @@
 //!    free ports and without misses is *stall*, whose cause is that of the access that ended last (of equal ones the
 //!    first).
 //! 5. **Stack.** Each has `ports` accesses per cycle. A record on another lane's stack takes [`Hardware::steal_cycles`]
-//!    longer in stage *pop*. A record for which a stack has no entry is an error or is *spilled*. It is written to outer
-//!    memory in the background, and read back when it is taken, in `spill_cycles` more of stage *pop*. Both transfers
+//!    longer in stage 0. A record for which a stack has no entry is an error or is *spilled*. It is written to outer
+//!    memory in the background, and read back when it is taken, in `spill_cycles` more of stage 0. Both transfers
 //!    take the port to outer memory ([`OuterMemory::cycles`]); the second one and its wait add to the `spill_cycles`.
 //! 6. **Cache.** Set-associative, replaces the least recently used line. A hit is done after `hit_latency`. A miss waits
 //!    for one of the `misses` slots and for the port to outer memory, which its line then takes; both hold the cache's

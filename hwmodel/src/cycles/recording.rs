@@ -41,7 +41,8 @@ impl TurnProbe for (TurnLog, Tape) {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Tally {
-    stage: Stage,
+    /// Its number.
+    stage: u8,
     class: OpClass,
     bits: u8,
     times: u32,
@@ -51,7 +52,8 @@ struct Tally {
 struct RecordedAccess {
     address: u32,
     memory: Memory,
-    stage: Stage,
+    /// Its number.
+    stage: u8,
     write: bool,
 }
 
@@ -79,6 +81,8 @@ pub struct Recording {
     accesses: Vec<RecordedAccess>,
     /// Their items are numbers of turns.
     children: Vec<Child>,
+    /// By number.
+    stages: [Stage; STAGES],
 }
 
 impl Recording {
@@ -151,7 +155,7 @@ impl Tape {
         let recording = &mut self.recording;
         let number = item.map_or(0, |item| self.numbers[item as usize] as usize);
         for met in &mut self.met {
-            let by_width = &mut self.times[met.stage as usize][met.class as usize];
+            let by_width = &mut self.times[usize::from(met.stage)][met.class as usize];
             met.times = std::mem::take(&mut by_width[usize::from(met.bits)]);
         }
         self.met.sort_unstable();
@@ -210,10 +214,11 @@ impl Tape {
         let Ok(address) = u32::try_from(address) else {
             return self.give_up();
         };
+        self.recording.stages[stage.number()] = stage;
         self.recording.accesses.push(RecordedAccess {
             address,
             memory,
-            stage,
+            stage: stage.number() as u8,
             write,
         });
     }
@@ -223,10 +228,11 @@ impl Probe for Tape {
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let bits = (bits as usize).min(WIDTHS - 1);
-        let sum = &mut self.times[place.stage as usize][class as usize][bits];
+        let sum = &mut self.times[place.stage.number()][class as usize][bits];
         if *sum == 0 {
+            self.recording.stages[place.stage.number()] = place.stage;
             self.met.push(Tally {
-                stage: place.stage,
+                stage: place.stage.number() as u8,
                 class,
                 bits: bits as u8,
                 times: 0,
@@ -258,8 +264,8 @@ impl<E> Replay<'_, E> {
     fn play(&mut self, turn: usize, children: &mut Vec<Child>) {
         let recording = self.recording;
         let turn = &recording.turns[turn];
-        let place = |stage| StageLevel {
-            stage,
+        let place = |stage: u8| StageLevel {
+            stage: recording.stages[usize::from(stage)],
             level: turn.level,
         };
         self.log.record(0, turn.level);

@@ -217,7 +217,8 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.totals.work += of.plan.alone;
         self.totals.serial += of.plan.worst + of.steal + of.spill;
         for visit in &of.plan.visits {
-            let stage = &mut self.totals.stages[visit.stage as usize];
+            let stage = &mut self.totals.stages[visit.stage.number()];
+            stage.stage = visit.stage;
             stage.visits += 1;
             stage.operations += visit.operations;
             stage.passes += visit.passes;
@@ -243,7 +244,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
     #[inline]
     fn arrive(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
-        let stage = of.plan.visits[of.visit].stage as usize;
+        let stage = of.plan.visits[of.visit].stage.number();
         let block = &mut self.blocks[of.lane as usize][stage];
         if of.granted {
             of.granted = false;
@@ -270,7 +271,7 @@ impl<'a, W: Workload> Simulation<'a, W> {
     fn grant(&mut self, context: u32) {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
-        let stage = of.plan.visits[of.visit].stage as usize;
+        let stage = of.plan.visits[of.visit].stage.number();
         let free_at = self.blocks[of.lane as usize][stage].free_at;
         self.wheel.set(free_at, context);
     }
@@ -311,20 +312,20 @@ impl<'a, W: Workload> Simulation<'a, W> {
     ) {
         let of = &mut self.contexts[context as usize];
         let visit = &of.plan.visits[of.visit];
-        let report = &mut self.totals.stages[visit.stage as usize];
+        let report = &mut self.totals.stages[visit.stage.number()];
         let Step { away, wanted, .. } = of.step;
         report.held += frees - (begun + visit.occupied) - away;
         let busy = begun - of.arrived + wanted;
         report.stalls.add(Cause::BlockBusy, busy);
         report.stalls.add(cause, stalled - wanted);
-        if visit.stage == Stage::Pop {
+        if visit.stage == Stage::default() {
             report.stalls.add(Cause::Steal, of.steal);
             report.stalls.add(Cause::StackSpill, of.spill);
             ends += of.steal + of.spill;
             // The rest belongs to its own lane's stack.
             of.from = of.lane;
         }
-        self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
+        self.blocks[of.lane as usize][visit.stage.number()].free_at = frees;
         if self.watched {
             self.observer.visit(&VisitSpan {
                 record: of.record,

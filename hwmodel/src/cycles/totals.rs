@@ -8,7 +8,6 @@ use super::report::{
 };
 use super::tasks::Tasks;
 use super::turn::{CLASSES, STAGES};
-use crate::Stage;
 
 #[derive(Debug)]
 pub(super) struct Totals {
@@ -22,12 +21,8 @@ pub(super) struct Totals {
 
 impl Totals {
     pub(super) fn new() -> Self {
-        let stage = |stage| StageReport {
-            stage,
-            ..StageReport::default()
-        };
         Self {
-            stages: Stage::ALL.map(stage).into(),
+            stages: vec![StageReport::default(); STAGES],
             records: 0,
             work: 0,
             serial: 0,
@@ -46,8 +41,9 @@ impl Totals {
     ) -> CycleReport {
         let per_lane = |sum: u64| sum.div_ceil(u64::from(hardware.lanes));
         let mut bounds = vec![(SPAN.to_owned(), tasks.span)];
+        self.stages.retain(|stage| stage.visits > 0);
         for stage in &mut self.stages {
-            stage.most_passes = most_passes[stage.stage as usize];
+            stage.most_passes = most_passes[stage.stage.number()];
             let used = stage.busy + stage.held;
             let all = (cycles * u64::from(hardware.lanes)).max(1);
             stage.utilisation = used as f64 / all as f64;

@@ -2,9 +2,9 @@
 
 use super::hardware::{Hardware, Independence};
 use super::memories::{Access, Latencies};
-use crate::{Memory, OpClass, Probe, Stage, StageLevel};
+use crate::{MAX_STAGES, Memory, OpClass, Probe, Stage, StageLevel};
 
-pub(super) const STAGES: usize = Stage::ALL.len();
+pub(super) const STAGES: usize = MAX_STAGES;
 pub(super) const CLASSES: usize = OpClass::ALL.len();
 /// Widths that are counted separately; wider ones count as this less one.
 pub(super) const WIDTHS: usize = 128;
@@ -43,6 +43,17 @@ pub struct Child {
     pub place: u8,
     /// Within its parent's.
     pub image_node: ImageNode,
+}
+
+impl Child {
+    /// The only child of its record.
+    pub fn only(item: u32) -> Self {
+        Self {
+            item,
+            place: 0,
+            image_node: ImageNode::default(),
+        }
+    }
 }
 
 /// A node of a quadtree: level (0 = root), column and row among `2^level`.
@@ -88,27 +99,6 @@ impl Independence {
 /// Bit of a stage with memory accesses; the bits below are classes.
 const ACCESSED: u16 = 1 << CLASSES;
 
-/// The stages in the order in which a record visits them.
-const ROUND: [Stage; STAGES] = [
-    Stage::Pop,
-    Stage::Filled,
-    Stage::ToScreen,
-    Stage::OnePixel,
-    Stage::Centre,
-    Stage::Order,
-    Stage::VertexPool,
-    Stage::ChildBox,
-    Stage::QuadtreeFit,
-    Stage::Push,
-    Stage::Draw,
-    Stage::Blend,
-    Stage::FillUpdate,
-    Stage::RayNext,
-    Stage::RaySetup,
-    Stage::RayStep,
-    Stage::RayHit,
-];
-
 #[derive(Debug, Clone, Copy, Default)]
 struct Done {
     operations: u64,
@@ -121,6 +111,9 @@ pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
     accesses: [Vec<Access>; STAGES],
     met: [u16; STAGES],
+    hardware: Hardware,
+    /// The stages that had work so far.
+    stages: [Option<Stage>; STAGES],
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
@@ -142,43 +135,51 @@ struct Issue {
 impl TurnLog {
     /// A log for turns on sound hardware.
     pub fn new(hardware: &Hardware) -> Self {
-        let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
-        let mut units = [[Issue::default(); CLASSES]; STAGES];
-        for stage in Stage::ALL {
-            for class in OpClass::ALL {
-                let Some(unit) = hardware.unit(stage, class) else {
-                    continue;
-                };
-                units[stage as usize][class as usize] = Issue {
-                    count: u64::from(unit.count),
-                    latency: u64::from(unit.latency),
-                    interval: u64::from(unit.interval),
-                };
-                let by_width = &mut passes_of[stage as usize][class as usize];
-                for (bits, passes) in by_width.iter_mut().enumerate() {
-                    *passes = (bits as u32).div_ceil(unit.width.max(1)).max(1) as u8;
-                }
-            }
-        }
         Self {
             done: Default::default(),
             accesses: Default::default(),
             met: [0; STAGES],
-            passes_of,
-            units,
+            hardware: hardware.clone(),
+            stages: [None; STAGES],
+            passes_of: Box::new([[[0; WIDTHS]; CLASSES]; STAGES]),
+            units: [[Issue::default(); CLASSES]; STAGES],
             latencies: Latencies::new(hardware),
             child_level: 0,
             most_passes: [[0; CLASSES]; STAGES],
             sequential: hardware.sequential,
             over: TurnVisits::default(),
-            stage: Stage::Pop,
+            stage: Stage::default(),
             beside: false,
+        }
+    }
+
+    /// Looks up the units of a stage when it first has work.
+    #[cold]
+    #[inline(never)]
+    fn learn(&mut self, stage: Stage) {
+        self.stages[stage.number()] = Some(stage);
+        for class in OpClass::ALL {
+            let Some(unit) = self.hardware.unit(stage, class) else {
+                continue;
+            };
+            self.units[stage.number()][class as usize] = Issue {
+                count: u64::from(unit.count),
+                latency: u64::from(unit.latency),
+                interval: u64::from(unit.interval),
+            };
+            let by_width = &mut self.passes_of[stage.number()][class as usize];
+            for (bits, passes) in by_width.iter_mut().enumerate() {
+                *passes = (bits as u32).div_ceil(unit.width.max(1)).max(1) as u8;
+            }
         }
     }
 
     /// On sequential hardware this ends the visit of another stage.
     #[inline(always)]
     fn enter(&mut self, stage: Stage) {
+        if self.stages[stage.number()].is_none() {
+            self.learn(stage);
+        }
         if self.sequential && self.stage != stage {
             self.end_step(stage);
         }
@@ -186,7 +187,9 @@ impl TurnLog {
 
     fn end_step(&mut self, next: Stage) {
         let last = std::mem::replace(&mut self.stage, next);
-        if self.met[last as usize] != 0 {
+        if self.met[last.number()] != 0
+            && let Some(last) = self.stages[last.number()]
+        {
             let mut over = std::mem::take(&mut self.over);
             self.take_stage(last, &mut over);
             self.over = over;
@@ -196,8 +199,8 @@ impl TurnLog {
     #[inline]
     fn access(&mut self, memory: Memory, address: u64, stage: Stage, write: bool) {
         self.enter(stage);
-        self.met[stage as usize] |= ACCESSED;
-        self.accesses[stage as usize].push(Access {
+        self.met[stage.number()] |= ACCESSED;
+        self.accesses[stage.number()].push(Access {
             address,
             memory,
             write,
@@ -216,17 +219,18 @@ impl TurnLog {
         plan.worst = 0;
         let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
-        let divides = 1 << OpClass::DivideStep as u16;
-        plan.changed_to_screen = changed || self.met[Stage::ToScreen as usize] & divides != 0;
-        for stage in ROUND {
-            if self.met[stage as usize] != 0 {
+        plan.changed_to_screen = changed;
+        for stage in 0..STAGES {
+            if self.met[stage] != 0
+                && let Some(stage) = self.stages[stage]
+            {
                 self.take_stage(stage, plan);
             }
         }
     }
 
     fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
-        self.end_step(Stage::Pop);
+        self.end_step(Stage::default());
         std::mem::swap(&mut self.over, plan);
         self.over.changed_to_screen = false;
         std::mem::take(&mut plan.changed_to_screen)
@@ -236,7 +240,7 @@ impl TurnLog {
     fn take_stage(&mut self, stage: Stage, plan: &mut TurnVisits) {
         let (mut occupied, mut latency) = (1, 0);
         let mut sum = Done::default();
-        let of = stage as usize;
+        let of = stage.number();
         let mut classes = std::mem::take(&mut self.met[of]) & !ACCESSED;
         plan.changed_to_screen |= classes & 1 << OpClass::DivideStep as u16 != 0;
         while classes != 0 {
@@ -262,7 +266,7 @@ impl TurnLog {
             sum.passes += done.passes;
         }
         let first = plan.accesses.len();
-        let accesses = &mut self.accesses[stage as usize];
+        let accesses = &mut self.accesses[stage.number()];
         let mut alone = occupied + latency;
         if self.sequential {
             let reads = accesses.iter().filter(|access| !access.write).count() as u64;
@@ -306,7 +310,7 @@ impl Probe for TurnLog {
             false => place.stage,
         };
         self.enter(at);
-        let (stage, class) = (at as usize, class as usize);
+        let (stage, class) = (at.number(), class as usize);
         let width = (bits as usize).min(WIDTHS - 1);
         let passes = self.passes_of[stage][class][width];
         let done = &mut self.done[stage][class];

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::count::Accesses;
-use crate::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
+use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 named! {
     /// The kinds of record that a stack holds.
@@ -69,7 +69,7 @@ impl RecordBits {
 ///
 /// ```
 /// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};
-/// use hwmodel::{Datapath, Format, Memory, Overflow, Stage, Word};
+/// use hwmodel::{Datapath, Format, Memory, Overflow, Word};
 ///
 /// let bits = RecordBits { clip: 100, screen: 60, finest: 40, finest_level: Some(2) };
 /// let mut probe = RecordProbe::new(bits);
@@ -77,7 +77,6 @@ impl RecordBits {
 /// dp.write(Memory::Stack, 0); // the object
 /// dp.begin_record(0, 0);
 /// dp.read(Memory::Stack, 0);
-/// dp.stage(Stage::ToScreen);
 /// let _ = dp.divide_step(Word::from_host(1), Word::from_host(3), false); // it changes
 /// dp.write(Memory::Stack, 0); // its child, in screen space
 /// dp.begin_record(1, 1);
@@ -139,19 +138,15 @@ impl RecordProbe {
 /// Deeper addresses are taken as this one.
 const MAX_DEPTH: usize = 1 << 20;
 
-fn changes_to_screen(class: OpClass, stage: Stage) -> bool {
-    class == OpClass::DivideStep && stage == Stage::ToScreen
-}
-
 impl Probe for RecordProbe {
     #[inline]
-    fn op(&mut self, class: OpClass, _: u32, place: StageLevel, _: u32) {
-        self.in_screen_space |= changes_to_screen(class, place.stage);
+    fn op(&mut self, class: OpClass, _: u32, _: StageLevel, _: u32) {
+        self.in_screen_space |= class == OpClass::DivideStep;
     }
 
     #[inline(always)]
-    fn op_on(&mut self, _: Operand, class: OpClass, _: u32, place: StageLevel) {
-        self.in_screen_space |= changes_to_screen(class, place.stage);
+    fn op_on(&mut self, _: Operand, class: OpClass, _: u32, _: StageLevel) {
+        self.in_screen_space |= class == OpClass::DivideStep;
     }
 
     fn record(&mut self, _: u64, level: u32) {

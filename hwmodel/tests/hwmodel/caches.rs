@@ -1,8 +1,8 @@
 //! Caches, miss curves and traffic against plain models.
 
-use crate::common::at;
+use crate::common::*;
 use hwmodel::memory::{Cache, MemoryProbe, MissCurve, Widths};
-use hwmodel::{Memory, Probe, Stage};
+use hwmodel::{Memory, Probe};
 use proptest::prelude::*;
 
 /// Compares a curve with a list of lines, the one used last at the front: a cache of `n` lines has the first `n`.
@@ -107,7 +107,7 @@ fn traffic_by_kind() {
         fill_vector_bits: 4,
         pixel_bits: 24,
     };
-    let place = at(Stage::Pop, 0);
+    let place = at(RecordStage::Pop, 0);
     let mut probe = MemoryProbe::new(widths)
         .with_curve(Memory::Node, 32)
         .with_curve(Memory::Node, 64)

@@ -6,7 +6,26 @@ use std::rc::Rc;
 use hwmodel::cycles::{Child, Hardware, TurnLog, Workload};
 use hwmodel::{Format, Stage, StageLevel};
 
-pub(crate) const fn at(stage: Stage, level: u32) -> StageLevel {
+hwmodel::stages! {
+    pub(crate) enum RecordStage {
+        Pop = "pop",
+        Filled = "filled?",
+        ToScreen = "to screen",
+        OnePixel = "one pixel?",
+        Centre = "centre",
+        Order = "order",
+        VertexPool = "vertex pool",
+        ChildBox = "child box",
+        QuadtreeFit = "quadtree fit",
+        Push = "push",
+        Draw = "draw",
+        Blend = "blend",
+        FillUpdate = "fill update",
+    }
+}
+
+pub(crate) fn at(stage: impl Into<Stage>, level: u32) -> StageLevel {
+    let stage = stage.into();
     StageLevel { stage, level }
 }
 

@@ -63,7 +63,7 @@ fn play<P: Probe>(acts: &Acts, probe: &mut P) {
     for &(kind, number) in acts {
         match kind {
             0 => dp.begin_record(0, LEVELS[number % LEVELS.len()]),
-            1 => dp.stage(Stage::ALL[number % Stage::ALL.len()]),
+            1 => dp.stage(RecordStage::ALL[number % RecordStage::ALL.len()]),
             2 => dp.read(Memory::ALL[number % Memory::ALL.len()], 1),
             3 => dp.write(Memory::ALL[number % Memory::ALL.len()], 1),
             4 => _ = dp.add(a, b),
@@ -111,17 +111,17 @@ proptest! {
 fn sums_by_any_key() {
     let mut counter = Counter::new();
     assert_eq!(counter.widest(), 0);
-    counter.op(OpClass::Add, 24, at(Stage::Centre, 2), 3);
-    counter.op(OpClass::Add, 200, at(Stage::Draw, 2), 4);
-    counter.op(OpClass::Shift, 24, at(Stage::Draw, 64), 5);
-    counter.op(OpClass::Shift, 24, at(Stage::Draw, 9), 0);
+    counter.op(OpClass::Add, 24, at(RecordStage::Centre, 2), 3);
+    counter.op(OpClass::Add, 200, at(RecordStage::Draw, 2), 4);
+    counter.op(OpClass::Shift, 24, at(RecordStage::Draw, 64), 5);
+    counter.op(OpClass::Shift, 24, at(RecordStage::Draw, 9), 0);
     assert_eq!(counter.sum_by(|cell| cell.level), [(2, 7), (63, 5)].into());
     assert_eq!((counter.ops_of(OpClass::Add), counter.widest()), (7, 200));
-    assert_eq!(counter.ops_at(Stage::Draw, OpClass::Shift), 5);
+    assert_eq!(counter.ops_at(RecordStage::Draw, OpClass::Shift), 5);
     counter.record(0, 1);
-    counter.read(Memory::Node, 7, at(Stage::OnePixel, 1));
+    counter.read(Memory::Node, 7, at(RecordStage::OnePixel, 1));
     counter.record(1, 2);
-    counter.write(Memory::Node, 7, at(Stage::OnePixel, 2));
+    counter.write(Memory::Node, 7, at(RecordStage::OnePixel, 2));
     assert_eq!(
         (counter.reads(Memory::Node), counter.writes(Memory::Node)),
         (1, 1)

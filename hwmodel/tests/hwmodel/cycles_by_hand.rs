@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use crate::common::*;
 use hwmodel::cycles::{Child, Hardware, ImageNode, Recorder, START, VisitSpan, simulate};
-use hwmodel::{Memory, OpClass, Probe, Stage};
+use hwmodel::{Memory, OpClass, Probe};
 use serde_json::Value;
 use toml::Table;
 
@@ -42,20 +42,20 @@ fn act_of(word: &str) -> Act {
     let write = |memory, stage| act(move |log| log.write(memory, address.into(), at(stage, 0)));
     let add = |stage, bits, times| act(move |log| log.op(OpClass::Add, bits, at(stage, 0), times));
     match kind {
-        "pop" => read(Memory::Stack, Stage::Pop),
-        "push" => write(Memory::Stack, Stage::Push),
-        "node" => read(Memory::Node, Stage::OnePixel),
-        "blend" => read(Memory::Node, Stage::Blend),
-        "attribute" => read(Memory::Attribute, Stage::Draw),
-        "filled" => read(Memory::FillVector, Stage::Filled),
-        "fill" => write(Memory::FillVector, Stage::FillUpdate),
-        "pixel" => write(Memory::Pixel, Stage::Draw),
-        "step" => act(move |log| log.next_step(address, at(Stage::Centre, 0))),
-        "order" => add(Stage::Order, 16, 1),
-        "add" => add(Stage::Centre, numbers[0], numbers[1]),
+        "pop" => read(Memory::Stack, RecordStage::Pop),
+        "push" => write(Memory::Stack, RecordStage::Push),
+        "node" => read(Memory::Node, RecordStage::OnePixel),
+        "blend" => read(Memory::Node, RecordStage::Blend),
+        "attribute" => read(Memory::Attribute, RecordStage::Draw),
+        "filled" => read(Memory::FillVector, RecordStage::Filled),
+        "fill" => write(Memory::FillVector, RecordStage::FillUpdate),
+        "pixel" => write(Memory::Pixel, RecordStage::Draw),
+        "step" => act(move |log| log.next_step(address, at(RecordStage::Centre, 0))),
+        "order" => add(RecordStage::Order, 16, 1),
+        "add" => add(RecordStage::Centre, numbers[0], numbers[1]),
         "beside" => act(|log| {
             log.beside(true);
-            log.op(OpClass::Add, 16, at(Stage::Order, 0), 1);
+            log.op(OpClass::Add, 16, at(RecordStage::Order, 0), 1);
             log.beside(false);
         }),
         _ => panic!("{word}"),

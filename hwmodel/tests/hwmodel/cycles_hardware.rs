@@ -1,4 +1,5 @@
 //! Hardware descriptions: the presets, and errors in others.
+use crate::common::*;
 use hwmodel::cycles::{Hardware, PRESETS};
 use hwmodel::{OpClass, Stage};
 
@@ -15,8 +16,11 @@ fn presets_can_be_read_and_written_and_every_setting_is_explained() {
     }
     let paper = Hardware::preset("paper").unwrap();
     let adders = |stage| paper.unit(stage, OpClass::Add).unwrap().count;
-    assert_eq!((adders(Stage::VertexPool), adders(Stage::Pop)), (57, 8));
-    assert_eq!(paper.unit(Stage::VertexPool, OpClass::Shift), None);
+    assert_eq!(
+        (adders(RecordStage::VertexPool), adders(RecordStage::Pop)),
+        (57, 8)
+    );
+    assert_eq!(paper.unit(RecordStage::VertexPool, OpClass::Shift), None);
     assert!(Hardware::preset("huge").is_err());
 }
 
@@ -35,7 +39,7 @@ wires = ["shift"] -> wires = [] -> `shift` has neither a [units] nor a place amo
 add = { count = 1 -> add = { count = 0 -> units.add.count is 0
 interval = 1, width -> interval = 0, width -> units.add.interval is 0; it must be 1 to 16777216
 [stack] -> [stages.draw]; add = { count = 1, latency = 0, interval = 1, width = 0 }; [stack] -> stages.draw.add.width is 0
-[stack] -> [stages.draws]; add = { count = 1, latency = 0, interval = 1, width = 8 }; [stack] -> draws
+[stack] -> [stages.draws]; add = { count = 1, latency = 0, interval = 1, width = 8 }; [stack] -> [stages.draws] is none of pop, filled, to_screen, one_pixel
 ports = 1  -> ports = 0  -> stack.ports is 0; it must be 1 to
 bytes = 4096 -> bytes = 4100 -> node_cache.bytes is 4100; it must be a multiple of ways * line_bytes, 32
 ways = 1 -> ways = 0 -> node_cache.ways is 0; it must be 1
@@ -58,7 +62,9 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         let [from, to, expected] = [0, 1, 2].map(|column| row.split(" -> ").nth(column).unwrap());
         assert!(tiny.contains(from), "{from}");
         let wrong = tiny.replacen(from, &to.replace("; ", "\n"), 1);
-        let text = Hardware::from_toml(&wrong).unwrap_err().to_string();
+        let known = RecordStage::ALL.map(Stage::from);
+        let found = Hardware::from_toml(&wrong).and_then(|of| of.check_stages(&known));
+        let text = found.unwrap_err().to_string();
         assert!(text.contains(expected), "{to}: {text}");
         assert!(text.starts_with("hardware description: "), "{text}");
     }

@@ -44,7 +44,10 @@ impl Probe for Log {
     }
 }
 
-const PLACE: StageLevel = at(Stage::VertexPool, 5);
+const PLACE: StageLevel = StageLevel {
+    stage: Stage::new(6, "vertex pool"),
+    level: 5,
+};
 
 fn datapath<P: Probe>(word: u32, policy: Overflow, probe: P) -> Datapath<P> {
     let mut dp = Datapath::new(format(word), policy, probe);
@@ -195,14 +198,14 @@ fn accesses_have_the_place_of_their_time() {
     let mut dp = Datapath::new(format(32), Overflow::Trap, Counter::new());
     dp.read(Memory::Stack, 9);
     dp.begin_record(12, 7);
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     dp.write(Memory::Pixel, 1 << 40);
     let counter = dp.into_probe();
     let found = counter
         .accesses()
         .map(|of| (of.memory, of.stage, of.level, of.accesses.reads));
-    let first = (Memory::Stack, Stage::Pop, 0, 1);
-    assert!(found.eq([first, (Memory::Pixel, Stage::QuadtreeFit, 7, 0)]));
+    let [start, fit] = [RecordStage::Pop, RecordStage::QuadtreeFit].map(Stage::from);
+    assert!(found.eq([(Memory::Stack, start, 0, 1), (Memory::Pixel, fit, 7, 0)]));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Rare inputs for the machine's blocks: ends of their ranges, ties, and random numbers. Where a block adds, they leave
 //! some bits, so that no result leaves its word.
 
-use hwmodel::{Datapath, Narrow, Probe, Stage, WideWord, Word};
+use crate::machine::stages::RecordStage;
+use hwmodel::{Datapath, Narrow, Probe, WideWord, Word};
 
 use crate::frame::{Blend, Frame, QuadNode};
 use crate::graph::{GraphView, Opacity};
@@ -121,9 +122,9 @@ fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
 fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let dp = &mut state.dp;
     let cage: L = inputs.cage(dp);
-    dp.stage(Stage::VertexPool);
+    dp.stage(RecordStage::VertexPool);
     pool(dp, &cage);
-    dp.stage(Stage::ChildBox);
+    dp.stage(RecordStage::ChildBox);
     child_span(dp, &cage);
 }
 
@@ -162,7 +163,7 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
         quad: inputs.quad(c.levels),
         inside: false,
     };
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     clip.quadrants(dp, c, place.quad);
     smallest_node::near_node(dp, &clip.x, &clip.w);
     smallest_node::near_node(dp, &clip.y, &clip.w);
@@ -191,7 +192,7 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
         place: ImagePlace::ROOT,
         pose: Pose::Clip(clip, Planes::default()),
     };
-    dp.stage(Stage::OnePixel);
+    dp.stage(RecordStage::OnePixel);
     apply_level_of_detail(dp, c, &mut record);
     c.lod_depth[level as usize] = kept;
 
@@ -211,11 +212,11 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     if c.depth > 0 {
         let parent_level = inputs.level(c.depth - 1);
         let octant = inputs.level(7) as u8;
-        dp.stage(Stage::VertexPool);
+        dp.stage(RecordStage::VertexPool);
         planes::of_child(dp, c, &planes, parent_level, octant);
     }
     let quadrant = inputs.level(3) as u8;
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     let mut moved = planes;
     planes::move_to_quadrant(dp, c, &mut moved, quadrant);
     let level = inputs.level(c.depth);
@@ -241,7 +242,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
         planes.edge = [planes.edge[0]; 3];
     }
     let w_min = inputs.word(0);
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     let silhouette = Silhouette::new(dp, c, &cube, &planes, w_min);
     for below in [0, 1] {
         let mut silhouette = silhouette.clone();
@@ -271,16 +272,16 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         }
     };
     let spans = [place.quad.x, place.quad.y].map(|column| (beside(column), beside(column)));
-    dp.stage(Stage::QuadtreeFit);
+    dp.stage(RecordStage::QuadtreeFit);
     smallest_node::screen(dp, c, fill, place, &spans);
     let screen = Screen { x, y, spans };
     let limit = match inputs.flag() {
         true => dp.sub(spans[0].1, spans[0].0),
         false => inputs.word(SPARE),
     };
-    dp.stage(Stage::OnePixel);
+    dp.stage(RecordStage::OnePixel);
     size::screen_at_most(dp, &screen, limit);
-    dp.stage(Stage::Draw);
+    dp.stage(RecordStage::Draw);
     size::screen_sample(dp, c, place, &screen);
 
     let mut clip: Clip<L> = inputs.clip(dp);

@@ -15,6 +15,7 @@ use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
 use crate::machine::record_loop::check_trap;
+use crate::machine::stages::check_hardware;
 use crate::machine::state::MachineOptions;
 use crate::machine::state::State;
 use crate::machine::watch::{Event, Watch};
@@ -43,7 +44,7 @@ impl Machine {
         hardware: &Hardware,
         observer: &mut dyn Observer,
     ) -> Result<Simulated, SimulateError> {
-        hardware.check().map_err(SimulateError::Hardware)?;
+        check_hardware(hardware).map_err(SimulateError::Hardware)?;
         let log = TurnLog::new(hardware);
         let (simulated, _) = with_cage!(setup, L => {
             self.simulate_as::<_, L>(graph, setup, frame, hardware, observer, log)
@@ -64,7 +65,7 @@ impl Machine {
         if hardware.organisation.stack == StackHolds::Children {
             return Ok(None);
         }
-        hardware.check().map_err(SimulateError::Hardware)?;
+        check_hardware(hardware).map_err(SimulateError::Hardware)?;
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {

@@ -12,6 +12,7 @@ use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
 use shiftvox::bounded;
+use shiftvox::machine::check_hardware;
 use shiftvox::project::SetupOptions;
 use shiftvox_lab::model::accelergy::EnergyTable;
 use shiftvox_lab::model::cost::Prices;
@@ -126,7 +127,9 @@ fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
 
 pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
     let text = text_named(name, folder)?;
-    let hardware = Hardware::from_toml(&text).map_err(|error| CliError::input(error).at(name))?;
+    let hardware = Hardware::from_toml(&text)
+        .and_then(|hardware| check_hardware(&hardware).map(|()| hardware))
+        .map_err(|error| CliError::input(error).at(name))?;
     if hardware.node_buffer.is_some() {
         let why = "node_buffer: only a ray caster has one (--rival)";
         return Err(CliError::input(why).at(name));

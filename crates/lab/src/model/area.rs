@@ -21,6 +21,7 @@ use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
 use super::record::context_bits;
 use crate::rival::{Cast, Rival};
+use shiftvox::machine::RecordStage;
 use shiftvox::project::FrameSetup;
 
 /// Area of a design, NAND2 equivalents, line by line.
@@ -154,7 +155,7 @@ fn units(
         let most = report_of(stage).map_or(u64::MAX, |of| of.most_passes[class as usize]);
         let (operation, count) = match (stage, class) {
             // Of eight constants: one inversion of the octant.
-            (Stage::Order, OpClass::Logic) => ("invert", lanes),
+            (stage, OpClass::Logic) if stage == RecordStage::Order => ("invert", lanes),
             _ => (
                 operation_of(class, ShiftUnits::Variable),
                 lanes * u64::from(unit.count).min(most.max(1)),

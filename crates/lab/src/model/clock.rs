@@ -126,6 +126,7 @@ fn compare(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shiftvox::machine::RecordStage;
 
     /// In the table, an adder of 32 bits takes 4680.73 ps. Shifts are wires.
     #[test]
@@ -145,7 +146,8 @@ mod tests {
             let add = hardware.units.get_mut(&OpClass::Add).unwrap();
             (add.latency, add.width) = (latency, width);
             let table = CostTable::load_shipped().unwrap();
-            let used = [OpClass::Add, OpClass::Shift].map(|class| (Stage::Centre, class));
+            let used =
+                [OpClass::Add, OpClass::Shift].map(|class| (RecordStage::Centre.into(), class));
             let check = compare(used, &hardware, &table, Goal::Area).unwrap();
             let [unit] = &check.units[..] else {
                 panic!("{check:?}");

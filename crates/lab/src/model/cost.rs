@@ -3,19 +3,20 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Estimator, Goal, ShiftUnits, Store, energy_of,
-    memory_energy_of,
+    Breakdown, CostError, CostTable, Estimator, Goal, ShiftUnits, Store, energy_of_tallies,
+    memory_energy_of, operation_of, tallies,
 };
-use hwmodel::count::{Accesses, Counter};
+use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
 use hwmodel::memory::{ACCUMULATOR_BITS, RecordKind, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
+use hwmodel::{Memory, OpClass};
 use serde::Serialize;
 
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
+use shiftvox::machine::RecordStage;
 use shiftvox::project::FrameSetup;
 
 /// The tables, and choices that do not follow from counts.
@@ -194,6 +195,17 @@ pub fn stack_energy(
     Ok(sum)
 }
 
+/// Exclusive ors of the stage *order* with constants: one inversion of the octant, and wires.
+const ORDERED_OCTANTS: u64 = 8;
+
+/// The operation of the table for a cell of a counter, and how often.
+fn priced(cell: &OpCount, shifts: ShiftUnits) -> (&'static str, u64) {
+    if cell.stage == RecordStage::Order && cell.class == OpClass::Logic {
+        return ("invert", cell.times.div_ceil(ORDERED_OCTANTS));
+    }
+    (operation_of(cell.class, shifts), cell.times)
+}
+
 /// Energy of the operations, pJ: those of the counter, and of its shifts those
 /// that are no wires.
 pub fn operations_energy(
@@ -201,7 +213,8 @@ pub fn operations_energy(
     shifts: &ShiftProbe,
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
-    let mut sum = energy_of(counter, &prices.table, prices.shifts)?;
+    let tallies = tallies(counter, |cell| priced(cell, prices.shifts));
+    let mut sum = energy_of_tallies(&tallies, &prices.table)?;
     if prices.shifts == ShiftUnits::Wires {
         let mut by_bits = BTreeMap::<u32, u64>::new();
         for ((_, bits), times) in shifts.variable() {
@@ -219,7 +232,7 @@ pub fn operations_energy(
 mod tests {
     use super::*;
     use hwmodel::memory::RecordBits;
-    use hwmodel::{Datapath, Format, Overflow, Probe, Stage, StageLevel};
+    use hwmodel::{Datapath, Format, Overflow, Probe, StageLevel};
 
     /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
     #[test]
@@ -227,7 +240,7 @@ mod tests {
         let mut probes = (Counter::new(), ShiftProbe::new());
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);
-        dp.stage(Stage::QuadtreeFit);
+        dp.stage(RecordStage::QuadtreeFit);
         let word = dp.load(3);
         for places in 1..=5 {
             dp.shl(word, 1); // wires
@@ -255,7 +268,7 @@ mod tests {
             finest_level: Some(1),
         });
         let place = StageLevel {
-            stage: Stage::Push,
+            stage: RecordStage::Push.into(),
             level: 0,
         };
         records.write(Memory::Stack, 0, place); // the object, in clip space

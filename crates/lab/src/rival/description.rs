@@ -12,6 +12,20 @@ use serde::{Deserialize, Serialize};
 
 use super::RayOrder;
 
+hwmodel::stages! {
+    /// The stages of a ray, in the order of its work.
+    pub enum RayStage {
+        /// The step from a ray to the next.
+        Next = "ray next",
+        /// Whether and where a ray enters the object.
+        Setup = "ray setup",
+        /// A cell of a ray: into it, or on to the next one.
+        Step = "ray step",
+        /// The end of a ray at a voxel.
+        Hit = "ray hit",
+    }
+}
+
 /// A ray caster.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -25,7 +39,7 @@ pub struct Rival {
     pub wires: Vec<OpClass>,
     pub units: BTreeMap<OpClass, Unit>,
     #[serde(default)]
-    pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
+    pub stages: BTreeMap<String, BTreeMap<OpClass, Unit>>,
     pub stack: RivalStack,
     /// None: rays read nodes from the node cache.
     pub node_buffer: Option<Cache>,
@@ -64,7 +78,9 @@ impl Rival {
             return Err(HardwareError(why.to_owned()));
         }
         // Beside a design that ships, its own numbers alone can be wrong.
-        rival.beside(&Hardware::preset("light")?).check()?;
+        let hardware = rival.beside(&Hardware::preset("light")?);
+        hardware.check()?;
+        hardware.check_stages(&RayStage::ALL.map(Stage::from))?;
         Ok(rival)
     }
 

@@ -23,7 +23,7 @@ mod ray;
 mod view;
 mod workload;
 
-pub use description::{Rival, RivalStack};
+pub use description::{RayStage, Rival, RivalStack};
 pub use order::RayOrder;
 pub use workload::{Cast, cast};
 

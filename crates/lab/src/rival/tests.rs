@@ -4,7 +4,7 @@ use glam::DVec3;
 use hwmodel::cycles::Hardware;
 use hwmodel::{Memory, OpClass, Stage};
 
-use super::{Cast, RayOrder, Rival, cast};
+use super::{Cast, RayOrder, RayStage, Rival, cast};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Silent};
@@ -144,21 +144,19 @@ fn the_work_of_a_ray_by_hand() {
     let shipped = Rival::shipped();
     let (graph, setup) = view("sphere,depth=2", [2.5, 2.0, 1.5], [0.5, 0.5, 0.5], 1);
     let found = cast_with((&graph, &setup), &shipped, "light");
-    let of = |stage: Stage, class: OpClass| -> u64 {
+    let of = |stage: RayStage, class: OpClass| -> u64 {
+        let stage = Stage::from(stage);
         let sums = found.counter.sum_by(|cell| (cell.stage, cell.class));
         sums.get(&(stage, class)).copied().unwrap_or(0)
     };
-    use Stage::{RayHit, RayNext, RaySetup};
+    use RayStage::{Hit, Next, Setup};
     // The first ray is loaded; there is no other.
-    assert_eq!(of(RayNext, OpClass::Add), 0);
+    assert_eq!(of(Next, OpClass::Add), 0);
     // All components are negative: three magnitudes, three moments turned. The ray comes from beyond three planes,
     // each against the upper planes of two axes, and the later ones against the planes before.
-    let (adds, subs) = (of(RaySetup, OpClass::Add), of(RaySetup, OpClass::Sub));
-    assert_eq!(
-        (adds + subs, of(RaySetup, OpClass::Shift)),
-        (3 + 3 + 6 + 2, 3)
-    );
-    assert_eq!(of(RayHit, OpClass::Add), 0);
+    let (adds, subs) = (of(Setup, OpClass::Add), of(Setup, OpClass::Sub));
+    assert_eq!((adds + subs, of(Setup, OpClass::Shift)), (3 + 3 + 6 + 2, 3));
+    assert_eq!(of(Hit, OpClass::Add), 0);
     let accesses = found.counter.accesses_by(|cell| cell.memory);
     assert_eq!(
         (

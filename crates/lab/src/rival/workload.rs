@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Child, CycleReport, Hardware, ImageNode, NoObserver, TurnLog};
 use hwmodel::shifts::ShiftProbe;
-use hwmodel::{Datapath, Format, Memory, Overflow, Stage, WideWord, Word};
+use hwmodel::{Datapath, Format, Memory, Overflow, WideWord, Word};
 
-use super::Rival;
 use super::ray::Ray;
 use super::view::View;
+use super::{RayStage, Rival};
 use crate::model::ModelError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView, NodeLayout};
@@ -145,7 +145,7 @@ impl Rays<'_> {
     fn next(&mut self, at: usize, children: &mut Vec<Child>) {
         let dp = &mut self.dp;
         dp.begin_record(at as u64, 0);
-        dp.stage(Stage::RayNext);
+        dp.stage(RayStage::Next);
         let sample = self.samples[at];
         match at.checked_sub(1) {
             None => {
@@ -171,12 +171,12 @@ impl Rays<'_> {
     fn first(&mut self, at: usize, words: [Word; 6], children: &mut Vec<Child>) {
         let [x, y, z, a, b, c] = words;
         self.dp.begin_record(at as u64, 0);
-        self.dp.stage(Stage::RaySetup);
+        self.dp.stage(RayStage::Setup);
         let sums = ([x, y, z], [a, b, c]);
         let ray = Ray::enter(&mut self.dp, sums, &self.view.eye, self.depth);
         if let Some(ray) = ray {
             let root = self.graph.root;
-            self.dp.stage(Stage::RayStep);
+            self.dp.stage(RayStage::Step);
             self.meet(at, ray, root, [root; LEVELS], children);
         }
     }
@@ -213,7 +213,7 @@ impl Rays<'_> {
     fn step(&mut self, at: usize, mut ray: Ray, above: [u32; LEVELS], children: &mut Vec<Child>) {
         let level = (self.depth - ray.size - 1) as usize;
         self.dp.begin_record(at as u64, level as u32 + 1);
-        self.dp.stage(Stage::RayStep);
+        self.dp.stage(RayStage::Step);
         let octant = ray
             .low
             .iter()
@@ -244,7 +244,7 @@ impl Rays<'_> {
     fn hit(&mut self, at: usize, ray: &Ray, node: u32) {
         let (i, j) = self.samples[at];
         let place = j as usize * self.frame.width as usize + i as usize;
-        self.dp.stage(Stage::RayHit);
+        self.dp.stage(RayStage::Hit);
         self.dp.read(Memory::Attribute, u64::from(node));
         self.dp.write(Memory::Pixel, place as u64);
         self.frame.node[place] = node;

@@ -5,6 +5,7 @@ use std::fmt;
 use hwmodel::cycles::{Hardware, HardwareError};
 use hwmodel::{MAX_BITS, MIN_BITS};
 use serde::Deserialize;
+use shiftvox::machine::check_hardware;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use toml::{Table, Value};
 
@@ -211,7 +212,7 @@ impl Space {
             }
         }
         let hardware = description.try_into::<Hardware>().map_err(syntax);
-        let checked = hardware.and_then(|hardware| hardware.check().map(|()| hardware));
+        let checked = hardware.and_then(|hardware| check_hardware(&hardware).map(|()| hardware));
         let hardware = checked.map_err(impossible)?;
         Ok(Point {
             number,

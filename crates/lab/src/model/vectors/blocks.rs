@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use hwmodel::Stage;
 use serde::Deserialize;
 
-use shiftvox::machine::Block;
+use shiftvox::machine::{Block, RecordStage};
 use shiftvox::project::FrameSetup;
 
 #[derive(Debug, Deserialize)]
@@ -20,7 +19,7 @@ pub(super) struct Descriptions {
 pub(super) struct Description {
     /// Its name, and that of its file.
     pub(super) name: String,
-    pub(super) stages: Vec<Stage>,
+    pub(super) stages: Vec<RecordStage>,
     pub(super) section: String,
     pub(super) function: String,
     /// Its inputs: see [`super::ports::Ports::new`].
