@@ -213,7 +213,7 @@ proptest! {
     ) {
         let nodes = records(seed, most);
         let mut hardware = hardware(hw, independence);
-        hardware.outer_memory.dram = (banks > 0).then(|| Dram {
+        hardware.outer_memory.dram = (banks > 0).then_some(Dram {
             banks,
             row_bytes: 256,
             t_rcd: (hw % 9) as u32,
