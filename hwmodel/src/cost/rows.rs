@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::technology::Technology;
+
 /// The quantity of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -58,6 +60,13 @@ impl Goal {
 #[error("{0}")]
 pub struct CostError(pub(super) String);
 
+impl CostError {
+    /// Of an estimator.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self(message.into())
+    }
+}
+
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum Figure {
@@ -88,6 +97,7 @@ struct File {
     #[serde(default)]
     follows: BTreeMap<String, String>,
     spread: Option<Spread>,
+    technology: Option<Technology>,
     #[serde(default)]
     sources: BTreeMap<String, String>,
     #[serde(default)]
@@ -182,6 +192,7 @@ pub(super) struct Parsed {
     pub(super) quadratic: Vec<String>,
     pub(super) follows: BTreeMap<String, String>,
     pub(super) spread: Option<Spread>,
+    pub(super) technology: Option<Technology>,
     pub(super) rows: Rows,
 }
 
@@ -241,10 +252,14 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
             "{file}: factors of [spread] are 1 to 100"
         )));
     }
+    if let Some(technology) = parsed.technology {
+        technology.check(file)?;
+    }
     Ok(Parsed {
         quadratic: parsed.quadratic,
         follows: parsed.follows,
         spread: parsed.spread,
+        technology: parsed.technology,
         rows,
     })
 }

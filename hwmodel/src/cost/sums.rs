@@ -56,6 +56,9 @@ pub struct Line {
     pub name: String,
     pub operation: String,
     pub width: u32,
+    /// Of a memory on the chip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
     /// Number of operations, accesses or units.
     pub times: u64,
     /// Cost of one.
@@ -82,10 +85,18 @@ impl Breakdown {
             name: name.to_owned(),
             operation: operation.to_owned(),
             width,
+            bytes: None,
             times,
             total: factor * each.value,
             each,
         });
+    }
+
+    /// Notes the size of the last line's memory.
+    pub fn of_bytes(&mut self, bytes: Option<u64>) {
+        if let Some(line) = self.lines.last_mut() {
+            line.bytes = bytes;
+        }
     }
 }
 
@@ -169,11 +180,15 @@ pub fn memory_energy_of(
                 continue;
             }
             let (sram, dram) = (format!("sram_{way}"), format!("dram_{way}"));
-            let (operation, each) = match store(memory) {
-                Store::Sram { bytes } => (&sram, table.memory_energy(&sram, bytes, width)?),
-                Store::Dram => (&dram, table.energy(&dram, width)?),
+            let (operation, size, each) = match store(memory) {
+                Store::Sram { bytes } => {
+                    let each = table.memory_energy(&sram, bytes, width)?;
+                    (&sram, Some(bytes), each)
+                }
+                Store::Dram => (&dram, None, table.energy(&dram, width)?),
             };
             sum.push(memory.name(), operation, width, times, each);
+            sum.of_bytes(size);
         }
     }
     Ok(sum)

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::rows::{
     AREA_FILE, CostError, CostRow, ENERGY_FILE, Goal, Parsed, Quantity, Rows, Spread, parse,
 };
+use super::technology::Technology;
 
 /// Origin of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -38,6 +39,17 @@ pub struct Cost {
     pub source: String,
 }
 
+impl Cost {
+    /// The cost of several.
+    #[must_use]
+    pub fn times(mut self, factor: f64) -> Self {
+        for figure in [&mut self.value, &mut self.low, &mut self.high] {
+            *figure *= factor;
+        }
+        self
+    }
+}
+
 /// Rows of several tables, a user's over the shipped ones. A request without a row is an error.
 ///
 /// ```
@@ -58,6 +70,7 @@ pub struct CostTable {
     quadratic: BTreeSet<String>,
     follows: BTreeMap<String, String>,
     spread: Spread,
+    technology: Technology,
 }
 
 const FARTHEST: f64 = 4.0;
@@ -72,6 +85,7 @@ impl CostTable {
 
     /// The same table with rows of another over it; errors and reports call it `file`.
     /// They replace all rows of the same operation, quantity and goal; rows without goal replace those of both goals.
+    /// Energies of the other rows move to the text's `[technology]`.
     ///
     /// # Errors
     /// When the text is not a cost table, or a row is invalid or occurs twice.
@@ -80,8 +94,12 @@ impl CostTable {
             quadratic,
             follows,
             spread,
+            technology,
             rows,
         } = parse(file, text)?;
+        if let Some(technology) = technology {
+            self.move_to(technology);
+        }
         self.rows.retain(|(quantity, operation, goal), _| {
             let is_replaced = |goal| rows.contains_key(&(*quantity, operation.clone(), goal));
             !is_replaced(*goal) && !is_replaced(None)
@@ -95,6 +113,30 @@ impl CostTable {
         self.follows.extend(follows);
         self.spread = spread.unwrap_or(self.spread);
         Ok(self)
+    }
+
+    /// Multiplies energies by the technology's factors.
+    fn move_to(&mut self, technology: Technology) {
+        for ((quantity, operation, _), rows) in &mut self.rows {
+            let factor = technology.factor(operation) / self.technology.factor(operation);
+            if *quantity != Quantity::EnergyPj || factor == 1.0 {
+                continue;
+            }
+            for row in rows {
+                row.low *= factor;
+                row.high *= factor;
+                row.derived = true;
+                let Technology { nm, volts } = technology;
+                let moved = format!("; times {factor:.3} for {nm} nm and {volts} V");
+                row.source.push_str(&moved);
+            }
+        }
+        self.technology = technology;
+    }
+
+    /// The technology of the energies.
+    pub fn technology(&self) -> Technology {
+        self.technology
     }
 
     /// The operation from whose price another operation's price is derived, if from one.

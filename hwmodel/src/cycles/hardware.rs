@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::outer::Dram;
 use crate::memory::RecordBits;
 use crate::{OpClass, Stage};
 
@@ -60,6 +61,9 @@ pub struct Hardware {
 #[expect(missing_docs, reason = "`machines/light.toml` explains each setting")]
 pub struct OuterMemory {
     pub bytes_per_cycle: u32,
+    /// Rule 15 of [the parent module](super).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dram: Option<Dram>,
 }
 
 impl OuterMemory {
@@ -374,7 +378,7 @@ fn limits(field: &str) -> (u32, u32) {
         "tile_levels" => (0, MAX_TILE_LEVELS),
         "banks" | "buffer" | "misses" => (1, MAX_KEPT),
         "entry_bytes" => (1, MAX_ENTRY),
-        "line_bytes" => (MIN_LINE, MAX_NUMBER),
+        "line_bytes" | "row_bytes" => (MIN_LINE, MAX_NUMBER),
         "count" | "interval" | "width" | "entries" | "bytes" | "ways" => (1, MAX_NUMBER),
         "ports" | "read_ports" | "write_ports" => (1, MAX_NUMBER),
         _ => (0, MAX_NUMBER),

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use super::hardware::{Banks, Cache, Hardware, OuterMemory, Pixels};
+use super::hardware::{Banks, Cache, Hardware, Pixels};
+use super::outer::{Dram, OuterPort, Region};
 use super::report::{CacheReport, Cause};
 use crate::Memory;
 use crate::memory::PIXEL_BITS;
@@ -65,47 +66,6 @@ impl Port {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct OuterPort {
-    of: OuterMemory,
-    free_at: u64,
-    pixel_bits: u64,
-    pub(super) busy: u64,
-}
-
-impl OuterPort {
-    fn new(of: OuterMemory) -> Self {
-        Self {
-            of,
-            free_at: 0,
-            pixel_bits: 0,
-            busy: 0,
-        }
-    }
-
-    /// Returns the cycle when a pixel has left; neighbours share words.
-    fn book_pixel(&mut self, at: u64) -> u64 {
-        let word = 8 * u64::from(self.of.bytes_per_cycle.max(1));
-        let bits = self.pixel_bits + u64::from(PIXEL_BITS);
-        self.pixel_bits = bits % word;
-        let (begun, cycles) = self.book(at, bits - self.pixel_bits);
-        begun + cycles
-    }
-
-    /// Takes the port for so many bits. Returns the first cycle and the number of cycles.
-    #[inline]
-    pub(super) fn book(&mut self, at: u64, bits: u64) -> (u64, u64) {
-        let cycles = self.of.cycles(bits);
-        if cycles == 0 {
-            return (at, 0);
-        }
-        let begun = at.max(self.free_at);
-        self.free_at = begun + cycles;
-        self.busy += cycles;
-        (begun, cycles)
-    }
-}
-
-#[derive(Debug, Clone, Copy)]
 pub(super) struct Served {
     pub(super) issued: u64,
     pub(super) done: u64,
@@ -121,6 +81,7 @@ struct Line {
 #[derive(Debug)]
 pub(super) struct CacheState {
     of: Cache,
+    region: Region,
     sets: u64,
     /// Most recently used first in each set.
     lines: Vec<Line>,
@@ -135,10 +96,11 @@ pub(super) struct CacheState {
 }
 
 impl CacheState {
-    fn new(of: Cache) -> Self {
+    fn new(of: Cache, region: Region) -> Self {
         let lines = of.sets() as usize * of.ways as usize;
         Self {
             of,
+            region,
             sets: u64::from(of.sets()),
             lines: vec![
                 Line {
@@ -196,10 +158,12 @@ impl CacheState {
         }
         let slot = (self.misses % self.slots.len() as u64) as usize;
         self.misses += 1;
-        let line_bits = 8 * u64::from(self.of.line_bytes);
-        let (begun, moving) = outer.book(issued.max(self.slots[slot]), line_bits);
+        let line = self.line_number(address);
+        let from = issued.max(self.slots[slot]);
+        let request = outer.book_line(from, line, self.of.line_bytes, self.region);
+        let begun = request.begun;
         self.port.hold(begun);
-        let away = u64::from(self.of.miss_latency).max(moving);
+        let away = u64::from(self.of.miss_latency).max(request.moving) + request.late;
         let done = begun + u64::from(self.of.hit_latency) + away;
         self.slots[slot] = done;
         self.put(address, done);
@@ -358,7 +322,7 @@ impl PixelsState {
     }
 
     #[inline]
-    fn write(&mut self, at: u64, outer: &mut OuterPort) -> Served {
+    fn write(&mut self, pixel: u64, at: u64, outer: &mut OuterPort) -> Served {
         let slot = (self.port.accesses % self.leaving.len() as u64) as usize;
         let ported = self.port.book(at);
         let issued = ported.max(self.leaving[slot]);
@@ -366,7 +330,7 @@ impl PixelsState {
         let drained = issued.max(self.last) + u64::from(self.of.drain_interval);
         self.last = match self.of.own_port {
             true => drained,
-            false => drained.max(outer.book_pixel(issued)),
+            false => drained.max(outer.book_pixel(issued, pixel)),
         };
         self.leaving[slot] = self.last;
         Served {
@@ -409,11 +373,12 @@ impl Memories {
         Self {
             stacks: vec![Port::new(hardware.stack.ports); stacks],
             stack_latency: u64::from(hardware.stack.latency),
-            nodes: CacheState::new(hardware.node_cache),
+            nodes: CacheState::new(hardware.node_cache, Region::Nodes),
             buffers: hardware.node_buffer.map_or_else(Vec::new, |of| {
-                (0..stacks).map(|_| CacheState::new(of)).collect()
+                let buffer = |_| CacheState::new(of, Region::Nodes);
+                (0..stacks).map(buffer).collect()
             }),
-            attributes: CacheState::new(hardware.attribute_cache),
+            attributes: CacheState::new(hardware.attribute_cache, Region::Attributes),
             fill: vec![BanksState::new(hardware.fill_vectors); fills],
             pixels: PixelsState::new(hardware.pixels),
             outer: OuterPort::new(hardware.outer_memory),
@@ -467,7 +432,7 @@ impl Memories {
                 let of = lane % self.fill.len();
                 self.fill[of].access(access, at)
             }
-            Memory::Pixel => self.pixels.write(at, &mut self.outer),
+            Memory::Pixel => self.pixels.write(access.address, at, &mut self.outer),
             // Beside the blending block, with a port to read and one to write: never waited for.
             Memory::Accumulator => Served {
                 issued: at,
@@ -507,18 +472,22 @@ impl Latencies {
             alone[Memory::Node as usize] = [hit; 2];
             worst[Memory::Node as usize] += hit;
         }
+        let bank = hardware.outer_memory.dram.map_or(0, Dram::slowest);
         for (memory, cache) in caches {
-            // Its own line, and the one before it at the port.
+            // Its own line, and the one before it at the port; its bank's work, to its last byte.
             let moving = hardware
                 .outer_memory
                 .cycles(8 * u64::from(cache.line_bytes));
             worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
+            if bank > 0 {
+                worst[memory as usize] += bank + moving;
+            }
             // It must get the lane again.
             worst[memory as usize] += u64::from(hardware.hands_out_tiles());
         }
         let moving = match hardware.pixels.own_port {
             true => 0,
-            false => hardware.outer_memory.cycles(u64::from(PIXEL_BITS)),
+            false => hardware.outer_memory.cycles(u64::from(PIXEL_BITS)) + bank,
         };
         worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval) + moving;
         Self { alone, worst }

@@ -61,6 +61,11 @@
 //!     the cycle before the answer, another may have it: in each such cycle the one that was answered first, of one cycle
 //!     the lowest number. It continues in the next cycle; its wait is *block busy*. A context with the lane inspects its
 //!     result in the cycle of the answer.
+//! 15. **Banks of outer memory** ([`OuterMemory::dram`], if it is given) hold rows of `row_bytes`; neighbouring rows lie in
+//!     neighbouring banks. A bank serves one request at a time, in the order in which the port accepts them, and leaves
+//!     the row open. A request to the open row takes `t_cl` cycles, the first one of a bank `t_rcd` more, and one to
+//!     another row `t_rp + t_rcd` more. Its data then come, and keep the bank for the port's cycles. A miss, a pixel or a
+//!     record that comes back is done later by these cycles, and by those for which its bank was busy.
 //!
 //! A turn *alone* takes the sum over its visits of the larger of occupancy + latency and the longest latency of an
 //! access that hits. **Work** is the sum over all turns. **Span** is the longest chain of turns alone that had to follow
@@ -70,6 +75,7 @@
 mod hardware;
 mod memories;
 mod observe;
+mod outer;
 mod recording;
 mod report;
 mod sequential;
@@ -85,6 +91,7 @@ pub use hardware::{
     Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
+pub use outer::{Dram, OuterRequest, RequestLog, RowReport};
 pub use recording::{Recording, Tape, TurnProbe};
 pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,

@@ -1,5 +1,6 @@
 //! Observers of a simulation.
 
+use super::outer::OuterRequest;
 use super::report::Cause;
 use crate::Stage;
 
@@ -41,6 +42,14 @@ pub trait Observer {
     /// From a `cycle` on: a `lane`, the number of records on its stack, and of those that are ready.
     fn queue(&mut self, _cycle: u64, _lane: u32, _stored: u32, _ready: u32) {}
 
+    /// Whether [`requests`](Self::requests) is called; constant during a simulation.
+    fn watches_requests(&self) -> bool {
+        false
+    }
+
+    /// At the end, all requests to outer memory.
+    fn requests(&mut self, _: &[OuterRequest]) {}
+
     /// Cycle and number of records, every few thousand records.
     fn progress(&mut self, _cycle: u64, _records: u64) {}
 }
@@ -75,6 +84,15 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
         self.0.queue(cycle, lane, stored, ready);
         self.1.queue(cycle, lane, stored, ready);
+    }
+
+    fn watches_requests(&self) -> bool {
+        self.0.watches_requests() || self.1.watches_requests()
+    }
+
+    fn requests(&mut self, requests: &[OuterRequest]) {
+        self.0.requests(requests);
+        self.1.requests(requests);
     }
 
     fn progress(&mut self, cycle: u64, records: u64) {

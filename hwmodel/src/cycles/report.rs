@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use super::hardware::Independence;
+use super::outer::RowReport;
 use crate::{OpClass, Stage};
 
 /// Version of the report's fields.
@@ -181,6 +182,9 @@ pub struct CycleReport {
     pub fill_writes: u64,
     /// Cycles in which the port to outer memory was taken.
     pub outer_busy: u64,
+    /// With banks of outer memory.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_rows: Option<RowReport>,
     pub stack: StackReport,
     /// Tightest first.
     pub bounds: Vec<Bound>,

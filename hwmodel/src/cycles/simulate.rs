@@ -131,13 +131,15 @@ impl<'a, W: Workload> Simulation<'a, W> {
             first: NONE,
             last: NONE,
         };
+        let mut memories = Memories::new(hardware);
+        memories.outer.log = observer.watches_requests().then(Vec::new);
         Self {
             wheel: Wheel::new(all.len()),
             idle: all.len() as u64,
             contexts: all,
             lanes: (0..lanes).map(|_| lane()).collect(),
             blocks: vec![[block; STAGES]; lanes as usize],
-            memories: Memories::new(hardware),
+            memories,
             tasks: Tasks::new(hardware.independence),
             totals: Totals::new(),
             asked: Asked::new(hardware),
@@ -372,8 +374,8 @@ impl<'a, W: Workload> Simulation<'a, W> {
             self.totals.stack.spilled_bits += spills * bits;
             for _ in 0..spills {
                 // In the background: only the port waits for it.
-                let (_, moving) = self.memories.outer.book(now, bits);
-                self.totals.serial += moving;
+                let request = self.memories.outer.book_spilled(now, bits, true);
+                self.totals.serial += request.moving + request.late;
             }
         }
         let mut newly = std::mem::take(&mut self.newly);
@@ -471,8 +473,9 @@ impl<'a, W: Workload> Simulation<'a, W> {
         of.in_screen_space = record.kind == RecordKind::Screen;
         of.spill = if record.spilled {
             let bits = u64::from(self.hardware.stack.record.of(record.kind));
-            let (begun, moving) = self.memories.outer.book(now, bits);
-            begun - now + moving + u64::from(self.hardware.stack.spill_cycles)
+            let request = self.memories.outer.book_spilled(now, bits, false);
+            let moved = request.begun + request.moving + request.late;
+            moved - now + u64::from(self.hardware.stack.spill_cycles)
         } else {
             0
         };
@@ -489,6 +492,9 @@ impl<'a, W: Workload> Simulation<'a, W> {
     fn report(mut self, end: u64) -> CycleReport {
         let cycles = end.max(self.memories.pixels.last());
         self.account(cycles);
+        if let Some(requests) = self.memories.outer.log.take() {
+            self.observer.requests(&requests);
+        }
         let most_passes = *self.workload.log().most_passes();
         self.totals.report(
             self.hardware,

@@ -63,6 +63,9 @@ impl Totals {
         ] {
             bounds.push((name.to_owned(), bound));
         }
+        if let Some(bound) = memories.outer.bank_bound() {
+            bounds.push(("busiest bank of outer memory".to_owned(), bound));
+        }
         let ratio = |a: u64, b: u64| if b == 0 { 0.0 } else { a as f64 / b as f64 };
         let (fill_reads, fill_writes) = memories.fill_accesses();
         let pixels = memories.pixels.port.accesses;
@@ -94,6 +97,7 @@ impl Totals {
             fill_reads,
             fill_writes,
             outer_busy: memories.outer.busy,
+            outer_rows: memories.outer.rows(),
             stack: StackReport {
                 most_open: tasks.most_open,
                 ..self.stack

@@ -253,3 +253,70 @@ fn energy_of_accesses() {
     assert_eq!(sum.lines.len(), 2);
     near(sum.total, 3.0 * 1950.0 + 10.0 / 16.0);
 }
+
+/// Parabolas of table 5 of Stillmaker and Baas.
+/// - 45 nm, 0.9 V: 1.018 x 0.81 - 0.3107 x 0.9 + 0.1539 = 0.69885.
+/// - 16 nm, 0.8 V: 0.2958 x 0.64 - 0.1241 x 0.8 + 0.03024 = 0.120272.
+/// - 7 nm, 0.7 V: 0.1776 x 0.49 - 0.09097 x 0.7 + 0.02447 = 0.047815.
+/// - 28 nm, 0.9 V: between 0.45714 (32 nm, as in the paper's corrigendum) and 0.20079 (20 nm). Of the way from 20 to 32
+///   nm, ln 1.4 / ln 1.6 = 0.71589, so 0.20079 (0.45714 / 0.20079)^0.71589 = 0.36185.
+#[test]
+fn prices_in_another_technology_by_hand() {
+    for (nm, volts, switching, leakage) in [
+        (45, 0.9, 1.0, 1.0),
+        (28, 0.9, 0.36185 / 0.69885, 28.0 / 45.0),
+        (16, 0.8, 0.120272 / 0.69885, 16.0 * 0.8 / 40.5),
+        (7, 0.7, 0.047815 / 0.69885, 7.0 * 0.7 / 40.5),
+    ] {
+        let text = format!("technology = {{ nm = {nm}, volts = {volts} }}");
+        let table = shipped().with_overrides("mine.toml", &text).unwrap();
+        for (operation, width, factor) in [
+            ("add", 32, switching),
+            ("clock", 1, switching),
+            ("sram_leakage", 1, leakage),
+            ("dram_read", 64, 1.0),
+        ] {
+            let found = table.energy(operation, width).unwrap();
+            let shipped = shipped().energy(operation, width).unwrap();
+            let ratio = found.value / shipped.value;
+            assert!(
+                (ratio - factor).abs() < 2e-5,
+                "{operation} at {nm}: {ratio}"
+            );
+            assert_eq!(found.source != shipped.source, nm != 45 && factor != 1.0);
+        }
+        let sram = table.memory_energy("sram_read", 8192, 64).unwrap().value;
+        assert!((sram - 10.0 * switching).abs() < 2e-4);
+        let area = table.area("add", 32, Goal::Area).unwrap().value;
+        near(area, 232.9);
+        assert!(
+            table
+                .technology()
+                .sentence()
+                .starts_with(&format!("{nm} nm, {volts} V"))
+        );
+    }
+    // A user's rows are of the user's technology, and another technology replaces the first.
+    let mine = "technology = { nm = 7, volts = 0.7 }
+                row = [{ operation = \"add\", width = 32, energy_pj = 0.01, source = \"mine\" }]";
+    let table = shipped().with_overrides("mine.toml", mine).unwrap();
+    near(table.energy("add", 32).unwrap().value, 0.01);
+    let back = "technology = { nm = 45, volts = 0.9 }";
+    let table = table.with_overrides("back.toml", back).unwrap();
+    near(table.energy("less", 32).unwrap().value, 0.0795);
+    for (technology, says) in [
+        (
+            "nm = 22, volts = 0.9",
+            "mine.toml: technology.nm is 22; it must be 45, 28, 16 or 7",
+        ),
+        (
+            "nm = 16, volts = 1.8",
+            "mine.toml: technology.volts is 1.8; it must be 0.5 to 1.1",
+        ),
+        ("nm = 16", "missing field `volts`"),
+    ] {
+        let text = format!("technology = {{ {technology} }}");
+        let error = shipped().with_overrides("mine.toml", &text).unwrap_err();
+        assert!(error.to_string().contains(says), "{error}");
+    }
+}

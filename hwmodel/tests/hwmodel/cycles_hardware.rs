@@ -49,6 +49,8 @@ entry_bytes = 8 -> entry_bytes = 4097 -> node_cache.entry_bytes is 4097; it must
 misses = 1  -> misses = 0  -> node_cache.misses is 0
 miss_latency = 40 -> miss_latency = 99999999 -> node_cache.miss_latency is 99999999
 banks = 1 -> banks = 0 -> fill_vectors.banks is 0
+[stack] -> [outer_memory.dram]; banks = 2; row_bytes = 4; t_rcd = 3; t_rp = 3; t_cl = 3; [stack] -> outer_memory.dram.row_bytes is 4
+[stack] -> [outer_memory.dram]; banks = 2; row_bytes = 64; t_rcd = 3; [stack] -> missing field `t_rp`
 buffer = 4  -> buffer = 70000  -> pixels.buffer is 70000; it must be 1 to 65536
 lanes = 1 -> lane = 1 -> unknown field `lane`
 "none" -> "some" -> unknown variant `some`"#;

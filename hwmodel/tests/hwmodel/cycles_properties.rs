@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 
 use crate::common::*;
 use hwmodel::cycles::{
-    Cache, Child, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, START,
-    StackOverflow, Unit, simulate,
+    Cache, Child, CycleReport, Dram, Hardware, ImageNode, Independence, NoObserver, Recorder,
+    START, StackOverflow, Unit, simulate,
 };
 use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Probe};
@@ -209,10 +209,17 @@ proptest! {
 
     #[test]
     fn cycles_lie_between_every_bound_and_the_serial_sum(
-        seed: u64, hw: u64, independence in any_independence(), most in 2..200u32,
+        seed: u64, hw: u64, independence in any_independence(), most in 2..200u32, banks in 0..4u32,
     ) {
         let nodes = records(seed, most);
-        let hardware = hardware(hw, independence);
+        let mut hardware = hardware(hw, independence);
+        hardware.outer_memory.dram = (banks > 0).then_some(Dram {
+            banks,
+            row_bytes: 256,
+            t_rcd: (hw % 9) as u32,
+            t_rp: (hw % 7) as u32,
+            t_cl: (hw % 5) as u32,
+        });
         let (report, mut turns) = run(&nodes, &hardware);
         prop_assert!(report.bounds.iter().all(|bound| bound.cycles <= report.cycles));
         prop_assert!(report.span <= report.work);

@@ -1,9 +1,10 @@
 //! Flags of `model`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
-use hwmodel::cost::{CostTable, Goal, ShiftUnits};
+use hwmodel::cost::{CostTable, Estimator, Goal, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
@@ -13,6 +14,7 @@ use crate::experiment::export::ExportArgs;
 use shiftvox::bounded;
 use shiftvox::machine::check_hardware;
 use shiftvox::project::SetupOptions;
+use shiftvox_lab::model::accelergy::EnergyTable;
 use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::rival::Rival;
 
@@ -53,6 +55,9 @@ pub(super) struct HardwareArgs {
     /// TOML file of costs that replace shipped ones
     #[arg(long, value_name = "FILE")]
     costs: Option<PathBuf>,
+    /// Energy reference table of Accelergy (ERT, YAML) that prices operations and accesses
+    #[arg(long, value_name = "FILE")]
+    ert: Option<PathBuf>,
     /// Choose gates for small area or short delay
     #[arg(long, value_enum, default_value_t)]
     goal: Goal,
@@ -82,6 +87,15 @@ pub(super) struct FileArgs {
     /// Records of the trace
     #[arg(long, value_name = "N", default_value_t = 2000)]
     pub(super) trace_records: u64,
+    /// Requests to outer memory, a memory trace for Ramulator
+    #[arg(long, value_name = "FILE")]
+    pub(super) export_ramulator: Option<PathBuf>,
+    /// Components and action counts of both designs, YAML for Accelergy
+    #[arg(long, value_name = "FILE")]
+    pub(super) export_accelergy: Option<PathBuf>,
+    /// Energies of these actions, an energy reference table of Accelergy (ERT, YAML)
+    #[arg(long, value_name = "FILE")]
+    pub(super) export_ert: Option<PathBuf>,
     /// Folder of test vectors for hardware designers
     #[arg(long, value_name = "DIR")]
     pub(super) vectors: Option<PathBuf>,
@@ -171,6 +185,14 @@ impl HardwareArgs {
         })
     }
 
+    fn estimator(&self) -> Result<Option<Arc<dyn Estimator>>, CliError> {
+        let Some(path) = &self.ert else {
+            return Ok(None);
+        };
+        let table = EnergyTable::parse(&path.display().to_string(), &read(path)?);
+        Ok(Some(Arc::new(table.map_err(CliError::input)?)))
+    }
+
     pub(super) fn prices(&self) -> Result<Prices, CliError> {
         let mut table = CostTable::load_shipped().map_err(CliError::input)?;
         if let Some(path) = &self.costs {
@@ -192,6 +214,7 @@ impl HardwareArgs {
                 .map_err(CliError::input)?;
         }
         Ok(Prices {
+            estimator: self.estimator()?,
             table,
             shifts: match self.shifters {
                 true => ShiftUnits::Variable,

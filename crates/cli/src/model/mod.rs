@@ -11,7 +11,7 @@ pub(super) use args::ModelArgs;
 #[cfg(feature = "view")]
 pub(super) use brief::brief;
 
-use hwmodel::cycles::{Hardware, Progress as Ticks, Recorder};
+use hwmodel::cycles::{Hardware, Observer, Progress as Ticks, Recorder, RequestLog};
 
 use super::console::Console;
 use super::error::CliError;
@@ -117,20 +117,32 @@ fn simulate(
 ) -> Result<(Frame, Simulated), CliError> {
     let (view, overflow) = (subject.graph.view(), args.rules.overflow());
     let mut reported = 0;
-    let mut ticks = Ticks(|_, records: u64| {
+    let files = &args.files;
+    let ticks = Ticks(|_, records: u64| {
         console.progress().advance(records.saturating_sub(reported));
         reported = records;
     });
-    let Some(path) = &args.files.trace else {
-        return Ok(frame::simulate(
-            &view, setup, hardware, overflow, &mut ticks,
-        )?);
-    };
-    let mut both = (Recorder::new(args.files.trace_records), ticks);
-    let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
+    let mut watched = (RequestLog::new(files.export_ramulator.is_some()), ticks);
     let mut text = Vec::new();
-    both.0.write_chrome(hardware, &mut text)?;
-    whole::write(path, &text, args.export.force)?;
-    console.written(path);
+    let run =
+        |observer: &mut dyn Observer| frame::simulate(&view, setup, hardware, overflow, observer);
+    let drawn = match &files.trace {
+        None => run(&mut watched)?,
+        Some(path) => {
+            let mut all = (Recorder::new(files.trace_records), watched);
+            let drawn = run(&mut all)?;
+            all.0.write_chrome(hardware, &mut text)?;
+            whole::write(path, &text, args.export.force)?;
+            console.written(path);
+            watched = all.1;
+            drawn
+        }
+    };
+    if let Some(path) = &files.export_ramulator {
+        text.clear();
+        watched.0.write_ramulator(&mut text)?;
+        whole::write(path, &text, args.export.force)?;
+        console.written(path);
+    }
     Ok(drawn)
 }

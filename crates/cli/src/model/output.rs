@@ -13,13 +13,22 @@ use crate::experiment::export::{self, Results};
 use crate::{document, report};
 use shiftvox::picture::{Background, Shading, png, resolve};
 use shiftvox::whole;
-use shiftvox_lab::model::{heat, plots, tables};
+use shiftvox_lab::model::design::LIGHT;
+use shiftvox_lab::model::ray_caster::RAY_CASTER;
+use shiftvox_lab::model::{accelergy, heat, plots, tables};
 use shiftvox_lab::report::html::Page;
 use shiftvox_lab::report::{Cell, Table, grouped, plot};
 
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
-    let others = [&files.html, &files.heat, &files.trace];
+    let others = [
+        &files.html,
+        &files.heat,
+        &files.trace,
+        &files.export_ramulator,
+        &files.export_accelergy,
+        &files.export_ert,
+    ];
     export::check(&args.export, others.into_iter().flatten())
 }
 
@@ -29,7 +38,24 @@ fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(),
     Ok(())
 }
 
+/// Files for Accelergy.
+fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
+    let of = &found.report;
+    let designs = [(LIGHT, &of.cost), (RAY_CASTER, &of.ray_caster.cost)];
+    let force = args.export.force;
+    if let Some(path) = &args.files.export_accelergy {
+        let text = accelergy::counts(&designs, of.technology);
+        file(path, text.as_bytes(), force, console)?;
+    }
+    if let Some(path) = &args.files.export_ert {
+        let text = accelergy::energies(&designs);
+        file(path, text.as_bytes(), force, console)?;
+    }
+    Ok(())
+}
+
 pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
+    write_accelergy(found, args, console)?;
     let document = describe(found);
     let long = tables::LONG.iter().map(|spec| spec.of(&document));
     let short = tables::SHORT.iter().map(|spec| spec.of(&document));
@@ -152,6 +178,7 @@ fn summary(found: &Found) -> Table {
                 of.clock_says, of.clock.fastest_mhz
             ),
         ),
+        ("technology of energies", of.technology_says.clone()),
         (
             "wrong pixels (coverage)",
             format!(

@@ -59,7 +59,7 @@ fn the_report_adds_up() {
     // Power follows from energy and speed.
     let of = |what: &str| number(&line(what)["light"]);
     let rate = at("/simulated/cycles/frames_per_second");
-    let power = of("power at its own speed, without leakage");
+    let power = of("power at its own speed");
     let expected = of("energy of the frame") * 1e-6 * rate;
     assert!((power - expected).abs() < 1e-9 * power.max(1.0));
     // The price that decides makes both designs equal where the report says so.

@@ -1,10 +1,11 @@
 //! Energy of a frame, by the cost tables.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Goal, ShiftUnits, Store, energy_of_tallies, memory_energy_of,
-    operation_of, tallies,
+    Breakdown, CostError, CostTable, Estimator, Goal, ShiftUnits, Store, energy_of_tallies,
+    memory_energy_of, operation_of, tallies,
 };
 use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
@@ -24,6 +25,8 @@ pub struct Prices {
     pub table: CostTable,
     pub shifts: ShiftUnits,
     pub goal: Goal,
+    /// Prices the actions of components instead of the tables.
+    pub estimator: Option<Arc<dyn Estimator>>,
 }
 
 impl Prices {
@@ -33,21 +36,36 @@ impl Prices {
             table: CostTable::load_shipped()?,
             shifts: ShiftUnits::Wires,
             goal: Goal::Area,
+            estimator: None,
         })
     }
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct FrameCost {
     pub operations: Breakdown,
+    /// Accesses to memories on the chip.
     pub on_chip: Breakdown,
+    pub leakage: Breakdown,
+    pub clock: Breakdown,
     pub outer: Breakdown,
     pub traffic: OuterTraffic,
 }
 
 impl FrameCost {
-    pub fn parts(&self) -> [&Breakdown; 3] {
-        [&self.operations, &self.on_chip, &self.outer]
+    pub fn parts(&self) -> [&Breakdown; 5] {
+        let [operations, memories, leakage, clock] = self.chip();
+        [operations, memories, leakage, clock, &self.outer]
+    }
+
+    /// The parts on the chip.
+    pub fn chip(&self) -> [&Breakdown; 4] {
+        [&self.operations, &self.on_chip, &self.leakage, &self.clock]
+    }
+
+    /// Energy on the chip, pJ.
+    pub fn chip_total(&self) -> f64 {
+        self.chip().map(|part| part.total).into_iter().sum()
     }
 
     /// Energy of the frame, pJ.
@@ -103,7 +121,7 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
     Ok(sum)
 }
 
-/// Energy of a frame. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
+/// Energy of a frame without leakage and clock. Nodes and attributes are read from caches, whose misses fetch lines from outer memory. Spilled records
 /// are written there and read back. Pixels are written there.
 pub fn frame_cost(
     counted: &Counted,
@@ -136,6 +154,7 @@ pub fn frame_cost(
     let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
     for of in memory_energy_of(&accesses, widths, store, table)?.lines {
         on_chip.push(&of.name, &of.operation, of.width, of.times, of.each);
+        on_chip.of_bytes(of.bytes);
     }
     let traffic = OuterTraffic {
         node_bits: 8 * cycles.node_cache.bytes_in,
@@ -149,6 +168,7 @@ pub fn frame_cost(
         on_chip,
         outer,
         traffic,
+        ..FrameCost::default()
     })
 }
 
@@ -168,6 +188,7 @@ pub fn stack_energy(
                 let each = table.memory_energy(operation, bytes, bits)?;
                 let name = format!("stack, {}", kind.name());
                 sum.push(&name, operation, bits, times, each);
+                sum.of_bytes(Some(bytes));
             }
         }
     }

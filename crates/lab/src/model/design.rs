@@ -10,6 +10,9 @@ use super::frame::{self, Counted};
 use shiftvox::graph::Graph;
 use shiftvox::project::FrameSetup;
 
+/// The design's name in files of other programs.
+pub const LIGHT: &str = "light";
+
 #[derive(Debug, Clone)]
 pub struct LightDesign {
     pub cost: FrameCost,
@@ -27,9 +30,11 @@ impl LightDesign {
         prices: &Prices,
     ) -> Result<Self, ModelError> {
         let widths = frame::widths(setup, graph, hardware);
+        let area = area::light(counted, cycles, setup, hardware, prices)?;
+        let cost = cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?;
         Ok(Self {
-            cost: cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?,
-            area: area::light(counted, cycles, setup, hardware, prices)?,
+            cost: cost.whole(LIGHT, &area, cycles, prices)?,
+            area,
             clock: clock::check(&counted.counter, hardware, prices)?,
         })
     }

@@ -1,7 +1,7 @@
 //! The hardware model: the cost of a frame on the light hardware, beside a ray caster.
 //!
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
-//! - [`cost`] and [`area`] price the counts.
+//! - [`cost`], [`area`] and [`standing`] price the counts; [`accelergy`] exchanges prices.
 //! - [`verdict`] compares both at uncertain prices.
 //! - [`clock`] compares units with the clock.
 //! - [`mod@floor`] is a bound for all designs.
@@ -9,6 +9,7 @@
 //!
 //! Functions fail when the cost tables lack a figure, or a word overflows and traps.
 
+pub mod accelergy;
 pub mod area;
 pub mod clock;
 pub mod cost;
@@ -23,6 +24,7 @@ pub mod ray_caster;
 pub mod record;
 pub mod report;
 pub mod safe;
+pub mod standing;
 pub mod tables;
 pub mod vectors;
 pub mod verdict;

@@ -17,6 +17,9 @@ use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::project::FrameSetup;
 
+/// The design's name in files of other programs.
+pub const RAY_CASTER: &str = "ray_caster";
+
 /// A ray caster's frame and its cost.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
@@ -63,14 +66,16 @@ pub fn price(
         on_chip: on_chip(cast, rival, hardware, &prices.table)?,
         outer: outer_energy(&traffic, &prices.table)?,
         traffic,
+        ..FrameCost::default()
     };
+    let area = area::of_rays(cast, rival, hardware, prices)?;
     Ok(RayCasterReport {
         rival: rival.clone(),
         records: cycles.records,
         operations: counter.ops(),
-        cost,
+        cost: cost.whole(RAY_CASTER, &area, cycles, prices)?,
         cycles: cycles.clone(),
-        area: area::of_rays(cast, rival, hardware, prices)?,
+        area,
         error: frame::error(&cast.frame, exact),
     })
 }
@@ -92,6 +97,7 @@ fn on_chip(
     let mut push = |name: &str, operation: &str, bytes: u64, bits: u32, times: u64| {
         let each = table.memory_energy(operation, bytes, bits)?;
         sum.push(name, operation, bits, times, each);
+        sum.of_bytes(Some(bytes));
         Ok(())
     };
     let rays = cast

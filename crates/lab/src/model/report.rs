@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use hwmodel::cost::Technology;
 use hwmodel::count::{Counter, OpCount};
 use hwmodel::cycles::Hardware;
 use hwmodel::memory::{MissPoint, RecordKind};
@@ -56,6 +57,9 @@ pub struct Report {
     pub area: DesignArea,
     pub clock: ClockCheck,
     pub clock_says: String,
+    /// Of the energies.
+    pub technology: Technology,
+    pub technology_says: String,
     comparison: Vec<ComparedLine>,
     pub ray_caster: RayCasterReport,
     floor: Floor,
@@ -145,6 +149,8 @@ impl Report {
             cost,
             area,
             clock,
+            technology: prices.table.technology(),
+            technology_says: prices.table.technology().sentence(),
             comparison,
             ray_caster,
         })

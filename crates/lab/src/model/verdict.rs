@@ -91,7 +91,9 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
     let mut lines = vec![
         part("energy of operations", |of| vec![&of.operations]),
         part("energy of memories on the chip", |of| vec![&of.on_chip]),
-        part("energy on the chip", |of| vec![&of.operations, &of.on_chip]),
+        part("energy of leakage", |of| vec![&of.leakage]),
+        part("energy of the clock", |of| vec![&of.clock]),
+        part("energy on the chip", |of| of.chip().to_vec()),
         part("energy of outer memory", |of| vec![&of.outer]),
         part("energy of the frame", |of| of.parts().to_vec()),
     ];
@@ -100,11 +102,7 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
     }
     lines.push(line("cycles", "", both.map(|of| of.cycles as f64)));
     let power = |of: Design<'_>| of.cost.total() * of.frames_per_second / 1e12;
-    lines.push(line(
-        "power at its own speed, without leakage",
-        "W",
-        both.map(power),
-    ));
+    lines.push(line("power at its own speed", "W", both.map(power)));
     lines.push(line(
         "traffic to outer memory",
         "MB a frame",
@@ -117,7 +115,7 @@ pub fn lines(light: Design<'_>, ray_caster: Design<'_>, prices: &Prices) -> Vec<
 /// The verdict on the energy of a frame.
 pub fn of_energy(light: &FrameCost, ray_caster: &FrameCost, table: &CostTable) -> Verdict {
     let both = [light, ray_caster];
-    let on_chip = both.map(|of| of.operations.total + of.on_chip.total);
+    let on_chip = both.map(FrameCost::chip_total);
     let outer = both.map(|of| of.outer.total);
     Verdict {
         outer_turns_at: equal_at(outer, on_chip),
@@ -320,7 +318,6 @@ impl Normal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::cost::OuterTraffic;
 
     fn bill(table: &CostTable, lines: &[(&str, u32, u64)]) -> Breakdown {
         let mut sum = Breakdown::default();
@@ -334,9 +331,8 @@ mod tests {
     fn cost(operations: Breakdown, outer: Breakdown) -> FrameCost {
         FrameCost {
             operations,
-            on_chip: Breakdown::default(),
             outer,
-            traffic: OuterTraffic::default(),
+            ..FrameCost::default()
         }
     }
 

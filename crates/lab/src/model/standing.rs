@@ -1,0 +1,74 @@
+//! Leakage and the clock of a whole design, by its area and cycles.
+
+use hwmodel::cost::{CostError, Standing};
+use hwmodel::cycles::CycleReport;
+
+use super::area::DesignArea;
+use super::cost::{FrameCost, Prices};
+
+/// The parts of a design that leak or are clocked.
+pub fn standing(area: &DesignArea) -> Standing {
+    let bits = |width: u32, times: u64| u64::from(width) * times;
+    let memories = area.memories.lines.iter();
+    let registers = area.registers.lines.iter();
+    Standing {
+        logic_nand2: area.units.total + area.registers.total + area.control.total,
+        memories: memories
+            .map(|of| (of.name.clone(), bits(of.width, of.times)))
+            .collect(),
+        register_bits: registers.map(|of| bits(of.width, of.times)).sum(),
+    }
+}
+
+impl FrameCost {
+    /// The whole cost of a frame: with leakage and clock, and at the prices of a user's estimator, if there is one. It
+    /// prices actions alone.
+    pub fn whole(
+        mut self,
+        design: &str,
+        area: &DesignArea,
+        cycles: &CycleReport,
+        prices: &Prices,
+    ) -> Result<Self, CostError> {
+        if let Some(by) = &prices.estimator {
+            for part in [&mut self.operations, &mut self.on_chip, &mut self.outer] {
+                *part = part.priced_by(design, by.as_ref())?;
+            }
+        }
+        let parts = standing(area);
+        let table = &prices.table;
+        self.leakage = parts.leakage(cycles.cycles, cycles.clock_mhz, table)?;
+        self.clock = parts.clock(cycles.cycles, table)?;
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwmodel::cost::{CostTable, Goal};
+
+    /// Two adders of 232.9 NAND2, 32 bits of registers of 128, 1000 bits of memory, and 20 % of 593.8 for control.
+    #[test]
+    fn parts_by_hand() {
+        let table = CostTable::load_shipped().unwrap();
+        let goal = Goal::Area;
+        let each = |operation, width| table.area(operation, width, goal).unwrap();
+        let mut area = DesignArea::default();
+        area.units.push("centre", "add", 32, 2, each("add", 32));
+        area.registers
+            .push("pipeline", "register", 8, 4, each("register", 8));
+        area.memories
+            .push("stack", "sram_bit", 1, 1000, each("sram_bit", 1));
+        area.control
+            .push("control", "control", 1, 594, each("control", 1));
+        let parts = standing(&area);
+        assert!((parts.logic_nand2 - (465.8 + 128.0 + 118.8)).abs() < 1e-9);
+        assert_eq!(parts.memories, [("stack".to_owned(), 1000)]);
+        assert_eq!(parts.register_bits, 32);
+        // Seven microseconds: 14 fJ of 713 gates, 8.15 fJ of 1000 bits.
+        let leakage = parts.leakage(1400, 200.0, &table).unwrap();
+        assert!((leakage.total - 7.0 * (0.014 * 713.0 + 0.00815 * 1000.0)).abs() < 1e-9);
+        assert_eq!(leakage.lines.len(), 2);
+    }
+}
