@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::built::Built;
 use crate::memory::RecordBits;
 use crate::{OpClass, Stage};
 
@@ -40,6 +41,9 @@ pub struct Hardware {
     /// Units of single stages where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
+    /// Replaces [`units`](Self::units) in the area.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub built: Option<Built>,
     #[serde(default)]
     pub organisation: Organisation,
     pub stack: Stack,
