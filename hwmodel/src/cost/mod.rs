@@ -3,6 +3,7 @@
 mod estimator;
 mod leakage;
 mod rows;
+mod sram;
 mod sums;
 mod table;
 mod technology;
@@ -10,6 +11,7 @@ mod technology;
 pub use estimator::{Attributes, Estimator};
 pub use leakage::Standing;
 pub use rows::{CostError, Goal, Quantity, Spread};
+pub use sram::MemoryShape;
 pub use sums::{
     Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
     operation_of, tallies,

@@ -229,7 +229,7 @@ impl CostTable {
     }
 
     /// Rows of a goal or, if there are none, without goal.
-    fn rows_of(
+    pub(super) fn rows_of(
         &self,
         quantity: Quantity,
         operation: &str,
@@ -293,7 +293,7 @@ fn weigh<'a>(rows: &[(f64, &'a CostRow)], at: f64) -> (Vec<(&'a CostRow, f64)>, 
     (vec![(low, 1.0 - part), (high, part)], fit)
 }
 
-fn cost(
+pub(super) fn cost(
     quantity: Quantity,
     operation: &str,
     goal: Option<Goal>,

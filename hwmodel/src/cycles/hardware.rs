@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::built::Built;
 use super::outer::Dram;
 use crate::memory::RecordBits;
 use crate::{OpClass, Stage};
@@ -41,6 +42,9 @@ pub struct Hardware {
     /// Units of single stages where they differ, by [`Stage::key`].
     #[serde(default)]
     pub stages: BTreeMap<String, BTreeMap<OpClass, Unit>>,
+    /// Replaces [`units`](Self::units) in the area.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub built: Option<Built>,
     #[serde(default)]
     pub organisation: Organisation,
     pub stack: Stack,
@@ -256,7 +260,9 @@ impl Hardware {
     /// Reports the first stage that a program does not have.
     pub fn check_stages(&self, known: &[Stage]) -> Result<(), HardwareError> {
         let known: Vec<String> = known.iter().map(|stage| stage.key()).collect();
-        let unknown = self.stages.keys().find(|key| !known.contains(key));
+        let built = self.built.iter().flat_map(|built| built.units.keys());
+        let mut named = self.stages.keys().chain(built);
+        let unknown = named.find(|key| !known.contains(key));
         unknown.map_or(Ok(()), |key| {
             let known = known.join(", ");
             Err(HardwareError(format!("[stages.{key}] is none of {known}")))

@@ -72,6 +72,7 @@
 //! each other. Cycles are never below any bound of the report, and never above [`CycleReport::serial`]. With one context,
 //! no faster or wider part makes a frame slower. docs/hardware-model.md lists what the model leaves out.
 
+mod built;
 mod hardware;
 mod memories;
 mod observe;
@@ -86,6 +87,7 @@ mod trace;
 mod turn;
 mod wheel;
 
+pub use built::{Built, Size, Sizes};
 pub use hardware::{
     Banks, Cache, Hardware, HardwareError, Independence, MAX_CONTEXTS, MAX_LANES, MAX_TILE_LEVELS,
     Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,

@@ -2,7 +2,8 @@
 
 use crate::common::*;
 use hwmodel::cost::{
-    Cost, CostError, CostTable, Fit, Goal, ShiftUnits, Store, energy_of, memory_energy_of,
+    Cost, CostError, CostTable, Fit, Goal, MemoryShape, ShiftUnits, Store, energy_of,
+    memory_energy_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
@@ -108,6 +109,42 @@ fn derived_rows_are_what_they_say() {
         assert!((cost.value - expected).abs() < 6e-5, "{operation} {width}");
         assert!(cost.derived && cost.source.contains("adder's"));
     }
+}
+
+/// Areas of the published macros, as far as the rectangle's widths are off, and of smaller memories by hand.
+#[test]
+fn memories_by_shape() {
+    let table = shipped();
+    let area = |words: u64, width, ports| {
+        let shape = MemoryShape {
+            words,
+            width,
+            ports,
+        };
+        let (operation, each) = table.memory_area(shape, Goal::Area).unwrap();
+        assert!(each.derived && each.source.contains("IHP") || operation == "register");
+        (operation, each.value * words as f64 * f64::from(width))
+    };
+    for (words, width, ports, square_micrometres, within) in [
+        (64, 64, 1, 64.36 * 784.48, 0.006),
+        (1024, 16, 1, 336.46 * 236.80, 0.006),
+        (2048, 64, 1, 626.70 * 784.48, 0.006),
+        // Not in the fit; has several words in a row.
+        (4096, 8, 1, 618.30 * 236.80, 0.045),
+        (64, 32, 2, 74.87 * 702.83, 0.014),
+        (1024, 16, 2, 385.37 * 402.61, 0.014),
+    ] {
+        let (operation, found) = area(words, width, ports);
+        let ratio = found * 7.2576 / square_micrometres;
+        let is_near = operation == "sram" && (ratio - 1.0).abs() < within;
+        assert!(is_near, "{words} words of {width} bits: {ratio}");
+    }
+    // Four ports are two copies of two. A register bit is 4 NAND2, and each of its selectors 3.
+    let [two, three, four] = [2, 3, 4].map(|ports| area(1024, 32, ports).1);
+    near(four, 2.0 * two);
+    near(three, four);
+    assert_eq!(area(4, 8, 1).0, "register");
+    near(area(4, 8, 1).1, 32.0 * (4.0 + 2.0 * 3.0));
 }
 
 #[test]

@@ -94,10 +94,15 @@ impl Machine {
         text
     }
 
-    /// The model's report of a view, words of 32 bits, with more flags that may name files in this folder.
+    /// The model's report of a view, by default of words of 32 bits, with more flags that may name files in this folder.
     pub(crate) fn model(&self, folder: &Path, view: &str, flags: &str) -> Value {
         fs::write(folder.join("hardware.toml"), self.hardware()).unwrap();
-        let line = format!("model {view} {} --bits 32 --hw hardware.toml", self.rules());
+        let bits = if flags.contains("--bits") {
+            ""
+        } else {
+            "--bits 32"
+        };
+        let line = format!("model {view} {} {bits} --hw hardware.toml", self.rules());
         let report = run(folder, &format!("{SHIFTVOX} {line} --json {flags}"));
         serde_json::from_str(&report).unwrap()
     }

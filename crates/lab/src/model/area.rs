@@ -1,28 +1,33 @@
 //! Area of a whole design without wires: units, registers, memories and control.
 //!
+//! Some hardware lists the units and registers that are [built](Built). Of other hardware:
+//!
 //! - *Units*: those of the hardware for every class of operation that the frame uses in a stage, but no more than any visit
-//!   of the stage can use. Shifts that are not wires have as many shifters as keep pace with the stage.
+//!   of the stage can use, and no wider than its widest operation. Shifts that are not wires have as many shifters as keep
+//!   pace with the stage.
 //! - *Registers*: a pipeline of latency `l` and interval `i` keeps `l / i` results, rounded up. A context keeps its record
 //!   or ray.
-//! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours designs with several.
-//! - *Control*: a share of units and registers, by the table.
+//!
+//! *Memories* are SRAM or registers, by their shape. *Control* is a share by the table: of registers if they are listed, else
+//! of units and registers.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
+use hwmodel::cost::{Breakdown, CostError, MemoryShape, ShiftUnits, operation_of};
 use hwmodel::count::Counter;
-use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
+use hwmodel::cycles::{self, Built, Cache, CycleReport, Hardware, StageReport};
+use hwmodel::memory::ACCUMULATOR_BITS;
 use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, stack_bits};
-use super::fill_bits::fill_store_bits;
+use super::fill_bits::{fill_access_bits, fill_store_bits};
 use super::frame::Counted;
 use super::record::context_bits;
 use crate::rival::{Cast, Rival};
 use shiftvox::machine::RecordStage;
-use shiftvox::project::FrameSetup;
+use shiftvox::project::{CageKind, FrameSetup};
 
 /// Area of a design, NAND2 equivalents, line by line.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -39,11 +44,15 @@ impl DesignArea {
         [&self.units, &self.registers, &self.memories, &self.control]
     }
 
-    fn finish(mut self, prices: &Prices) -> Result<Self, CostError> {
-        let share = prices.table.area("control", 1, prices.goal)?;
-        let logic = self.units.total + self.registers.total;
+    fn finish(mut self, is_built: bool, prices: &Prices) -> Result<Self, CostError> {
+        let (units, registers) = (self.units.total, self.registers.total);
+        let (operation, of) = match is_built {
+            true => ("state_control", registers),
+            false => ("control", units + registers),
+        };
+        let share = prices.table.area(operation, 1, prices.goal)?;
         self.control
-            .push("control", "control", 1, logic.round() as u64, share);
+            .push("control", operation, 1, of.round() as u64, share);
         self.total = self.parts().map(|part| part.total).into_iter().sum();
         Ok(self)
     }
@@ -76,17 +85,36 @@ impl DesignArea {
         Ok(())
     }
 
-    fn memory(&mut self, name: &str, bits: u64, prices: &Prices) -> Result<(), CostError> {
+    /// Adds a memory of so many bits, as equal parts.
+    fn memory(
+        &mut self,
+        name: &str,
+        bits: u64,
+        (parts, width, ports): (u32, u32, u32),
+        prices: &Prices,
+    ) -> Result<(), CostError> {
         if bits > 0 {
-            let each = prices.table.area("sram_bit", 1, prices.goal)?;
-            self.memories.push(name, "sram_bit", 1, bits, each);
+            let words = bits.div_ceil(u64::from(parts) * u64::from(width));
+            let shape = MemoryShape {
+                words,
+                width,
+                ports,
+            };
+            let (operation, each) = prices.table.memory_area(shape, prices.goal)?;
+            self.memories.push(name, operation, width, bits, each);
         }
         Ok(())
     }
 
+    /// Ways are memories of their own, because they are read at the same time.
     fn cache(&mut self, name: &str, cache: &Cache, prices: &Prices) -> Result<(), CostError> {
-        self.memory(name, 8 * u64::from(cache.bytes), prices)?;
-        self.memory(&format!("{name}, tags"), tag_bits(cache), prices)
+        let (ways, ports) = (cache.ways, cache.ports);
+        let data = (ways, 8 * cache.entry_bytes, ports);
+        self.memory(name, 8 * u64::from(cache.bytes), data, prices)?;
+        let bits = tag_bits(cache);
+        let lines = u64::from(cache.sets()) * u64::from(ways);
+        let tags = (ways, (bits / lines) as u32, ports);
+        self.memory(&format!("{name}, tags"), bits, tags, prices)
     }
 }
 
@@ -120,35 +148,101 @@ pub fn light(
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
-    let mut area = units(&counted.counter, &counted.shifts, cycles, hardware, prices)?;
     let record_bits = counted.record_bits();
-    let each = context_bits(setup, record_bits, hardware.organisation);
-    let contexts = hardware.all_contexts() * each;
-    area.register_bits("records of the contexts", contexts, prices)?;
-    for (name, bits) in [
-        ("record stack", stack_bits(hardware, record_bits)),
-        ("fill vectors", fill_store_bits(setup, hardware)),
-        ("accumulators", accumulator_bits(setup)),
+    let mut area = match &hardware.built {
+        Some(built) => self::built(built, setup, hardware, prices)?,
+        None => {
+            let (counter, shifts) = (&counted.counter, &counted.shifts);
+            let mut area = units(counter, shifts, cycles, Some(setup), hardware, prices)?;
+            let each = context_bits(setup, record_bits, hardware.organisation);
+            let contexts = hardware.all_contexts() * each;
+            area.register_bits("records of the contexts", contexts, prices)?;
+            area
+        }
+    };
+    // A state machine does not read and write in the same cycle.
+    let ports = |ports: u32| if hardware.sequential { 1 } else { ports };
+    let stack = (hardware.lanes, record_bits, ports(hardware.stack.ports));
+    let fill = &hardware.fill_vectors;
+    let of_tiles = if hardware.hands_out_tiles() {
+        hardware.lanes
+    } else {
+        1
+    };
+    let fill = (
+        fill.banks * of_tiles,
+        fill_access_bits(setup, hardware.organisation),
+        ports(fill.read_ports + fill.write_ports),
+    );
+    for (name, bits, shape) in [
+        ("record stack", stack_bits(hardware, record_bits), stack),
+        ("fill vectors", fill_store_bits(setup, hardware), fill),
+        (
+            "accumulators",
+            accumulator_bits(setup),
+            (1, ACCUMULATOR_BITS, 1),
+        ),
     ] {
-        area.memory(name, bits, prices)?;
+        area.memory(name, bits, shape, prices)?;
     }
     caches(area, hardware, prices)
 }
 
-/// The units of all stages, as far as a frame uses them.
+/// The units and registers that are listed.
+fn built(
+    built: &Built,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<DesignArea, CostError> {
+    let mut area = DesignArea::default();
+    let (lanes, contexts) = (hardware.lanes, hardware.contexts);
+    let (format, levels) = (setup.format, setup.levels);
+    for (stage, units) in &built.units {
+        let stage = stage.replace('_', " ");
+        for (operation, sizes) in units {
+            for (size, &count) in sizes {
+                let kind = (operation.as_str(), size.bits(format, levels));
+                area.units(&stage, kind, u64::from(lanes * count), 0, prices)?;
+            }
+        }
+    }
+    let bits = built.register_bits(lanes, contexts, format, levels);
+    area.register_bits("registers of the machine", bits, prices)?;
+    Ok(area)
+}
+
+/// Whether an operand is always zero, so that a sign decides. Cages of edges have minima with zero, and exact coverage
+/// tests only signs in the fit.
+fn is_with_zero(setup: &FrameSetup, stage: Stage, class: OpClass) -> bool {
+    let options = &setup.options;
+    let is_exact = options.coverage.draws_outlines() && !options.coverage.blends();
+    match class {
+        _ if stage == RecordStage::OnePixel => false,
+        OpClass::MinMax => is_exact && options.cage == CageKind::Frame,
+        OpClass::Compare => is_exact && stage == RecordStage::QuadtreeFit,
+        _ => false,
+    }
+}
+
+/// The units of all stages, as far as a frame uses them. `setup`: of the light hardware.
 fn units(
     counter: &Counter,
     shifts: &ShiftProbe,
     cycles: &CycleReport,
+    setup: Option<&FrameSetup>,
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
     let mut area = DesignArea::default();
     let lanes = u64::from(hardware.lanes);
-    let cells = counter.cells();
-    let used: BTreeSet<(Stage, OpClass)> = cells.map(|cell| (cell.stage, cell.class)).collect();
+    let mut used = BTreeMap::<(Stage, OpClass), u32>::new();
+    for cell in counter.cells() {
+        let widest = used.entry((cell.stage, cell.class)).or_default();
+        *widest = cell.bits.max(*widest);
+    }
     let report_of = |stage: Stage| cycles.stages.iter().find(|of| of.stage == stage);
-    for (stage, class) in used {
+    for ((stage, class), widest) in used {
         let Some(unit) = hardware.unit(stage, class) else {
             continue;
         };
@@ -161,7 +255,11 @@ fn units(
                 lanes * u64::from(unit.count).min(most.max(1)),
             ),
         };
-        let kind = (operation, unit.width);
+        let operation = match setup {
+            Some(setup) if is_with_zero(setup, stage, class) => "and",
+            _ => operation,
+        };
+        let kind = (operation, unit.width.min(widest));
         area.units(stage.name(), kind, count, depth(&unit), prices)?;
     }
     let shift = operation_of(OpClass::Shift, ShiftUnits::Variable);
@@ -207,14 +305,17 @@ pub fn of_rays(
     prices: &Prices,
 ) -> Result<DesignArea, CostError> {
     let (counter, shifts, cycles) = (&cast.counter, &cast.shifts, &cast.cycles);
-    let mut area = units(counter, shifts, cycles, hardware, prices)?;
+    let mut area = units(counter, shifts, cycles, None, hardware, prices)?;
     let (word, wide) = (
         u64::from(cast.format.bits()),
         u64::from(cast.format.wide().bits()),
     );
     let lanes = u64::from(hardware.lanes);
     area.register_bits("sums of the rays", lanes * 6 * wide, prices)?;
-    area.memory("steps of the sums", lanes * cast.steps * 6 * wide, prices)?;
+    // A lane reads one sum at a time. Its contexts share a memory for their stacks.
+    let sums = (hardware.lanes, cast.format.wide().bits(), 1);
+    let bits = lanes * cast.steps * 6 * wide;
+    area.memory("steps of the sums", bits, sums, prices)?;
     let node = if hardware.organisation.bricks {
         64 + BRICK_BITS
     } else {
@@ -223,7 +324,8 @@ pub fn of_rays(
     let contexts = hardware.all_contexts() * (RAY_WORDS * word + RAY_BITS + node);
     area.register_bits("rays of the contexts", contexts, prices)?;
     let stacks = hardware.all_contexts() * 8 * rival.stack_bytes();
-    area.memory("stacks of rays", stacks, prices)?;
+    let shape = (hardware.lanes, rival.stack.entry_bits, rival.stack.ports);
+    area.memory("stacks of rays", stacks, shape, prices)?;
     if let Some(buffer) = &hardware.node_buffer {
         for _ in 0..hardware.lanes {
             area.cache("node buffer", buffer, prices)?;
@@ -239,7 +341,7 @@ fn caches(
 ) -> Result<DesignArea, CostError> {
     area.cache("node cache", &hardware.node_cache, prices)?;
     area.cache("attribute cache", &hardware.attribute_cache, prices)?;
-    area.finish(prices)
+    area.finish(hardware.built.is_some(), prices)
 }
 
 #[cfg(test)]
@@ -264,18 +366,21 @@ mod tests {
         let mut area = DesignArea::default();
         area.units("centre", ("add", 32), 3, 2, &prices).unwrap();
         area.register_bits("contexts", 20, &prices).unwrap();
-        area.memory("stack", 1000, &prices).unwrap();
-        area.memory("nothing", 0, &prices).unwrap();
-        let area = area.finish(&prices).unwrap();
+        area.memory("stack", 4096, (1, 64, 1), &prices).unwrap();
+        area.memory("nothing", 0, (1, 64, 1), &prices).unwrap();
+        let area = area.finish(false, &prices).unwrap();
         assert_eq!(area.memories.lines.len(), 1);
         for (found, expected) in [
             (area.units.total, 3.0 * 232.9),
             (area.registers.total, 6.0 * 128.0 + 3.0 * 32.0),
-            // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2: the middle.
-            (area.memories.total, 409.3),
+            // 64 words of 64 bits: cells, rows, columns, and the corner.
+            (
+                area.memories.total,
+                4096.0 * 0.4447 + 64.0 * 2.088 + 64.0 * 72.51 + 340.5,
+            ),
             // 20 % of 698.7 + 864, rounded.
             (area.control.total, 312.6),
-            (area.total, 698.7 + 864.0 + 409.3 + 312.6),
+            (area.total, 698.7 + 864.0 + 6936.3232 + 312.6),
         ] {
             assert!((found - expected).abs() < 1e-6, "{found}, {expected}");
         }

@@ -110,6 +110,7 @@ impl Rival {
                 record: RecordBits::default(),
             },
             node_buffer: self.node_buffer,
+            built: None,
             ..design.clone()
         }
     }
