@@ -1,7 +1,7 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame of `shiftvox model --vectors`. Writes pixels.txt, with +events events.txt, with +picture picture.png, and
-// prints the cycles. +most=N limits them, +states prints them per state, +wave=FILE writes a waveform.
+// Draws a frame of `shiftvox model --vectors`. Writes pixels.txt, with +events events.txt, with +picture picture.png,
+// and prints the cycles. +most=N limits them, +states prints them per state, +wave=FILE writes a waveform.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
                   NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;
@@ -35,7 +35,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
     .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; as attributes their numbers or, with +picture, their own
+  // ------------------------------------------------ memory: nodes; without +picture, attributes are their numbers
   reg [63:0] nodes [0:NODES-1], attributes [0:NODES-1];
   reg has_attributes;
   function [63:0] word(input [`NODE_BITS-1:0] node, input attribute);
