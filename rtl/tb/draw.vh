@@ -5,8 +5,8 @@ pixels = $fopen("pixels.txt");
 has_events = $test$plusargs("events");
 events = 0;
 if (has_events) events = $fopen("events.txt");
-if ($test$plusargs("wave")) begin
-  $dumpfile("frame.vcd");
+if ($value$plusargs("wave=%s", wave)) begin
+  $dumpfile(wave);
   $dumpvars(`WATCHED, dut);
 end
 most = 100_000_000;

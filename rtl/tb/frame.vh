@@ -1,6 +1,7 @@
 // Common to testbenches of frames: counts cycles and writes pixels.
 integer events, pixels, i, cycles, most, nothing;
 reg has_events;
+reg [8*32-1:0] wave;
 function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);
   place = ((1 << 2*level) - 1)/3 + (y << level) + x;
 endfunction
@@ -11,7 +12,7 @@ always @(posedge clk) if (busy & ~reset) begin
   cycles <= cycles + 1;
   if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
     pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
-  if (pixel && pixel_attribute != pixel_node) begin
+  if (pixel && pixel_attribute != `ATTRIBUTE(pixel_node)) begin
     $display("the attributes of node %0d came with a pixel of node %0d", pixel_attribute, pixel_node);
     $finish;
   end

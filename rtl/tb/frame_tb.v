@@ -1,14 +1,19 @@
 `include "widths.vh"
 `include "stage.vh"
-// Draws a frame of `shiftvox model --vectors`. Writes pixels.txt and, with +events, events.txt, and prints the cycles.
-// +most=N limits them, +states prints them per state, +wave (Icarus Verilog) writes frame.vcd.
+// Draws a frame of `shiftvox model --vectors`. Writes pixels.txt, with +events events.txt, with +picture picture.png,
+// and prints the cycles. +most=N limits them, +states prints them per state, +wave=FILE writes a waveform.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
                   NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;
   // Cycles from a request to the first word.
   localparam LATENCY = 50;
-  // Capacities of memory and stack.
-  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2;
+  // Capacities of memory and stack. Icarus Verilog clears memory slowly.
+`ifdef VERILATOR
+  localparam NODES = 1 << 22;
+`else
+  localparam NODES = 1 << 14;
+`endif
+  localparam STACK_LOG2 = `STACK_LOG2;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [7:0] constant_address = 0;
@@ -30,8 +35,12 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
     .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes, and their numbers as attributes
-  reg [63:0] nodes [0:NODES-1];
+  // ------------------------------------------------ memory: nodes; without +picture, attributes are their numbers
+  reg [63:0] nodes [0:NODES-1], attributes [0:NODES-1];
+  reg has_attributes;
+  function [63:0] word(input [`NODE_BITS-1:0] node, input attribute);
+    word = attribute & ~has_attributes ? node : node >= NODES ? 0 : attribute ? attributes[node] : nodes[node];
+  endfunction
   reg [W-1:0] constants [0:`CONSTANTS-1];
   integer wait_for, beat;
   reg of_attribute;
@@ -52,21 +61,27 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
       wait_for <= -1;
       beat <= 1;
       fill <= 1;
-      fill_word <= of_attribute ? at : at < NODES ? nodes[at] : 0;
+      fill_word <= word(at, of_attribute);
     end else if (beat < 8) begin
       beat <= beat + 1;
       fill <= 1;
-      fill_word <= of_attribute ? at + beat : at + beat < NODES ? nodes[at + beat] : 0;
+      fill_word <= word(at + beat, of_attribute);
     end
   end
 
   `define WALK dut
   `define TILE 0
   `define WATCHED 1
+  `define ATTRIBUTE(node) word(node, 1'b1)
   `include "tb/frame.vh"
+  `define BACKGROUND 24'heceff4
+  localparam SAMPLES = 1 << 2*PICTURE_LEVELS;
+  reg [23:0] picture [0:SAMPLES-1];
+  `include "tb/picture.vh"
   integer in_state [0:63];
   always @(posedge clk) if (busy) begin
     in_state[dut.state] <= in_state[dut.state] + 1;
+    if (pixel & has_attributes) picture[pixel_y*constants[5] + pixel_x] <= pixel_attribute[23:0];
     if (has_events) begin
       `include "tb/ports.vh"
     end
@@ -74,11 +89,17 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
 
   initial begin
     for (i = 0; i < 64; i = i + 1) in_state[i] = 0;
+    has_attributes = $test$plusargs("picture");
+    if (has_attributes) begin
+      $readmemh("frame.attributes.hex", attributes);
+      for (i = 0; i < SAMPLES; i = i + 1) picture[i] = `BACKGROUND;
+    end
     `include "tb/draw.vh"
     while (busy && cycles < most) @(posedge clk) #1;
     if ($test$plusargs("states"))
       for (i = 0; i < 64; i = i + 1)
         if (in_state[i] != 0) $display("state %0d: %0d", i, in_state[i]);
+    if (has_attributes & done & ~failed) put_picture(constants[5], constants[6]);
     if (done && !failed) $display("%0d cycles", cycles);
     else $display("failed: %s", done ? "the stack is full" : "no end");
     $finish;

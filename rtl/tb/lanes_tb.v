@@ -63,6 +63,7 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
   `define WALK dut.lane[lane].walk
   `define TILE (`WALK.tile_y_now << TILE_LEVELS | `WALK.tile_x_now)
   `define WATCHED 2
+  `define ATTRIBUTE(node) node
   `include "tb/frame.vh"
   genvar lane;
   generate

@@ -41,6 +41,8 @@ pub(super) fn write(
     };
     let request = Request {
         scene,
+        color: &graph.color,
+        normal: &graph.normal,
         records: args.files.vector_records,
         overflow: args.rules.overflow(),
         // Hardware that is not sequential has the paper's turns.

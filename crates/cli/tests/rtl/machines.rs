@@ -9,7 +9,7 @@ use serde_json::Value;
 use shiftvox::picture::npy::{self, Values};
 use tempfile::TempDir;
 
-use super::tools::{SHIFTVOX, each, rtl, run};
+use super::tools::{SHIFTVOX, rtl, run};
 
 /// A machine of `rtl/`.
 pub(crate) struct Machine {
@@ -108,16 +108,15 @@ impl Machine {
     }
 
     /// Makes the simulator for words of 32 bits and pictures up to 256 x 256, once, and returns its command.
-    fn simulator(&self) -> String {
+    pub(crate) fn simulator(&self) -> String {
         let folder = self.simulator.get_or_init(|| {
             let folder = tempfile::tempdir().unwrap();
-            let top = self.testbench();
-            let folders = each(self.folders(), |folder| format!(" -I{folder}"));
-            let parameters = each(self.parameters, |parameter| format!(" -G{parameter}"));
-            let line = "verilator --binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH -I.";
-            let into = format!("-o frame --Mdir {}", folder.path().display());
-            let line = format!("{line} {into} --top-module {top} tb/{top}.v{folders}{parameters}");
-            run(&rtl(), &line);
+            let file = folder.path().join("frame");
+            let (file, stage) = (file.display(), self.stage);
+            run(
+                &rtl(),
+                &format!("./verilate {file} {stage} {}", self.parameters),
+            );
             folder
         });
         folder.path().join("frame").display().to_string()

@@ -20,7 +20,7 @@ pub(crate) fn try_run(folder: &Path, line: &str) -> Result<String, String> {
     let mut words = line.split_whitespace();
     let mut command = Command::new(words.next().unwrap());
     let ran = command.args(words).current_dir(folder).output();
-    let needed = "the tests need iverilog, verilator and yosys";
+    let needed = "apt-get install iverilog verilator yosys";
     let ran = ran.unwrap_or_else(|error| panic!("{line}: {error}; {needed}"));
     let text = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
     match ran.status.success() {

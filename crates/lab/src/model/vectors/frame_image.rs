@@ -1,8 +1,8 @@
-//! Images for `$readmemh`: the constants and the nodes from which `rtl/` draws whole frames (`docs/rtl.md`).
+//! Images for `$readmemh`: the constants, nodes and attributes from which `rtl/` draws whole frames (`docs/rtl.md`).
 
 use std::fmt::Write;
 
-use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::graph::{GraphView, NodeLayout, PackedNormal};
 use shiftvox::machine::frame_registers;
 use shiftvox::project::FrameSetup;
 
@@ -10,6 +10,8 @@ use shiftvox::project::FrameSetup;
 pub(super) const CONSTANTS: &str = "frame.constants.hex";
 /// The file of nodes from number 0 on, one word of 64 bits per line. A brick has two words.
 pub(super) const NODES: &str = "frame.nodes.hex";
+/// The file of attributes from number 0 on, one word of 64 bits per line.
+pub(super) const ATTRIBUTES: &str = "frame.attributes.hex";
 
 /// The constants, each as wide as a word.
 pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> String {
@@ -61,4 +63,18 @@ pub(super) fn nodes(graph: &GraphView<'_>, layout: &NodeLayout) -> Option<String
         }
     }
     Some(text)
+}
+
+/// The nodes' colours and normals. A file without normals has none.
+pub(super) fn attributes(color: &[[u8; 3]], normal: &[PackedNormal]) -> String {
+    let mut text = String::from(
+        "// Attributes from number 0 on: normal << 24 | red << 16 | green << 8 | blue.\n",
+    );
+    let normals = normal.iter().chain(std::iter::repeat(&PackedNormal(0)));
+    for (&[red, green, blue], normal) in color.iter().zip(normals) {
+        let color = u32::from_be_bytes([0, red, green, blue]);
+        let word = u64::from(normal.0) << 24 | u64::from(color);
+        let _ = writeln!(text, "{word:016x}");
+    }
+    text
 }

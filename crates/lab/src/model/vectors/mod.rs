@@ -20,7 +20,7 @@ pub use folder::check_free;
 
 use recorder::Recorder;
 use shiftvox::frame::Frame;
-use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::graph::{GraphView, NodeLayout, PackedNormal};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup};
 use shiftvox::whole::{self, WholeError};
@@ -34,6 +34,9 @@ const DIRECTED_ROUNDS: u32 = 200;
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     pub scene: &'a str,
+    /// Of the nodes.
+    pub color: &'a [[u8; 3]],
+    pub normal: &'a [PackedNormal],
     /// Number of records, from the first. The object's first push is recorded, too.
     pub records: u64,
     pub overflow: Overflow,
@@ -94,6 +97,10 @@ pub fn write(
             (
                 frame_image::CONSTANTS,
                 frame_image::constants(setup, graph, &layout),
+            ),
+            (
+                frame_image::ATTRIBUTES,
+                frame_image::attributes(request.color, request.normal),
             ),
         ];
         files.extend(frame_image::nodes(graph, &layout).map(|nodes| (frame_image::NODES, nodes)));

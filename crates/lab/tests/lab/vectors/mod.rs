@@ -31,7 +31,14 @@ fn replay_folder(folder: &Path, missed: &mut Vec<Missed>) -> (BTreeMap<String, u
     assert_eq!(manifest["schema"], 6);
     let rules = Rules::new(&manifest);
     let text = |value: &Value| value.as_str().map(str::to_owned);
-    let mut files = BTreeSet::from(["manifest.json", "frame.constants.hex"].map(str::to_owned));
+    let mut files = BTreeSet::from(
+        [
+            "manifest.json",
+            "frame.constants.hex",
+            "frame.attributes.hex",
+        ]
+        .map(str::to_owned),
+    );
     files.extend(text(&manifest["turns"]["file"]));
     // A graph that lists its children has no file of nodes.
     let nodes = "frame.nodes.hex".to_owned();
@@ -153,6 +160,8 @@ fn written(
     let folder = shelter.path().join("vectors");
     let request = Request {
         scene: "a test",
+        color: &[],
+        normal: &[],
         overwrite: false,
         records,
         overflow: Overflow::Trap,

