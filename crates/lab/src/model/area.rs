@@ -17,7 +17,6 @@ use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, stack_bits};
-use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
 use super::record::context_bits;
 use crate::rival::{Cast, Rival};
@@ -126,7 +125,7 @@ pub fn light(
     area.register_bits("records of the contexts", contexts, prices)?;
     for (name, bits) in [
         ("record stack", stack_bits(hardware, record_bits)),
-        ("fill vectors", fill_store_bits(setup, hardware)),
+        ("fill vectors", counted.fill_bits),
         ("accumulators", accumulator_bits(setup)),
     ] {
         area.memory(name, bits, prices)?;

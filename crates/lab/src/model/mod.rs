@@ -3,6 +3,7 @@
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
 //! - [`cost`] and [`area`] price the counts.
 //! - [`verdict`] compares both at uncertain prices.
+//! - [`coherent`] draws first what the last frame showed.
 //! - [`clock`] compares units with the clock.
 //! - [`mod@floor`] is a bound for all designs.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
@@ -11,6 +12,7 @@
 
 pub mod area;
 pub mod clock;
+pub mod coherent;
 pub mod cost;
 pub mod design;
 pub mod explore;
@@ -46,4 +48,6 @@ pub enum ModelError {
     Hardware(#[from] HardwareError),
     #[error(transparent)]
     Cost(#[from] CostError),
+    #[error("time coherency needs {0}")]
+    Coherency(&'static str),
 }
