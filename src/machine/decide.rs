@@ -41,7 +41,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
     if !cube.solid {
         let (node, level) = (cube.node, cube.level);
         cube.solid = level >= c.depth || job.graph.mask(node) == 0;
-        if !is_read_late {
+        if !is_read_late && !cube.only_listed {
             read_node(dp, job, node, level);
         }
     }
@@ -69,7 +69,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
             canvas.counts.hidden_across_bisectors += 1;
         }
         Verdict::Subdivide => {
-            if is_read_late && !record.cube.solid {
+            if is_read_late && !record.cube.solid && !record.cube.only_listed {
                 dp.stage(RecordStage::OnePixel);
                 read_node(dp, job, record.cube.node, record.cube.level);
             }

@@ -15,7 +15,7 @@
 //! The machine defines the bits: every faster engine must draw the same. Every arithmetic step is a call on a
 //! [`Datapath`](hwmodel::Datapath), visible to a probe. Each file imports only files named before it:
 //!
-//! - data: `blocks`, `counters`, `cage`, `record`, `constants`;
+//! - data: `blocks`, `counters`, `cage`, `keys`, `record`, `listed`, `constants`;
 //! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`, `alpha`, `canvas`,
 //!   `undrawn`, `path`;
 //! - steps of the loop: `watch`, `state`, `decide`, `children`;
@@ -34,6 +34,8 @@ mod decide;
 mod engine;
 mod fill;
 mod instruments;
+mod keys;
+mod listed;
 mod parents;
 mod path;
 mod planes;
@@ -56,8 +58,9 @@ pub use engine::Machine;
 #[cfg(feature = "mutants")]
 pub use instruments::mutants;
 pub use instruments::{
-    Cage, Coordinates, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
+    Cage, Coordinates, Drawing, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
     Simulated, cages_along, narrowed, proven_widths,
 };
+pub use listed::Listed;
 pub use stages::{RecordStage, check_hardware};
 pub use state::MachineOptions;

@@ -1,5 +1,6 @@
 //! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack.
 
+use hwmodel::Probe;
 use hwmodel::cycles::{
     self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
     TurnProbe,
@@ -11,6 +12,7 @@ use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
+use crate::machine::listed::Listed;
 use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
@@ -26,6 +28,16 @@ pub struct Simulated {
     pub cycles: CycleReport,
     /// Without the stack's depth; at last the most tiles in progress at once, each with fill vectors on the chip.
     pub counts: Stats,
+}
+
+/// How the samples find the nearest voxel.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Drawing<'l> {
+    /// The first record that reaches a sample draws it.
+    #[default]
+    InOrder,
+    /// By keys (`keys.rs`), if there are nodes to draw first then in two passes: those, and everything.
+    ByKeys(Option<&'l Listed>),
 }
 
 pub type SimulateError = cycles::SimulationError<EngineError>;
@@ -46,10 +58,29 @@ impl Machine {
     ) -> Result<Simulated, SimulateError> {
         check_hardware(hardware).map_err(SimulateError::Hardware)?;
         let log = TurnLog::new(hardware);
+        let job = (graph, setup, Drawing::InOrder);
         let (simulated, _) = with_cage!(setup, L => {
-            self.simulate_as::<_, L>(graph, setup, frame, hardware, observer, log)
+            self.simulate_as::<_, L>(job, frame, hardware, observer, log)
         })?;
         Ok(simulated)
+    }
+
+    /// As [`Self::simulate`], with a probe, under the rule `exact` and on hardware that is not sequential. Keys need
+    /// words of three bits per level of the graph, and two.
+    pub fn simulate_drawing<P: Probe>(
+        &mut self,
+        (graph, setup, drawing): (&GraphView<'_>, &FrameSetup, Drawing<'_>),
+        frame: &mut Frame,
+        hardware: &Hardware,
+        probe: P,
+    ) -> Result<(Simulated, P), SimulateError> {
+        let mut observer = cycles::NoObserver;
+        let probes = (probe, TurnLog::new(hardware));
+        let (simulated, (probe, _)) = with_cage!(setup, L => {
+            let job = (graph, setup, drawing);
+            self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
+        })?;
+        Ok((simulated, probe))
     }
 
     /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording
@@ -69,15 +100,15 @@ impl Machine {
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {
-            self.simulate_as::<_, L>(graph, setup, frame, hardware, &mut observer, probes)
+            let job = (graph, setup, Drawing::InOrder);
+            self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
         })?;
         Ok(tape.finish())
     }
 
     fn simulate_as<P: TurnProbe, L: CageCoordinate>(
         &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
+        (graph, setup, drawing): (&GraphView<'_>, &FrameSetup, Drawing<'_>),
         frame: &mut Frame,
         hardware: &Hardware,
         observer: &mut dyn Observer,
@@ -89,7 +120,11 @@ impl Machine {
         };
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
-        let state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
+        let mut state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
+        if let Drawing::ByKeys(listed) = drawing {
+            state.canvas.fill.keep_keys().map_err(EngineError::from)?;
+            state.job.listed = listed;
+        }
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
             false => Vec::new(),
@@ -133,6 +168,8 @@ enum Work<L: CageCoordinate> {
     Parent(Parent<L>),
     /// A parent's path entry on the stack, and the parent's quadtree node.
     Path(PathEntry, QuadNode),
+    /// A tile after its first pass.
+    SecondPass(QuadNode),
 }
 
 /// A tile, and the walk that draws it.
@@ -176,7 +213,7 @@ const LAST_PLACE: u8 = 7;
 impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
         let quad = match &work {
-            Work::Tiles(quad) => *quad,
+            Work::Tiles(quad) | Work::SecondPass(quad) => *quad,
             Work::Record(record) => record.place.quad,
             Work::Parent(parent) => parent.record.place.quad,
             Work::Path(_, quad) => *quad,
@@ -213,6 +250,11 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             let Some(place) = self.state.traversal.watch.0.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
             };
+            // With keys, siblings need not wait for each other: all have one class.
+            let place = match self.state.canvas.fill.has_keys() {
+                true => FIRST_PLACE,
+                false => place,
+            };
             self.hand_over(Work::Record(record), place, children);
         }
     }
@@ -240,6 +282,16 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
         self.tiles.push(Tile::new(quad));
         self.switch_to(self.tiles.len() - 1);
+        let lists = self.state.job.listed.is_some();
+        self.begin_pass(quad, lists, children);
+        if lists {
+            self.hand_over(Work::SecondPass(quad), LAST_PLACE, children);
+        }
+    }
+
+    /// Begins a tile's traversal of the listed nodes or of all.
+    fn begin_pass(&mut self, quad: QuadNode, only_listed: bool, children: &mut Vec<Child>) {
+        self.state.job.only_listed = only_listed;
         match self.state.job.organisation.stack {
             StackHolds::Children => {
                 self.state.push_object(quad);
@@ -327,6 +379,7 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
             }
             Work::Parent(parent) => self.parent_turn(parent, children),
             Work::Path(entry, _) => self.path_turn(&entry, children),
+            Work::SecondPass(quad) => self.begin_pass(quad, false, children),
         }
         if !matches!(work, Work::Tiles(_)) {
             let tile = &mut self.tiles[tile];

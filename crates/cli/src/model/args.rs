@@ -7,6 +7,7 @@ use clap::Args;
 use hwmodel::cost::{CostTable, Estimator, Goal, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
+use super::coherent::CoherentArgs;
 use super::explore::args::ExploreArgs;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::error::CliError;
@@ -30,6 +31,8 @@ pub(crate) struct ModelArgs {
     pub(super) hardware: HardwareArgs,
     #[command(flatten)]
     pub(super) explore: ExploreArgs,
+    #[command(flatten)]
+    pub(super) coherent: CoherentArgs,
     #[command(flatten)]
     pub(super) files: FileArgs,
     #[command(flatten)]

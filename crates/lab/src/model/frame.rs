@@ -28,6 +28,8 @@ pub struct Counted {
     pub records: RecordProbe,
     pub stats: Stats,
     pub fields: Vec<RecordField>,
+    /// Bits of the fill vectors on the chip, or of what takes their place.
+    pub fill_bits: u64,
 }
 
 impl Counted {
@@ -62,7 +64,7 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
     }
 }
 
-fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
+pub(super) fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
         overflow,
         organisation,
@@ -71,7 +73,7 @@ fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
 }
 
 /// The set-up in the words that an organisation has.
-fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetup> {
+pub(super) fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetup> {
     match organisation.packed {
         true => Cow::Owned(narrowed(setup)),
         false => Cow::Borrowed(setup),
@@ -108,6 +110,7 @@ pub fn count(
         records,
         stats,
         fields: record_fields(setup, graph.len(), hardware.organisation),
+        fill_bits: fill_bits::fill_store_bits(setup, hardware),
     })
 }
 
@@ -140,7 +143,11 @@ pub fn simulate(
     Ok((frame, simulated))
 }
 
-fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) -> Hardware {
+pub(super) fn with_records(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+) -> Hardware {
     let mut hardware = hardware.clone();
     hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
     hardware

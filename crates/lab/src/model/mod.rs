@@ -3,6 +3,7 @@
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
 //! - [`cost`], [`area`] and [`standing`] price the counts; [`accelergy`] exchanges prices.
 //! - [`verdict`] compares both at uncertain prices.
+//! - [`coherent`] draws first what the last frame showed.
 //! - [`clock`] compares units with the clock.
 //! - [`mod@floor`] is a bound for all designs.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
@@ -12,6 +13,7 @@
 pub mod accelergy;
 pub mod area;
 pub mod clock;
+pub mod coherent;
 pub mod cost;
 pub mod design;
 pub mod explore;
@@ -48,4 +50,6 @@ pub enum ModelError {
     Hardware(#[from] HardwareError),
     #[error(transparent)]
     Cost(#[from] CostError),
+    #[error("time coherency needs {0}")]
+    Coherency(&'static str),
 }
