@@ -22,9 +22,9 @@ pub struct Attributes {
 /// ```
 /// use hwmodel::cost::{Attributes, CostTable, Estimator};
 ///
-/// let table = CostTable::load_shipped()?;
+/// let by: &dyn Estimator = &CostTable::load_shipped()?;
 /// let of = Attributes { width: 64, bytes: Some(8192), ..Attributes::default() };
-/// assert_eq!(table.energy("sram", "read", &of)?.value, 10.0);
+/// assert_eq!(by.energy("sram", "read", &of)?.value, 10.0);
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
 pub trait Estimator: Debug + Send + Sync {
