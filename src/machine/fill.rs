@@ -56,10 +56,6 @@ impl<'f> FillStore<'f> {
         Ok(())
     }
 
-    pub(super) fn has_keys(&self) -> bool {
-        self.keys.is_some()
-    }
-
     pub(super) fn set_key(&self, key: OrderKey) {
         self.key.set(key);
     }

@@ -36,8 +36,13 @@ pub enum Drawing<'l> {
     /// The first record that reaches a sample draws it.
     #[default]
     InOrder,
-    /// By keys (`keys.rs`), if there are nodes to draw first then in two passes: those, and everything.
-    ByKeys(Option<&'l Listed>),
+    /// By keys (`keys.rs`).
+    ByKeys {
+        /// Nodes to draw first, if there are two passes: those, and all.
+        listed: Option<&'l Listed>,
+        /// Whether children on the stack wait for no sibling.
+        in_any_order: bool,
+    },
 }
 
 pub type SimulateError = cycles::SimulationError<EngineError>;
@@ -121,10 +126,17 @@ impl Machine {
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
         let mut state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
-        if let Drawing::ByKeys(listed) = drawing {
-            state.canvas.fill.keep_keys().map_err(EngineError::from)?;
-            state.job.listed = listed;
-        }
+        let in_any_order = match drawing {
+            Drawing::InOrder => false,
+            Drawing::ByKeys {
+                listed,
+                in_any_order,
+            } => {
+                state.canvas.fill.keep_keys().map_err(EngineError::from)?;
+                state.job.listed = listed;
+                in_any_order
+            }
+        };
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
             false => Vec::new(),
@@ -139,6 +151,7 @@ impl Machine {
             most_open: 0,
             shown: 0,
             most_records: most_records(setup),
+            in_any_order,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let most_open = steps.most_open;
@@ -204,6 +217,7 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     /// The tile whose view is in place.
     shown: usize,
     most_records: u64,
+    in_any_order: bool,
 }
 
 /// Of a stored parent and of its child, of different classes.
@@ -250,10 +264,11 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             let Some(place) = self.state.traversal.watch.0.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
             };
-            // With keys, siblings need not wait for each other: all have one class.
-            let place = match self.state.canvas.fill.has_keys() {
-                true => FIRST_PLACE,
-                false => place,
+            // Children of one class do not wait for each other.
+            let place = if self.in_any_order {
+                FIRST_PLACE
+            } else {
+                place
             };
             self.hand_over(Work::Record(record), place, children);
         }

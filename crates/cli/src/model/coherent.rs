@@ -10,7 +10,7 @@ use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use shiftvox::project::{Camera, FrameSetup, SetupError};
-use shiftvox_lab::model::coherent::{Film, Sums, film};
+use shiftvox_lab::model::coherent::{Film, Sums, WAYS, film};
 use shiftvox_lab::quality::Motion;
 use shiftvox_lab::report::{Cell, Row, Table};
 
@@ -73,11 +73,7 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
         let setups = (0..=args.coherent.frames).map(setup);
         let setups = setups.collect::<Result<Vec<_>, _>>()?;
         let film = film(graph, &setups, &hardware, overflow, &prices)?;
-        for (drawing, sums) in [
-            ("in order", &film.in_order),
-            ("by keys", &film.by_keys),
-            ("list first", &film.list_first),
-        ] {
+        for (drawing, sums) in WAYS.into_iter().zip(&film.sums) {
             rows.push(row(path, drawing, &film, sums));
         }
         console.progress().advance(1);
@@ -98,7 +94,7 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
 fn row(path: &str, drawing: &str, film: &Film, sums: &Sums) -> Row {
     let frames = film.frames as f64;
     let mean = |sum: u64| Cell::Number(sum as f64 / frames, 0);
-    let ratio = |of: fn(&Sums) -> f64| Cell::Number(of(sums) / of(&film.in_order), 3);
+    let ratio = |of: fn(&Sums) -> f64| Cell::Number(of(sums) / of(&film.sums[0]), 3);
     let mut row = Row::default();
     row.put("path", Cell::Text(path.to_owned()));
     row.put("drawing", Cell::Text(drawing.to_owned()));

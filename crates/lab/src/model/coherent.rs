@@ -1,15 +1,17 @@
 //! Time coherency, the outlook of the image-order paper: "directly rendering voxels which were rendered in the last
-//! frame". Each frame of a film is drawn in three ways, and all must show the same picture.
+//! frame". Each frame of a film is drawn in several ways, and all must show the same picture.
 //!
 //! - *In order*, the machine as it is.
-//! - *By keys*: a sample holds its voxel's place in the order, and a pyramid of the largest places decides what is
-//!   occluded (`src/machine/keys.rs`), like the pyramid of a hierarchical Z-buffer. Records may come in any order.
-//! - *List first*: by keys in two passes, in a picture or in each of its tiles. The first pass descends from the root to the
-//!   listed nodes alone, since without a multiplier only its parent gives a node its vertices. The second one is
-//!   the whole traversal. A listed voxel is drawn early only if it is to be drawn in this frame, too.
+//! - *List first*, in two passes over a picture or over each of its tiles. The first pass descends from the root to the
+//!   listed nodes alone, since without a multiplier only its parent gives a node its vertices. The second one is the
+//!   whole traversal. A listed voxel is drawn early only if it is to be drawn in this frame, too. A sample holds its
+//!   voxel's place in the order, its key, and a pyramid of the largest keys decides what is occluded
+//!   (`src/machine/keys.rs`), like the pyramid of a hierarchical Z-buffer.
+//! - *In any order*, with a list and without. Keys also allow siblings to be drawn at the same time. Hardware with tiles
+//!   gains nothing by that, since a tile has one record at a time.
 //!
 //! The figures favour the list. Making, storing and reading it is free, and its nodes are not read from memory. All caches
-//! are empty when a frame begins, in all three ways.
+//! are empty when a frame begins, in all ways.
 
 use hwmodel::Memory;
 use hwmodel::Overflow;
@@ -44,15 +46,21 @@ pub struct Sums {
     pub differing_samples: u64,
 }
 
+pub const WAYS: [&str; 4] = [
+    "in order",
+    "list first",
+    "in any order",
+    "list first, in any order",
+];
+
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Film {
     /// Measured ones: the first frame only gives its list.
     pub frames: usize,
     /// Nodes on the lists, and those above.
     pub listed: u64,
-    pub in_order: Sums,
-    pub by_keys: Sums,
-    pub list_first: Sums,
+    /// By [`WAYS`].
+    pub sums: [Sums; 4],
 }
 
 /// Draws a film. Fails under other rules than `exact`, on sequential hardware, and if a key has too many bits.
@@ -66,9 +74,7 @@ pub fn film(
     let mut film = Film {
         frames: setups.len().saturating_sub(1),
         listed: 0,
-        in_order: Sums::default(),
-        by_keys: Sums::default(),
-        list_first: Sums::default(),
+        sums: Default::default(),
     };
     let mut last: Option<Listed> = None;
     for setup in setups {
@@ -78,14 +84,19 @@ pub fn film(
         let shown = Listed::of(&in_order.counted.frame, setup.depth);
         if let Some(list) = last.replace(shown) {
             film.listed += list.len() as u64;
-            let by_keys = run(Drawing::ByKeys(None))?;
-            let list_first = run(Drawing::ByKeys(Some(&list)))?;
-            for (sums, run) in [
-                (&mut film.in_order, &in_order),
-                (&mut film.by_keys, &by_keys),
-                (&mut film.list_first, &list_first),
-            ] {
-                run.add_to(sums, &in_order, graph, setup, prices)?;
+            let keys = |listed, in_any_order| Drawing::ByKeys {
+                listed,
+                in_any_order,
+            };
+            let others = [
+                keys(Some(&list), false),
+                keys(None, true),
+                keys(Some(&list), true),
+            ];
+            let [first, sums @ ..] = &mut film.sums;
+            in_order.add_to(first, &in_order, graph, setup, prices)?;
+            for (sums, drawing) in sums.iter_mut().zip(others) {
+                run(drawing)?.add_to(sums, &in_order, graph, setup, prices)?;
             }
         }
     }
@@ -105,7 +116,7 @@ fn check(setup: &FrameSetup, hardware: &Hardware) -> Result<(), ModelError> {
     Err(ModelError::Coherency(needs))
 }
 
-/// A frame in one of the three ways.
+/// A frame in one way.
 struct Run {
     counted: Counted,
     cycles: CycleReport,
@@ -127,7 +138,7 @@ impl Run {
         let mut fields = record_fields(setup, graph.len(), hardware.organisation);
         let mut fill_access_bits = fill_bits::fill_access_bits(setup, hardware.organisation);
         let mut fill_bits = fill_bits::fill_store_bits(setup, &hardware);
-        if let Drawing::ByKeys(_) = drawing {
+        if let Drawing::ByKeys { .. } = drawing {
             fill_access_bits = fill_bits::key_word_bits(setup);
             fill_bits = fill_bits::key_store_bits(setup, &hardware);
             // A parent's key is the beginning of its descendant's: an entry of a path needs none.
@@ -283,13 +294,20 @@ mod tests {
                 let mut serial = Frame::new(setup.width, setup.height, false);
                 let mut machine = Machine::default();
                 machine.render(&graph.view(), &setup, &mut serial).unwrap();
+                let keys = |listed, in_any_order| Drawing::ByKeys {
+                    listed,
+                    in_any_order,
+                };
+                let empty = Listed::default();
                 for (name, drawing) in [
                     ("in order", Drawing::InOrder),
-                    ("by keys", Drawing::ByKeys(None)),
-                    ("last", Drawing::ByKeys(Some(&last))),
-                    ("empty", Drawing::ByKeys(Some(&Listed::default()))),
-                    ("hidden", Drawing::ByKeys(Some(&hidden))),
-                    ("stranger", Drawing::ByKeys(Some(&stranger))),
+                    ("in any order", keys(None, true)),
+                    ("last", keys(Some(&last), false)),
+                    ("last, in any order", keys(Some(&last), true)),
+                    ("empty", keys(Some(&empty), false)),
+                    ("hidden", keys(Some(&hidden), false)),
+                    ("hidden, in any order", keys(Some(&hidden), true)),
+                    ("stranger", keys(Some(&stranger), true)),
                 ] {
                     for design in ["light", "paper"] {
                         let hardware = Hardware::preset(design).unwrap();
@@ -317,7 +335,7 @@ mod tests {
         let hardware = Hardware::preset("light").unwrap();
         let prices = Prices::shipped().unwrap();
         let film = film(&graph, &setups[..2], &hardware, Overflow::Trap, &prices).unwrap();
-        let (normal, keys, first) = (film.in_order, film.by_keys, film.list_first);
+        let [normal, first, keys, _] = film.sums;
         assert_eq!(film.frames, 1);
         // In tiles, one by one, keys change no decision.
         assert_eq!(keys.records, normal.records);
