@@ -177,7 +177,10 @@ impl<'f> FillStore<'f> {
     #[inline(always)]
     pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
         dp.stage(RecordStage::FillUpdate);
-        if let Some(mut keys) = self.keys.take() {
+        // Tested first, since a move of nothing costs as much as one of keys.
+        if self.keys.is_some()
+            && let Some(mut keys) = self.keys.take()
+        {
             keys.claim(dp, sample, self.key.get(), |dp, word| {
                 self.latch(word, |address| dp.read(Memory::FillVector, address));
                 dp.write(Memory::FillVector, word.address() as u64);
