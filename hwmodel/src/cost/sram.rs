@@ -58,7 +58,13 @@ impl CostTable {
                 let bits = shape.words as f64 * f64::from(shape.width);
                 weights.extend(of.iter().map(|row| (row, copies * times / bits)));
             }
-            Ok(cost(Quantity::Nand2, "sram_*", None, &weights, Fit::Interpolated))
+            Ok(cost(
+                Quantity::Nand2,
+                "sram_*",
+                None,
+                &weights,
+                Fit::Interpolated,
+            ))
         };
         let mut sram = of_rows(shape.words as f64, f64::from(shape.width))?;
         let mut fold = 2;
@@ -75,7 +81,15 @@ impl CostTable {
         if in_registers < sram.value {
             let register = self.area("register", 8, goal)?;
             let [value, low, high] = [in_registers; 3];
-            return Ok(("register", Cost { value, low, high, ..register }));
+            return Ok((
+                "register",
+                Cost {
+                    value,
+                    low,
+                    high,
+                    ..register
+                },
+            ));
         }
         Ok(("sram", sram))
     }

@@ -2,7 +2,8 @@
 
 use crate::common::at;
 use hwmodel::cost::{
-    Cost, CostError, CostTable, Fit, Goal, MemoryShape, ShiftUnits, Store, energy_of, memory_energy_of,
+    Cost, CostError, CostTable, Fit, Goal, MemoryShape, ShiftUnits, Store, energy_of,
+    memory_energy_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;

@@ -97,7 +97,11 @@ impl Machine {
     /// The model's report of a view, by default of words of 32 bits, with more flags that may name files in this folder.
     pub(crate) fn model(&self, folder: &Path, view: &str, flags: &str) -> Value {
         fs::write(folder.join("hardware.toml"), self.hardware()).unwrap();
-        let bits = if flags.contains("--bits") { "" } else { "--bits 32" };
+        let bits = if flags.contains("--bits") {
+            ""
+        } else {
+            "--bits 32"
+        };
         let line = format!("model {view} {} {bits} --hw hardware.toml", self.rules());
         let report = run(folder, &format!("{SHIFTVOX} {line} --json {flags}"));
         serde_json::from_str(&report).unwrap()

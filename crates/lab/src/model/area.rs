@@ -163,7 +163,11 @@ pub fn light(
     let ports = |ports: u32| if hardware.sequential { 1 } else { ports };
     let stack = (hardware.lanes, record_bits, ports(hardware.stack.ports));
     let fill = &hardware.fill_vectors;
-    let of_tiles = if hardware.hands_out_tiles() { hardware.lanes } else { 1 };
+    let of_tiles = if hardware.hands_out_tiles() {
+        hardware.lanes
+    } else {
+        1
+    };
     let fill = (
         fill.banks * of_tiles,
         fill_access_bits(setup, hardware.organisation),
@@ -172,7 +176,11 @@ pub fn light(
     for (name, bits, shape) in [
         ("record stack", stack_bits(hardware, record_bits), stack),
         ("fill vectors", fill_store_bits(setup, hardware), fill),
-        ("accumulators", accumulator_bits(setup), (1, ACCUMULATOR_BITS, 1)),
+        (
+            "accumulators",
+            accumulator_bits(setup),
+            (1, ACCUMULATOR_BITS, 1),
+        ),
     ] {
         area.memory(name, bits, shape, prices)?;
     }
@@ -193,7 +201,8 @@ fn built(
         for (operation, sizes) in units {
             for (size, &count) in sizes {
                 let kind = (operation.as_str(), size.bits(format, levels));
-                area.units(stage.name(), kind, u64::from(lanes * count), 0, prices)?;
+                let count = u64::from(lanes) * u64::from(count);
+                area.units(stage.name(), kind, count, 0, prices)?;
             }
         }
     }
@@ -364,7 +373,10 @@ mod tests {
             (area.units.total, 3.0 * 232.9),
             (area.registers.total, 6.0 * 128.0 + 3.0 * 32.0),
             // 64 words of 64 bits: cells, rows, columns, and the corner.
-            (area.memories.total, 4096.0 * 0.4447 + 64.0 * 2.088 + 64.0 * 72.51 + 340.5),
+            (
+                area.memories.total,
+                4096.0 * 0.4447 + 64.0 * 2.088 + 64.0 * 72.51 + 340.5,
+            ),
             // 20 % of 698.7 + 864, rounded.
             (area.control.total, 312.6),
             (area.total, 698.7 + 864.0 + 6936.3232 + 312.6),
