@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Format;
 
-/// What hardware consists of beside memories and control, for its area. Where steps share no units, as in a state machine,
+/// Parts of hardware beside memories and control, for its area. Where steps share no units, as in a state machine,
 /// the units of the cycle model are too few or too many.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -203,7 +203,8 @@ fn built(
         for (operation, sizes) in units {
             for (size, &count) in sizes {
                 let kind = (operation.as_str(), size.bits(format, levels));
-                area.units(&stage, kind, u64::from(lanes * count), 0, prices)?;
+                let count = u64::from(lanes) * u64::from(count);
+                area.units(&stage, kind, count, 0, prices)?;
             }
         }
     }
