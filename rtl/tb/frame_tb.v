@@ -35,7 +35,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
     .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
 
-  // ------------------------------------------------ memory: nodes; without +picture, attributes are their numbers
+  // ------------------------------------------------ memory: nodes and attributes, or numbers in their place
   reg [63:0] nodes [0:NODES-1], attributes [0:NODES-1];
   reg has_attributes;
   function [63:0] word(input [`NODE_BITS-1:0] node, input attribute);
