@@ -6,17 +6,21 @@ use hwmodel::cycles::CycleReport;
 use super::area::DesignArea;
 use super::cost::{FrameCost, Prices};
 
-/// The parts of a design that leak or are clocked.
+/// The parts of a design that leak or are clocked. A small memory is registers.
 pub fn standing(area: &DesignArea) -> Standing {
-    let bits = |width: u32, times: u64| u64::from(width) * times;
     let memories = area.memories.lines.iter();
+    let (small, memories): (Vec<_>, Vec<_>) = memories.partition(|of| of.operation == "register");
+    let small_nand2: f64 = small.iter().map(|of| of.total).sum();
+    let small_bits: u64 = small.iter().map(|of| of.times).sum();
     let registers = area.registers.lines.iter();
+    let bits: u64 = registers.map(|of| u64::from(of.width) * of.times).sum();
     Standing {
-        logic_nand2: area.units.total + area.registers.total + area.control.total,
+        logic_nand2: area.units.total + area.registers.total + area.control.total + small_nand2,
         memories: memories
-            .map(|of| (of.name.clone(), bits(of.width, of.times)))
+            .iter()
+            .map(|of| (of.name.clone(), of.times))
             .collect(),
-        register_bits: registers.map(|of| bits(of.width, of.times)).sum(),
+        register_bits: bits + small_bits,
     }
 }
 
@@ -59,16 +63,20 @@ mod tests {
         area.registers
             .push("pipeline", "register", 8, 4, each("register", 8));
         area.memories
-            .push("stack", "sram_bit", 1, 1000, each("sram_bit", 1));
+            .push("stack", "sram", 64, 1000, each("add", 32));
+        area.memories
+            .push("small", "register", 8, 5, each("invert", 1));
         area.control
             .push("control", "control", 1, 594, each("control", 1));
         let parts = standing(&area);
-        assert!((parts.logic_nand2 - (465.8 + 128.0 + 118.8)).abs() < 1e-9);
+        let small = 5.0 * each("invert", 1).value;
+        assert!((parts.logic_nand2 - (465.8 + 128.0 + 118.8 + small)).abs() < 1e-9);
         assert_eq!(parts.memories, [("stack".to_owned(), 1000)]);
-        assert_eq!(parts.register_bits, 32);
-        // Seven microseconds: 14 fJ of 713 gates, 8.15 fJ of 1000 bits.
+        assert_eq!(parts.register_bits, 32 + 5);
+        // Seven microseconds: 14 fJ of a gate, 8.15 fJ of a bit.
+        let gates = parts.logic_nand2.round();
         let leakage = parts.leakage(1400, 200.0, &table).unwrap();
-        assert!((leakage.total - 7.0 * (0.014 * 713.0 + 0.00815 * 1000.0)).abs() < 1e-9);
+        assert!((leakage.total - 7.0 * (0.014 * gates + 0.00815 * 1000.0)).abs() < 1e-9);
         assert_eq!(leakage.lines.len(), 2);
     }
 }
