@@ -25,7 +25,7 @@ pub(super) struct FillStore<'f> {
     vectors: &'f mut FillVectors,
     is_joined: bool,
     latched: Cell<u64>,
-    /// Instead of what the vectors gain, in frames that are not drawn in order.
+    /// In frames that are not drawn in order: the drawn samples, which the vectors then leave out.
     keys: Option<Keys>,
     /// Of the record at work.
     key: Cell<OrderKey>,

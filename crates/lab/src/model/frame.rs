@@ -28,7 +28,7 @@ pub struct Counted {
     pub records: RecordProbe,
     pub stats: Stats,
     pub fields: Vec<RecordField>,
-    /// Bits of the fill vectors on the chip, or of what takes their place.
+    /// Bits of the fill vectors on the chip, or of the keys in their place.
     pub fill_bits: u64,
 }
 
