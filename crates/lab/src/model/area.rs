@@ -313,7 +313,7 @@ pub fn of_rays(
     );
     let lanes = u64::from(hardware.lanes);
     area.register_bits("sums of the rays", lanes * 6 * wide, prices)?;
-    // A lane reads one sum at a time. Its contexts share a memory for their stacks.
+    // A lane reads one sum at a time, and its contexts share a memory for their stacks. Both favour the ray caster.
     let sums = (hardware.lanes, cast.format.wide().bits(), 1);
     let bits = lanes * cast.steps * 6 * wide;
     area.memory("steps of the sums", bits, sums, prices)?;
