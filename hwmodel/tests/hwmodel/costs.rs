@@ -122,7 +122,7 @@ fn memories_by_shape() {
             ports,
         };
         let (operation, each) = table.memory_area(shape, Goal::Area).unwrap();
-        assert!(each.derived && each.source.contains("IHP") || operation == "register");
+        assert!(each.derived && each.source.contains("-port macros") || operation == "register");
         (operation, each.value * words as f64 * f64::from(width))
     };
     for (words, width, ports, square_micrometres, within) in [

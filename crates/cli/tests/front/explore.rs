@@ -61,8 +61,8 @@ const SAME: &str = "
     operations_pj             cost/operations/total
     floor_pj                  floor/energy_pj
     area_nand2                area/total
-    verdict/median            comparison/4/median
-    verdict/p_light_less      comparison/4/p_light_less
+    verdict/median            comparison/6/median
+    verdict/p_light_less      comparison/6/p_light_less
     ray_caster/cycles         ray_caster/cycles/cycles
     ray_caster/area_nand2     ray_caster/area/total
 ";
@@ -102,7 +102,7 @@ fn assert_as_alone(folder: &Folder, points: &[Value]) {
             (found, &alone),
             (&found["ray_caster"], &alone["ray_caster"]),
         ] {
-            let parts = ["operations", "on_chip", "outer"];
+            let parts = ["operations", "on_chip", "leakage", "clock", "outer"];
             let parts = parts.map(|of| figure(model, &format!("cost/{of}/total")));
             let sum = parts.iter().fold(0.0, |sum, part| sum + part);
             assert_eq!(found["energy_pj"], sum, "{found}");

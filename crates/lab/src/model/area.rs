@@ -381,7 +381,7 @@ mod tests {
             ),
             // 20 % of 698.7 + 864, rounded.
             (area.control.total, 312.6),
-            (area.total, 698.7 + 864.0 + 6936.3232 + 312.6),
+            (area.total, 698.7 + 864.0 + 6936.2632 + 312.6),
         ] {
             assert!((found - expected).abs() < 1e-6, "{found}, {expected}");
         }

@@ -33,7 +33,7 @@ impl LightDesign {
         let area = area::light(counted, cycles, setup, hardware, prices)?;
         let cost = cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?;
         Ok(Self {
-            cost: cost.whole(LIGHT, &area, cycles, prices)?,
+            cost: cost.whole(LIGHT, &area, (cycles.cycles, hardware.clock_mhz), prices)?,
             area,
             clock: clock::check(&counted.counter, hardware, prices)?,
         })

@@ -73,7 +73,12 @@ pub fn price(
         rival: rival.clone(),
         records: cycles.records,
         operations: counter.ops(),
-        cost: cost.whole(RAY_CASTER, &area, cycles, prices)?,
+        cost: cost.whole(
+            RAY_CASTER,
+            &area,
+            (cycles.cycles, hardware.clock_mhz),
+            prices,
+        )?,
         cycles: cycles.clone(),
         area,
         error: frame::error(&cast.frame, exact),

@@ -1,7 +1,6 @@
 //! Leakage and the clock of a whole design, by its area and cycles.
 
 use hwmodel::cost::{CostError, Standing};
-use hwmodel::cycles::CycleReport;
 
 use super::area::DesignArea;
 use super::cost::{FrameCost, Prices};
@@ -31,7 +30,7 @@ impl FrameCost {
         mut self,
         design: &str,
         area: &DesignArea,
-        cycles: &CycleReport,
+        (cycles, clock_mhz): (u64, f64),
         prices: &Prices,
     ) -> Result<Self, CostError> {
         if let Some(by) = &prices.estimator {
@@ -41,8 +40,8 @@ impl FrameCost {
         }
         let parts = standing(area);
         let table = &prices.table;
-        self.leakage = parts.leakage(cycles.cycles, cycles.clock_mhz, table)?;
-        self.clock = parts.clock(cycles.cycles, table)?;
+        self.leakage = parts.leakage(cycles, clock_mhz, table)?;
+        self.clock = parts.clock(cycles, table)?;
         Ok(self)
     }
 }
