@@ -176,7 +176,7 @@ pub fn light(
     );
     for (name, bits, shape) in [
         ("record stack", stack_bits(hardware, record_bits), stack),
-        ("fill vectors", counted.fill_bits, fill),
+        ("fill vectors", counted.fill_bits(setup, hardware), fill),
         (
             "accumulators",
             accumulator_bits(setup),

@@ -176,7 +176,7 @@ impl Run {
                 records,
                 stats: simulated.counts,
                 fields,
-                fill_bits,
+                keyed_fill_bits: Some(fill_bits),
             },
             cycles: simulated.cycles,
             hardware,

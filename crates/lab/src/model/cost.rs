@@ -139,7 +139,9 @@ pub fn frame_cost(
         Memory::Stack => bytes(stack),
         Memory::Node => bytes(8 * u64::from(hardware.node_cache.bytes)),
         Memory::Attribute => bytes(8 * u64::from(hardware.attribute_cache.bytes)),
-        Memory::FillVector => bytes(counted.fill_bits / u64::from(hardware.fill_vectors.banks)),
+        Memory::FillVector => {
+            bytes(counted.fill_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks))
+        }
         Memory::Pixel => Store::Dram,
         // As many as samples, on the chip: neighbours come again and again.
         Memory::Accumulator => bytes(accumulator_bits(setup)),
