@@ -60,7 +60,7 @@ fn one_command_writes_a_waveform() {
         ("no.vox -o other", 4, "no.vox"),
         ("gen:menger --size 300 -o other", 2, "256 x 256"),
         ("gen:menger --stage d", 2, "no stage"),
-        ("gen:menger --size", 2, "--size"),
+        ("gen:menger -o other --size", 2, "--size"),
         ("gen:menger --no -o other", 2, "--no"),
     ] {
         let output = simulate(folder, None, flags);
