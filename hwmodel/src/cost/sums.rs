@@ -100,7 +100,7 @@ impl Breakdown {
     }
 }
 
-/// Operations added up. `priced` gives the operation of the table that prices a cell, and how many it stands for.
+/// Operations added up. For a cell, `priced` returns an operation of the table and its number.
 pub fn tallies(counter: &Counter, priced: impl Fn(&OpCount) -> (&'static str, u64)) -> Vec<Tally> {
     let mut sums = BTreeMap::<(&str, u32), u64>::new();
     for cell in counter.cells() {
