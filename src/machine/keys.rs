@@ -101,7 +101,8 @@ impl Keys {
         })
     }
 
-    /// Gives a sample to the voxel with this key, nearer than the voxel that had it. `access` reports the read and the write of one word.
+    /// Gives a sample to the voxel with this key, nearer than the voxel that had it. `access` reports the read and the write
+    /// of one word.
     pub(super) fn claim<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,

@@ -24,6 +24,7 @@ use serde::Serialize;
 use super::ModelError;
 use super::area;
 use super::cost::{self, Prices};
+use super::design::LIGHT;
 use super::fill_bits;
 use super::frame::{self, Counted};
 use super::record::{FieldPresence, RecordField, record_fields};
@@ -198,14 +199,16 @@ impl Run {
         widths.stack_bits = counted.record_bits();
         widths.fill_vector_bits = self.fill_access_bits;
         let cost = cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?;
-        let area = area::light(counted, cycles, setup, hardware, prices)?.total;
+        let area = area::light(counted, cycles, setup, hardware, prices)?;
+        let time = (cycles.cycles, hardware.clock_mhz);
+        let cost = cost.whole(LIGHT, &area, time, prices)?;
         sums.records += counted.counter.records();
         sums.node_reads += counted.counter.reads(Memory::Node);
         sums.node_misses += cycles.node_cache.misses;
         sums.cycles += cycles.cycles;
         // From pJ.
         sums.energy_uj += cost.total() * 1e-6;
-        sums.area = sums.area.max(area);
+        sums.area = sums.area.max(area.total);
         let (ours, theirs) = (&counted.frame, &in_order.counted.frame);
         let samples = ours.node.iter().zip(&ours.voxel);
         let differ = samples.zip(theirs.node.iter().zip(&theirs.voxel));
