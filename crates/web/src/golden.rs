@@ -13,12 +13,32 @@ use shiftvox::Coverage;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{BuildOptions, Builder, Graph, GraphView, Normals, Opacity, Silent};
-use shiftvox::machine::Machine;
+use shiftvox::machine::{Machine, RecordStage};
 use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions as Options};
 use shiftvox::rays::Rays;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{NoMeshes, OpenOptions, open_bytes};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128_with_seed};
+
+/// The stages in the order in which the identity has their counts.
+const STAGES: [RecordStage; RecordStage::ALL.len()] = {
+    use RecordStage::*;
+    [
+        Pop,
+        Filled,
+        OnePixel,
+        Centre,
+        Order,
+        VertexPool,
+        ChildBox,
+        QuadtreeFit,
+        Push,
+        Draw,
+        FillUpdate,
+        ToScreen,
+        Blend,
+    ]
+};
 
 /// The rows, with the recorded hashes of random frames.
 pub const ROWS: &str = include_str!("golden.txt");
@@ -72,8 +92,11 @@ fn draw_row(row: &str, used: &mut Machine) -> String {
     assert!(drawn * 30 > all, "{drawn} of {all} drawn: {row}");
     let inputs = &row[..=row.rfind('|').expect("cells")];
     let counts = counter.map_or(String::new(), |counter| {
-        let cells: Vec<_> = counter.cells().collect();
-        let accesses: Vec<_> = counter.accesses().collect();
+        let mut cells: Vec<_> = counter.cells().collect();
+        let mut accesses: Vec<_> = counter.accesses().collect();
+        let place = |stage| STAGES.iter().position(|&of| stage == of);
+        cells.sort_by_key(|of| (of.bits, of.level, place(of.stage)));
+        accesses.sort_by_key(|of| (of.level, place(of.stage)));
         let text = format!("{cells:?} {accesses:?}");
         format!(" {:016x}", xxh3_64(text.as_bytes()))
     });
