@@ -144,8 +144,9 @@ fn figures_are_those_of_the_model() {
     let operations: u64 = operations.map(|row| row["times"].as_u64().unwrap()).sum();
     assert_eq!(figures["operations"], operations);
     assert_eq!(figures["cycles"], model["simulated"]["cycles"]["cycles"]);
-    let part = |name: &str| model["cost"][name]["total"].as_f64().unwrap();
-    let energy = 1e-6 * (part("operations") + part("on_chip") + part("outer"));
+    let parts = ["operations", "on_chip", "outer", "leakage", "clock"];
+    let energy = parts.map(|part| model["cost"][part]["total"].as_f64().unwrap());
+    let energy = 1e-6 * energy.iter().sum::<f64>();
     assert!((figures["energy_uj"].as_f64().unwrap() / energy - 1.0).abs() < 1e-9);
     assert!(figures["records"].as_u64().unwrap() > 1000, "{figures}");
 }
