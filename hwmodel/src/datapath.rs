@@ -384,6 +384,15 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
+    /// Counts an operation of `bits` bits on counters of control logic, such as a level: gates of their own, for which no
+    /// unit's issue waits.
+    #[inline(always)]
+    pub fn control(&mut self, class: OpClass, bits: u32) {
+        if P::ENABLED {
+            self.probe.op_on(Operand::Control, class, bits, self.place);
+        }
+    }
+
     /// `2 a + bit`, as in a quotient register: wires.
     #[inline(always)]
     pub fn shift_in(&mut self, a: Word, bit: bool) -> Word {

@@ -67,6 +67,8 @@ pub enum Operand {
     WideCarry,
     /// A constant number of bits.
     Short,
+    /// A counter of control logic, which no unit's issue waits for.
+    Control,
     Other,
 }
 

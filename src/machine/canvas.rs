@@ -7,6 +7,7 @@ use super::alpha::BlendColor;
 use super::blocks::{ADDRESS_BITS, Port};
 use super::counters::Counts;
 use super::fill::FillStore;
+use super::levels;
 use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
 use crate::frame::{Frame, QuadNode};
@@ -102,12 +103,13 @@ impl Canvas<'_> {
     }
 
     fn draw_all<P: Probe>(&mut self, dp: &mut Datapath<P>, quad: QuadNode, paint: &Paint) {
-        if quad.level == self.fill.levels() {
+        if levels::reaches(dp, quad.level, self.fill.levels()) {
             self.draw(dp, quad, paint);
             return;
         }
         for quadrant in self.open_quadrants(dp, quad) {
             dp.next_step(0);
+            levels::next(dp, quad.level);
             self.draw_all(dp, quad.quadrant(quadrant), paint);
         }
     }
@@ -135,7 +137,7 @@ impl Canvas<'_> {
         is_found: &mut impl FnMut(&mut Self, &mut Datapath<P>, QuadNode) -> bool,
     ) -> Result<(), u32> {
         dp.stage(RecordStage::Draw);
-        let below = self.fill.levels() - quad.level;
+        let below = levels::above(dp, quad.level, self.fill.levels());
         let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {
             Cover::None => {}
@@ -149,6 +151,7 @@ impl Canvas<'_> {
                 for quadrant in self.open_quadrants(dp, quad) {
                     // Hardware has the planes of one node, and restores them one level at a time.
                     dp.next_step(divided - quad.level);
+                    levels::next(dp, quad.level);
                     let inner = silhouette.in_quadrant(dp, quadrant);
                     dp.next_step(0);
                     match self.find(dp, quad.quadrant(quadrant), inner, is_found) {

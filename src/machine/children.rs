@@ -11,6 +11,7 @@ use super::canvas::Canvas;
 use super::constants::Constants;
 use super::counters::Counts;
 use super::keys::OrderKey;
+use super::levels;
 use super::planes;
 use super::record::{Child, Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use super::smallest_node;
@@ -281,7 +282,7 @@ pub(super) fn child_cube<P: Probe>(
         &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
         &(min, max),
     );
-    let level = parent.level + 1;
+    let level = levels::next(dp, parent.level);
     Some(Cube {
         min,
         max,

@@ -1,7 +1,7 @@
 //! The drawing rules (`SPEC.md`, R7, and R10, termination): a record is drawn, dropped or subdivided.
 
 use crate::machine::stages::RecordStage;
-use hwmodel::{Datapath, Memory, Probe, Short};
+use hwmodel::{Datapath, Memory, OpClass, Probe, Short};
 
 use super::alpha::BlendColor;
 use super::blocks::{ADDRESS_BITS, Block, Port};
@@ -9,6 +9,7 @@ use super::cage::CageCoordinate;
 use super::canvas::{Canvas, Paint};
 use super::constants::Constants;
 use super::counters::Counts;
+use super::levels;
 use super::planes::Silhouette;
 use super::record::{Clip, ImagePlace, Pose, Record};
 use super::size;
@@ -40,7 +41,9 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
     let is_read_late = job.layout.leaf_masks;
     if !cube.solid {
         let (node, level) = (cube.node, cube.level);
-        cube.solid = level >= c.depth || job.graph.mask(node) == 0;
+        // The eight bits of the mask are one gate.
+        dp.control(OpClass::Logic, 8);
+        cube.solid = levels::reaches(dp, level, c.depth) || job.graph.mask(node) == 0;
         if !is_read_late && !cube.only_listed {
             read_node(dp, job, node, level);
         }
@@ -202,7 +205,7 @@ fn verdict<P: Probe, L: CageCoordinate>(
             record.cube.solid && !crosses_near(dp, c, record) && is_at_most_a_sample(dp, c, record)
         }
     };
-    let is_last = record.cube.level >= c.level_bound;
+    let is_last = levels::reaches(dp, record.cube.level, c.level_bound);
     // Rounded screen positions cannot separate its vertices.
     let mut is_least = || match &record.pose {
         Pose::Clip(..) => false,
@@ -249,7 +252,7 @@ fn is_hidden<P: Probe, L: CageCoordinate>(
         && if job.organisation.hidden_unread {
             !is_seen(dp, c, canvas, record)
         } else {
-            record.place.quad.level < c.levels
+            !levels::reaches(dp, record.place.quad.level, c.levels)
                 && !crosses_near(dp, c, record)
                 && is_at_most_a_sample(dp, c, record)
                 && first_undrawn(dp, c, &canvas.fill, record).is_none()
@@ -295,7 +298,7 @@ fn is_in_one_sample<P: Probe, L: CageCoordinate>(
     c: &Constants,
     record: &Record<L>,
 ) -> bool {
-    let one = record.place.quad.level == c.levels && record.place.inside;
+    let one = levels::reaches(dp, record.place.quad.level, c.levels) && record.place.inside;
     if !one || crosses_near(dp, c, record) {
         return false;
     }
@@ -345,7 +348,7 @@ fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
 ) -> bool {
     match &record.pose {
         Pose::Clip(clip, _) => {
-            let below = c.levels - record.place.quad.level;
+            let below = levels::above(dp, record.place.quad.level, c.levels);
             size::clip_at_most(dp, clip, &c.size_limit, below)
         }
         Pose::Screen(screen) => size::screen_at_most(dp, screen, c.size_limit_screen),

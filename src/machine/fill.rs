@@ -11,6 +11,7 @@ use hwmodel::{Datapath, Memory, Probe, Short};
 
 use super::blocks::{Block, Port};
 use super::keys::{self, Keys, OrderKey};
+use super::levels;
 use super::quadrants::only;
 use crate::budget::Shortage;
 use crate::frame::quadtree::FULL;
@@ -113,7 +114,7 @@ impl<'f> FillStore<'f> {
             let at_most = |a, b| keys::at_most(dp, a, b);
             return self.vectors.vector(node) | keys.vector(node, self.key.get(), at_most);
         }
-        if self.is_in_word(node) {
+        if self.is_in_word(dp, node) {
             self.read_word(dp, node);
         } else {
             self.read_vector(dp, node);
@@ -189,7 +190,7 @@ impl<'f> FillStore<'f> {
             return;
         }
         let (mut quad, mut bits) = (sample, FULL);
-        if self.is_in_word(sample) {
+        if self.is_in_word(dp, sample) {
             match self.mark_in_word(dp, sample) {
                 Some(above) => (quad, bits) = above,
                 None => return,
@@ -208,11 +209,12 @@ impl<'f> FillStore<'f> {
             );
             let written = Short::unsigned(vector, 4);
             Port::FillWrite.tap(dp, quad.address() as u64, &written);
-            if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
+            let is_root = !levels::reaches(dp, quad.level, 1);
+            if dp.and_bits(4, vector, FULL) != FULL || is_root {
                 break;
             }
             bits = 1 << quad.in_parent();
-            quad = quad.ancestor(quad.level - 1);
+            quad = levels::up(dp, quad);
             let vector = self.read_vector(dp, quad);
             dp.or_bits(4, vector, bits);
         }
@@ -240,8 +242,8 @@ impl<'f> FillStore<'f> {
         }
         dp.write(Memory::FillVector, holder.address() as u64);
         Port::FillWrite.tap(dp, holder.address() as u64, &self.word(holder));
-        let is_full = self.peek(holder) == FULL && holder.level > 0;
-        is_full.then(|| (holder.ancestor(holder.level - 1), 1 << holder.in_parent()))
+        let is_full = self.peek(holder) == FULL && levels::reaches(dp, holder.level, 1);
+        is_full.then(|| (levels::up(dp, holder), 1 << holder.in_parent()))
     }
 
     #[inline(always)]
@@ -253,8 +255,8 @@ impl<'f> FillStore<'f> {
     }
 
     #[inline(always)]
-    fn is_in_word(&self, node: QuadNode) -> bool {
-        self.is_joined && node.level + LEVELS_BELOW >= self.levels()
+    fn is_in_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> bool {
+        self.is_joined && levels::reaches(dp, node.level, self.levels() - LEVELS_BELOW)
     }
 
     fn word_of(&self, node: QuadNode) -> QuadNode {

@@ -16,8 +16,8 @@
 //! [`Datapath`](hwmodel::Datapath), visible to a probe. Each file imports only files named before it:
 //!
 //! - data: `blocks`, `counters`, `cage`, `keys`, `record`, `listed`, `constants`;
-//! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`, `alpha`, `canvas`,
-//!   `undrawn`, `path`;
+//! - steps on words and levels: `levels`, `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`,
+//!   `alpha`, `canvas`, `undrawn`, `path`;
 //! - steps of the loop: `watch`, `state`, `decide`, `children`;
 //! - the loop: `record_loop`, and `parents`, the loop with parents on its stack, and tiles;
 //! - `engine`, the machine as an [`Engine`](crate::project::Engine);
@@ -35,6 +35,7 @@ mod engine;
 mod fill;
 mod instruments;
 mod keys;
+mod levels;
 mod listed;
 mod parents;
 mod path;

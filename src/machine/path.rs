@@ -1,12 +1,13 @@
 //! Restores a record's ancestor from the record. Under the rules that draw outlines every step down can be undone
 //! exactly: edges were halved without a remainder, since no record is finer than the finest voxels.
 
-use hwmodel::{Datapath, Probe, Short, Signal, Wires};
+use hwmodel::{Datapath, OpClass, Probe, Short, Signal, Wires};
 
 use super::blocks::LEVEL_BITS;
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::keys::OrderKey;
+use super::levels;
 use super::planes;
 use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
 
@@ -55,11 +56,11 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
     };
     let mut quad = from.place.quad;
-    while quad.level > entry.quad_level {
+    while !levels::reaches(dp, entry.quad_level, quad.level) {
         out_of_quadrant(dp, constants, &mut clip, &mut planes, quad.in_parent());
         // Hardware undoes one level at a time, of the picture or of the octree.
         dp.next_step(0);
-        quad = quad.ancestor(quad.level - 1);
+        quad = levels::up(dp, quad);
     }
     let mut min = from.cube.min;
     for level in (entry.level..from.cube.level).rev() {
@@ -71,11 +72,13 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         }
         planes::move_edges(dp, constants, &mut planes, (level, octant), false);
         min = min.map(|corner| dp.without_bit(corner, place));
-        if level > entry.level {
+        dp.control(OpClass::Sub, LEVEL_BITS);
+        if !levels::reaches(dp, entry.level, level) {
             dp.next_step(0);
         }
     }
-    let side = dp.load(1i64 << (constants.depth + constants.sub_levels - entry.level));
+    let side = levels::above(dp, entry.level, constants.depth + constants.sub_levels);
+    let side = dp.load(1i64 << side);
     (clip.w_min, _) = clip.w.span(dp);
     Record {
         cube: Cube {

@@ -8,6 +8,7 @@ use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
 use super::blocks::{Block, LEVEL_BITS};
 use super::constants::Constants;
+use super::levels;
 use super::record::{Cube, Planes};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,7 +145,7 @@ impl Silhouette {
         w_min: Word,
     ) -> Self {
         let is_before_eye = dp.is_positive(w_min);
-        let side_shift = constants.depth - cube.level;
+        let side_shift = levels::above(dp, cube.level, constants.depth);
         // By axis: the change of a plane when its edge moves one side.
         let across = [0, 1, 2].map(|l| {
             let axis = axis_plane(constants, planes, l);
@@ -305,7 +306,7 @@ pub(super) fn move_edges<P: Probe>(
     (parent_level, octant): (u32, u8),
     to_child: bool,
 ) {
-    let half_shift = constants.depth - parent_level - 1;
+    let half_shift = levels::above(dp, parent_level + 1, constants.depth);
     for j in 0..3 {
         let (k, l) = ((j + 1) % 3, (j + 2) % 3); // host: an index
         for (axis, of, add) in [(k, l, !to_child), (l, k, to_child)] {

@@ -6,6 +6,7 @@ use hwmodel::{Datapath, Probe, Short, Word};
 use super::blocks::{Block, LEVEL_BITS, PLACES_BITS, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::{Constants, Margin};
+use super::levels;
 use super::record::{Clip, Spans};
 use super::shifts::margin;
 use crate::frame::QuadNode;
@@ -79,7 +80,7 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
         constants: &Constants,
         quad: QuadNode,
     ) -> (u8, [L; 2]) {
-        let below = constants.levels - quad.level;
+        let below = levels::above(dp, quad.level, constants.levels);
         let (far_x, x) = bisect(dp, constants, below, &self.x, &self.w);
         let (far_y, y) = bisect(dp, constants, below, &self.y, &self.w);
         (quadrants(dp, x, y), [far_x, far_y])
@@ -115,7 +116,7 @@ impl ImageBox for Spans {
         constants: &Constants,
         quad: QuadNode,
     ) -> (u8, ()) {
-        let below = constants.levels - quad.level;
+        let below = levels::above(dp, quad.level, constants.levels);
         let x = screen_halves(dp, constants, below, quad.x, self[0]);
         let y = screen_halves(dp, constants, below, quad.y, self[1]);
         (quadrants(dp, x, y), ())
@@ -152,7 +153,8 @@ fn bisect<P: Probe, L: CageCoordinate>(
             (Halves { low, high }, (false, false))
         }
         &Margin::Grow(grow) => {
-            margin = margins(dp, w, grow + below as i32 - 1);
+            let places = levels::places(dp, grow, below as i32 - 1);
+            margin = margins(dp, w, places);
             (closed(dp, &relative, &margin), (true, false))
         }
         Margin::Gap if below > 0 => {

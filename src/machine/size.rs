@@ -1,10 +1,11 @@
 //! The size of a record in samples, and the sample that contains its centre (`SPEC.md`, R7).
 
-use hwmodel::{Datapath, Probe, Short, Word};
+use hwmodel::{Datapath, OpClass, Probe, Short, Word};
 
-use super::blocks::{Block, LEVEL_BITS, node_wires};
+use super::blocks::{Block, LEVEL_BITS, NODE_BITS, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
+use super::levels;
 use super::record::{Clip, ImagePlace, Screen};
 use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
@@ -48,7 +49,7 @@ pub(super) fn is_about_one_sample<P: Probe, L: CageCoordinate>(
     if !dp.lt(shallow, depth) {
         return false;
     }
-    let below = c.levels - place.quad.level;
+    let below = levels::above(dp, place.quad.level, c.levels);
     let least = dp.max(w_min, c.near);
     let half = dp.shr(least, below + 1);
     [clip.x, clip.y].into_iter().all(|mut x| {
@@ -151,7 +152,7 @@ pub(super) fn point_sample<P: Probe>(
     }
     let mut quad = place.quad;
     dp.next_step(0);
-    while quad.level < constants.levels {
+    while !levels::reaches(dp, quad.level, constants.levels) {
         let mut half = |v: &mut Word| {
             let doubled = dp.shl(*v, 1);
             let beyond = dp.sub(doubled, w);
@@ -163,6 +164,7 @@ pub(super) fn point_sample<P: Probe>(
         };
         let column = half(&mut x);
         let row = half(&mut y);
+        levels::next(dp, quad.level);
         quad = quad.quadrant(row << 1 | column);
         dp.next_step(0);
     }
@@ -176,11 +178,14 @@ pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
     place: ImagePlace,
     screen: &Screen<L>,
 ) -> Option<QuadNode> {
-    let below = constants.levels - place.quad.level;
+    let below = levels::above(dp, place.quad.level, constants.levels);
     let mut column = |coordinate: &L, node: u32| {
         let centre = coordinate.centre(dp);
         dp.tap(Block::CageCentre, coordinate, &centre);
         let position = dp.shr(centre, constants.screen_frac);
+        // Shifts of the node's column, filled with zeros or ones.
+        dp.control(OpClass::Shift, NODE_BITS);
+        dp.control(OpClass::Shift, NODE_BITS);
         let first = Word::from_host(i64::from(node) << below);
         let last = Word::from_host((i64::from(node + 1) << below) - 1);
         if !place.inside && (dp.lt(position, first) || dp.lt(last, position)) {

@@ -10,12 +10,13 @@
 //! ```
 
 use crate::machine::stages::RecordStage;
-use hwmodel::{Datapath, Probe, Word};
+use hwmodel::{Datapath, OpClass, Probe, Word};
 
-use super::blocks::{Block, node_wires};
+use super::blocks::{Block, NODE_BITS, node_wires};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
+use super::levels;
 use super::planes;
 use super::quadrants::{ImageBox, margins, only};
 use super::record::{Clip, ImagePlace, Planes, Spans};
@@ -38,7 +39,8 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
-        let Some(quadrant) = only(overlapped).filter(|_| quad.level < constants.levels) else {
+        let is_sample = levels::reaches(dp, quad.level, constants.levels);
+        let Some(quadrant) = only(overlapped).filter(|_| !is_sample) else {
             break;
         };
         let to = clip.in_quadrant(dp, quadrant, far);
@@ -54,6 +56,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
         if constants.outline.has_planes() {
             planes::move_to_quadrant(dp, constants, planes, quadrant);
         }
+        levels::next(dp, quad.level);
         quad = quad.quadrant(quadrant);
     }
     Some(ImagePlace { quad, inside })
@@ -75,9 +78,11 @@ pub(super) fn screen<P: Probe>(
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
-        let Some(quadrant) = only(overlapped).filter(|_| quad.level < constants.levels) else {
+        let is_sample = levels::reaches(dp, quad.level, constants.levels);
+        let Some(quadrant) = only(overlapped).filter(|_| !is_sample) else {
             break;
         };
+        levels::next(dp, quad.level);
         quad = quad.quadrant(quadrant);
     }
     Some(ImagePlace { quad, inside })
@@ -105,7 +110,7 @@ fn is_inside<P: Probe, L: CageCoordinate>(
     quad: QuadNode,
     clip: &Clip<L>,
 ) -> Option<bool> {
-    let below = (constants.levels - quad.level) as i32;
+    let below = levels::above(dp, quad.level, constants.levels) as i32;
     let mut inside = true;
     for x in [&clip.x, &clip.y] {
         let from_left = *x;
@@ -114,7 +119,8 @@ fn is_inside<P: Probe, L: CageCoordinate>(
         let (left, right) = match constants.grow {
             None => (from_left.span(dp), from_right.span(dp)),
             Some(grow) => {
-                margin = margins(dp, &clip.w, grow + below);
+                let places = levels::places(dp, grow, below);
+                margin = margins(dp, &clip.w, places);
                 let widened = |dp: &mut Datapath<P>, v: &L| {
                     let raised = v.zip(&margin, |v, m| dp.add(v, m));
                     let lowered = v.zip(&margin, |v, m| dp.sub(v, m));
@@ -152,7 +158,7 @@ fn is_screen_inside<P: Probe>(
     quad: QuadNode,
     &[x, y]: &Spans,
 ) -> Option<bool> {
-    let below = constants.levels - quad.level;
+    let below = levels::above(dp, quad.level, constants.levels);
     // A multiple of the node's width, as a screen position.
     let edge = |column: u32| {
         let [left, right] = constants.half_sample_places;
@@ -161,6 +167,10 @@ fn is_screen_inside<P: Probe>(
     let mut inside = true;
     for (column, (low, high)) in [(quad.x, x), (quad.y, y)] {
         let (left, right) = (edge(column), edge(column + 1));
+        // The next column, and a shift for each edge.
+        dp.control(OpClass::Add, NODE_BITS);
+        dp.control(OpClass::Shift, NODE_BITS);
+        dp.control(OpClass::Shift, NODE_BITS);
         let outside = dp.lt(high, left) || dp.lt(right, low);
         let within = !outside && dp.le(left, low) && dp.le(high, right);
         let node = node_wires(column, below);

@@ -1,11 +1,12 @@
 //! The change from clip to screen space (`SPEC.md`, R5): the only place where the machine divides.
 
 use crate::machine::stages::RecordStage;
-use hwmodel::{Datapath, Probe, Short, Word};
+use hwmodel::{Datapath, OpClass, Probe, Short, Word};
 
-use super::blocks::{Block, LEVEL_BITS, PLACES_BITS};
+use super::blocks::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
+use super::levels;
 use super::record::{Clip, ImagePlace, Screen};
 use crate::project::options::SCREEN_GUARD_SHIFT;
 
@@ -37,9 +38,12 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
     place: ImagePlace,
     clip: &Clip<L>,
 ) -> Screen<L> {
-    let bits = constants.levels - place.quad.level + constants.screen_frac;
+    let below = levels::above(dp, place.quad.level, constants.levels) as i32;
+    let bits = levels::places(dp, constants.screen_frac as i32, below) as u32;
     let mut along = |x: &L, column: u32| {
         // The node's left edge, less the numerators' offset.
+        dp.control(OpClass::Sub, NODE_BITS);
+        dp.control(OpClass::Shift, NODE_BITS);
         let edge = (i64::from(column) - (1 << OFFSET_SHIFT)) << bits;
         let edge = dp.load(edge);
         let projected = L::project(dp, x, &clip.w, |dp, x, w| divide(dp, x, w, bits));
@@ -64,12 +68,13 @@ fn within_guard<P: Probe, L: CageCoordinate>(
     clip: &Clip<L>,
 ) -> bool {
     let level = place.quad.level as i32;
-    let places = if constants.finite_tolerance {
-        SCREEN_GUARD_SHIFT as i32 - level
+    let guard = if constants.finite_tolerance {
+        SCREEN_GUARD_SHIFT as i32
     } else {
-        -(OFFSET_SHIFT as i32) - level
+        -(OFFSET_SHIFT as i32)
     };
-    if level > 0 && places <= 0 {
+    let places = levels::places(dp, guard, -level);
+    if levels::reaches(dp, place.quad.level, 1) && places <= 0 {
         // Below the root the search lets no box leave its node by more than the node's width.
         return true;
     }

@@ -6,6 +6,7 @@ use hwmodel::{Datapath, Probe};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
+use super::levels;
 use super::quadrants::ImageBox;
 use super::record::{Pose, Record};
 use crate::frame::QuadNode;
@@ -38,7 +39,7 @@ fn first_inlined<P: Probe, B: ImageBox>(
     dp.stage(RecordStage::QuadtreeFit);
     loop {
         let open = !fill.read(dp, quad) & FULL;
-        if quad.level == constants.levels {
+        if levels::reaches(dp, quad.level, constants.levels) {
             return if open != 0 { Ok(quad) } else { Err(quad.level) };
         }
         let (overlapped, tested) = of.quadrants(dp, constants, quad);
@@ -50,6 +51,7 @@ fn first_inlined<P: Probe, B: ImageBox>(
             let quadrant = candidates.trailing_zeros() as u8;
             candidates &= candidates - 1;
             let inner = of.in_quadrant(dp, quadrant, tested);
+            levels::next(dp, quad.level);
             match first(dp, constants, fill, quad.quadrant(quadrant), inner) {
                 Ok(sample) => return Ok(sample),
                 Err(deepest) => B::climb(dp, deepest - quad.level),
@@ -58,6 +60,7 @@ fn first_inlined<P: Probe, B: ImageBox>(
         // The last one, usually the only one, replaces this node.
         let quadrant = candidates.trailing_zeros() as u8;
         of = of.in_quadrant(dp, quadrant, tested);
+        levels::next(dp, quad.level);
         quad = quad.quadrant(quadrant);
     }
 }

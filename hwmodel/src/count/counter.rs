@@ -159,7 +159,9 @@ impl Probe for Counter {
             Operand::Short if class == OpClass::Logic && bits < 8 => {
                 return self.count_fresh(SHORT + stage, bits as usize);
             }
-            Operand::Short | Operand::Other => return self.count(class, bits, place, 1),
+            Operand::Short | Operand::Control | Operand::Other => {
+                return self.count(class, bits, place, 1);
+            }
         };
         self.count_fresh(first + stage, class as usize);
     }

@@ -10,7 +10,7 @@ use super::observe::NoObserver;
 use super::report::CycleReport;
 use super::simulate::{SimulationError, simulate};
 use super::turn::{CLASSES, Child, STAGES, TurnLog, WIDTHS, Workload};
-use crate::{Memory, OpClass, Probe, Stage, StageLevel};
+use crate::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
 /// A probe that contains a turn's log and is notified of its end.
 pub trait TurnProbe: Probe {
@@ -234,6 +234,13 @@ impl Tape {
 }
 
 impl Probe for Tape {
+    #[inline]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        if operand != Operand::Control {
+            self.op(class, bits, place, 1);
+        }
+    }
+
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let bits = (bits as usize).min(WIDTHS - 1);

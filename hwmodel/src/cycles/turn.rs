@@ -2,7 +2,7 @@
 
 use super::hardware::{Hardware, Independence};
 use super::memories::{Access, Latencies};
-use crate::{MAX_STAGES, Memory, OpClass, Probe, Stage, StageLevel};
+use crate::{MAX_STAGES, Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = MAX_STAGES;
 pub(super) const CLASSES: usize = OpClass::ALL.len();
@@ -303,6 +303,13 @@ impl TurnLog {
 }
 
 impl Probe for TurnLog {
+    #[inline(always)]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        if operand != Operand::Control {
+            self.op(class, bits, place, 1);
+        }
+    }
+
     #[inline(always)]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let at = match self.beside {

@@ -27,6 +27,9 @@ pub use description::{RayStage, Rival, RivalStack};
 pub use order::RayOrder;
 pub use workload::{Cast, cast};
 
+/// Bits of a counter of levels, as in the machine.
+const LEVEL_BITS: u32 = 6;
+
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

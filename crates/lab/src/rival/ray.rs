@@ -1,6 +1,8 @@
 //! The arithmetic of one ray: adders, shifts by constants, and signs.
 
-use hwmodel::{Datapath, Probe, Word};
+use hwmodel::{Datapath, OpClass, Probe, Word};
+
+use super::LEVEL_BITS;
 
 /// A sign bit is a wire.
 fn is_negative<P: Probe>(dp: &Datapath<P>, word: Word) -> bool {
@@ -118,6 +120,7 @@ impl Ray {
     /// Into the part of the cell where the ray comes in, of half its side.
     pub(super) fn descend<P: Probe>(&mut self, dp: &mut Datapath<P>) {
         let half = self.across.map(|of| dp.shr(of, 1));
+        dp.control(OpClass::Sub, LEVEL_BITS);
         self.size -= 1;
         let middle = 1 << self.size;
         let is_low = |dp: &mut Datapath<P>, k: usize| match self.entry {
@@ -194,6 +197,8 @@ impl Ray {
             }
             self.across = self.across.map(|of| dp.shl(of, 1));
             self.size += 1;
+            dp.control(OpClass::Add, LEVEL_BITS);
+            dp.control(OpClass::Compare, LEVEL_BITS);
             if self.size == depth {
                 return false;
             }

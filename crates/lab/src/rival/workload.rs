@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Child, CycleReport, Hardware, ImageNode, NoObserver, TurnLog};
 use hwmodel::shifts::ShiftProbe;
-use hwmodel::{Datapath, Format, Memory, Overflow, WideWord, Word};
+use hwmodel::{Datapath, Format, Memory, OpClass, Overflow, WideWord, Word};
 
 use super::ray::Ray;
 use super::view::View;
-use super::{RayStage, Rival};
+use super::{LEVEL_BITS, RayStage, Rival};
 use crate::model::ModelError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView, NodeLayout};
@@ -192,6 +192,9 @@ impl Rays<'_> {
     ) {
         let level = self.depth - ray.size;
         let is_solid = self.graph.mask(node) == 0 || ray.size == 0;
+        // The mask's eight bits, and the counter of levels.
+        self.dp.control(OpClass::Logic, 8);
+        self.dp.control(OpClass::Compare, LEVEL_BITS);
         if !(is_solid && self.layout.leaf_masks) {
             let mut is_read = false;
             for word in self.layout.words(node, level) {
