@@ -141,7 +141,9 @@ mod tests {
             let mut plain = exact.clone();
             // It has no level of detail.
             let whole = setup.without_detail();
-            Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+            Oracle::default()
+                .render(&graph.view(), &whole, &mut exact)
+                .unwrap();
             let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
             let error = CoverageError::between(&plain.voxel, &exact.voxel);
             let is_near = error.covered > 0 && error.differing() * 5000 <= error.pixels;

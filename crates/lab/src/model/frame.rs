@@ -207,7 +207,7 @@ pub fn true_setup(
 /// The exact picture of a frame's view, down to the finest voxels.
 pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays.render(graph, &setup.without_detail(), &mut frame)?;
+    Rays::default().render(graph, &setup.without_detail(), &mut frame)?;
     Ok(frame)
 }
 

@@ -2,7 +2,7 @@
 
 use hwmodel::Memory;
 use hwmodel::cost::{Breakdown, CostError, CostTable};
-use hwmodel::count::Counter;
+use hwmodel::count::{AccessCount, Counter, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
 use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
@@ -27,6 +27,9 @@ pub struct RayCasterReport {
     /// Rays and their steps.
     pub records: u64,
     pub operations: u64,
+    /// By stage, level, class and width.
+    pub operation_counts: Vec<OpCount>,
+    pub accesses: Vec<AccessCount>,
     pub cost: FrameCost,
     pub cycles: CycleReport,
     pub area: DesignArea,
@@ -73,6 +76,8 @@ pub fn price(
         rival: rival.clone(),
         records: cycles.records,
         operations: counter.ops(),
+        operation_counts: counter.cells().collect(),
+        accesses: counter.accesses().collect(),
         cost: cost.whole(
             RAY_CASTER,
             &area,

@@ -113,7 +113,7 @@ impl<'m> Exact<'m> {
     fn new(graph: &'m Graph, camera: &Camera, aa_log2: u32) -> Result<Self, BenchError> {
         let setup = truth(graph, camera, aa_log2)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn = Rays.render(&graph.view(), &setup, &mut frame);
+        let drawn = Rays::default().render(&graph.view(), &setup, &mut frame);
         drawn.map_err(|source| BenchError::Engine {
             who: "exact rays".to_owned(),
             source,

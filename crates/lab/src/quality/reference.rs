@@ -208,7 +208,9 @@ mod tests {
     fn one_stratum_without_jitter_is_the_oracles_picture() {
         let (graph, setup) = facing(2.3, 3.1);
         let mut frame = Frame::new(8, 8, false);
-        Rays.render(&graph.view(), &setup, &mut frame).unwrap();
+        Rays::default()
+            .render(&graph.view(), &setup, &mut frame)
+            .unwrap();
         let background = Background::default();
         let picture = resolve(&frame, &graph, &setup, Shading::Lambert, background).unwrap();
         let view = graph.view();

@@ -75,7 +75,9 @@ fn it_sees_what_the_oracle_sees() {
     for (name, graph, setup) in views() {
         let mut exact = Frame::new(setup.width, setup.height, false);
         let whole = setup.without_detail();
-        Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+        Oracle::default()
+            .render(&graph.view(), &whole, &mut exact)
+            .unwrap();
         let found = cast_with((&graph, &setup), &rival, "light");
         let error = CoverageError::between(&found.frame.voxel, &exact.voxel);
         // Rays along a boundary: where both sides are as near, either is right.
@@ -186,7 +188,7 @@ fn wrong_descriptions_are_refused() {
         ),
         ("\"morton\"", "\"hilbert\"", "unknown variant `hilbert`"),
         (
-            "contexts = 8 ",
+            "contexts = 4 ",
             "contexts = 0 ",
             "contexts is 0; it must be 1 to 64",
         ),

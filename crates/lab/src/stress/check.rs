@@ -29,7 +29,7 @@ pub(super) struct Oracle {
 fn cast(graph: &Graph, setup: &FrameSetup) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, false);
     // The oracle has no error to give.
-    let _ = Rays.render(&graph.view(), setup, &mut frame);
+    let _ = Rays::default().render(&graph.view(), setup, &mut frame);
     frame
 }
 
@@ -84,7 +84,9 @@ pub(super) fn check(
             }
             return outcome;
         }
-        Err(refused @ (EngineError::Memory(_) | EngineError::Records(_))) => {
+        Err(
+            refused @ (EngineError::Memory(_) | EngineError::Records(_) | EngineError::Stopped),
+        ) => {
             return Outcome::new(End::Refused(refused.to_string()), 0);
         }
         Err(EngineError::Trap(trap)) => {

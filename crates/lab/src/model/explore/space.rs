@@ -261,12 +261,15 @@ impl Space {
 }
 
 /// A hardware whose units are wider or narrower by as much as words of `bits` bits are than those that it was built for.
+/// Wide units are for sums of products of two words, which have two more bits for each bit of a word.
 fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
     let mut hardware = hardware.clone();
     let stages = hardware.stages.values_mut();
     for units in stages.chain([&mut hardware.units]) {
         for unit in units.values_mut().filter(|unit| unit.width > 8) {
-            unit.width = (unit.width + bits).saturating_sub(BUILT_FOR_BITS).max(1);
+            let words = if unit.width > 40 { 2 } else { 1 };
+            let wider = words * (i64::from(bits) - i64::from(BUILT_FOR_BITS));
+            unit.width = (i64::from(unit.width) + wider).max(1) as u32;
         }
     }
     hardware
