@@ -134,6 +134,13 @@ for eye in 0..8 {
 }"
     project::SetupError "let drawn = Renderer::new().tolerance(1.0).render(&scene, &camera, 32, 32);
 assert!(matches!(drawn, Err(Error::Setup(SetupError::Tolerance(_))))); // `Coverage::Exact` approximates nothing"
+    project::Stop "use std::time::{Duration, Instant};
+// No picture may take longer than a minute.
+let end = Instant::now() + Duration::from_secs(60);
+let renderer = Renderer::new().stopped_by(&Stop::when(move || Instant::now() > end));
+renderer.render(&scene, &camera, 32, 32)?;
+let stopped = renderer.stopped_by(&Stop::when(|| true)).render(&scene, &camera, 32, 32);
+assert!(matches!(stopped, Err(Error::Engine(EngineError::Stopped))));"
     hwmodel::Overflow "// Saturating words draw on where exact ones would be too short.
 let machine = Renderer::new().engine(EngineKind::Machine).overflow(Overflow::Saturate);
 machine.word(24, None).render(&scene, &camera, 32, 32)?;"

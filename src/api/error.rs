@@ -31,7 +31,7 @@ pub enum Error {
     /// The system provides no threads.
     #[error(transparent)]
     Threads(Reason),
-    /// The engine cannot finish the frame: a word overflowed.
+    /// The engine cannot finish the frame: a word overflowed, it takes too many records, or it was stopped.
     #[error(transparent)]
     Engine(#[from] EngineError),
     /// The simulated hardware cannot finish the frame.

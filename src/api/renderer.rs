@@ -17,7 +17,7 @@ use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions, Simulated};
 use crate::picture::{Background, Buffer, ResolveError, Rows, Shading, hash_rows, lights};
 use crate::project::{
-    self, CageKind, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
+    self, CageKind, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats, Stop,
 };
 use crate::rays::Rays;
 
@@ -65,6 +65,7 @@ pub struct Renderer {
     counts_operations: bool,
     buffers: Vec<Buffer>,
     is_hashed: bool,
+    stop: Stop,
     kept: Kept,
 }
 
@@ -95,6 +96,7 @@ impl Renderer {
             counts_operations: false,
             buffers: Vec::new(),
             is_hashed: false,
+            stop: Stop::default(),
             kept: Kept::default(),
         }
     }
@@ -178,6 +180,15 @@ impl Renderer {
         hashed(is_hashed: bool) is_hashed = is_hashed;
     }
 
+    /// Lets another thread stop drawings: they fail with [`EngineError::Stopped`], usually within milliseconds.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        self.stop = stop.clone();
+        // Engines that are kept know another one.
+        self.kept = Kept::default();
+        self
+    }
+
     /// Draws a picture of `width` x `height` pixels.
     ///
     /// Several threads may draw with one renderer at the same time.
@@ -185,7 +196,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::Setup`] if camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
     /// [`Error::Setting`] for an invalid setting, [`Error::Memory`] if the picture does not fit in memory,
-    /// [`Error::Engine`] if a word overflows, [`Error::Threads`] if the system provides no threads.
+    /// [`Error::Engine`] if a word overflows or the drawing is stopped, [`Error::Threads`] if the system provides no threads.
     pub fn render(
         &self,
         scene: &Scene,
@@ -324,13 +335,14 @@ impl Renderer {
                 operations: Arc::clone(operations),
             }),
             (EngineKind::Machine, None) => Box::new(self.machine()),
-            (EngineKind::Rays, _) => Box::new(Rays),
+            (EngineKind::Rays, _) => Box::new(Rays::stopped_by(&self.stop)),
             (EngineKind::Fast, _) => {
                 let options = FastOptions {
                     threads: self.threads,
                     ..FastOptions::default()
                 };
-                Box::new(Fast::new(options, Box::new(self.machine())))
+                let fast = Fast::new(options, Box::new(self.machine()));
+                Box::new(fast.stopped_by(&self.stop))
             }
         }
     }
@@ -340,6 +352,7 @@ impl Renderer {
             overflow: self.overflow.unwrap_or_default(),
             ..MachineOptions::default()
         })
+        .stopped_by(&self.stop)
     }
 
     /// Rejects settings that the engine does not have.

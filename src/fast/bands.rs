@@ -1,6 +1,7 @@
 //! Division of a picture into bands, and their threads.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Switches;
 use super::band::{Band, BrickBlocks, Hit};
@@ -14,12 +15,16 @@ use super::strips::Candidates;
 use super::traversal;
 use super::window::{TILE_LOG2, Window};
 use crate::graph::GraphView;
+use crate::project::Stop;
 
 pub(super) struct Job<'j> {
     pub(super) constants: &'j Constants,
     pub(super) exact: &'j Exact,
     pub(super) graph: &'j GraphView<'j>,
     pub(super) switches: &'j Switches,
+    pub(super) stop: &'j Stop,
+    /// Whether a band was not drawn.
+    pub(super) is_stopped: AtomicBool,
 }
 
 pub(super) struct BandBuffers<'p> {
@@ -99,7 +104,12 @@ pub(super) fn run_bands<I: Isa>(
     counters
 }
 
+/// A band of a frame that is stopped stays undrawn.
 fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
+    if job.stop.is_requested() {
+        job.is_stopped.store(true, Ordering::Relaxed);
+        return Counters::default();
+    }
     let mut brick_blocks = BrickBlocks {
         exist: [0; 65],
         parts: [Parts::default(); 64],

@@ -37,9 +37,11 @@ mod traversal;
 mod voxels;
 mod window;
 
+use std::sync::atomic::AtomicBool;
+
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop};
 use bands::{BandBuffers, Job, run_bands};
 use canvas::Pixels;
 use constants::Constants;
@@ -69,6 +71,7 @@ pub struct FastOptions {
 
 pub struct Fast {
     options: FastOptions,
+    stop: Stop,
     fallback: Box<dyn Engine + Send>,
     /// Masks of open samples.
     tiles: Vec<u64>,
@@ -89,10 +92,18 @@ impl Fast {
     pub fn new(options: FastOptions, fallback: Box<dyn Engine + Send>) -> Self {
         Self {
             options,
+            stop: Stop::default(),
             fallback,
             tiles: Vec::new(),
             prepared: None,
         }
+    }
+
+    /// Lets `stop` end drawings, before each band of the picture. The fallback has one of its own.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        self.stop = stop.clone();
+        self
     }
 
     /// Allocates nothing when the set-up is that of the last frame.
@@ -119,6 +130,8 @@ impl Fast {
             exact: &prepared.exact,
             graph,
             switches: &self.options.switches,
+            stop: &self.stop,
+            is_stopped: AtomicBool::new(false),
         };
         canvas::resize(&mut self.tiles, setup.width, setup.height)?;
         let threads = match self.options.threads {
@@ -137,10 +150,14 @@ impl Fast {
             Instructions::Auto => Vector::detect(),
             Instructions::Scalar => None,
         };
-        Ok(Ok(match vector {
+        let counters = match vector {
             Some(isa) => run_bands(&job, buffers, isa, &object, threads),
             None => run_bands(&job, buffers, Scalar, &object, threads),
-        }))
+        };
+        match job.is_stopped.into_inner() {
+            true => Err(EngineError::Stopped),
+            false => Ok(Ok(counters)),
+        }
     }
 
     fn draw_frame(

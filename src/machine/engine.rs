@@ -4,16 +4,18 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, with_cage};
+use super::limit::Limit;
 use super::state::{MachineOptions, State};
 use super::watch::RecordsBySample;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats, most_records};
+use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop, most_records};
 
 /// The scalar engine.
 #[derive(Debug, Default)]
 pub struct Machine {
     pub(super) options: MachineOptions,
+    stop: Stop,
     /// Kept from frame to frame, with its level of the samples, samples across and down.
     fill: Option<((u32, u32, u32), FillVectors)>,
 }
@@ -22,8 +24,16 @@ impl Machine {
     pub fn new(options: MachineOptions) -> Self {
         Self {
             options,
+            stop: Stop::default(),
             fill: None,
         }
+    }
+
+    /// Lets `stop` end drawings.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        self.stop = stop.clone();
+        self
     }
 
     /// Draws a frame with a probe; see [`Engine::render`]. Fails when a word overflows under the trap policy, or after
@@ -67,15 +77,16 @@ impl Machine {
         most: u64,
     ) -> Result<Option<(Stats, P)>, EngineError> {
         let options = self.options;
+        let mut limit = Limit::new(most, &self.stop);
         let wants_records = frame.records.is_some();
         let records = wants_records.then(|| RecordsBySample::new(setup.levels));
         let records = records.transpose()?;
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, records);
         let is_done = if options.organisation == Organisation::default() {
-            state.draw_object(QuadNode::ROOT, most)?
+            state.draw_object(QuadNode::ROOT, &mut limit)?
         } else {
-            state.draw_by_tiles(most)?
+            state.draw_by_tiles(&mut limit)?
         };
         if !is_done {
             return Ok(None);

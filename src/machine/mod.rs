@@ -36,6 +36,7 @@ mod fill;
 mod instruments;
 mod keys;
 mod levels;
+mod limit;
 mod listed;
 mod parents;
 mod path;

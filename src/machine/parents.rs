@@ -25,6 +25,7 @@ use super::cage::CageCoordinate;
 use super::children::{centre_and_order, child_cube};
 use super::decide::decide;
 use super::fill::FillStore;
+use super::limit::Limit;
 use super::path::{self, PathEntry};
 use super::record::{Child, Pose, Record};
 use super::record_loop::check_trap;
@@ -93,11 +94,11 @@ impl<L: CageCoordinate> Parent<L> {
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// As [`State::draw_object`], tile by tile.
-    pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
+    pub(super) fn draw_by_tiles(&mut self, limit: &mut Limit) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);
             view.swap(&mut self.canvas.fill);
-            let is_done = self.draw_tile(tile, most_records)?;
+            let is_done = self.draw_tile(tile, limit)?;
             view.swap(&mut self.canvas.fill);
             if !is_done {
                 return Ok(false);
@@ -121,9 +122,9 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         wanted.min(self.job.constants.levels)
     }
 
-    fn draw_tile(&mut self, tile: QuadNode, most_records: u64) -> Result<bool, EngineError> {
+    fn draw_tile(&mut self, tile: QuadNode, limit: &mut Limit) -> Result<bool, EngineError> {
         if self.job.organisation.stack == StackHolds::Children {
-            return self.draw_object(tile, most_records);
+            return self.draw_object(tile, limit);
         }
         let mut stack = Vec::new();
         let mut current = self.object(tile);
@@ -140,7 +141,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                     }
                 }
             };
-            if self.canvas.counts.records >= most_records {
+            if limit.is_reached(self.canvas.counts.records)? {
                 return Ok(false);
             }
             let child = self.parent_turn(&mut parent, stack.len() as u64);

@@ -6,22 +6,23 @@ use hwmodel::{Datapath, Memory, Probe};
 use super::blocks::Port;
 use super::cage::CageCoordinate;
 use super::decide::decide;
+use super::limit::Limit;
 use super::state::{State, Traversal};
 use super::watch::{Event, Watch};
 use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object in a tile, with children on the stack. Returns whether at most `most_records` turns were
-    /// enough. Fails when a word overflows under the trap policy.
+    /// Draws the object in a tile, with children on the stack. Returns whether the limit was not reached. Fails when a
+    /// word overflows under the trap policy, or when the drawing is stopped.
     pub(super) fn draw_object(
         &mut self,
         tile: QuadNode,
-        most_records: u64,
+        limit: &mut Limit,
     ) -> Result<bool, EngineError> {
         self.push_object(tile);
         while !self.traversal.stack.is_empty() {
-            if self.canvas.counts.records >= most_records {
+            if limit.is_reached(self.canvas.counts.records)? {
                 return Ok(false);
             }
             self.turn();

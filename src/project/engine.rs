@@ -25,6 +25,9 @@ pub enum EngineError {
         "the picture takes more than {0} records: much of the scene is near the plane of the eye, or detail is too fine"
     )]
     Records(u64),
+    /// [`Stop`](super::Stop) ended the drawing.
+    #[error("the drawing was stopped")]
+    Stopped,
 }
 
 /// Records that a frame may take: 2^20, and 512 for each sample. Ordinary pictures take up to 80 for a sample.

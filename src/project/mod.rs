@@ -8,6 +8,7 @@ pub mod options;
 mod reach;
 mod real_view;
 pub mod setup;
+mod stop;
 pub mod vector;
 pub mod viewer;
 
@@ -17,4 +18,5 @@ pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 pub use options::{CageKind, Coverage, SetupOptions};
 pub use setup::{FrameSetup, SetupError};
+pub use stop::Stop;
 pub use viewer::{Contents, Viewer};

@@ -10,18 +10,29 @@ use rayon::prelude::*;
 
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Engine, EngineError, FrameSetup, Stats, Stop};
 
 use number::{Number, Wide};
 use ray_frame::RayFrame;
 use search::Search;
 
 /// The exact oracle.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Rays;
+#[derive(Debug, Clone, Default)]
+pub struct Rays {
+    stop: Stop,
+}
+
+impl Rays {
+    /// An oracle that `stop` ends.
+    #[must_use]
+    pub fn stopped_by(stop: &Stop) -> Self {
+        Self { stop: stop.clone() }
+    }
+}
 
 impl Engine for Rays {
-    /// Fails only if the system refuses the memory of a frame. `frame.records` is the number of cubes tested against the sample's ray.
+    /// Fails only if the system refuses the memory of a frame, or if it is stopped. `frame.records` is the number of cubes
+    /// tested against the sample's ray.
     fn render(
         &mut self,
         graph: &GraphView<'_>,
@@ -31,10 +42,11 @@ impl Engine for Rays {
         frame.fit(setup.width, setup.height, false)?;
         let view = RayFrame::new(setup);
         let tested = if view.fits_i128() {
-            render_rows::<i128>(graph, &view, frame)
+            render_rows::<i128>(graph, &view, frame, &self.stop)
         } else {
-            render_rows::<Wide>(graph, &view, frame)
+            render_rows::<Wide>(graph, &view, frame, &self.stop)
         };
+        let tested = tested.ok_or(EngineError::Stopped)?;
         Ok(vec![
             ("samples", frame.node.len() as u64),
             ("samples_drawn", frame.drawn() as u64),
@@ -78,10 +90,16 @@ impl<'g> Caster<'g> {
     }
 }
 
-fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Frame) -> u64 {
+/// Returns the number of cubes tested, or `None` if it is stopped.
+fn render_rows<N: Number>(
+    graph: &GraphView<'_>,
+    view: &RayFrame,
+    frame: &mut Frame,
+    stop: &Stop,
+) -> Option<u64> {
     let width = frame.width as usize;
     if width == 0 {
-        return 0;
+        return Some(0);
     }
     let height = frame.height;
     let voxels = Some(&mut frame.voxel[..]).filter(|voxels| !voxels.is_empty());
@@ -95,6 +113,9 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
         .map(|(j, ((nodes, mut voxels), mut records))| {
             let mut tested_in_row = 0u64;
             for i in 0..width {
+                if i % 64 == 0 && stop.is_requested() {
+                    return None;
+                }
                 let mut walk = Search::<N>::new(graph, view, i as u32, j as u32);
                 let (node, voxel) = walk.nearest().unwrap_or((NO_NODE, NO_VOXEL));
                 nodes[i] = node;
@@ -106,7 +127,7 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
                 }
                 tested_in_row += walk.tested;
             }
-            tested_in_row
+            Some(tested_in_row)
         })
         .sum()
 }
@@ -137,7 +158,7 @@ mod tests {
         let draw = |setup: &FrameSetup, is_narrow| {
             assert_eq!(RayFrame::new(setup).fits_i128(), is_narrow);
             let mut frame = Frame::new(32, 32, true);
-            let drawn = Rays.render(&graph, setup, &mut frame);
+            let drawn = Rays::default().render(&graph, setup, &mut frame);
             drawn.expect("never fails");
             assert!(frame.drawn() > 0);
             frame

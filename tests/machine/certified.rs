@@ -43,7 +43,7 @@ fn compare(
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, options).ok()?;
     let mut truth = Frame::new(setup.width, setup.height, false);
     let mut frame = truth.clone();
-    let drawn = Rays.render(&graph.view(), &setup, &mut truth);
+    let drawn = Rays::default().render(&graph.view(), &setup, &mut truth);
     drawn.expect("the oracle never fails");
     let mut engine = Fast::new(fast, Box::new(Machine::default()));
     let stats = engine.render(&graph.view(), &setup, &mut frame);

@@ -230,7 +230,7 @@ fn agree(graph: &Graph, camera: &Camera, options: &SetupOptions, dice: &mut Dice
         let pool = pool.expect("a pool");
         let oracle = |setup: &FrameSetup| {
             let mut frame = empty(setup);
-            let drawn = pool.install(|| Rays.render(&view, setup, &mut frame));
+            let drawn = pool.install(|| Rays::default().render(&view, setup, &mut frame));
             drawn.expect("the oracle never fails");
             frame
         };

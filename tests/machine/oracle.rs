@@ -126,7 +126,7 @@ impl Exact {
 fn assert_exact(graph: &Graph, setup: &FrameSetup) {
     let view = graph.view();
     let mut frame = Frame::new(setup.width, setup.height, true);
-    let drawn = Rays.render(&view, setup, &mut frame);
+    let drawn = Rays::default().render(&view, setup, &mut frame);
     drawn.expect("the oracle never fails");
     let exact = Exact::new(setup);
     let mut all = Vec::new();

@@ -79,7 +79,7 @@ proptest! {
         let setup = setup(&graph, &camera, &options);
         let (drawn, _) = draw(&graph, &setup);
         let mut exact = Frame::new(size, size, false);
-        let oracle = Rays.render(&graph.view(), &setup.without_detail(), &mut exact);
+        let oracle = Rays::default().render(&graph.view(), &setup.without_detail(), &mut exact);
         oracle.expect("the oracle never fails");
         let size = size as usize;
         let inner = (0..size * size).filter(|at| {

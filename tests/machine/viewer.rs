@@ -98,7 +98,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
     let engines = [
         fast as fn() -> Box<dyn Engine>,
         || Box::new(Machine::default()),
-        || Box::new(Rays),
+        || Box::new(Rays::default()),
     ];
     for (kind, new) in engines.iter().enumerate() {
         let mut used = new();

@@ -12,6 +12,7 @@ use super::report::{self, grouped};
 use super::{outputs, scenes};
 use shiftvox::drawing::Drawable;
 use shiftvox::picture;
+use shiftvox::project::Stop;
 use shiftvox_lab::model::frame;
 
 /// The only file that is replaced without --force.
@@ -36,7 +37,7 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         memory: None,
         is_hashed: true,
     };
-    let mut drawing = methods::of_graph(&scene, &draw_args)?;
+    let mut drawing = methods::of_graph(&scene, &draw_args, &Stop::default())?;
     let camera = view.camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
     let (graph, setup) = (&scene.graph, drawing.setup(&camera)?);
     let overflow = draw_args.engine.rules.overflow();

@@ -6,14 +6,16 @@ use super::args::{EngineArgs, EngineName};
 use super::error::CliError;
 use shiftvox::fast::{Fast, FastOptions, Switches};
 use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::Engine;
+use shiftvox::project::{Engine, Stop};
 use shiftvox::rays::Rays;
 use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
 use shiftvox_lab::float_rays::FloatRays;
 
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
-pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
+/// `stop` ends the engines' drawings.
+pub(super) fn maker(args: &EngineArgs, stop: &Stop) -> Result<Maker, CliError> {
+    let stop = stop.clone();
     let instructions = args.isa;
     let machine = MachineOptions {
         overflow: args.rules.overflow(),
@@ -27,10 +29,13 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
                 ..FastOptions::default()
             };
             Ok(Box::new(move || {
-                Box::new(Fast::new(options, Box::new(Machine::new(machine))))
+                let machine = Machine::new(machine).stopped_by(&stop);
+                Box::new(Fast::new(options, Box::new(machine)).stopped_by(&stop))
             }))
         }
-        EngineName::Machine => Ok(Box::new(move || Box::new(Machine::new(machine)))),
+        EngineName::Machine => Ok(Box::new(move || {
+            Box::new(Machine::new(machine).stopped_by(&stop))
+        })),
         EngineName::Rays if args.rules.options(0).coverage.blends() => refused(
             "--engine rays casts one ray per sample and blends nothing: it has no --coverage alpha",
             "take --engine machine, which defines the picture, or fast, which has its bits",
@@ -39,7 +44,7 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
             "--engine rays draws exact coverage only, and has no --paper, --cage, --tolerance and --overflow",
             "take --engine machine for these rules",
         ),
-        EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
+        EngineName::Rays => Ok(Box::new(move || Box::new(Rays::stopped_by(&stop)))),
         EngineName::Far => refused(
             "--engine far draws a .far file, and only render, turntable and view do",
             "make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far",
@@ -83,7 +88,7 @@ pub(super) const REFERENCE: Candidate = Candidate {
     about: "the exact reference, in wide integers",
     work: "nodes_tested",
     parallel: true,
-    make: |_| Box::new(Rays),
+    make: |_| Box::new(Rays::default()),
 };
 
 const FLOAT_RAYS: Candidate = Candidate {

@@ -145,6 +145,7 @@ exit_codes! {
     }
     EngineError {
         EngineError::Trap(_) => Kind::Limit,
+        EngineError::Stopped => Kind::Run,
         EngineError::Memory(short) => return short.into(),
         EngineError::Records(_) => {
             return Self::new(Kind::Limit, message).advise(

@@ -1,6 +1,7 @@
 //! The command line: one file per command. stdout is data, stderr everything else.
 
 mod args;
+mod batch;
 mod bench;
 mod compare;
 mod console;
@@ -33,14 +34,16 @@ mod view;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{ArgAction, ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use console::Console;
 use error::{CliError, Kind};
-use shiftvox::scene::FORMATS;
+use shiftvox::scene::{FORMATS, Source};
 
 fn long_about() -> String {
     let formats: String = FORMATS
@@ -51,8 +54,8 @@ fn long_about() -> String {
         "\
 Draws voxel files and meshes, the same to the bit on every computer.
 
-Without a command it draws the bundled scene, writes the picture to out/demo.png (replacing an \
-older one) and prints the cost.
+`shiftvox FILE` draws a scene to {{stem}}.png in this folder. Without arguments the program draws the bundled \
+scene, writes the picture to out/demo.png (replacing an older one) and prints the cost.
 
 Scenes are generators, such as gen:terrain,depth=10,seed=1, or files, whose format is recognised by \
 their content. Meshes are voxelised at --depth. Formats:
@@ -180,8 +183,27 @@ pub fn main() -> ExitCode {
 }
 
 fn parse(line: &[OsString]) -> Result<(Cli, ArgMatches), clap::Error> {
-    let matches = Cli::command().try_get_matches_from(line)?;
+    let matches = Cli::command().try_get_matches_from(line).or_else(|error| {
+        match scene_place(line, &error) {
+            Some(place) => {
+                let (before, scenes) = line.split_at(place);
+                let render = &[OsString::from("render")];
+                Cli::command().try_get_matches_from([before, render, scenes].concat())
+            }
+            None => Err(error),
+        }
+    })?;
     Ok((Cli::from_arg_matches(&matches)?, matches))
+}
+
+/// Where a command line names a scene instead of a command.
+fn scene_place(line: &[OsString], error: &clap::Error) -> Option<usize> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    let is_scene =
+        Path::new(word).exists() || Source::is_generated(word) || word.contains(['.', '/']);
+    is_scene.then(|| line.iter().position(|of| of == word.as_str()))?
 }
 
 fn run(line: Vec<OsString>) -> Result<(), CliError> {

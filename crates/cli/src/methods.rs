@@ -11,7 +11,7 @@ use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
 use shiftvox::picture::Buffer;
-use shiftvox::project::Camera;
+use shiftvox::project::{Camera, Stop};
 use shiftvox::scene::{FileKind, Source};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
@@ -89,6 +89,12 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
     let Some(method) = named.or_else(its) else {
         check_memory(args)?;
         args.engine.check_of_voxels().map_err(CliError::usage)?;
+        let rules = args.engine.rules.options(0);
+        if !rules.coverage.draws_outlines() || rules.tolerance_px != 0.0 {
+            console.note(
+                "these rules are drawn by the machine, which takes 100 to 500 times as long as --coverage exact",
+            );
+        }
         let scene_args = args.engine.rules.scene_args(args.scene);
         let verify = scenes::Verify::IfSmall;
         let scene = scenes::open_source(source?, name, &scene_args, verify, started, console)?;
@@ -186,12 +192,17 @@ impl Opened {
         }
     }
 
-    pub(super) fn drawable(&self, args: &DrawArgs<'_>) -> Result<Box<dyn Drawable + '_>, CliError> {
+    /// `stop` ends drawings of voxels.
+    pub(super) fn drawable(
+        &self,
+        args: &DrawArgs<'_>,
+        stop: &Stop,
+    ) -> Result<Box<dyn Drawable + '_>, CliError> {
         let picture = args.picture;
         let (shading, background) = (picture.shade, picture.background.unwrap_or_default());
         let aa_log2 = picture.aa_log2();
         Ok(match &self.content {
-            Content::Graph(scene) => Box::new(of_graph(scene, args)?),
+            Content::Graph(scene) => Box::new(of_graph(scene, args, stop)?),
             Content::Far(file) => {
                 let style = FarStyle {
                     voxel_px: args.engine.rules.mesh_lod(),
@@ -228,6 +239,7 @@ pub(super) fn frame<'d>(
 pub(super) fn of_graph<'s>(
     scene: &'s Scene,
     args: &DrawArgs<'_>,
+    stop: &Stop,
 ) -> Result<GraphDrawing<'s>, CliError> {
     let style = GraphStyle {
         options: args.engine.rules.options(args.picture.aa_log2()),
@@ -236,7 +248,7 @@ pub(super) fn of_graph<'s>(
         buffers: args.picture.aov.clone(),
         is_hashed: args.is_hashed,
     };
-    let maker = engines::maker(args.engine)?;
+    let maker = engines::maker(args.engine, stop)?;
     Ok(GraphDrawing::new(&scene.graph, scene.up, style, maker))
 }
 

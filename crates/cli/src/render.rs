@@ -1,29 +1,37 @@
 //! `render`: a picture of each scene.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes, camera_line};
+use super::batch::{self, Job, Part};
 use super::console::{self, Console};
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
-use super::{outputs, report, scenes};
+use super::{outputs, report};
 use shiftvox::drawing::{DrawError, Shown};
 use shiftvox::frame::count_samples;
 use shiftvox::picture;
+use shiftvox::project::Stop;
 use shiftvox_lab::bench::Summary;
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
-    /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
+    /// Scenes: files, folders of files, or generators such as gen:terrain,depth=10,seed=1
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<String>,
-    /// Picture to write, with {stem} in place of the scene's name
+    /// Picture to write, with {stem} in place of the scene's name, or a folder [default: {stem}.png, but
+    /// none with --hash, --expect-hash, --print-camera or --repeat]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Leave out scenes whose picture exists
+    #[arg(long, conflicts_with_all = ["force", "hash", "expect_hash"])]
+    resume: bool,
+    /// Draw part K of N of the scenes, to share a batch among computers
+    #[arg(long, value_name = "K/N", value_parser = batch::part)]
+    part: Option<Part>,
     /// Draw the same frame N times and report the least, middle and greatest time
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..))]
@@ -56,18 +64,20 @@ pub(super) struct RenderArgs {
 
 /// Draws all scenes. A scene that fails is reported and does not stop the others.
 pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> {
-    let names = &args.scenes;
     check(args)?;
+    let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
+    let is_needed = !answers || !args.picture.aov.is_empty() || args.resume;
+    let jobs = batch::jobs(&args.scenes, args.output.as_deref(), is_needed, args.part)?;
     let mut results = Vec::new();
     let mut failures: Vec<Kind> = Vec::new();
-    for name in names {
-        match render_one(args, name, console) {
+    for job in &jobs {
+        match render_one(args, job, jobs.len() > 1, console) {
             Ok(result) => results.push(result),
-            Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+            Err(error) if jobs.len() == 1 || error.kind == Kind::Pipe => return Err(error),
             Err(error) => {
                 console::report_error(&error);
                 failures.push(error.kind);
-                results.push(json!({ "scene": name, "error": error.message }));
+                results.push(json!({ "scene": job.scene, "error": error.message }));
             }
         }
     }
@@ -75,7 +85,7 @@ pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> 
     match failures.first() {
         None => Ok(()),
         Some(&first) => {
-            let (failed, all) = (failures.len(), names.len());
+            let (failed, all) = (failures.len(), jobs.len());
             let message = format!("{failed} of {all} scenes failed; see above");
             Err(CliError::new(first, message))
         }
@@ -84,12 +94,6 @@ pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> 
 
 fn check(args: &RenderArgs) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
-    let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
-    if args.output.is_none() && !answers {
-        return Err(CliError::usage("no output was given").advise(
-            "name the picture with -o FILE.png, or ask for --hash, --print-camera or --repeat N",
-        ));
-    }
     if let Some(expected) = &args.expect_hash
         && !(expected.len() == 32 && expected.bytes().all(|b| b.is_ascii_hexdigit()))
     {
@@ -97,42 +101,22 @@ fn check(args: &RenderArgs) -> Result<(), CliError> {
     }
     let (width, height) = args.picture.size();
     count_samples(width, height, args.picture.aa_log2()).map_err(DrawError::from)?;
-    let Some(output) = &args.output else {
-        return match args.picture.aov.is_empty() {
-            true => Ok(()),
-            false => Err(CliError::usage(
-                "--aov writes beside the picture: name it with -o FILE.png",
-            )),
-        };
-    };
-    outputs::check_picture_name(output)?;
-    outputs::check_text(output)?;
-    if args.scenes.len() > 1 && !output.to_string_lossy().contains("{stem}") {
-        let (all, output) = (args.scenes.len(), output.display());
-        let message = format!("{output}: {all} scenes would be written to one file");
-        let advice = "put {stem} into the name, for example -o out/{stem}.png";
-        return Err(CliError::usage(message).advise(advice));
-    }
-    let mut taken = HashSet::new();
-    for name in &args.scenes {
-        let path = output_path(output, name);
-        if !taken.insert(path.clone()) {
-            let message = format!("two scenes would both be drawn to {}", path.display());
-            let advice = "draw them into different folders, one after the other";
-            return Err(CliError::usage(message).advise(advice));
-        }
-    }
     Ok(())
 }
 
-fn output_path(output: &Path, scene: &str) -> PathBuf {
-    match output.to_str() {
-        Some(text) => text.replace("{stem}", &scenes::stem(scene)).into(),
-        None => output.to_owned(),
+fn render_one(
+    args: &RenderArgs,
+    job: &Job,
+    is_one_of_many: bool,
+    console: &Console,
+) -> Result<Value, CliError> {
+    let name = &job.scene;
+    let files = job.picture.as_deref();
+    let files = files.map_or_else(Vec::new, |path| outputs::paths(path, &args.picture.aov));
+    if args.resume && files.iter().all(|path| path.exists()) {
+        console.detail(format!("{}: exists, left out", files[0].display()));
+        return Ok(json!({ "scene": name, "output": job.picture, "is_left_out": true }));
     }
-}
-
-fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value, CliError> {
     let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
     let draw_args = DrawArgs {
         engine: &args.engine,
@@ -142,16 +126,17 @@ fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value,
         is_hashed,
     };
     let size = args.picture.size();
-    let output = args
-        .output
-        .as_deref()
-        .map(|output| output_path(output, name));
-    if let Some(path) = &output {
-        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.force)?;
+    // With `--resume`, a picture that lacks some of its buffers is drawn again.
+    let force = args.force || args.resume;
+    let output = &job.picture;
+    if let Some(path) = output {
+        outputs::check_free(&files, force)?;
         outputs::check_room(path, &args.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
+    let mut drawable = opened
+        .drawable(&draw_args, &Stop::default())
+        .map_err(|e| e.at(name))?;
     let up = args.scene.up_or(drawable.up());
     let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
@@ -161,13 +146,13 @@ fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value,
     let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));
     let hash = hash.transpose().map_err(|e| CliError::from(e).at(name))?;
     if let Some(hash) = hash.as_deref().filter(|_| args.hash && !console.json) {
-        console.data(match args.scenes.len() {
-            1 => hash.to_owned(),
-            _ => format!("{hash}  {name}"),
+        console.data(match is_one_of_many {
+            false => hash.to_owned(),
+            true => format!("{hash}  {name}"),
         })?;
     }
-    if let Some(path) = &output {
-        outputs::write(&shown, path, &args.picture.aov, args.force)?;
+    if let Some(path) = output {
+        outputs::write(&shown, path, &args.picture.aov, force)?;
     }
     print_times(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
@@ -177,7 +162,7 @@ fn render_one(args: &RenderArgs, name: &str, console: &Console) -> Result<Value,
         return Err(CliError::new(Kind::Failed, message));
     }
     let mut result = report::drawn(name, opened.load_ms, &camera, &shown, hash.as_deref());
-    result["output"] = json!(output.map(|path| path.display().to_string()));
+    result["output"] = json!(output);
     result["is_verified"] = json!(opened.is_verified());
     Ok(result)
 }

@@ -11,7 +11,7 @@ use super::error::CliError;
 use super::methods::{self, DrawArgs};
 use super::{outputs, report};
 use shiftvox::picture;
-use shiftvox::project::Camera;
+use shiftvox::project::{Camera, Stop};
 use shiftvox_lab::bench::Summary;
 
 #[derive(Debug, Args)]
@@ -67,7 +67,9 @@ pub(super) fn run(args: &TurntableArgs, console: &Console) -> Result<(), CliErro
     };
     let name = &args.scene_name;
     let opened = methods::open(name, &draw_args, console)?;
-    let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
+    let mut drawable = opened
+        .drawable(&draw_args, &Stop::default())
+        .map_err(|e| e.at(name))?;
     let up = args.scene.up_or(drawable.up());
     // One distance for all frames, so that the object keeps its size.
     let bounds = drawable.bounds().revolved(up);

@@ -32,5 +32,9 @@ pub trait Program: Sync {
     fn hello(&self) -> Value;
 
     /// Answers the requests of one socket; an error is the reason of a refusal. It is dropped after 10 s without one.
-    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String>;
+    /// When `is_stale`, which should be asked every few milliseconds, the answer to the current request is of no use.
+    fn drawer(
+        &self,
+        is_stale: impl Fn() -> bool + Send + Sync + 'static,
+    ) -> impl FnMut(&Request) -> Result<Answer, String>;
 }

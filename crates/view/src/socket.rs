@@ -1,8 +1,11 @@
-//! Requests do not queue: of those that have arrived, only the newest is answered.
+//! Requests do not queue: of those that have arrived, only the newest is answered. One that arrives during a drawing ends
+//! it.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use tungstenite::protocol::frame::Frame;
@@ -61,6 +64,8 @@ fn answer_all(
     socket: &mut WebSocket<Patient>,
     program: &impl Program,
 ) -> Result<Option<(CloseCode, &'static str)>, Error> {
+    let stream = Arc::new(socket.get_ref().0.try_clone()?);
+    let was_stale = Arc::new(AtomicBool::new(false));
     send(socket, (hello(program), Vec::new()))?;
     socket.get_ref().0.set_read_timeout(Some(IDLE))?;
     let (mut drawer, mut newest) = (None, None::<Utf8Bytes>);
@@ -80,13 +85,26 @@ fn answer_all(
                     drawer = None;
                     continue;
                 };
-                socket.get_ref().0.set_nonblocking(false)?;
-                let drawer = drawer.get_or_insert_with(|| program.drawer());
+                let drawer = drawer.get_or_insert_with(|| {
+                    let (stream, was_stale) = (Arc::clone(&stream), Arc::clone(&was_stale));
+                    // Something has arrived, or the page has gone. The stream does not block now.
+                    program.drawer(move || {
+                        let is_stale = stream.peek(&mut [0]).is_ok();
+                        was_stale.fetch_or(is_stale, Ordering::Relaxed);
+                        is_stale
+                    })
+                });
                 let drawn = catch_unwind(AssertUnwindSafe(|| answer(drawer, &request)));
                 let Ok(answer) = drawn else {
                     let reason = "the program cannot go on with this page";
                     return Ok(Some((CloseCode::Error, reason)));
                 };
+                if was_stale.swap(false, Ordering::Relaxed) {
+                    // Drawn again unless what has arrived is a request.
+                    newest = Some(request);
+                    continue;
+                }
+                socket.get_ref().0.set_nonblocking(false)?;
                 send(socket, answer)?;
                 continue;
             }

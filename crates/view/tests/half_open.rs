@@ -15,7 +15,10 @@ impl Program for Empty {
         json!({ "scenes": [] })
     }
 
-    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String> {
+    fn drawer(
+        &self,
+        _is_stale: impl Fn() -> bool + Send + Sync + 'static,
+    ) -> impl FnMut(&Request) -> Result<Answer, String> {
         |_| Err("there are no scenes".to_owned())
     }
 }

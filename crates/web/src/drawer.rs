@@ -62,7 +62,10 @@ impl Opened {
         ] {
             command.push(format!("--{name} {}", point(of)));
         }
-        command.push(format!("--fov {} -o picture.png", camera.fov_degrees));
+        command.push(format!(
+            "--fov {} -o picture.png --force",
+            camera.fov_degrees
+        ));
         let head = json!({
             "width": width,
             "height": height,
@@ -109,7 +112,11 @@ impl Program for Opened {
         json!({ "scenes": [self.name], "flags": {}, "size": null, "aa": 1, "warnings": self.scene.warnings() })
     }
 
-    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String> {
+    /// A worker gets no messages while it draws.
+    fn drawer(
+        &self,
+        _is_stale: impl Fn() -> bool + Send + Sync + 'static,
+    ) -> impl FnMut(&Request) -> Result<Answer, String> {
         |request| match request.ask {
             Ask::Picture => self.picture(request),
             Ask::Figures => Err(

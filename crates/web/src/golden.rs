@@ -171,7 +171,9 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut again = frame.clone();
     if is_oracle {
-        Rays.render(&view, &setup, &mut frame).expect(row);
+        Rays::default()
+            .render(&view, &setup, &mut frame)
+            .expect(row);
         return (frame, None);
     }
     let counter = Counter::new();

@@ -74,7 +74,7 @@ pub extern "C" fn ask() -> usize {
         let request = String::from_utf8_lossy(input);
         let mut nothing = |_: &_| Err("there is no scene".to_owned());
         message(match opened {
-            Some(scene) => shiftvox_view::answer(&mut scene.drawer(), &request),
+            Some(scene) => shiftvox_view::answer(&mut scene.drawer(|| false), &request),
             None => shiftvox_view::answer(&mut nothing, &request),
         })
     })

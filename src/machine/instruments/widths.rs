@@ -15,11 +15,12 @@ use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
+use crate::machine::limit::Limit;
 use crate::machine::record::{Pose, Record};
 use crate::machine::state::State;
 use crate::machine::watch::{Event, Watch};
 use crate::project::vector::cross;
-use crate::project::{CageKind, EngineError, FrameSetup, most_records};
+use crate::project::{CageKind, EngineError, FrameSetup, Stop, most_records};
 
 hwmodel::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -265,7 +266,7 @@ impl Machine {
         with_cage!(setup, L => {
             let mut state = State::<_, L, _>::new(options, graph, setup, canvas, NoProbe, watch);
             let most = most_records(setup);
-            if !state.draw_by_tiles(most)? {
+            if !state.draw_by_tiles(&mut Limit::new(most, &Stop::default()))? {
                 return Err(EngineError::Records(most));
             }
             Ok(state.finish().2.spans)

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use serde_json::{Value, json};
 use shiftvox::drawing::{Drawable, milliseconds_since};
 use shiftvox::picture::{self, Buffer, Pixels};
-use shiftvox::project::Camera;
+use shiftvox::project::{Camera, Stop};
 use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, quoted};
 
 use super::flags::{self, MODEL_FLAGS};
@@ -45,11 +45,15 @@ impl Program for Shared {
         })
     }
 
-    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String> {
+    fn drawer(
+        &self,
+        is_stale: impl Fn() -> bool + Send + Sync + 'static,
+    ) -> impl FnMut(&Request) -> Result<Answer, String> {
         let mut kept = Kept::new();
+        let stop = Stop::when(is_stale);
         move |request| {
             let answer = match request.ask {
-                Ask::Picture => self.picture(request, &mut kept),
+                Ask::Picture => self.picture(request, &mut kept, &stop),
                 Ask::Figures => self.figures(request),
             };
             answer.map_err(|error| error.to_string())
@@ -58,7 +62,12 @@ impl Program for Shared {
 }
 
 impl Shared {
-    fn picture<'s>(&'s self, request: &Request, kept: &mut Kept<'s>) -> Result<Answer, CliError> {
+    fn picture<'s>(
+        &'s self,
+        request: &Request,
+        kept: &mut Kept<'s>,
+        stop: &Stop,
+    ) -> Result<Answer, CliError> {
         let started = Instant::now();
         let settings = flags::settings(request)?;
         let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
@@ -80,7 +89,7 @@ impl Shared {
             None => {
                 opened.check(&listed.name, &args)?;
                 kept.truncate(KEPT - 1);
-                opened.drawable(&args)?
+                opened.drawable(&args, stop)?
             }
         };
         kept.insert(0, (key, drawable));
@@ -117,7 +126,7 @@ impl Shared {
             "camera": report::camera(&camera),
             "axis": up.axis().to_array(),
             "engine": engine.as_ref().map(clap::builder::PossibleValue::get_name),
-            "command": self.command("render", &listed.name, words, &camera) + " -o picture.png",
+            "command": self.command("render", &listed.name, words, &camera) + " -o picture.png --force",
             "hash": hash,
             "counters": shown.counters,
             "pixels_drawn": shown.pixels_drawn,

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use clap::{ArgMatches, Args};
 use serde_json::json;
-use shiftvox::project::Coverage;
+use shiftvox::project::{Coverage, Stop};
 use shiftvox_view::{Flags, Server};
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs};
@@ -60,7 +60,11 @@ impl Listed {
     fn open(name: &str, args: &ViewArgs, console: &Console) -> Result<Self, CliError> {
         let draw_args = args.draw_args(&args.engine, &args.picture);
         let opened = methods::open(name, &draw_args, console)?;
-        drop(opened.drawable(&draw_args).map_err(|e| e.at(name))?);
+        drop(
+            opened
+                .drawable(&draw_args, &Stop::default())
+                .map_err(|e| e.at(name))?,
+        );
         let is_blended = args.engine.rules.coverage.is_some_and(Coverage::blends);
         let reads_twice = !is_blended && !args.scene.opacities && scenes::is_mesh(name)?;
         Ok(Self {

@@ -151,7 +151,7 @@ pub(crate) fn run_command(command: &str) -> (Vec<u8>, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     let words = command.strip_prefix("shiftvox ").unwrap();
-    let words = words.strip_suffix(" -o picture.png").unwrap();
+    let words = words.strip_suffix(" -o picture.png --force").unwrap();
     let output = shiftvox(&format!("{words} --hash -o {}", path.display()));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command}: {told}");

@@ -1,0 +1,145 @@
+//! The pictures of one call of `render`: files of folders, and parts of a batch for several computers.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::CliError;
+use super::{outputs, scenes};
+use shiftvox::scene::{FORMATS, Source};
+
+/// A scene, and the picture to write, if any.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Job {
+    pub(super) scene: String,
+    pub(super) picture: Option<PathBuf>,
+}
+
+/// Every `of`-th picture, beginning with number `first` (from 0).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Part {
+    first: usize,
+    of: usize,
+}
+
+/// `K/N`, with K from 1 to N.
+pub(super) fn part(text: &str) -> Result<Part, String> {
+    let numbers = text
+        .split_once('/')
+        .and_then(|(k, n)| Some((k.parse::<usize>().ok()?, n.parse::<usize>().ok()?)));
+    match numbers {
+        Some((k, of)) if (1..=of).contains(&k) => Ok(Part { first: k - 1, of }),
+        _ => Err("expected K/N, such as 1/16 to 16/16".to_owned()),
+    }
+}
+
+/// What to draw. Without a name and with `is_needed`, a picture is `{stem}.png`.
+pub(super) fn jobs(
+    names: &[String],
+    output: Option<&Path>,
+    is_needed: bool,
+    part: Option<Part>,
+) -> Result<Vec<Job>, CliError> {
+    let mut all = Vec::new();
+    for name in names {
+        match !Source::is_generated(name) && Path::new(name).is_dir() {
+            true if output.is_none() && is_needed => {
+                let error =
+                    CliError::usage(format!("{name}: no folder for the pictures was given"));
+                return Err(error.advise("name it with -o FOLDER/"));
+            }
+            true => all.extend(files(name)?),
+            false => all.push(name.clone()),
+        }
+    }
+    let pattern = match output {
+        Some(path) if is_folder(path) => Some(path.join("{stem}.png")),
+        None if is_needed => Some(PathBuf::from("{stem}.png")),
+        other => other.map(Path::to_owned),
+    };
+    let Some(pattern) = pattern else {
+        let bare = |scene| Job {
+            scene,
+            picture: None,
+        };
+        return Ok(taken(part, all.into_iter().map(bare).collect()));
+    };
+    outputs::check_picture_name(&pattern)?;
+    let pattern = outputs::check_text(&pattern)?;
+    if all.len() > 1 && !pattern.contains("{stem}") {
+        let all = all.len();
+        let message = format!("{pattern}: {all} scenes would be written to one file");
+        let advice = "name a folder with -o FOLDER/, or put {stem} into the name";
+        return Err(CliError::usage(message).advise(advice));
+    }
+    let mut pictures = HashSet::new();
+    let mut jobs = Vec::new();
+    for scene in all {
+        let picture = PathBuf::from(pattern.replace("{stem}", &scenes::stem(&scene)));
+        if !pictures.insert(picture.clone()) {
+            let message = format!("two scenes would both be drawn to {}", picture.display());
+            let advice = "draw them into different folders, one after the other";
+            return Err(CliError::usage(message).advise(advice));
+        }
+        let picture = Some(picture);
+        jobs.push(Job { scene, picture });
+    }
+    Ok(taken(part, jobs))
+}
+
+fn taken(part: Option<Part>, jobs: Vec<Job>) -> Vec<Job> {
+    let Part { first, of } = part.unwrap_or(Part { first: 0, of: 1 });
+    jobs.into_iter().skip(first).step_by(of).collect()
+}
+
+fn is_folder(path: &Path) -> bool {
+    path.as_os_str()
+        .to_string_lossy()
+        .ends_with(['/', std::path::MAIN_SEPARATOR])
+        || path.is_dir()
+}
+
+/// The files of a folder whose names end like a format's, sorted by name.
+fn files(folder: &str) -> Result<Vec<String>, CliError> {
+    let failed = |error| CliError::input(format!("{folder}: {error}"));
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = outputs::check_text(&path)?.to_owned();
+        let is_scene = |name: &str| FORMATS.iter().any(|format| name.ends_with(format.ending));
+        if is_scene(&name.to_lowercase()) && path.is_file() {
+            found.push(name);
+        }
+    }
+    found.sort();
+    match found.is_empty() {
+        false => Ok(found),
+        true => Err(
+            CliError::input(format!("{folder}: no file here has the ending of a format"))
+                .advise("`shiftvox --help` lists the formats"),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_the_whole() {
+        let names: Vec<String> = (1..=7)
+            .map(|depth| format!("gen:menger,depth={depth}"))
+            .collect();
+        let mut drawn = Vec::new();
+        for text in ["1/3", "2/3", "3/3"] {
+            let part = part(text).unwrap();
+            drawn.extend(jobs(&names, None, true, Some(part)).unwrap());
+        }
+        drawn.sort_by(|a, b| a.scene.cmp(&b.scene));
+        assert_eq!(drawn, jobs(&names, None, true, None).unwrap());
+        assert_eq!(drawn[6].picture, Some(PathBuf::from("menger-depth-7.png")));
+        for wrong in ["0/3", "4/3", "1/0", "1", "a/b", "-1/2"] {
+            assert!(part(wrong).is_err(), "{wrong}");
+        }
+    }
+}
