@@ -12,9 +12,9 @@ import json
 import os
 import tempfile
 
-from ._core import Camera, Error, Picture, Scene, documents, render
+from ._core import Camera, Error, Picture, Scene, __version__, documents, render
 
-__all__ = ["Camera", "Error", "Picture", "Scene", "explore", "hardware", "model", "render", "run"]
+__all__ = ["Camera", "Error", "Picture", "Scene", "__version__", "explore", "hardware", "model", "render", "run"]
 
 
 def _words(options):

@@ -11,6 +11,8 @@ Engine = Literal["fast", "machine", "rays"]
 Coverage = Literal["exact", "alpha", "center", "any"]
 Cage = Literal["frame", "corners"]
 
+__version__: str
+
 class Error(Exception):
     exit_code: int
 

@@ -10,7 +10,7 @@ use crate::refused;
 /// The program's output for a command line with --json. An `Error` has the program's `exit_code`.
 #[pyfunction]
 pub(crate) fn documents(py: Python<'_>, words: Vec<OsString>) -> PyResult<String> {
-    let printed = on_all_threads(py, || shiftvox_cli::documents(words))?;
+    let printed = on_all_threads(py, |_| shiftvox_cli::documents(words))?;
     printed.map_err(|error| {
         let told = refused(&error);
         match told.value(py).setattr("exit_code", error.kind.code()) {

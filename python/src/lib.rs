@@ -8,6 +8,8 @@ mod ply;
 mod pool;
 mod scene;
 
+use numpy::PyArrayDyn;
+use numpy::ndarray::IxDyn;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
@@ -26,6 +28,9 @@ fn refused(error: impl std::fmt::Display) -> PyErr {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    // Loads NumPy now: a signal while it loads would be a panic.
+    PyArrayDyn::<u8>::zeros(module.py(), IxDyn(&[0]), false);
     module.add("Error", module.py().get_type::<Error>())?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<camera::Camera>()?;

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyAny;
+use pyo3::types::{PyAny, PyBytes};
 use shiftvox::picture::npy::Values;
+use shiftvox::picture::png::Pixels;
 use shiftvox::{Background, Buffer, Renderer, Shading};
 
 use crate::arguments::{self, CAGES, ENGINES, color, count, one_of, whole};
@@ -60,10 +62,8 @@ fn array(py: Python<'_>, values: Values, shape: &[usize]) -> PyResult<Py<PyAny>>
     }
 }
 
-#[pymethods]
 impl Picture {
-    /// Write the colours as a PNG, replacing an existing file. Raises `Error` if the system refuses.
-    fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+    fn pixels(&self, py: Python<'_>) -> PyResult<Pixels> {
         let rgba = self.rgba.bind(py).cast::<PyArrayDyn<u8>>()?;
         let rgba = rgba.try_readonly().map_err(refused)?;
         let pixels = rgba.as_slice().map_err(refused)?;
@@ -71,13 +71,28 @@ impl Picture {
         if pixels.len() != self.width as usize * self.height as usize {
             return Err(Error::new_err("rgba: another type or size was given to it"));
         }
-        let pixels = shiftvox::picture::png::Pixels::new(self.width, self.height, pixels);
+        Ok(Pixels::new(self.width, self.height, pixels))
+    }
+}
+
+#[pymethods]
+impl Picture {
+    /// Write the colours as a PNG, replacing an existing file. Raises `Error` if the system refuses.
+    fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let pixels = self.pixels(py)?;
         let write = || {
             shiftvox::whole::write_with(&path, true, |file| {
                 pixels.write(file).map_err(std::io::Error::other)
             })
         };
         py.detach(write).map_err(refused)
+    }
+
+    /// The colours as a PNG, which notebooks show.
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        self.pixels(py)?.write(&mut bytes).map_err(refused)?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     fn __repr__(&self) -> String {
@@ -181,14 +196,17 @@ pub(crate) fn render(
             renderer.buffers(wanted.collect::<PyResult<Vec<_>>>()?)
         }
     };
-    let scene = &scene.scene;
+    let scene = Arc::clone(&scene.scene);
     let camera = camera.map_or_else(
-        || Kind::Fitted(shiftvox::Camera::fit(scene)),
+        || Kind::Fitted(shiftvox::Camera::fit(&scene)),
         |camera| camera.camera.clone(),
     );
-    let picture = on_all_threads(py, || match &camera {
-        Kind::Fitted(camera) => renderer.render(scene, camera, width, height),
-        Kind::Placed(camera) => renderer.render(scene, camera, width, height),
+    let picture = on_all_threads(py, move |stop| {
+        let renderer = renderer.stopped_by(stop);
+        match &camera {
+            Kind::Fitted(camera) => renderer.render(&scene, camera, width, height),
+            Kind::Placed(camera) => renderer.render(&scene, camera, width, height),
+        }
     })?
     .map_err(refused)?;
     let [rows, columns] = [height, width].map(|side| side as usize);

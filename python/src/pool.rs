@@ -1,14 +1,20 @@
 //! The thread pool of the process.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::Duration;
 
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use shiftvox::Stop;
 
 use crate::refused;
 
 /// Bytes of stack per thread, as many as a program's first thread has.
 const STACK: usize = 8 << 20;
+/// Between two looks at signals.
+const SIGNALS: Duration = Duration::from_millis(20);
 
 /// The pool and its process.
 ///
@@ -31,11 +37,31 @@ fn pool(_holds_the_gil: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     Ok(new)
 }
 
-/// Works on all threads, while other Python threads run.
-pub(crate) fn on_all_threads<T: Send>(
+/// Works on all threads, while other Python threads run. After a signal such as Ctrl-C, Python's exception is raised and
+/// the work is to stop. Work that does not look at its `Stop` goes on without an effect.
+pub(crate) fn on_all_threads<T: Send + 'static>(
     py: Python<'_>,
-    work: impl FnOnce() -> T + Send,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let pool = pool(py)?;
-    Ok(py.detach(|| pool.install(work)))
+    let is_over = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&is_over);
+    let stop = Stop::when(move || asked.load(Ordering::Relaxed));
+    let (sender, mut receiver) = mpsc::channel();
+    pool(py)?.spawn(move || {
+        let done = catch_unwind(AssertUnwindSafe(|| work(&stop)));
+        let _ = sender.send(done);
+    });
+    loop {
+        let wait = move || (receiver.recv_timeout(SIGNALS), receiver);
+        let (done, again) = py.detach(wait);
+        match done {
+            Ok(Ok(done)) => return Ok(done),
+            Ok(Err(panic)) => resume_unwind(panic),
+            Err(_) => {
+                let signals = py.check_signals();
+                signals.inspect_err(|_| is_over.store(true, Ordering::Relaxed))?;
+            }
+        }
+        receiver = again;
+    }
 }

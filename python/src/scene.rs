@@ -1,6 +1,7 @@
 //! Scenes.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
@@ -16,7 +17,7 @@ use crate::{Error, refused};
 /// the file sets another size and place. Cannot be pickled: pass the name of a file to other processes.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Scene {
-    pub(crate) scene: shiftvox::Scene,
+    pub(crate) scene: Arc<shiftvox::Scene>,
 }
 
 fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOptions> {
@@ -42,10 +43,12 @@ fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8
 
 fn made(
     py: Python<'_>,
-    make: impl FnOnce() -> Result<shiftvox::Scene, shiftvox::Error> + Send,
+    make: impl FnOnce() -> Result<shiftvox::Scene, shiftvox::Error> + Send + 'static,
 ) -> PyResult<Scene> {
-    let scene = on_all_threads(py, make)?.map_err(refused)?;
-    Ok(Scene { scene })
+    let scene = on_all_threads(py, |_| make())?.map_err(refused)?;
+    Ok(Scene {
+        scene: Arc::new(scene),
+    })
 }
 
 #[pymethods]
@@ -66,7 +69,7 @@ impl Scene {
         verify: bool,
     ) -> PyResult<Self> {
         let options = options(depth, opacities, up)?;
-        made(py, || {
+        made(py, move || {
             let mut scene = options.open(path)?;
             if verify && !scene.is_verified() {
                 scene.verify()?;
@@ -80,7 +83,8 @@ impl Scene {
     /// Raises `Error` for an unknown generator or a wrong parameter.
     #[staticmethod]
     fn generate(py: Python<'_>, specification: &str) -> PyResult<Self> {
-        made(py, || shiftvox::Scene::generate(specification))
+        let specification = specification.to_owned();
+        made(py, move || shiftvox::Scene::generate(&specification))
     }
 
     /// A scene of voxels. Indices (N, 3) are 32-bit integers, and colours (N, 3) are integers 0 to 255 in sRGB, by
@@ -104,7 +108,9 @@ impl Scene {
             color,
             normal: None,
         });
-        made(py, || Ok(shiftvox::Scene::from_voxels(voxels)?.with_up(up)))
+        made(py, move || {
+            Ok(shiftvox::Scene::from_voxels(voxels)?.with_up(up))
+        })
     }
 
     /// A mesh, voxelised as by `open`. Positions (V, 3) are any numbers, triangles (T, 3) rows of positions, and
@@ -127,12 +133,13 @@ impl Scene {
         let colors = colors_of(colors, positions.len())?;
         let options = options(depth, opacities, up)?;
         let bytes = ply(&positions, &colors, &triangles)?;
-        made(py, || options.from_bytes(&bytes, "the mesh"))
+        made(py, move || options.from_bytes(&bytes, "the mesh"))
     }
 
     /// Write a .vxg file, replacing an existing one. Raises `Error` if the system refuses.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        on_all_threads(py, || self.scene.save_vxg(path))?.map_err(refused)
+        let scene = Arc::clone(&self.scene);
+        on_all_threads(py, move |_| scene.save_vxg(path))?.map_err(refused)
     }
 
     /// Voxels of the finest level.

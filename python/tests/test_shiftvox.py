@@ -4,6 +4,7 @@ import ast
 import inspect
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -55,6 +56,42 @@ def test_arrays_are_the_buffers():
     assert np.isfinite(picture.depth[seen]).all()
     assert np.allclose(np.linalg.norm(picture.normals[seen], axis=1), 1, atol=1e-3)
     assert (picture.voxels[~seen] == [0, 0, 0, -1]).all()
+
+
+def interrupted(work):
+    """Calls a function that is interrupted as by Ctrl-C a moment after its begin."""
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        work()
+
+
+def test_ctrl_c_ends_every_call():
+    """Uninterrupted, each of these would take many minutes."""
+    scene = shiftvox.Scene.open(TREE)
+    before = shiftvox.render(scene, size=64)
+    interrupted(lambda: shiftvox.render(scene, size=4096, coverage="any"))
+    interrupted(lambda: shiftvox.render(scene, size=2048, engine="rays"))
+    assert shiftvox.render(scene, size=64).hash == before.hash
+    # The first call of a process, too.
+    script = f"""
+import os, signal, threading, shiftvox
+scene = shiftvox.Scene.open({str(TREE)!r})
+threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    shiftvox.render(scene, size=4096, coverage="any")
+except KeyboardInterrupt:
+    print("ended")
+"""
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert ended.stdout == "ended\n", ended.stderr
+
+
+def test_notebooks_show_pictures(tmp_path):
+    picture = shiftvox.render(shiftvox.Scene.generate("menger,depth=2"), size=32)
+    picture.save_png(tmp_path / "saved.png")
+    assert picture._repr_png_() == (tmp_path / "saved.png").read_bytes()
+    assert shiftvox.__version__.count(".") == 2
 
 
 def test_engines_agree():
