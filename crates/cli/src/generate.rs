@@ -15,8 +15,10 @@ use shiftvox_mesh::generate;
 
 #[derive(Debug, Args)]
 pub(super) struct GenerateArgs {
-    /// Generator and its settings, such as gen:terrain,depth=10,seed=1 or mesh:tree,seed=2. The
-    /// prefix gen: may be left out
+    /// Generator and its settings, such as gen:terrain,depth=10,seed=1 or mesh:tree,seed=2
+    ///
+    /// The prefix gen: may be left out. Meshes are scan, machine, wheel, tree, stadium, village,
+    /// garden, tower, fence, grass and chains.
     #[arg(value_name = "SPEC")]
     spec: String,
     /// File to write, with the ending .vxg, .vox or .ply, for a mesh .ply

@@ -4,6 +4,7 @@
 
 mod kinds;
 pub(crate) mod maker;
+mod thin;
 
 use super::{Mesh, Surface, linear_to_srgb};
 use maker::Maker;
@@ -17,10 +18,14 @@ pub enum Kind {
     Stadium,
     Village,
     Garden,
+    Tower,
+    Fence,
+    Grass,
+    Chains,
 }
 
 impl Kind {
-    pub const ALL: [(&'static str, Self); 7] = [
+    pub const ALL: [(&'static str, Self); 11] = [
         ("scan", Self::Scan),
         ("machine", Self::Machine),
         ("wheel", Self::Wheel),
@@ -28,6 +33,10 @@ impl Kind {
         ("stadium", Self::Stadium),
         ("village", Self::Village),
         ("garden", Self::Garden),
+        ("tower", Self::Tower),
+        ("fence", Self::Fence),
+        ("grass", Self::Grass),
+        ("chains", Self::Chains),
     ];
 }
 
@@ -64,6 +73,10 @@ pub fn generate(kind: Kind, seed: u64) -> Mesh {
         Kind::Stadium => kinds::stadium(&mut maker),
         Kind::Village => kinds::village(&mut maker),
         Kind::Garden => kinds::garden(&mut maker),
+        Kind::Tower => thin::tower(&mut maker),
+        Kind::Fence => thin::fence(&mut maker),
+        Kind::Grass => thin::grass(&mut maker),
+        Kind::Chains => thin::chains(&mut maker),
     }
     maker.finish()
 }
