@@ -78,6 +78,13 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         n("bytes"),
         build_ms / 1e3
     ));
+    if built.data.undecimated > 0 {
+        console.note(format!(
+            "warning: {}: the triangles of {} nodes could not be decimated; these have voxels",
+            output.display(),
+            built.data.undecimated
+        ));
+    }
     let per_voxel = described["rays_per_voxel"].as_f64().unwrap_or_default();
     if described["voxels_kept"] != 0 && per_voxel < LEAST_RAYS_PER_VOXEL {
         console.note(format!(

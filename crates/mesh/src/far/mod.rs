@@ -22,6 +22,8 @@ pub struct FarData {
     pub nodes: Vec<Node>,
     /// The nodes' data, node by node, as it is stored.
     pub packed: Vec<u8>,
+    /// Nodes of a hybrid whose triangles could not be decimated, so that they have voxels. No file has this number.
+    pub undecimated: u32,
 }
 
 /// The settings of all nodes.

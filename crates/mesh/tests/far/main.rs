@@ -8,4 +8,5 @@ mod golden;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod solid;
+mod thin;
 mod view;

@@ -34,6 +34,16 @@ pub(super) struct Candidate {
     pub(super) triangles: Vec<LeafTriangle>,
 }
 
+pub(super) struct Judged {
+    pub(super) candidate: Candidate,
+    /// The root mean square error, and the lost share of an empty picture's error.
+    pub(super) error: f64,
+    /// The share of coverage that is lost, mean of all views.
+    pub(super) lost: f64,
+    /// By error and bytes, those of the node's record among them: an empty candidate is not free.
+    pub(super) cost: f64,
+}
+
 pub(super) struct Comparison<'o> {
     options: &'o BuildOptions,
     /// Coordinates are relative to it, so that single precision resolves the node's parts.
@@ -102,26 +112,32 @@ impl<'o> Comparison<'o> {
         Ok(of)
     }
 
-    pub(super) fn best(&self, mut candidates: Vec<Candidate>) -> Result<Candidate, BuildError> {
-        let mut costs = Vec::new();
-        for candidate in &candidates {
-            let (file, bytes) = self.file(candidate)?;
-            let error = libm::sqrt(self.square_error(&file)?);
-            costs.push(error * libm::pow(bytes as f64, BYTES_WEIGH));
-        }
-        let least = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
-        Ok(candidates.swap_remove(least.unwrap_or(0)))
-    }
-
-    fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
-        let mut sum = 0.0;
+    pub(super) fn judge(&self, candidate: Candidate) -> Result<Judged, BuildError> {
+        let (file, bytes) = self.file(&candidate)?;
+        let (mut squares, mut lost) = (0.0, 0.0);
+        let mut of_blank = 0.0;
         for (view, light, expected) in &self.views {
-            let seen = draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?;
+            let seen = draw(&file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?;
             let both = seen.iter().zip(expected);
-            let errors: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
-            sum += errors / expected.len().max(1) as f64;
+            squares += mean(both.map(|(&a, &b)| (a - b).length_squared()));
+            of_blank += mean(expected.iter().map(|p| p.length_squared()));
+            let [covered, all] = [&seen, expected].map(|pixels| mean(pixels.iter().map(|p| p.w)));
+            if covered < all {
+                lost += 1.0 - covered / all;
+            }
         }
-        Ok(sum / self.views.len() as f64)
+        let views = self.views.len() as f64;
+        let lost = lost / views;
+        let [error, of_blank] = [squares, of_blank].map(|sum| libm::sqrt(sum / views));
+        // A mean of squares alone takes a blank for little worse than thin lines that are a pixel off.
+        let error = error + lost * of_blank;
+        let bytes = bytes + size_of::<Node>() as u64;
+        Ok(Judged {
+            candidate,
+            error,
+            lost,
+            cost: error * libm::pow(bytes as f64, BYTES_WEIGH),
+        })
     }
 
     fn file(&self, candidate: &Candidate) -> Result<(FarFile, u64), BuildError> {
@@ -145,11 +161,17 @@ impl<'o> Comparison<'o> {
             settings: self.options.settings(DVec3::ZERO),
             nodes: vec![root, leaf],
             packed,
+            undecimated: 0,
         };
         let encoded = encode(&data).map_err(failed)?;
         let file = FarFile::from_bytes(&encoded).map_err(failed)?;
         Ok((file, drawn))
     }
+}
+
+fn mean(numbers: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = numbers.len().max(1) as f64;
+    numbers.sum::<f64>() / count
 }
 
 fn failed(error: impl std::fmt::Display) -> BuildError {

@@ -45,14 +45,14 @@ pub(super) fn leave_out_dense(
 }
 
 /// The fewest voxels along a node above another one. Thin tubes would lose area in larger voxels.
-const LEAST: [u32; 2] = [32, 16];
+const LEAST: u32 = 32;
 
 /// Puts nodes of half the voxels along a side, and so on, above a root with children. Returns how many.
-pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
+pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32) -> usize {
     let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
         return 0;
     };
-    let count = (grid / LEAST[usize::from(hybrid)]).max(1).ilog2();
+    let count = (grid / LEAST).max(1).ilog2();
     let coarser: Vec<Branch> = (0..count)
         .map(|level| Branch {
             level,

@@ -233,7 +233,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let corners = |number: usize| surface.corners(number);
     let fewest = options.leaf_triangles as usize;
     let (mut branches, order) = split(surface.len(), corners, fewest);
-    let coarser = levels::put_above(&mut branches, options.grid, options.hybrid);
+    let coarser = levels::put_above(&mut branches, options.grid);
     progress.end();
     let mut has_voxels = match options.hybrid {
         true => vec![true; branches.len()],
@@ -327,8 +327,8 @@ fn fill<F: Read + Write + Seek + Send>(
         };
         match &surfaces {
             Some(surfaces) if branch.count <= MOST_TRIANGLES => {
-                let thin = |node: &mut Node, thin: &[bool]| voxels(node, Some(thin));
-                surfaces.inner(&node, branch.triangles(), thin)
+                let some = |node: &mut Node, taken: &[bool]| voxels(node, Some(taken));
+                surfaces.inner(&node, branch.triangles(), some)
             }
             _ => {
                 let lists = voxels(&mut node, None)?;
@@ -350,6 +350,7 @@ fn fill<F: Read + Write + Seek + Send>(
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
+    data.undecimated = surfaces.map_or(0, |surfaces| surfaces.undecimated.into_inner());
     data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
     Ok((data, spool))
 }
@@ -513,6 +514,7 @@ fn assemble<F: Read + Write + Seek>(
         settings: options.settings(centre),
         nodes: Vec::new(),
         packed: Vec::new(),
+        undecimated: 0,
     };
     let mut data_at = 0;
     for Done { node, bytes, .. } in spool.nodes() {

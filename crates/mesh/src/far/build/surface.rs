@@ -1,14 +1,15 @@
 //! The candidates for an inner node of a hybrid (`spec/far.md`), of which `compare.rs` chooses.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec3;
 
-use super::compare::{Candidate, Comparison};
+use super::compare::{Candidate, Comparison, Judged};
 use super::parts::Parts;
 use super::split::Branch;
 use super::{BuildError, BuildOptions, leaf_triangles};
-use crate::decimate::{Decimation, decimate_between};
+use crate::decimate::{DecimateError, Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
@@ -26,6 +27,10 @@ const FINEST: f64 = 0.1;
 const LEAST_VOXEL_BYTES: f64 = 12.0;
 /// A finer candidate takes at most so many times the least bytes of voxels.
 const MOST_BYTES: f64 = 4.0;
+/// Most error of a node, as a share of that with voxels of thin parts: half a decibel.
+const WORSE: f64 = 1.06;
+/// A node that loses more of its coverage may have voxels of all triangles.
+const MOST_LOST: f64 = 0.05;
 /// Larger nodes have voxels alone: decimating takes memory.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
@@ -35,6 +40,8 @@ pub(super) struct Surfaces<'s> {
     centre: DVec3,
     options: &'s BuildOptions,
     parts: Parts,
+    /// Nodes that have voxels because their triangles could not be decimated.
+    pub(super) undecimated: AtomicU32,
 }
 
 impl<'s> Surfaces<'s> {
@@ -58,6 +65,7 @@ impl<'s> Surfaces<'s> {
             centre,
             options,
             parts: Parts::of(&leaves, corners, normals),
+            undecimated: AtomicU32::new(0),
         }
     }
 
@@ -74,13 +82,39 @@ impl<'s> Surfaces<'s> {
         own: Range<usize>,
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<(Node, Vec<u8>), BuildError> {
-        let candidates = self.candidates(node, &own, voxels)?;
-        let chosen = match <[Candidate; 1]>::try_from(candidates) {
-            Ok([only]) => only,
-            Err(candidates) => {
-                let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-                Comparison::of(node, &all, self.options)?.best(candidates)?
+        let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
+        let comparison = Comparison::of(node, &all, self.options)?;
+        let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
+        let mut thin: Vec<bool> = own.clone().map(thin).collect();
+        let (surfaces, mut wide) = self.decimations(node, &own, &thin).unwrap_or_else(|_| {
+            self.undecimated.fetch_add(1, Ordering::Relaxed);
+            thin.fill(true);
+            (Vec::new(), Some(Vec::new()))
+        });
+        let judged = surfaces.into_iter().map(|one| comparison.judge(one));
+        let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
+        let mut most_error = f64::INFINITY;
+        let chosen = loop {
+            if let Some(triangles) = wide.take() {
+                let mut node = *node;
+                let lists = voxels(&mut node, &thin)?;
+                let one = comparison.judge(Candidate {
+                    node,
+                    lists,
+                    triangles,
+                })?;
+                most_error = most_error.min(one.error * WORSE);
+                judged.push(one);
             }
+            let able = (0..judged.len()).filter(|&n| judged[n].error <= most_error);
+            let best = able.min_by(|&a, &b| judged[a].cost.total_cmp(&judged[b].cost));
+            let best = best.unwrap_or(0);
+            if judged[best].lost <= MOST_LOST || !thin.contains(&false) {
+                break judged.swap_remove(best).candidate;
+            }
+            // A lattice is one wide part of thin bars.
+            thin.fill(true);
+            wide = Some(Vec::new());
         };
         let mut node = chosen.node;
         let is_shared = |p| self.parts.shared(&own, p).is_some();
@@ -88,14 +122,15 @@ impl<'s> Surfaces<'s> {
         Ok((node, pack(&chosen.lists, &bytes)))
     }
 
-    fn candidates(
+    /// Candidates without voxels; and, where some part is thin, the wide ones.
+    fn decimations(
         &self,
         node: &Node,
         own: &Range<usize>,
-        voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
-    ) -> Result<Vec<Candidate>, BuildError> {
+        thin: &[bool],
+    ) -> Result<(Vec<Candidate>, Option<Vec<LeafTriangle>>), DecimateError> {
         let voxel = f64::from(node.voxel);
-        let is_thin = |place: usize| f64::from(self.parts.size(place).width) < THIN * voxel;
+        let is_thin = |place: usize| thin[place - own.start];
         // Small parts are left out whole.
         let is_seen =
             |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
@@ -113,36 +148,22 @@ impl<'s> Surfaces<'s> {
             let _ = surface::lay_out(&mut counted, &candidate.triangles, |_| false);
             counted.drawn_bytes() as f64
         };
-        let least_of = |is_taken: &dyn Fn(usize) -> bool| {
-            let taken = own.clone().filter(|&place| is_taken(place));
-            let area: f64 = taken.map(|place| self.area(place)).sum();
-            area / (voxel * voxel) * LEAST_VOXEL_BYTES
-        };
+        let area: f64 = own.clone().map(|place| self.area(place)).sum();
+        let most_bytes = MOST_BYTES * area / (voxel * voxel) * LEAST_VOXEL_BYTES;
         let mut candidates = Vec::new();
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
             let all = candidate(decimated(&|place| is_seen(place, error), error)?);
-            if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
+            if candidates.is_empty() || bytes(&all) <= most_bytes {
                 candidates.push(all);
             }
         }
-        let thin: Vec<bool> = own.clone().map(is_thin).collect();
-        if thin.iter().all(|is_thin| !is_thin) {
-            return Ok(candidates);
+        if !thin.contains(&true) {
+            return Ok((candidates, None));
         }
         let wide = decimated(&|place| !is_thin(place) && is_seen(place, ERROR), ERROR)?;
         let lines = decimated(&is_thin, ERROR * FINEST)?;
-        let both = candidate([&wide[..], &lines].concat());
-        if least_of(&is_thin) < bytes(&both) {
-            let mut node = *node;
-            let lists = voxels(&mut node, &thin)?;
-            candidates.push(Candidate {
-                node,
-                lists,
-                triangles: wide,
-            });
-        }
-        candidates.push(both);
-        Ok(candidates)
+        candidates.push(candidate([&wide[..], &lines].concat()));
+        Ok((candidates, Some(wide)))
     }
 
     fn area(&self, place: usize) -> f64 {
@@ -154,7 +175,7 @@ impl<'s> Surfaces<'s> {
         own: &Range<usize>,
         taken: &[usize],
         error: f64,
-    ) -> Result<Vec<LeafTriangle>, BuildError> {
+    ) -> Result<Vec<LeafTriangle>, DecimateError> {
         if taken.is_empty() {
             return Ok(Vec::new());
         }
@@ -169,8 +190,7 @@ impl<'s> Surfaces<'s> {
             prunes: false,
         };
         let shared = |p: [f64; 3]| self.parts.shared(own, p.map(|c| c as f32));
-        let few = decimate_between(&mesh, &how, shared);
-        let few = few.map_err(|error| BuildError::Surface(error.to_string()))?;
+        let few = decimate_between(&mesh, &how, shared)?;
         Ok(few.map_or(Vec::new(), |mesh| triangles_of(&mesh)))
     }
 }

@@ -1,0 +1,84 @@
+//! Hybrids keep thin things, and what cannot be decimated.
+
+use glam::DVec3;
+use shiftvox::graph::Silent;
+use shiftvox_mesh::far::view::{Opacity, ViewOptions};
+use shiftvox_mesh::far::{BuildOptions, build};
+use shiftvox_mesh::generate::{Kind, generate};
+
+use super::city::{draw, file_of};
+use super::shared::{area, around, directions, shape, sphere, triangle, triangles};
+use super::solid::hybrid;
+
+const OPTIONS: ViewOptions = ViewOptions {
+    voxel_px: 1.0,
+    samples_across: 4,
+    opacity: Opacity::Six,
+    light: None,
+    background: None,
+    culling: true,
+};
+
+/// What far voxels of the same mesh show is not lost: at most half a decibel.
+#[test]
+fn thin_meshes_keep_their_area_and_are_as_good_as_far_voxels() {
+    for kind in [Kind::Tower, Kind::Fence, Kind::Grass, Kind::Chains] {
+        let mesh = generate(kind, 1);
+        let files = [true, false].map(|hybrid| {
+            let options = BuildOptions {
+                hybrid,
+                leaf_triangles: 4000,
+                ..BuildOptions::default()
+            };
+            file_of(&build(&mesh, &options, &Silent).unwrap())
+        });
+        for size in [60, 20] {
+            let (mut areas, mut squares) = ([0.0; 2], [0.0; 2]);
+            for towards in directions(4) {
+                let view = around(&mesh, towards, 2.0, size);
+                let expected = triangles(&mesh, &view, 16, None).coverage;
+                let drawn = files.each_ref().map(|file| draw(file, &view, &OPTIONS).0);
+                areas[0] += area(&drawn[0].coverage);
+                areas[1] += area(&expected);
+                for (sum, drawn) in squares.iter_mut().zip(&drawn) {
+                    let both = drawn.coverage.iter().zip(&expected);
+                    *sum += both.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+                }
+            }
+            let bias: f64 = areas[0] / areas[1] - 1.0;
+            let behind = 10.0 * libm::log10(squares[0] / squares[1]);
+            assert!(bias.abs() < 0.12, "{kind:?}, {size} pixels: {bias:+.3}");
+            assert!(behind < 0.5, "{kind:?}, {size} pixels: {behind:+.2} dB");
+        }
+    }
+}
+
+/// Two spheres in one place, and a speck that is too small for numbers of single precision: its node has voxels.
+#[test]
+fn coincident_spheres_are_built_and_what_is_not_decimated_has_voxels() {
+    let spheres = |speck: Option<f32>| {
+        shape(|builder| {
+            for _ in 0..2 {
+                sphere(builder, DVec3::ZERO, 1.0, [24, 24], 0);
+            }
+            if let Some(side) = speck {
+                triangle(builder, [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0]], 0);
+            }
+        })
+    };
+    for (speck, is_counted) in [(None, false), (Some(1e-22), true)] {
+        let mesh = spheres(speck);
+        let data = hybrid(&mesh, 300);
+        assert_eq!(data.undecimated > 0, is_counted);
+        let file = file_of(&data);
+        for size in [60, 20] {
+            let view = around(&mesh, DVec3::new(0.3, 0.5, 0.8), 2.0, size);
+            let drawn = area(&draw(&file, &view, &OPTIONS).0.coverage);
+            let expected = area(&triangles(&mesh, &view, 16, None).coverage);
+            assert!(
+                (drawn / expected - 1.0).abs() < 0.2,
+                "{size} pixels: {drawn} {expected}"
+            );
+        }
+    }
+}
