@@ -17,16 +17,16 @@ type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 const FILES: [Build; 4] = [
     (false, Some(60_000), 24, 60, [0x317a_3d04, 0x3fee_026a]),
     (false, None, 16, 300, [0x1f88_6761, 0xa6a5_e7d3]),
-    (true, Some(60_000), 24, 200, [0x1b73_17fa, 0xe231_4f72]),
-    (true, None, 16, 300, [0xb1bf_d3a4, 0xaa66_dac3]),
+    (true, Some(60_000), 24, 200, [0xcd8e_34d5, 0xe231_4f72]),
+    (true, None, 16, 300, [0xca16_0fd1, 0xaa66_dac3]),
 ];
 
 /// Distance, height, voxel size, samples across, opacities, hash.
 const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
-    (60.0, 0.02, 1.0, 1, Opacity::Six, 0xb299_eaf8),
-    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x9d4e_5880),
-    (110.0, 0.6, 2.0, 1, Opacity::Six, 0x0a7c_938a),
-    (110.0, 0.6, 2.0, 3, Opacity::None, 0x9b1e_db87),
+    (60.0, 0.02, 1.0, 1, Opacity::Six, 0x9b46_8999),
+    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x3937_0096),
+    (110.0, 0.6, 2.0, 1, Opacity::Six, 0x3778_1e92),
+    (110.0, 0.6, 2.0, 3, Opacity::None, 0xaecd_ff8e),
     (300.0, 0.1, 1.0, 4, Opacity::Six, 0xa132_8bf6),
     (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0xcf1c_a60c),
 ];

@@ -19,7 +19,7 @@ const OPTIONS: ViewOptions = ViewOptions {
     culling: true,
 };
 
-/// What far voxels of the same mesh show is not lost: at most half a decibel.
+/// A hybrid is at most half a decibel behind far voxels of the same mesh.
 #[test]
 fn thin_meshes_keep_their_area_and_are_as_good_as_far_voxels() {
     for kind in [Kind::Tower, Kind::Fence, Kind::Grass, Kind::Chains] {

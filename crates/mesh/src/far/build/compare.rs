@@ -36,7 +36,7 @@ pub(super) struct Candidate {
 
 pub(super) struct Judged {
     pub(super) candidate: Candidate,
-    /// The root mean square error, and the lost share of an empty picture's error.
+    /// The root of the mean square error and of the lost share of an empty picture's.
     pub(super) error: f64,
     /// The share of coverage that is lost, mean of all views.
     pub(super) lost: f64,
@@ -128,9 +128,8 @@ impl<'o> Comparison<'o> {
         }
         let views = self.views.len() as f64;
         let lost = lost / views;
-        let [error, of_blank] = [squares, of_blank].map(|sum| libm::sqrt(sum / views));
         // A mean of squares alone takes a blank for little worse than thin lines that are a pixel off.
-        let error = error + lost * of_blank;
+        let error = libm::sqrt((squares + lost * lost * of_blank) / views);
         let bytes = bytes + size_of::<Node>() as u64;
         Ok(Judged {
             candidate,
