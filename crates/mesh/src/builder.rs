@@ -1,11 +1,13 @@
 //! From loose vertices and triangles to a sound mesh.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::SceneError;
-use super::geometry::{plane_normal, point};
+use super::geometry::{area, plane_normal, point};
 use super::load::{Fault, Place, Problem};
-use super::{Material, Mesh, Surface};
+use super::{Material, Mesh, Surface, Texture};
 use shiftvox::budget::{self, Shortage};
 
 const MOST: usize = u32::MAX as usize;
@@ -19,7 +21,7 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
-type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[f32; 3]>);
+type Given = ([u32; 3], Option<[[f32; 3]; 3]>, u32, Option<[[f64; 2]; 3]>);
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
@@ -47,6 +49,10 @@ impl MeshBuilder {
     pub fn material(&mut self, material: Material) -> u32 {
         self.mesh.materials.push(material);
         (self.mesh.materials.len() - 1) as u32
+    }
+
+    pub(crate) fn set_texture(&mut self, material: u32, texture: Arc<Texture>) {
+        self.mesh.materials[material as usize].texture = Some(texture);
     }
 
     /// Adds a position and returns its number.
@@ -114,7 +120,8 @@ impl MeshBuilder {
         self.textured_triangle(corners, normals, material, None)
     }
 
-    /// [`triangle`](Self::triangle) with the mean colour of its texture, linear light: a factor.
+    /// [`triangle`](Self::triangle) with the places of its corners in the material's texture: across from the left and
+    /// down from the top, in sizes of the picture. Without effect where one is not finite.
     ///
     /// # Errors
     /// As [`triangle`](Self::triangle).
@@ -123,7 +130,7 @@ impl MeshBuilder {
         corners: [u32; 3],
         normals: Option<[[f32; 3]; 3]>,
         material: u32,
-        tint: Option<[f32; 3]>,
+        places: Option<[[f64; 2]; 3]>,
     ) -> Result<(), BadIndex> {
         let positions = self.mesh.positions.len();
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= positions) {
@@ -144,7 +151,7 @@ impl MeshBuilder {
         if alpha == Some(0.0) {
             self.invisible += 1;
             if self.mesh.triangles.is_empty() && self.hidden.len() < MOST {
-                self.hidden.push((corners, normals, material, tint));
+                self.hidden.push((corners, normals, material, places));
             }
             return Ok(());
         }
@@ -153,9 +160,13 @@ impl MeshBuilder {
             self.too_many = true;
             return Ok(());
         }
-        if let Some(tint) = tint {
-            self.mesh.tints.resize(self.mesh.triangles.len(), [1.0; 3]);
-            self.mesh.tints.push(tint);
+        if let Some(places) = places.filter(|p| p.as_flattened().iter().all(|c| c.is_finite())) {
+            // A picture repeats: the nearest repetition has the most digits.
+            let first = [0, 1].map(|k| libm::floor(places[0][k]));
+            let near = places.map(|place| [0, 1].map(|k| (place[k] - first[k]) as f32));
+            let none = [[f32::NAN; 2]; 3];
+            self.mesh.places.resize(self.mesh.triangles.len(), none);
+            self.mesh.places.push(near);
         }
         let mesh = &mut self.mesh;
         if normals.is_some() || !mesh.corner_normals.is_empty() {
@@ -192,8 +203,8 @@ impl MeshBuilder {
         ));
         self.invisible = 0;
         let seen = self.seen;
-        for (corners, normals, material, tint) in hidden {
-            let _ = self.textured_triangle(corners, normals, material, tint);
+        for (corners, normals, material, places) in hidden {
+            let _ = self.textured_triangle(corners, normals, material, places);
         }
         self.seen = seen;
     }
@@ -247,8 +258,10 @@ impl MeshBuilder {
         for material in mesh.material_of.iter_mut().filter(|m| !is_known(**m)) {
             *material = 0;
         }
-        if !mesh.tints.is_empty() {
-            mesh.tints.resize(mesh.triangles.len(), [1.0; 3]);
+        if mesh.materials.iter().any(|m| m.texture.is_some()) {
+            mesh.tints = (0..mesh.triangles.len())
+                .map(|n| middle(&mesh, n))
+                .collect();
         }
         if !mesh.vertex_colors.is_empty() {
             mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
@@ -260,6 +273,16 @@ impl MeshBuilder {
         mesh.corner_normals.shrink_to_fit();
         Ok(mesh)
     }
+}
+
+/// The factor of a triangle's texture, about its mean.
+fn middle(mesh: &Mesh, number: usize) -> [f32; 3] {
+    let triangle = mesh.triangle(number);
+    let color = triangle.sampler.map_or(DVec3::ONE, |sampler| {
+        let side = area(triangle.corners).sqrt();
+        sampler.at(&triangle.corners, [1.0 / 3.0; 3], side).0
+    });
+    color.as_vec3().to_array()
 }
 
 #[cfg(test)]

@@ -24,10 +24,13 @@ pub mod open;
 pub mod raster;
 mod scene_options;
 mod surface;
+mod texture;
 #[doc(hidden)]
 pub mod textured;
 #[doc(hidden)]
 pub mod voxelize;
+
+use std::sync::Arc;
 
 use glam::DVec3;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
@@ -38,6 +41,7 @@ pub use load::{Beside, LoadOptions, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
 pub use surface::{Instances, Surface, Triangle, mesh_box};
+pub use texture::{Sampler, Texture};
 
 /// Triangles with materials, in the file's own coordinates.
 ///
@@ -50,7 +54,10 @@ pub struct Mesh {
     pub(crate) materials: Vec<Material>,
     pub(crate) corner_normals: Vec<[[f32; 3]; 3]>,
     pub(crate) vertex_colors: Vec<[u8; 3]>,
-    /// Mean colour of each triangle's texture, linear light, or nothing.
+    /// Places of each triangle's corners in its texture, in sizes of the picture from its top left corner; not numbers
+    /// where a triangle has none. Or nothing.
+    pub(crate) places: Vec<[[f32; 2]; 3]>,
+    /// Colour of the middle of each triangle, linear light, for decimation; or nothing.
     pub(crate) tints: Vec<[f32; 3]>,
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
@@ -112,9 +119,18 @@ impl Mesh {
             size_of_val(&self.material_of[..]),
             size_of_val(&self.corner_normals[..]),
             size_of_val(&self.vertex_colors[..]),
+            size_of_val(&self.places[..]),
             size_of_val(&self.tints[..]),
         ];
-        sizes.iter().map(|&size| size as u64).sum()
+        let lists: u64 = sizes.iter().map(|&size| size as u64).sum();
+        let mut textures: Vec<_> = self
+            .materials
+            .iter()
+            .filter_map(|m| m.texture.as_ref())
+            .collect();
+        textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+        textures.dedup_by_key(|texture| Arc::as_ptr(texture));
+        lists + textures.iter().map(|texture| texture.bytes()).sum::<u64>()
     }
 }
 

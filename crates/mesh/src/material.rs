@@ -1,9 +1,11 @@
 //! Materials, and colours in linear light.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use shiftvox::scene::DEFAULT_COLOR;
 use shiftvox::srgb::to_linear;
+
+use crate::Texture;
 
 /// How the numbers of a colour in a file are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -23,8 +25,10 @@ pub struct Material {
     pub name: String,
     /// Diffuse colour, linear light, 0 to 1.
     pub diffuse: [f32; 3],
-    /// Opacity, 0 to 1: the weight where colours are averaged. Triangles of opacity 0 are left out.
+    /// Opacity, 0 to 1. Triangles of opacity 0 are left out.
     pub alpha: f32,
+    /// Colour and opacity at each place, factors of the ones above.
+    pub texture: Option<Arc<Texture>>,
 }
 
 impl Material {
@@ -34,6 +38,7 @@ impl Material {
             name: name.into(),
             diffuse: color.map(srgb_to_linear),
             alpha: 1.0,
+            texture: None,
         }
     }
 
@@ -56,6 +61,7 @@ impl Material {
                 ColorSpace::Srgb => to_linear(f64::from(unit(value))) as f32,
             }),
             alpha: if alpha.is_nan() { 1.0 } else { unit(alpha) },
+            texture: None,
         }
     }
 }

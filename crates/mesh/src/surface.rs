@@ -2,14 +2,14 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::Mesh;
-use super::geometry::{barycentric, blend, bounds, plane_normal, point};
+use super::geometry::{area, barycentric, blend, bounds, plane_normal, point};
 use super::material::srgb_to_linear;
+use super::{Mesh, Sampler};
 use shiftvox::graph::MeshBox;
 
 /// One triangle, ready to be drawn: attributes of its corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Triangle {
+pub struct Triangle<'t> {
     /// Positions.
     pub corners: [DVec3; 3],
     /// Unit normals.
@@ -18,16 +18,38 @@ pub struct Triangle {
     pub colors: [DVec3; 3],
     /// Opacity, above 0.
     pub alpha: f64,
+    /// Its texture, whose colours and opacities are factors.
+    pub sampler: Option<Sampler<'t>>,
 }
 
-impl Triangle {
-    /// The unit normal on the eye's side, and the colour, at a point.
-    pub(crate) fn seen_from(&self, point: DVec3, towards_eye: DVec3) -> (DVec3, DVec3) {
+impl Triangle<'_> {
+    /// Colour and opacity at shares of the corners: the mean of a square of that side.
+    pub fn at(&self, shares: [f64; 3], side: f64) -> (DVec3, f64) {
+        let color = blend(&self.colors, shares);
+        let Some(sampler) = &self.sampler else {
+            return (color, self.alpha);
+        };
+        let (factor, opacity) = sampler.at(&self.corners, shares, side);
+        (color * factor, self.alpha * opacity)
+    }
+
+    /// Colours of the corners with the texture's mean there, for files without textures.
+    pub(crate) fn corner_colors(&self) -> [DVec3; 3] {
+        let side = area(self.corners).sqrt() / 2.0;
+        let shares = [[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]];
+        match self.sampler {
+            None => self.colors,
+            Some(_) => shares.map(|shares| self.at(shares.map(|s| s / 6.0), side).0),
+        }
+    }
+
+    /// The unit normal on the eye's side, and the colour, at a point: the mean of a square of that side.
+    pub(crate) fn seen_from(&self, point: DVec3, towards_eye: DVec3, side: f64) -> (DVec3, DVec3) {
         let shares = barycentric(&self.corners, point);
         let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
         let face = facing(plane_normal(self.corners), towards_eye);
         let normal = blend(&self.normals, shares).normalize_or(face);
-        (facing(normal, face), blend(&self.colors, shares))
+        (facing(normal, face), self.at(shares, side).0)
     }
 }
 
@@ -45,7 +67,7 @@ pub trait Surface: Sync {
     fn corners(&self, number: usize) -> [DVec3; 3];
 
     /// All attributes of a triangle.
-    fn triangle(&self, number: usize) -> Triangle;
+    fn triangle(&self, number: usize) -> Triangle<'_>;
 
     /// Lowest and highest corner.
     fn bounds(&self) -> (DVec3, DVec3);
@@ -55,7 +77,12 @@ pub trait Surface: Sync {
         None
     }
 
-    /// Whether the rasteriser calls [`Surface::texture`] at each point of a triangle. No triangle of a mesh is textured.
+    /// Whether nothing shows through a triangle.
+    fn is_opaque(&self, _number: usize) -> bool {
+        true
+    }
+
+    /// Whether the rasteriser calls [`Surface::texture`] at each point of a triangle. It does for no triangle of a mesh.
     fn is_textured(&self, _number: usize) -> bool {
         false
     }
@@ -83,7 +110,7 @@ impl Surface for Mesh {
         self.triangles[number].map(|i| point(self.positions[i as usize]))
     }
 
-    fn triangle(&self, number: usize) -> Triangle {
+    fn triangle(&self, number: usize) -> Triangle<'_> {
         let corners = Surface::corners(self, number);
         let normals = match self.corner_normals.get(number) {
             Some(normals) => normals.map(point),
@@ -92,8 +119,12 @@ impl Surface for Mesh {
         // Meshes of far nodes have no materials.
         let material = self.materials.get(self.material_of[number] as usize);
         let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
-        let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
-        let diffuse = point(diffuse) * point(tint);
+        let texture = material.and_then(|material| material.texture.as_deref());
+        let places = self.places.get(number).filter(|p| p[0][0].is_finite());
+        let sampler = texture
+            .zip(places)
+            .map(|(texture, &places)| Sampler { texture, places });
+        let diffuse = point(diffuse);
         let color = |i: u32| match self.vertex_colors.get(i as usize) {
             Some(color) => diffuse * point(color.map(srgb_to_linear)),
             None => diffuse,
@@ -103,11 +134,20 @@ impl Surface for Mesh {
             normals,
             colors: self.triangles[number].map(color),
             alpha: f64::from(alpha),
+            sampler,
         }
     }
 
     fn bounds(&self) -> (DVec3, DVec3) {
         Self::bounds(self)
+    }
+
+    fn is_opaque(&self, number: usize) -> bool {
+        let material = self.materials.get(self.material_of[number] as usize);
+        material.is_none_or(|material| {
+            let texture = material.texture.as_ref();
+            material.alpha >= 1.0 && texture.is_none_or(|texture| texture.is_opaque())
+        })
     }
 
     fn tinted_material(&self, number: usize) -> Option<u32> {
@@ -161,7 +201,7 @@ impl Surface for Instances {
         Surface::corners(&self.mesh, number % each).map(|p| place.transform_point3(p))
     }
 
-    fn triangle(&self, number: usize) -> Triangle {
+    fn triangle(&self, number: usize) -> Triangle<'_> {
         let each = self.mesh.triangles.len();
         let place = &self.places[number / each];
         let mut triangle = self.mesh.triangle(number % each);
@@ -174,6 +214,10 @@ impl Surface for Instances {
 
     fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
+    }
+
+    fn is_opaque(&self, number: usize) -> bool {
+        Surface::is_opaque(&self.mesh, number % self.mesh.triangles.len())
     }
 
     fn tinted_material(&self, number: usize) -> Option<u32> {

@@ -1,4 +1,4 @@
-//! Material libraries of Wavefront files: `newmtl`, `Kd`, `map_Kd`, `d` and `Tr`. All else is passed over.
+//! Material libraries of Wavefront files: `newmtl`, `Kd`, `map_Kd`, `d`, `Tr` and `map_d`. All else is passed over.
 
 use shiftvox::scene::DEFAULT_COLOR;
 
@@ -6,9 +6,16 @@ use super::{LoadOptions, text};
 use crate::Material;
 
 pub(super) struct Library {
-    /// In the order of the file, each with the name of the picture that its colour is multiplied by.
-    pub(super) materials: Vec<(Material, Option<String>)>,
+    /// In the order of the file.
+    pub(super) materials: Vec<(Material, Pictures)>,
     pub(super) odd_line: Option<usize>,
+}
+
+/// Names of the pictures that a material's colour and opacity are multiplied by.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pictures {
+    pub(super) color: Option<String>,
+    pub(super) opacity: Option<String>,
 }
 
 #[derive(Default)]
@@ -16,7 +23,7 @@ struct Found {
     name: String,
     color: Option<[f32; 3]>,
     alpha: f32,
-    texture: Option<String>,
+    pictures: Pictures,
 }
 
 pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
@@ -56,8 +63,12 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
                 value.is_some()
             }
             ("map_Kd", Some(last)) => {
-                last.texture = file_name(rest);
-                last.texture.is_some()
+                last.pictures.color = file_name(rest);
+                last.pictures.color.is_some()
+            }
+            ("map_d", Some(last)) => {
+                last.pictures.opacity = file_name(rest);
+                last.pictures.opacity.is_some()
             }
             _ => true,
         };
@@ -72,7 +83,7 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
     }
 }
 
-/// The name in a `map_Kd`, after its options: `-s 1 1 1 -clamp on wood grain.png`.
+/// The name in a `map_Kd` or `map_d`, after its options: `-s 1 1 1 -clamp on wood grain.png`.
 fn file_name(mut rest: &str) -> Option<String> {
     while rest.starts_with('-') {
         let (option, after) = rest.split_once(char::is_whitespace)?;
@@ -95,8 +106,8 @@ fn file_name(mut rest: &str) -> Option<String> {
 }
 
 impl Found {
-    fn material(self, options: &LoadOptions) -> (Material, Option<String>) {
-        let color = match (&self.texture, self.color) {
+    fn material(self, options: &LoadOptions) -> (Material, Pictures) {
+        let color = match (&self.pictures.color, self.color) {
             // Programs that write a black factor, or none, mean the picture alone.
             (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
             (_, color) => color,
@@ -108,6 +119,6 @@ impl Found {
                 ..Material::of_srgb(self.name, DEFAULT_COLOR)
             },
         };
-        (material, self.texture)
+        (material, self.pictures)
     }
 }

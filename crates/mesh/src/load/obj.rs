@@ -7,8 +7,10 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::str::SplitWhitespace;
 
-use super::texture::Textures;
-use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, mtl, text};
+use super::mtl::{self, Pictures};
+use super::texture::{Parts, Textures};
+use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, text};
+use crate::texture::AlphaMode;
 use crate::{Material, MeshBuilder};
 
 /// A corner without texture coordinate or normal, or a position that no triangle used yet.
@@ -23,7 +25,7 @@ pub(super) fn read(
     let text = text::decoded(bytes);
     let default = builder.material(Material::default_color());
     let mut file = File {
-        materials: vec![(default, None)],
+        materials: vec![(default, Pictures::default())],
         ..File::default()
     };
     for (line, number) in text.split_inclusive('\n').zip(1..) {
@@ -41,8 +43,8 @@ struct File {
     /// Numbers of position, texture coordinate and normal of each corner, from 0.
     corners: Vec<[u32; 3]>,
     faces: Vec<Face>,
-    /// The builder's number and the texture of each material. The first is that of faces without a material.
-    materials: Vec<(u32, Option<String>)>,
+    /// The builder's number and the pictures of each material. The first is that of faces without a material.
+    materials: Vec<(u32, Pictures)>,
     by_name: HashMap<String, usize>,
     current: usize,
     libraries: usize,
@@ -180,11 +182,15 @@ impl File {
             ));
         }
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        for (material, texture) in library.materials {
-            let texture = texture.map(|name| folder.join(name).to_string_lossy().into_owned());
+        let path = |name: String| folder.join(name).to_string_lossy().into_owned();
+        for (material, pictures) in library.materials {
+            let pictures = Pictures {
+                color: pictures.color.map(path),
+                opacity: pictures.opacity.map(path),
+            };
             self.by_name
                 .insert(material.name.clone(), self.materials.len());
-            self.materials.push((builder.material(material), texture));
+            self.materials.push((builder.material(material), pictures));
         }
     }
 
@@ -194,7 +200,7 @@ impl File {
         let mut textures = Textures::default();
         let mut without = 0;
         let mut begin = 0;
-        let mut texture = (0, None);
+        let mut is_textured: Vec<Option<bool>> = vec![None; self.materials.len()];
         for face in &self.faces {
             let corners = &self.corners[begin..face.end];
             begin = face.end;
@@ -205,12 +211,18 @@ impl File {
                     }
                 }
             }
-            let (material, name) = &self.materials[face.material];
-            if texture.0 != face.material {
-                let found = name.as_ref();
-                let found = found.and_then(|name| textures.get(name, || beside.read(name)));
-                texture = (face.material, found);
-            }
+            let (material, pictures) = &self.materials[face.material];
+            // Pictures of materials that no face has are not read.
+            let is_textured = *is_textured[face.material].get_or_insert_with(|| {
+                let parts = Parts {
+                    color: pictures.color.as_deref(),
+                    opacity: pictures.opacity.as_deref(),
+                    mode: AlphaMode::Blend,
+                };
+                let texture = textures.get(parts, |name| beside.read(name));
+                let texture = texture.map(|texture| builder.set_texture(*material, texture));
+                texture.is_some()
+            });
             for pair in corners.get(1..).unwrap_or_default().windows(2) {
                 let triangle = [corners[0], pair[0], pair[1]];
                 let positions = triangle.map(|[position, ..]| {
@@ -226,13 +238,11 @@ impl File {
                 });
                 let normals = all(triangle, 2, &self.normals);
                 let normals = normals.map(|normals| normals.map(|n| n.map(|c| c as f32)));
-                let tint = texture.1.as_ref().and_then(|texture| {
-                    let corners = all(triangle, 1, &self.texture_coordinates)?;
-                    texture.mean(corners.map(|[u, v]| [u, 1.0 - v]))
-                });
+                let places = all(triangle, 1, &self.texture_coordinates).filter(|_| is_textured);
+                let places = places.map(|places| places.map(|[u, v]| [u, 1.0 - v]));
                 without += usize::from(face.material == 0);
                 // In range: the builder gave the numbers.
-                let _ = builder.textured_triangle(positions, normals, *material, tint);
+                let _ = builder.textured_triangle(positions, normals, *material, places);
             }
         }
         textures.tell(builder);

@@ -1,38 +1,36 @@
-//! Textures, as far as they count here: the mean colour of a triangle's part of one.
+//! Pictures of textures: PNG and JPEG files, each decoded once.
 
 use std::collections::HashMap;
 use std::io::{self, Cursor};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::MeshBuilder;
+use crate::texture::AlphaMode;
+use crate::{MeshBuilder, Texture};
 use shiftvox::picture::png;
-use shiftvox::srgb::to_linear;
 
 const MOST_ACROSS: u32 = 16_384;
 const MOST_BYTES: u64 = 1 << 30;
-const MOST_SAMPLES: u32 = 48;
 
-#[derive(Debug)]
-pub(super) struct Texture {
-    width: u32,
-    height: u32,
+struct Picture {
+    size: [usize; 2],
     /// sRGB and opacity, row by row from the top.
-    texels: Vec<u8>,
+    texels: Vec<[u8; 4]>,
 }
 
-impl Texture {
+impl Picture {
     fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
         let (width, height, texels);
         if let Some(size) = png::size(bytes) {
             (width, height) = size;
             check_size(width, height, most_bytes)?;
             let image = png::decode(bytes).map_err(|error| error.to_string())?;
-            texels = image.rgba.into_flattened();
+            texels = image.rgba;
         } else if bytes.starts_with(b"\xff\xd8") {
             let failed = |error: DecodeErrors| error.to_string();
             let options = DecoderOptions::default()
@@ -44,58 +42,18 @@ impl Texture {
             let size = decoder.dimensions().unwrap_or_default();
             (width, height) = (size.0 as u32, size.1 as u32);
             check_size(width, height, most_bytes)?;
-            texels = decoder.decode().map_err(failed)?;
-            if texels.len() != 4 * size.0 * size.1 {
+            let bytes = decoder.decode().map_err(failed)?;
+            if bytes.len() != 4 * size.0 * size.1 {
                 return Err("its colours are not supported".to_owned());
             }
+            texels = bytes.as_chunks::<4>().0.to_vec();
         } else {
             return Err("it is neither PNG nor JPEG".to_owned());
         }
         Ok(Self {
-            width,
-            height,
+            size: [width as usize, height as usize],
             texels,
         })
-    }
-
-    /// The mean colour, linear light, of a triangle with these corners: across from the left and down from the top, in
-    /// sizes of the picture. Transparent texels count less. Nothing where a corner is no number, or all is transparent.
-    pub(super) fn mean(&self, corners: [[f64; 2]; 3]) -> Option<[f32; 3]> {
-        if !corners.as_flattened().iter().all(|c| c.is_finite()) {
-            return None;
-        }
-        let size = [f64::from(self.width), f64::from(self.height)];
-        let points = corners.map(|corner| [0, 1].map(|k| corner[k] * size[k]));
-        let longest =
-            (0..3).flat_map(|i| [0, 1].map(|k| (points[i][k] - points[(i + 1) % 3][k]).abs()));
-        let steps = (longest.fold(1.0, f64::max).ceil() as u32).min(MOST_SAMPLES);
-        let (mut sum, mut weight) = ([0.0; 3], 0.0);
-        // The middles of equal small triangles: `steps * steps` of them, half of which stand on their heads.
-        for i in 0..steps {
-            for j in 0..steps - i {
-                for third in 1..=if i + j + 1 < steps { 2 } else { 1 } {
-                    let part = |n: u32| (f64::from(n) + f64::from(third) / 3.0) / f64::from(steps);
-                    let (b, c) = (part(i), part(j));
-                    let shares = [1.0 - b - c, b, c];
-                    let at = [0, 1].map(|k| (0..3).map(|n| shares[n] * points[n][k]).sum::<f64>());
-                    let [r, g, b, alpha] = self.texel(at);
-                    let opacity = f64::from(alpha) / 255.0;
-                    for (sum, byte) in sum.iter_mut().zip([r, g, b]) {
-                        *sum += to_linear(f64::from(byte) / 255.0) * opacity;
-                    }
-                    weight += opacity;
-                }
-            }
-        }
-        (weight > 0.0).then(|| sum.map(|sum| (sum / weight) as f32))
-    }
-
-    fn texel(&self, [across, down]: [f64; 2]) -> [u8; 4] {
-        let place = |at: f64, size: u32| {
-            (at.floor().rem_euclid(f64::from(size)) as usize).min(size as usize - 1)
-        };
-        let (x, y) = (place(across, self.width), place(down, self.height));
-        self.texels.as_chunks::<4>().0[y * self.width as usize + x]
     }
 }
 
@@ -110,30 +68,63 @@ fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
     Ok(())
 }
 
-#[derive(Debug, Default)]
+/// The pictures of a texture, by their names.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parts<'n> {
+    pub(super) color: Option<&'n str>,
+    /// Opacity, if it is not that of the colour.
+    pub(super) opacity: Option<&'n str>,
+    pub(super) mode: AlphaMode,
+}
+
+#[derive(Default)]
 pub(super) struct Textures {
-    known: HashMap<String, Option<Rc<Texture>>>,
+    pictures: HashMap<String, Option<Rc<Picture>>>,
+    /// By their parts.
+    made: HashMap<String, Option<Arc<Texture>>>,
     bytes: u64,
     failed: Vec<(String, String)>,
 }
 
 impl Textures {
+    /// `read` gives the file of a name.
     pub(super) fn get(
         &mut self,
+        parts: Parts<'_>,
+        read: impl Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Option<Arc<Texture>> {
+        let key = format!("{parts:?}");
+        if let Some(known) = self.made.get(&key) {
+            return known.clone();
+        }
+        let color = parts.color.and_then(|name| self.picture(name, &read));
+        let opacity = parts.opacity.and_then(|name| self.picture(name, &read));
+        let made = match (color, opacity) {
+            (None, None) => None,
+            (Some(color), None) => Some((color.size, color.texels.clone())),
+            (color, Some(opacity)) => Some(together(color.as_deref(), &opacity)),
+        };
+        let made = made.map(|(size, texels)| Arc::new(Texture::new(size, texels, parts.mode)));
+        self.made.insert(key, made.clone());
+        made
+    }
+
+    fn picture(
+        &mut self,
         name: &str,
-        read: impl FnOnce() -> io::Result<Vec<u8>>,
-    ) -> Option<Rc<Texture>> {
-        if let Some(known) = self.known.get(name) {
+        read: impl Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Option<Rc<Picture>> {
+        if let Some(known) = self.pictures.get(name) {
             return known.clone();
         }
         let left = MOST_BYTES.saturating_sub(self.bytes);
-        let file = read().map_err(|error| error.to_string());
-        let texture = file.and_then(|bytes| Texture::decode(&bytes, left));
-        let texture = texture.map_err(|reason| self.failed.push((name.to_owned(), reason)));
-        let texture = texture.ok().map(Rc::new);
-        self.bytes += texture.as_ref().map_or(0, |t| t.texels.len() as u64);
-        self.known.insert(name.to_owned(), texture.clone());
-        texture
+        let file = read(name).map_err(|error| error.to_string());
+        let picture = file.and_then(|bytes| Picture::decode(&bytes, left));
+        let picture = picture.map_err(|reason| self.failed.push((name.to_owned(), reason)));
+        let picture = picture.ok().map(Rc::new);
+        self.bytes += picture.as_ref().map_or(0, |p| 4 * p.texels.len() as u64);
+        self.pictures.insert(name.to_owned(), picture.clone());
+        picture
     }
 
     pub(super) fn tell(&self, builder: &mut MeshBuilder) {
@@ -143,4 +134,22 @@ impl Textures {
             ));
         }
     }
+}
+
+/// A picture's colours, or white, with the opacities of another: its own, or its brightness if it is opaque. It is as
+/// large as the larger of the two.
+fn together(color: Option<&Picture>, opacity: &Picture) -> ([usize; 2], Vec<[u8; 4]>) {
+    let size = [0, 1].map(|k| opacity.size[k].max(color.map_or(0, |color| color.size[k])));
+    let is_grey = opacity.texels.iter().all(|texel| texel[3] == 255);
+    let texel = |of: &Picture, x: usize, y: usize| {
+        let [x, y] = [x * of.size[0] / size[0], y * of.size[1] / size[1]];
+        of.texels[y * of.size[0] + x]
+    };
+    let both = |x, y| {
+        let [r, g, b, _] = color.map_or([255; 4], |color| texel(color, x, y));
+        let [grey, _, _, alpha] = texel(opacity, x, y);
+        [r, g, b, if is_grey { grey } else { alpha }]
+    };
+    let rows = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| both(x, y)));
+    (size, rows.collect())
 }

@@ -1,4 +1,9 @@
 //! One bin: its samples' depths and triangles, then its pixels.
+//!
+//! A triangle that lets light through at a sample is a layer, and not in the depth buffer. Layers are sorted, and blended
+//! from the front to the back, when all triangles are known.
+
+use std::collections::HashMap;
 
 use glam::DVec3;
 
@@ -8,8 +13,9 @@ use super::edges::{Cover, Edges};
 use super::samples::{Places, SUBPIXELS};
 use super::shade::{Nearness, Paint, light_of, point_seen};
 use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
-use crate::Surface;
+use crate::geometry::barycentric;
 use crate::material::{linear_to_srgb, srgb_to_linear};
+use crate::{Surface, Triangle};
 
 #[derive(Debug, Clone, Copy)]
 struct Pixel {
@@ -35,7 +41,22 @@ struct Buffer<'b> {
     /// One over the depth of the nearest triangle so far; 0 where there is none.
     nearness: Vec<f64>,
     triangle: Vec<u32>,
+    layers: Vec<Layer>,
+    /// Of a sample, in pixels.
+    width: f64,
 }
+
+/// A triangle that lets light through at a sample.
+#[derive(Debug, Clone, Copy)]
+struct Layer {
+    sample: u32,
+    triangle: u32,
+    nearness: f64,
+    opacity: f64,
+}
+
+/// Of layers at one depth, to this share of it, the first counts, as of opaque triangles: leaves may have two sides.
+const SAME: f64 = 1.0 - 1e-9;
 
 impl Bin {
     pub(super) fn draw<S: Surface + ?Sized>(
@@ -58,6 +79,8 @@ impl Bin {
             places: Places::new(&options.samples, corner, columns, rows),
             nearness: vec![0.0; samples],
             triangle: vec![NO_TRIANGLE; samples],
+            layers: Vec::new(),
+            width: 1.0 / (options.samples.per_pixel() as f64).sqrt(),
         };
         for triangle in bins.triangles(number) {
             buffer.triangle(surface, triangle);
@@ -109,6 +132,8 @@ impl Buffer<'_> {
         [low, high]: [[i64; 2]; 2],
     ) {
         let is_textured = surface.is_textured(number as usize);
+        let is_opaque = surface.is_opaque(number as usize);
+        let clear = (!is_opaque).then(|| surface.triangle(number as usize));
         let corner = self.corner.map(i64::from);
         let size = [self.columns, self.rows].map(i64::from);
         let begin = [0, 1].map(|k| low[k].max(corner[k]));
@@ -138,6 +163,19 @@ impl Buffer<'_> {
                                 continue;
                             }
                         }
+                        if let Some(triangle) = &clear {
+                            let point = point_seen(self.view, sample_x, sample_y, 1.0 / near);
+                            let opacity = self.opacity(triangle, point, 1.0 / near);
+                            if opacity < 1.0 {
+                                self.layers.extend((opacity > 0.0).then_some(Layer {
+                                    sample: (at + sample) as u32,
+                                    triangle: number,
+                                    nearness: near,
+                                    opacity,
+                                }));
+                                continue;
+                            }
+                        }
                         self.nearness[at + sample] = near;
                         self.triangle[at + sample] = number;
                     }
@@ -146,72 +184,113 @@ impl Buffer<'_> {
         }
     }
 
-    fn resolve<S: Surface + ?Sized>(&self, surface: &S) -> Vec<Pixel> {
-        let light = self.options.light.as_ref();
-        let mut paints: std::collections::HashMap<u32, Paint> = std::collections::HashMap::new();
+    fn opacity(&self, triangle: &Triangle<'_>, point: DVec3, depth: f64) -> f64 {
+        let side = depth * self.width / self.view.focal_px;
+        triangle.at(barycentric(&triangle.corners, point), side).1
+    }
+
+    fn resolve<S: Surface + ?Sized>(mut self, surface: &S) -> Vec<Pixel> {
+        let mut layers = std::mem::take(&mut self.layers);
+        layers.retain(|layer| layer.nearness > self.nearness[layer.sample as usize]);
+        layers.sort_unstable_by(|a, b| {
+            let nearest_first = b.nearness.total_cmp(&a.nearness);
+            let order = a.sample.cmp(&b.sample).then(nearest_first);
+            order.then(a.triangle.cmp(&b.triangle))
+        });
+        let mut layers = layers.chunk_by(|a, b| a.sample == b.sample).peekable();
+        let mut paints = Paints {
+            buffer: &self,
+            surface,
+            known: HashMap::new(),
+            last: None,
+        };
         let background = self
             .options
             .background
             .map(|color| DVec3::from_array(color.map(|c| f64::from(srgb_to_linear(c)))));
         let per_pixel = self.options.samples.per_pixel();
-        let mut last: Option<(u32, Paint)> = None;
         let middle = self.options.samples.middle();
-        (0..(self.columns * self.rows) as usize)
-            .map(|i| {
-                let (column, row) = (i as u32 % self.columns, i as u32 / self.columns);
-                let pixel = [self.corner[0] + column, self.corner[1] + row];
-                let mut sum = DVec3::ZERO;
-                let mut seen = 0;
-                for sample in 0..per_pixel {
-                    let at = i * per_pixel + sample;
-                    let number = self.triangle[at];
-                    if number == NO_TRIANGLE {
-                        continue;
+        let pixels = (0..(self.columns * self.rows) as usize).map(|i| {
+            let mut sum = DVec3::ZERO;
+            let mut seen = 0.0;
+            for at in i * per_pixel..(i + 1) * per_pixel {
+                let mut passing = 1.0;
+                let mut before = f64::INFINITY;
+                for layer in layers
+                    .next_if(|l| l[0].sample as usize == at)
+                    .unwrap_or(&[])
+                {
+                    if layer.nearness < before * SAME {
+                        before = layer.nearness;
+                        let light = paints.light(layer.triangle, at, layer.nearness);
+                        sum += light * (passing * layer.opacity);
+                        passing *= 1.0 - layer.opacity;
                     }
-                    seen += 1;
-                    if last.as_ref().is_none_or(|(of, _)| *of != number) {
-                        let paint = paints.entry(number).or_insert_with(|| {
-                            Paint::of(self.view, surface.triangle(number as usize), light)
-                        });
-                        last = Some((number, *paint));
-                    }
-                    let Some((_, paint)) = &last else { continue };
-                    let place = self.places.of(i)[sample];
-                    let [x, y] = [0, 1]
-                        .map(|k| f64::from(pixel[k]) * SUBPIXELS as f64 + f64::from(place[k]));
-                    let depth = 1.0 / self.nearness[at];
-                    sum += if surface.is_textured(number as usize) {
-                        let point = point_seen(self.view, x, y, depth);
-                        let look = surface.texture(number as usize, point);
-                        look.map_or(DVec3::ZERO, |look| light_of(self.view, light, point, look))
-                    } else {
-                        paint.light(self.view, light, x, y, depth)
-                    };
                 }
-                let at = i * per_pixel + middle;
-                let nearness = self.nearness[at];
-                Pixel {
-                    rgba: mixed(sum, seen, per_pixel, background),
-                    coverage: seen as f32 / per_pixel as f32,
-                    depth: (1.0 / nearness) as f32,
-                    triangle: self.triangle[at],
+                let number = self.triangle[at];
+                if number != NO_TRIANGLE {
+                    sum += paints.light(number, at, self.nearness[at]) * passing;
+                    passing = 0.0;
                 }
-            })
-            .collect()
+                seen += 1.0 - passing;
+            }
+            let at = i * per_pixel + middle;
+            let nearness = self.nearness[at];
+            Pixel {
+                rgba: mixed(sum, seen, per_pixel as f64, background),
+                coverage: (seen / per_pixel as f64) as f32,
+                depth: (1.0 / nearness) as f32,
+                triangle: self.triangle[at],
+            }
+        });
+        pixels.collect()
     }
 }
 
-fn mixed(sum: DVec3, seen: usize, samples: usize, background: Option<DVec3>) -> [u8; 4] {
+/// The light of triangles at samples. Each triangle is prepared once.
+struct Paints<'b, 's, S: ?Sized> {
+    buffer: &'b Buffer<'b>,
+    surface: &'s S,
+    known: HashMap<u32, Paint<'s>>,
+    last: Option<(u32, Paint<'s>)>,
+}
+
+impl<S: Surface + ?Sized> Paints<'_, '_, S> {
+    fn light(&mut self, number: u32, at: usize, nearness: f64) -> DVec3 {
+        let (buffer, surface) = (self.buffer, self.surface);
+        let (view, light) = (buffer.view, buffer.options.light.as_ref());
+        let per_pixel = buffer.options.samples.per_pixel();
+        let (i, sample) = (at / per_pixel, at % per_pixel);
+        let pixel = [i as u32 % buffer.columns, i as u32 / buffer.columns];
+        let place = buffer.places.of(i)[sample];
+        let [x, y] = [0, 1].map(|k| {
+            let pixel = buffer.corner[k] + pixel[k];
+            f64::from(pixel) * SUBPIXELS as f64 + f64::from(place[k])
+        });
+        let depth = 1.0 / nearness;
+        if surface.is_textured(number as usize) {
+            let point = point_seen(view, x, y, depth);
+            let look = surface.texture(number as usize, point);
+            return look.map_or(DVec3::ZERO, |look| light_of(view, light, point, look));
+        }
+        if self.last.as_ref().is_none_or(|(of, _)| *of != number) {
+            let paint = || Paint::of(view, surface.triangle(number as usize), light);
+            self.last = Some((number, *self.known.entry(number).or_insert_with(paint)));
+        }
+        let paint = self.last.as_ref().map(|(_, paint)| paint);
+        let light_of = |paint: &Paint<'_>| paint.light(view, light, [x, y], depth, buffer.width);
+        paint.map_or(DVec3::ZERO, light_of)
+    }
+}
+
+fn mixed(sum: DVec3, seen: f64, samples: f64, background: Option<DVec3>) -> [u8; 4] {
     let (mean, alpha) = match background {
         Some(background) => {
-            let behind = background * (samples - seen) as f64;
-            ((sum + behind) / samples as f64, 255)
+            let behind = background * (samples - seen);
+            ((sum + behind) / samples, 255)
         }
-        None if seen == 0 => return [0; 4],
-        None => {
-            let alpha = (255 * seen + samples / 2) / samples;
-            (sum / seen as f64, alpha as u8)
-        }
+        None if seen <= 0.0 => return [0; 4],
+        None => (sum / seen, (255.0 * seen / samples + 0.5) as u8),
     };
     let [r, g, b] = mean.to_array().map(linear_to_srgb);
     [r, g, b, alpha]

@@ -88,14 +88,14 @@ pub(super) fn light_of(
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Paint {
-    triangle: Triangle,
+pub(super) struct Paint<'s> {
+    triangle: Triangle<'s>,
     face: DVec3,
     flat: Option<DVec3>,
 }
 
-impl Paint {
-    pub(super) fn of(view: &RasterCamera, triangle: Triangle, light: Option<&Light>) -> Self {
+impl<'s> Paint<'s> {
+    pub(super) fn of(view: &RasterCamera, triangle: Triangle<'s>, light: Option<&Light>) -> Self {
         let plane = plane_normal(triangle.corners);
         let is_front = (view.eye - triangle.corners[0]).dot(plane) >= 0.0;
         let face = if is_front { plane } else { -plane };
@@ -105,29 +105,32 @@ impl Paint {
             flat: None,
         };
         let same = |of: &[DVec3; 3]| of[0] == of[1] && of[1] == of[2];
-        if same(&triangle.colors) && (light.is_none() || same(&triangle.normals)) {
-            paint.flat = Some(paint.mixed([1.0, 0.0, 0.0], light));
+        let is_flat = triangle.sampler.is_none() && same(&triangle.colors);
+        if is_flat && (light.is_none() || same(&triangle.normals)) {
+            paint.flat = Some(paint.mixed([1.0, 0.0, 0.0], 0.0, light));
         }
         paint
     }
 
+    /// At a place of the picture, for a sample that is so many pixels wide.
     pub(super) fn light(
         &self,
         view: &RasterCamera,
         light: Option<&Light>,
-        x: f64,
-        y: f64,
+        [x, y]: [f64; 2],
         depth: f64,
+        pixels: f64,
     ) -> DVec3 {
         if let Some(flat) = self.flat {
             return flat;
         }
         let point = point_seen(view, x, y, depth);
-        self.mixed(barycentric(&self.triangle.corners, point), light)
+        let shares = barycentric(&self.triangle.corners, point);
+        self.mixed(shares, depth * pixels / view.focal_px, light)
     }
 
-    fn mixed(&self, share: [f64; 3], light: Option<&Light>) -> DVec3 {
-        let color = blend(&self.triangle.colors, share);
+    fn mixed(&self, share: [f64; 3], side: f64, light: Option<&Light>) -> DVec3 {
+        let (color, _) = self.triangle.at(share, side);
         let Some(light) = light else { return color };
         let normal = blend(&self.triangle.normals, share).normalize_or(self.face);
         let is_behind = normal.dot(self.face) < 0.0;

@@ -19,7 +19,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    pub fn of(triangle: &Triangle) -> Self {
+    pub fn of(triangle: &Triangle<'_>) -> Self {
         let plane = plane_normal(triangle.corners);
         // Normals of a file are in single precision.
         let normal = |n: DVec3| match n.distance_squared(plane) < 1e-12 {
@@ -29,7 +29,9 @@ impl Primitive {
         Self {
             corners: triangle.corners.map(|p| p.as_vec3().to_array()),
             normals: triangle.normals.map(normal),
-            colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+            colors: triangle
+                .corner_colors()
+                .map(|c| c.to_array().map(linear_to_srgb)),
             spare: 0,
         }
     }
@@ -38,7 +40,7 @@ impl Primitive {
         self.corners.map(point)
     }
 
-    pub fn triangle(&self) -> Triangle {
+    pub fn triangle(&self) -> Triangle<'static> {
         let corners = self.positions();
         let plane = plane_normal(corners);
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(plane);
@@ -48,6 +50,7 @@ impl Primitive {
             normals: self.normals.map(normal),
             colors: self.colors.map(color),
             alpha: 1.0,
+            sampler: None,
         }
     }
 }

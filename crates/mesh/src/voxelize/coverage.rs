@@ -2,7 +2,11 @@
 //!
 //! Points are stored, not only their number, so two halves of a slanted wall, one before the other, make a whole wall.
 
+use glam::DVec3;
+
 use super::touch::{OTHERS, Prepared};
+use crate::Triangle;
+use crate::geometry::barycentric;
 
 const POINTS: usize = 8;
 /// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
@@ -28,16 +32,29 @@ pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     }
 }
 
+const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
+
 /// The place of point (u, v) in eighths of its cell: in each row and column every eighth once.
 fn offsets(u: usize, v: usize) -> [i64; 2] {
-    const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
     [SPREAD[(v + 3 * u) & 7], SPREAD[(u + 5 * v) & 7]]
 }
 
-/// Adds the points that a triangle covers: those whose line along the axis it meets within the voxel.
+/// The opacity from which on a point counts: of the 64 points each has its own, and neighbours have unlike ones.
+fn least_opacity(u: usize, v: usize) -> f64 {
+    (SPREAD[u ^ v] * POINTS as i64 + SPREAD[u]) as f64 / 64.0
+}
+
+/// Adds the points that a triangle covers: those whose line along the axis it meets within the voxel. A triangle that
+/// lets light through is given with the size of the voxel. It covers a share of the points like its opacity there.
 ///
 /// Corners and points stay below 2^31, so an edge times a distance is below 2^62.
-pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
+pub(super) fn cover(
+    triangle: &Prepared,
+    clear: Option<(&Triangle<'_>, f64)>,
+    corner: [i64; 3],
+    side: i64,
+    masks: &mut Masks,
+) {
     let cell = side / POINTS as i64;
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
         let normal = triangle.normal;
@@ -81,7 +98,21 @@ pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mu
                 let slope = i128::from(normal[u]) * i128::from(point[0] - first[0])
                     + i128::from(normal[v]) * i128::from(point[1] - first[1]);
                 let depth = -slope * i128::from(turn);
-                if (low..=high).contains(&depth) {
+                let is_shown = || {
+                    clear.is_none_or(|(clear, size)| {
+                        let mut here = DVec3::ZERO;
+                        here[u] = point[0] as f64;
+                        here[v] = point[1] as f64;
+                        here[k] = at as f64 + depth as f64 / along as f64;
+                        let corners = triangle.corners.map(|p| {
+                            DVec3::from_array([0, 1, 2].map(|k| (p[k] - corner[k]) as f64))
+                        });
+                        let shares = barycentric(&corners, here);
+                        let (_, opacity) = clear.at(shares, size / POINTS as f64);
+                        opacity > least_opacity(i as usize, j as usize)
+                    })
+                };
+                if (low..=high).contains(&depth) && is_shown() {
                     masks[k] |= bit;
                 }
             }

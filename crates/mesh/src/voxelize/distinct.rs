@@ -12,16 +12,16 @@ use shiftvox::split_mix::mix;
 
 type Key = ([[i64; 3]; 3], [[u64; 3]; 3]);
 
-pub(super) struct Distinct {
+pub(super) struct Distinct<'s> {
     /// Numbers of all triangles that repeat no earlier one, rising.
     pub(super) numbers: Vec<u32>,
     /// The sum of equal triangles and their count, by the number of the first.
-    pub(super) repeated: HashMap<u32, (Triangle, u32)>,
+    pub(super) repeated: HashMap<u32, (Triangle<'s>, u32)>,
 }
 
-impl Distinct {
+impl<'s> Distinct<'s> {
     /// Takes 9 bytes per triangle in addition to the numbers.
-    pub(super) fn of<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> Self {
+    pub(super) fn of<S: Surface + ?Sized>(surface: &'s S, grid: &Grid) -> Self {
         let count = surface.len() as u32;
         let hash = |number: u32| {
             let corners = grid.corners(surface, number);
@@ -44,7 +44,7 @@ impl Distinct {
                 if first == number {
                     continue;
                 }
-                let (all, times): &mut (Triangle, u32) = repeated
+                let (all, times): &mut (Triangle<'_>, u32) = repeated
                     .entry(first)
                     .or_insert_with(|| (surface.triangle(first as usize), 1));
                 *times += 1;

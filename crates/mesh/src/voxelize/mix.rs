@@ -1,7 +1,8 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
 //! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
-//! triangles that only touch the cube count, too.
+//! triangles that only touch the cube count, too. A texture is averaged over a square as large as the part. A part with
+//! less than an eighth of opacity is a hole, and a cube with holes alone is no voxel.
 
 use glam::DVec3;
 
@@ -13,6 +14,7 @@ use shiftvox::graph::PackedNormal;
 
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 const CANCELLED: f64 = 0.25;
+const HOLE: f64 = 0.125;
 
 #[derive(Debug, Default)]
 pub(super) struct Mix {
@@ -21,16 +23,18 @@ pub(super) struct Mix {
     normal: DVec3,
     /// The normals once more, each turned to the side of the sum so far.
     turned: DVec3,
+    is_shown: bool,
 }
 
 impl Mix {
     /// Adds the part of a triangle that lies in the cube. The order of adding counts, in the last bit.
     pub(super) fn add(
         &mut self,
-        triangle: &Triangle,
+        triangle: &Triangle<'_>,
         prepared: &Prepared,
         corner: [i64; 3],
         side: i64,
+        voxel_size: f64,
     ) {
         // Exact: differences on the lattice are below 2^31, the side a power of two.
         let scale = 1.0 / side as f64;
@@ -42,14 +46,21 @@ impl Mix {
         } else {
             part_in_unit_cube(&points)
         };
-        let weight = (area + TOUCH) * triangle.alpha;
         let share = barycentric(&points, centre);
+        let (color, opacity) = triangle.at(share, area.sqrt() * voxel_size);
+        // Also what is all but invisible is drawn, unless its picture has a hole.
+        self.is_shown |= opacity >= HOLE * triangle.alpha;
+        let weight = (area + TOUCH) * opacity;
         let normal = blend(&triangle.normals, share).normalize_or(triangle.normals[0]) * weight;
         self.weight += weight;
-        self.light += blend(&triangle.colors, share) * weight;
+        self.light += color * weight;
         self.normal += normal;
         let is_turned = self.turned.dot(normal) < 0.0;
         self.turned += if is_turned { -normal } else { normal };
+    }
+
+    pub(super) fn is_shown(&self) -> bool {
+        self.is_shown
     }
 
     /// The voxel's colour (sRGB) and normal: the average, or where normals cancel, as in a thin wall with both its

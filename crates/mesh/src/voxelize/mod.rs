@@ -33,7 +33,7 @@ pub struct VoxelizeReport {
     pub looked_at: u64,
 }
 
-/// Hands every voxel that a triangle touches to `sink`, once, in Morton order, on any number of threads. Indices run
+/// Hands every voxel that a triangle touches, but not with a hole, to `sink`, once, in Morton order, on any number of threads. Indices run
 /// from 0 to `2^depth - 1`.
 pub fn voxelize<S: Surface + ?Sized>(
     surface: &S,
@@ -43,12 +43,13 @@ pub fn voxelize<S: Surface + ?Sized>(
 ) -> VoxelizeReport {
     let Distinct { numbers, repeated } = Distinct::of(surface, grid);
     let cube = grid.cube();
+    let (_, voxel_size) = grid.placement();
     let voxels = |subtree: Subtree<'_>| {
         let painted = |&number: &u32| {
             let repeated = repeated.get(&number).copied();
             repeated.unwrap_or_else(|| (surface.triangle(number as usize), 1))
         };
-        let painted: Vec<(Triangle, u32)> = subtree.numbers.iter().map(painted).collect();
+        let painted: Vec<(Triangle<'_>, u32)> = subtree.numbers.iter().map(painted).collect();
         let mut voxels = Vec::new();
         let mut report = VoxelizeReport::default();
         subtree.leaves(cube, |triangles, corner| {
@@ -56,10 +57,13 @@ pub fn voxelize<S: Surface + ?Sized>(
             for &triangle in triangles {
                 let prepared = &subtree.prepared[triangle as usize];
                 let (triangle, times) = &painted[triangle as usize];
-                mix.add(triangle, prepared, corner, cube.voxel);
+                mix.add(triangle, prepared, corner, cube.voxel, voxel_size);
                 report.touches += u64::from(*times);
             }
             report.looked_at += triangles.len() as u64;
+            if !mix.is_shown() {
+                return;
+            }
             report.voxels += 1;
             let (color, normal) = mix.finish();
             voxels.push(Voxel {

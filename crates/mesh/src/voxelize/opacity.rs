@@ -10,10 +10,11 @@ use rayon::prelude::*;
 
 use super::coverage::{Masks, cover, dither, joined, opacity_of};
 use super::distinct::Distinct;
+use super::mix::Mix;
 use super::touch::OTHERS;
 use super::walk::{Cube, Subtree, walk};
 use super::{Grid, parts};
-use crate::Surface;
+use crate::{Surface, Triangle};
 use shiftvox::graph::{Graph, GraphView, Opacity, Progress};
 
 const ALL: u64 = u64::MAX;
@@ -53,19 +54,32 @@ pub fn opacities<S: Surface + ?Sized>(
     };
     let numbers = Distinct::of(surface, grid).numbers;
     let large_from = parts::coarsest_levels(surface, grid, &numbers, cube);
+    let (_, voxel_size) = grid.placement();
     let leaves = |subtree: Subtree<'_>| {
+        let clear = |&number: &u32| {
+            let is_clear = !surface.is_opaque(number as usize);
+            is_clear.then(|| surface.triangle(number as usize))
+        };
+        let clear: Vec<Option<Triangle<'_>>> = subtree.numbers.iter().map(clear).collect();
         let mut leaves = Vec::new();
         subtree.leaves(cube, |triangles, corner| {
             let mut leaf = NOTHING;
+            let mut mix = Mix::default();
+            let mut is_shown = false;
             for &triangle in triangles {
                 let number = subtree.numbers[triangle as usize];
+                let prepared = &subtree.prepared[triangle as usize];
+                let clear = clear[triangle as usize].as_ref();
                 leaf.large_from = leaf.large_from.min(large_from[number as usize]);
-                cover(
-                    &subtree.prepared[triangle as usize],
-                    corner,
-                    voxel,
-                    &mut leaf.masks,
-                );
+                match clear {
+                    Some(clear) => mix.add(clear, prepared, corner, voxel, voxel_size),
+                    None => is_shown = true,
+                }
+                let clear = clear.map(|clear| (clear, voxel_size));
+                cover(prepared, clear, corner, voxel, &mut leaf.masks);
+            }
+            if !is_shown && !mix.is_shown() {
+                return;
             }
             leaves.push(leaf);
         });

@@ -10,6 +10,7 @@ mod shapes;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod solids;
+mod texels;
 mod textures;
 mod voxels;
 mod watertight;

@@ -6,6 +6,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::rays::{Around, Cluster, Meeting, Query, is_any_entered};
@@ -16,8 +17,13 @@ pub(super) const MAKING: u64 = 320;
 /// Bytes per triangle of a finished cluster, or less.
 pub(super) const MADE: u64 = 80;
 
-pub(super) struct Occluders {
+/// Whether a triangle, by its number in all parts, stops a ray that meets it at a point.
+pub(super) type Stops<'s> = dyn Fn(usize, DVec3) -> bool + Sync + 's;
+
+pub(super) struct Occluders<'s> {
     parts: Vec<Part>,
+    /// Without, each triangle stops each ray.
+    stops: Option<&'s Stops<'s>>,
     held: Held,
 }
 
@@ -40,16 +46,17 @@ pub(super) struct Part {
     pub(super) around: Around,
 }
 
-impl Occluders {
+impl<'s> Occluders<'s> {
     /// `within`: a file, and the most bytes in memory beside a cluster per thread.
     pub(super) fn new<C, I>(
         parts: Vec<Part>,
         corners: C,
+        stops: Option<&'s Stops<'s>>,
         within: Option<(File, u64)>,
     ) -> io::Result<Self>
     where
         C: Fn(Range<usize>) -> I + Sync,
-        I: Iterator<Item = [glam::DVec3; 3]>,
+        I: Iterator<Item = [DVec3; 3]>,
     {
         let make = |part: &Part| Cluster::new(corners(part.triangles.clone()));
         let held = match within {
@@ -68,7 +75,7 @@ impl Occluders {
                 Held::Some(Mutex::new(cache))
             }
         };
-        Ok(Self { parts, held })
+        Ok(Self { parts, stops, held })
     }
 
     /// The triangles that stop rays, which begin within a box.
@@ -89,7 +96,8 @@ impl Occluders {
             let Part { around, triangles } = &self.parts[number];
             if is_any_entered(around, queries, meetings) {
                 let cluster = self.get(number)?;
-                cluster.meet_all(around, triangles.start as u32, queries, meetings);
+                let first = triangles.start as u32;
+                cluster.meet_all(around, first, self.stops, queries, meetings);
             }
         }
         Ok(())

@@ -33,9 +33,9 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::geometry::plane_normal;
+use crate::geometry::{barycentric, plane_normal};
 use crate::{Surface, linear_to_srgb, mesh_box};
-use clusters::{CLUSTER, Occluders, Part};
+use clusters::{CLUSTER, Occluders, Part, Stops};
 use count::{Seen, SurfaceSample};
 use grid::Grid;
 use rays::Around;
@@ -43,6 +43,7 @@ use room::{Room, shares};
 use sample::Rays;
 use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
+use shiftvox::split_mix::mix;
 use shot::Target;
 use split::{Branch, split};
 use spool::{Done, Spool};
@@ -205,10 +206,25 @@ impl Ordered<'_> {
         plane_normal(self.corners(number))
     }
 
-    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
+    /// Whether a triangle stops a ray at a point: where it lets light through, by lot.
+    fn stops(&self, number: usize, point: DVec3) -> bool {
+        let number = self.order[number] as usize;
+        if self.surface.is_opaque(number) {
+            return true;
+        }
+        let triangle = self.surface.triangle(number);
+        let corners = triangle.corners.map(|p| self.place(p));
+        let (_, opacity) = triangle.at(barycentric(&corners, point), 0.0);
+        let bits = point.to_array().map(f64::to_bits);
+        let lot = bits.iter().fold(0, |lot, &bits| mix(lot ^ bits));
+        (lot >> 11) as f64 / (1u64 << 53) as f64 <= opacity && opacity > 0.0
+    }
+
+    /// Normal and colour at a point. The colour is the mean of a square of that side.
+    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3, side: f64) -> SurfaceSample {
         let mut triangle = self.surface.triangle(self.order[number] as usize);
         triangle.corners = triangle.corners.map(|p| self.place(p));
-        let (normal, color) = triangle.seen_from(point, towards_eye);
+        let (normal, color) = triangle.seen_from(point, towards_eye, side);
         SurfaceSample {
             towards_eye,
             normal,
@@ -255,7 +271,11 @@ fn fill<F: Read + Write + Seek + Send>(
     let within = within.transpose()?;
     let corners = |own: Range<usize>| own.map(|number| triangles.corners(number));
     let parts = parts(&branches, |point| triangles.place(point));
-    let occluders = Occluders::new(parts, corners, within).map_err(|e| failed(folder, &e))?;
+    let stops = |number: usize, point: DVec3| triangles.stops(number, point);
+    let is_clear = (0..surface.len()).any(|number| !surface.is_opaque(number));
+    let stops = is_clear.then_some(&stops as &Stops<'_>);
+    let occluders = Occluders::new(parts, corners, stops, within);
+    let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
     let surfaces = options
         .hybrid
@@ -493,7 +513,9 @@ fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<Le
         LeafTriangle {
             corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
             normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-            colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+            colors: triangle
+                .corner_colors()
+                .map(|c| c.to_array().map(linear_to_srgb)),
         }
     };
     order.iter().map(leaf).collect()

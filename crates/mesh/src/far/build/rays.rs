@@ -6,6 +6,7 @@ use bytemuck::Pod;
 use glam::{DVec3, Vec3, Vec3A};
 
 use super::bvh::{self, Node, Ray};
+use super::clusters::Stops;
 use super::shot::NOWHERE;
 
 /// Share of an edge by which triangles reach beyond it, so that no ray slips between two.
@@ -123,7 +124,7 @@ impl Cluster {
         })
     }
 
-    fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
+    fn nearest(&self, query: &Query, first: u32, stops: Option<&Stops<'_>>, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
         let ray = query.ray();
         bvh::traverse(&self.nodes, &ray, most, |place| {
@@ -132,6 +133,10 @@ impl Cluster {
                 return f32::INFINITY;
             }
             let triangle = first + self.numbers[place];
+            let point = || (query.origin + query.direction * distance).as_dvec3();
+            if stops.is_some_and(|stops| !stops(triangle as usize, point())) {
+                return f32::INFINITY;
+            }
             if distance < meeting.distance || triangle < meeting.triangle {
                 *meeting = Meeting { distance, triangle };
             }
@@ -143,12 +148,13 @@ impl Cluster {
         &self,
         around: &Around,
         first: u32,
+        stops: Option<&Stops<'_>>,
         queries: &[Query],
         meetings: &mut [Meeting],
     ) {
         for (query, meeting) in queries.iter().zip(meetings) {
             if around.is_entered(query, query.most.min(meeting.distance)) {
-                self.nearest(query, first, meeting);
+                self.nearest(query, first, stops, meeting);
             }
         }
     }
@@ -252,7 +258,7 @@ mod tests {
                 let corners = |own: Range<usize>| triangles[own].iter().copied();
                 let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
                 let parts = (0..parts).map(part).collect();
-                let occluders = Occluders::new(parts, corners, within).unwrap();
+                let occluders = Occluders::new(parts, corners, None, within).unwrap();
                 let mut found = Vec::new();
                 occluders.nearest(&around, &queries, &mut found).unwrap();
                 for (found, expected) in found.iter().zip(&expected) {

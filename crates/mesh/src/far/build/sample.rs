@@ -133,6 +133,8 @@ impl Target<'_> {
         let ends: Vec<(u32, u32)> = ends.collect();
         let hits = ends.len() as u32;
         let ends = Groups::new(count, &ends);
+        // Rays end all over a voxel, and so each sees less than the whole of it.
+        let width = self.grid.voxel / 2.0;
         let mut untested = 0;
         let mut samples = Vec::new();
         for (number, voxel) in touched.iter().enumerate() {
@@ -147,14 +149,15 @@ impl Target<'_> {
                     let triangle = triangle as usize;
                     let (point, normal) = (self.grid.world(point), triangles.plane(triangle));
                     let sides = [normal, -normal];
-                    samples.extend(sides.map(|side| triangles.sample(triangle, point, side)));
+                    let sides = sides.map(|side| triangles.sample(triangle, point, side, width));
+                    samples.extend(sides);
                 }
             }
             samples.extend(ends.of(place).iter().map(|&shot| {
                 let shot = &shots[shot as usize];
                 let point = self.grid.world(shot.end_point());
                 let towards_eye = -shot.direction.as_dvec3();
-                triangles.sample(shot.triangle as usize, point, towards_eye)
+                triangles.sample(shot.triangle as usize, point, towards_eye, width)
             }));
             let fit = fit_shader(&samples, main_normal(&samples));
             let mut seen = Seen {

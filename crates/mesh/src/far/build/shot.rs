@@ -13,7 +13,7 @@ use crate::geometry::point;
 const STEPS_TO_S: u32 = 2;
 
 pub(super) struct Target<'t> {
-    pub(super) occluders: &'t Occluders,
+    pub(super) occluders: &'t Occluders<'t>,
     pub(super) grid: Grid,
     pub(super) own: Range<usize>,
     /// Its own triangles that count, or `None` for all.

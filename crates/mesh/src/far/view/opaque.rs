@@ -279,7 +279,7 @@ impl Surface for Surfaces<'_> {
         corners.map(|p| point(p) + centre)
     }
 
-    fn triangle(&self, number: usize) -> Triangle {
+    fn triangle(&self, number: usize) -> Triangle<'_> {
         let stored = self.triangle_at(number);
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
         let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
@@ -288,6 +288,7 @@ impl Surface for Surfaces<'_> {
             normals: stored.normals.map(normal),
             colors: stored.colors.map(color),
             alpha: 1.0,
+            sampler: None,
         }
     }
 

@@ -1,26 +1,27 @@
 //! The pictures of base colours.
 
 use std::io::{self, ErrorKind};
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::accessor::{Numbers, view_bytes};
 use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
-use crate::load::texture::{Texture, Textures};
+use crate::Texture;
+use crate::load::texture::{Parts, Textures};
+use crate::texture::AlphaMode;
 
-pub(super) struct Painted<'d> {
-    pub(super) texture: Rc<Texture>,
+/// Places of vertices in the picture of their material.
+pub(super) struct Places<'d> {
     pub(super) uvs: Numbers<'d>,
     pub(super) transform: Option<&'d TextureTransform>,
 }
 
-impl Painted<'_> {
-    pub(super) fn mean(&self, corners: [u32; 3]) -> Option<[f32; 3]> {
-        let place = |corner: u32| {
+impl Places<'_> {
+    pub(super) fn of(&self, corners: [u32; 3]) -> [[f64; 2]; 3] {
+        corners.map(|corner| {
             let uv = [0, 1].map(|k| f64::from(self.uvs.real(corner as usize, k)));
             self.transform.map_or(uv, |transform| moved(uv, transform))
-        };
-        self.texture.mean(corners.map(place))
+        })
     }
 }
 
@@ -37,15 +38,20 @@ pub(super) fn find(
     document: &Document,
     buffers: &Buffers,
     beside: &dyn Beside,
-    texture: usize,
+    (texture, mode): (usize, AlphaMode),
     textures: &mut Textures,
-) -> Option<Rc<Texture>> {
+) -> Option<Arc<Texture>> {
     let source = document.textures.get(texture).and_then(|t| t.source);
     let image = source.and_then(|source| document.images.get(source));
     let uri = image.and_then(|image| image.uri.as_deref());
     let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
     let name = file.clone().unwrap_or_else(|| format!("number {texture}"));
-    textures.get(&name, || {
+    let parts = Parts {
+        color: Some(&name),
+        opacity: None,
+        mode,
+    };
+    textures.get(parts, |_| {
         let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
         let image = image.ok_or_else(|| missing("it has no PNG or JPEG picture"))?;
         match (&file, uri) {

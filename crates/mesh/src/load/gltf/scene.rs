@@ -6,10 +6,11 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
-use super::picture::{self, Painted};
+use super::picture::{self, Places};
 use super::{Beside, Buffers, Fault, Place, Problem, broken};
 use crate::load::texture::Textures;
 use crate::material::linear_to_srgb;
+use crate::texture::AlphaMode;
 use crate::{ColorSpace, Material, MeshBuilder};
 
 /// Triangles that a document may always have, besides those that its length justifies.
@@ -186,11 +187,18 @@ impl<'d> Reader<'d> {
         }))
     }
 
-    fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, Problem> {
+    /// The places of a primitive's vertices, if its material has a texture, which the builder gets.
+    fn places(
+        &mut self,
+        primitive: &Primitive,
+        number: u32,
+        builder: &mut MeshBuilder,
+    ) -> Result<Option<Places<'d>>, Problem> {
         let document = self.document;
-        let material = primitive.material.and_then(|m| document.materials.get(m));
-        let info = material.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let Some(info) = info else {
+        let Some(material) = primitive.material.and_then(|m| document.materials.get(m)) else {
+            return Ok(None);
+        };
+        let Some(info) = &material.pbr_metallic_roughness.base_color_texture else {
             return Ok(None);
         };
         let transform = info.extensions.transform.as_ref();
@@ -201,11 +209,11 @@ impl<'d> Reader<'d> {
             return Ok(None);
         };
         let (buffers, beside) = (self.buffers, self.beside);
-        let texture = picture::find(document, buffers, beside, info.index, &mut self.textures);
-        Ok(texture.map(|texture| Painted {
-            texture,
-            uvs,
-            transform,
+        let wanted = (info.index, alpha_mode(material));
+        let texture = picture::find(document, buffers, beside, wanted, &mut self.textures);
+        Ok(texture.map(|texture| {
+            builder.set_texture(number, texture);
+            Places { uvs, transform }
         }))
     }
 
@@ -255,7 +263,7 @@ impl<'d> Reader<'d> {
         let material = primitive
             .material
             .map_or(0, |m| (m as u32).saturating_add(1));
-        let painted = self.painted(primitive)?;
+        let places = self.places(primitive, material, builder)?;
         for number in 0..triangles {
             let mut at = match mode {
                 4 => [3 * number, 3 * number + 1, 3 * number + 2],
@@ -283,9 +291,9 @@ impl<'d> Reader<'d> {
                     normal.normalize_or_zero().as_vec3().to_array()
                 })
             });
-            let tint = painted.as_ref().and_then(|painted| painted.mean(triangle));
+            let places = places.as_ref().map(|places| places.of(triangle));
             let corners = triangle.map(|i| base + i);
-            let _ = builder.textured_triangle(corners, given, material, tint);
+            let _ = builder.textured_triangle(corners, given, material, places);
         }
         Ok(())
     }
@@ -306,6 +314,19 @@ fn transform(node: &Node) -> DMat4 {
         },
         DVec3::from_array(node.translation.unwrap_or_default()),
     )
+}
+
+/// Of the texture's texels, whose opacity the material's multiplies.
+fn alpha_mode(material: &FileMaterial) -> AlphaMode {
+    let factor = material.pbr_metallic_roughness.base_color_factor;
+    match material.alpha_mode.as_deref() {
+        Some("BLEND") => AlphaMode::Blend,
+        Some("MASK") => {
+            let [.., alpha] = factor.unwrap_or([1.0; 4]);
+            AlphaMode::Mask(material.alpha_cutoff.unwrap_or(0.5) / alpha)
+        }
+        _ => AlphaMode::Opaque,
+    }
 }
 
 fn understood(material: &FileMaterial) -> Material {

@@ -5,12 +5,16 @@
 
 use glam::DVec3;
 
+use crate::geometry::barycentric;
 use crate::raster::Edges;
 use crate::textured::CellGrid;
 use crate::textured::record::Texel;
 use crate::voxelize::{OTHERS, Prepared};
 use crate::{Surface, Triangle, linear_to_srgb};
 use shiftvox::graph::PackedNormal;
+
+/// With less opacity, a texture has a hole.
+const HALF: f64 = 0.5;
 
 pub(super) struct Column {
     pub(super) axis: usize,
@@ -50,7 +54,16 @@ pub(super) fn project<S: Surface + ?Sized>(
     let mut slices: Vec<Vec<Option<Hit>>> = vec![Vec::new(); cells as usize];
     for &primitive in &column.primitives {
         let triangle = Prepared::new(corners[primitive as usize]);
+        let is_opaque = surface.is_opaque(primitive as usize);
+        let clear = (!is_opaque).then(|| surface.triangle(primitive as usize));
         each_texel(&triangle, column, lattice, |texel, along| {
+            let is_hole = |clear: &Triangle<'_>| {
+                let shares = barycentric(&clear.corners, world(column, lattice, texel, along));
+                clear.at(shares, lattice.texel_size()).1 < HALF * clear.alpha
+            };
+            if clear.as_ref().is_some_and(is_hole) {
+                return;
+            }
             // The last cell is closed on its outer side too.
             let slice = ((along / lattice.cell_steps()) as u32).min(cells - 1);
             let is_positive = slice >= middle;
@@ -70,7 +83,7 @@ pub(super) fn project<S: Surface + ?Sized>(
         });
     }
     // Neighbouring texels mostly see the same triangle.
-    let mut last: Option<(u32, Triangle)> = None;
+    let mut last: Option<(u32, Triangle<'_>)> = None;
     for (half, outwards) in [(0..middle, -1.0), (middle..cells, 1.0)] {
         let mut texture = vec![Texel::default(); texels * texels];
         for step in 0..middle {
@@ -88,7 +101,7 @@ pub(super) fn project<S: Surface + ?Sized>(
                 if let Some((_, triangle)) = &last {
                     let point = world(column, lattice, texel, along);
                     let outwards = DVec3::AXES[column.axis] * outwards;
-                    let (normal, color) = triangle.seen_from(point, outwards);
+                    let (normal, color) = triangle.seen_from(point, outwards, lattice.texel_size());
                     texture[texel] = Texel {
                         color: color.to_array().map(linear_to_srgb),
                         opacity: 255,

@@ -80,7 +80,7 @@ impl Surface for Shown<'_> {
         [face.corner, middle, face.corner + right + below]
     }
 
-    fn triangle(&self, number: usize) -> Triangle {
+    fn triangle(&self, number: usize) -> Triangle<'_> {
         if let Some(&primitive) = self.primitives.get(number) {
             return self.stored[primitive as usize].triangle();
         }
@@ -90,6 +90,7 @@ impl Surface for Shown<'_> {
             normals: [face.outwards; 3],
             colors: [DVec3::ONE; 3],
             alpha: 1.0,
+            sampler: None,
         }
     }
 

@@ -1,0 +1,183 @@
+//! Textures: pictures on triangles, averaged over as much of them as a sample or a voxel sees.
+//!
+//! A texture has copies of half its size, a quarter and so on, down to one texel. What sees many texels at once is read
+//! from a copy with texels of that size, and costs as much as a single one. Colours are averaged in linear light, by
+//! opacity.
+
+use glam::{DVec3, DVec4};
+use rayon::prelude::*;
+
+use crate::material::{linear_to_srgb, srgb_to_linear};
+
+/// What the opacity of a picture's texels means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum AlphaMode {
+    /// Nothing: all are opaque.
+    Opaque,
+    /// Texels of at least this opacity are opaque, all others are holes.
+    Mask(f32),
+    /// The share of light that they stop.
+    Blend,
+}
+
+/// A picture for triangles, with its coarser copies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    levels: Vec<Level>,
+    is_opaque: bool,
+    is_mask: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Level {
+    size: [usize; 2],
+    /// sRGB and opacity, row by row from the top.
+    texels: Vec<[u8; 4]>,
+}
+
+/// Reading between four texels, each the mean of a square, spreads as far as a square of this side.
+const SPREAD: f64 = 1.732_050_807_568_877_2;
+
+impl Texture {
+    pub(crate) fn new(size: [usize; 2], mut texels: Vec<[u8; 4]>, mode: AlphaMode) -> Self {
+        for [.., alpha] in &mut texels {
+            *alpha = match mode {
+                AlphaMode::Opaque => 255,
+                AlphaMode::Mask(cutoff) if f32::from(*alpha) < cutoff * 255.0 => 0,
+                AlphaMode::Mask(_) => 255,
+                AlphaMode::Blend => *alpha,
+            };
+        }
+        let is_opaque = texels.iter().all(|texel| texel[3] == 255);
+        let mut levels = vec![Level { size, texels }];
+        while let Some(finer) = levels.last().filter(|level| level.texels.len() > 1) {
+            levels.push(finer.halved());
+        }
+        Self {
+            levels,
+            is_opaque,
+            is_mask: matches!(mode, AlphaMode::Mask(_)),
+        }
+    }
+
+    pub(crate) fn is_opaque(&self) -> bool {
+        self.is_opaque
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let levels = self.levels.iter();
+        levels.map(|l| size_of_val(&l.texels[..]) as u64).sum()
+    }
+
+    pub(crate) fn size(&self) -> [f64; 2] {
+        self.levels[0].size.map(|side| side as f64)
+    }
+
+    /// Colour, linear light, and opacity around a place: across from the left and down from the top, in sizes of the
+    /// picture, which repeats. They are the mean of a square of so many texels a side.
+    pub(crate) fn at(&self, place: [f64; 2], side: f64) -> (DVec3, f64) {
+        let mut read = DVec4::ZERO;
+        if side <= SPREAD {
+            read = self.levels[0].at(place);
+        } else {
+            let coarsest = (self.levels.len() - 1) as f64;
+            let level = libm::log2(side / SPREAD).min(coarsest);
+            let (finer, rest) = (level as usize, level.fract());
+            for (level, share) in [(finer, 1.0 - rest), (finer + 1, rest)] {
+                if share > 0.0 {
+                    read += self.levels[level].at(place) * share;
+                }
+            }
+        }
+        if read.w <= 0.0 {
+            return (DVec3::ONE, 0.0);
+        }
+        let mut opacity = read.w.min(1.0);
+        if self.is_mask && side < 1.0 {
+            // The edge of a hole is half way between texels, and as wide as the sample.
+            opacity = (0.5 + (opacity - 0.5) / side.max(1e-9)).clamp(0.0, 1.0);
+        }
+        (read.truncate() / read.w, opacity)
+    }
+}
+
+impl Level {
+    /// Colour times opacity, and opacity, between the four nearest texels.
+    fn at(&self, place: [f64; 2]) -> DVec4 {
+        let near = [0, 1].map(|k| {
+            let size = self.size[k];
+            // The middle of the first texel is at 0; from -1/2 to size - 1/2.
+            let at = (place[k] - place[k].floor()) * size as f64 - 0.5;
+            let low = at.floor();
+            let first = if low < 0.0 { size - 1 } else { low as usize };
+            let next = if first + 1 < size { first + 1 } else { 0 };
+            ([first, next], at - low)
+        });
+        let [(columns, right), (rows, down)] = near;
+        let row = |y: usize| {
+            let [a, b] = columns.map(|x| weighted(self.texels[y * self.size[0] + x]));
+            a.lerp(b, right)
+        };
+        row(rows[0]).lerp(row(rows[1]), down)
+    }
+
+    fn halved(&self) -> Self {
+        let [width, height] = self.size;
+        let size = [width, height].map(|side| (side / 2).max(1));
+        // Where a side is odd, texels at the limit of two squares count in both.
+        let span =
+            |at: usize, from: usize, to: usize| at * from / to..((at + 1) * from).div_ceil(to);
+        let row = |y: usize| {
+            let rows = span(y, height, size[1]);
+            let texel = move |x: usize| {
+                let mut sum = DVec4::ZERO;
+                let mut count = 0.0;
+                for y in rows.clone() {
+                    for x in span(x, width, size[0]) {
+                        sum += weighted(self.texels[y * width + x]);
+                        count += 1.0;
+                    }
+                }
+                let opacity = (255.0 * sum.w / count + 0.5) as u8;
+                let [r, g, b] = (sum.truncate() / sum.w.max(f64::MIN_POSITIVE))
+                    .to_array()
+                    .map(linear_to_srgb);
+                [r, g, b, opacity]
+            };
+            (0..size[0]).map(texel)
+        };
+        let rows = (0..size[1]).into_par_iter();
+        Self {
+            size,
+            texels: rows.flat_map_iter(row).collect(),
+        }
+    }
+}
+
+fn weighted([r, g, b, alpha]: [u8; 4]) -> DVec4 {
+    let color = DVec3::from_array([r, g, b].map(|byte| f64::from(srgb_to_linear(byte))));
+    let opacity = f64::from(alpha) / 255.0;
+    (color * opacity).extend(opacity)
+}
+
+/// A texture on a triangle: places of its corners in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampler<'t> {
+    pub(crate) texture: &'t Texture,
+    pub(crate) places: [[f32; 2]; 3],
+}
+
+impl Sampler<'_> {
+    /// Colour and opacity at shares of the corners, the mean of a square of that side, in the corners' units.
+    pub(crate) fn at(&self, corners: &[DVec3; 3], shares: [f64; 3], side: f64) -> (DVec3, f64) {
+        let [a, b, c] = self.places.map(|place| place.map(f64::from));
+        let place = [0, 1].map(|k| a[k] * shares[0] + b[k] * shares[1] + c[k] * shares[2]);
+        let size = self.texture.size();
+        let [to_b, to_c] = [b, c].map(|p| [0, 1].map(|k| (p[k] - a[k]) * size[k]));
+        let texels = (to_b[0] * to_c[1] - to_b[1] * to_c[0]).abs();
+        let [a, b, c] = *corners;
+        let area = (b - a).cross(c - a).length();
+        let per_unit = (texels / area.max(f64::MIN_POSITIVE)).sqrt();
+        self.texture.at(place, side * per_unit)
+    }
+}
