@@ -1,7 +1,7 @@
 //! Textures: pictures on triangles, averaged over as much of them as a sample or a voxel sees.
 //!
-//! A texture has copies of half its size, a quarter and so on, down to one texel. What sees many texels at once is read
-//! from a copy with texels of that size, and costs as much as a single one. Colours are averaged in linear light, by
+//! A texture has copies of half its size, a quarter and so on, down to one texel. A sample of many texels reads a
+//! copy with texels of its own size, and costs as much as a sample of one. Colours are averaged in linear light, by
 //! opacity.
 
 use glam::{DVec3, DVec4};
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::material::{linear_to_srgb, srgb_to_linear};
 
-/// What the opacity of a picture's texels means.
+/// The meaning of the opacity of texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum AlphaMode {
     /// Nothing: all are opaque.

@@ -2,7 +2,7 @@
 //!
 //! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
 //! triangles that only touch the cube count, too. A texture is averaged over a square as large as the part. A part with
-//! less than an eighth of opacity is a hole, and a cube with holes alone is no voxel.
+//! less than a quarter of opacity is a hole, and a cube with holes alone is no voxel.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ use shiftvox::graph::PackedNormal;
 
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 const CANCELLED: f64 = 0.25;
-const HOLE: f64 = 0.125;
+const HOLE: f64 = 0.25;
 
 #[derive(Debug, Default)]
 pub(super) struct Mix {

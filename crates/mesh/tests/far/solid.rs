@@ -10,7 +10,7 @@ use shiftvox_mesh::far::{BuildOptions, FarData, build};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 use super::city::{draw, file_of};
-use super::shared::{area, around, directions, shape, sheet, sphere, triangles};
+use super::shared::{DISC, area, around, card, directions, disc, shape, sheet, sphere, triangles};
 
 pub(crate) fn hybrid(mesh: &Mesh, leaf_triangles: u32) -> FarData {
     let options = BuildOptions {
@@ -118,5 +118,29 @@ fn thin_tubes_keep_their_area() {
                 assert!(bias.abs() < most, "{radius}, {size} pixels: {bias:+.3}");
             }
         }
+    }
+}
+
+/// A disc on a card, with nothing around it or glass. Voxels show less of a pane from straight before it than there is, as
+/// many rays cross a voxel beside the pane.
+#[test]
+fn rays_pass_through_holes_and_glass() {
+    let share = |clear: u8| {
+        let mesh = card(&disc(clear), 8, 0.0, "map_Kd a.png");
+        let few = BuildOptions {
+            leaf_triangles: 2,
+            ..BuildOptions::default()
+        };
+        let file = file_of(&build(&mesh, &few, &Silent).unwrap());
+        let view = around(&mesh, DVec3::Z, 4.0, 48);
+        let (drawn, counts) = draw(&file, &view, &ViewOptions::default());
+        assert_eq!(counts.leaves, 0);
+        area(&drawn.coverage)
+    };
+    let whole = share(255);
+    for (clear, glass, within) in [(0, 0.0, 0.1), (102, 0.4, 0.25)] {
+        let (found, expected) = (share(clear) / whole, DISC + glass * (1.0 - DISC));
+        let error = (found / expected - 1.0).abs();
+        assert!(error < within, "{found} {expected}");
     }
 }

@@ -2,37 +2,17 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::io::Cursor;
 
 use glam::DVec3;
-use image::{ImageFormat, Rgba, RgbaImage};
+use image::{Rgba, RgbaImage};
 use shiftvox::graph::{Silent, sixteenths};
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::RasterPicture;
 use shiftvox_mesh::{Mesh, linear_to_srgb};
 
 use super::opacities::graph_of;
-use super::shared::{bytes_of, looking, on_threads, triangles};
+use super::shared::{DISC, bytes_of, card, disc, looking, on_threads, triangles};
 use super::voxels::voxels;
-
-/// A square from (0, 0) to (1, 1) with a picture on it, whose corners are that share of it inside.
-fn card(picture: RgbaImage, inside: f64, mtl: &str) -> Mesh {
-    let folder = tempfile::tempdir().unwrap();
-    let mut png = Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png).unwrap();
-    fs::write(folder.path().join("a.png"), png.into_inner()).unwrap();
-    fs::write(folder.path().join("a.mtl"), format!("newmtl a\n{mtl}\n")).unwrap();
-    let (low, high) = (inside, 1.0 - inside);
-    let obj = format!(
-        "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
-        vt {low} {low}\nvt {high} {low}\nvt {high} {high}\nvt {low} {high}\nf 1/1 2/2 3/3 4/4\n"
-    );
-    fs::write(folder.path().join("a.obj"), obj).unwrap();
-    let options = Default::default();
-    read_mesh(&folder.path().join("a.obj"), &options, &Silent)
-        .unwrap()
-        .0
-}
 
 /// The square seen from straight before it: so many pixels a side, and the whole picture.
 fn seen(mesh: &Mesh, side: u32, samples: u32) -> RasterPicture {
@@ -62,25 +42,14 @@ fn checker() -> RgbaImage {
     })
 }
 
-/// An opaque disc of a radius of 24 of 64 texels. Around it the opacity is two fifths.
-fn disc() -> RgbaImage {
-    RgbaImage::from_fn(64, 64, |x, y| {
-        let [x, y] = [x, y].map(|c| f64::from(c) + 0.5 - 32.0);
-        let alpha = if x * x + y * y < 576.0 { 255 } else { 102 };
-        Rgba([255, 128, 0, alpha])
-    })
-}
-
-const DISC: f64 = PI * 0.375 * 0.375;
-
 #[test]
 fn pixels_show_texels_and_far_away_their_mean() {
-    let mesh = card(letter(), 0.0, "map_Kd a.png");
+    let mesh = card(&letter(), 1, 0.0, "map_Kd a.png");
     let drawn = seen(&mesh, 8, 1);
     let expected: Vec<[u8; 4]> = letter().pixels().map(|p| p.0).collect();
     assert_eq!(drawn.rgba, expected);
     // Where a texel has four pixels, these are a quarter of it off its middle.
-    let drawn = seen(&card(checker(), 0.0, "map_Kd a.png"), 128, 1);
+    let drawn = seen(&card(&checker(), 1, 0.0, "map_Kd a.png"), 128, 1);
     let light = 0.75 * 0.75 + 0.25 * 0.25;
     let [light, dark] = [light, 1.0 - light].map(linear_to_srgb);
     for (at, pixel) in drawn.rgba.iter().enumerate() {
@@ -90,7 +59,7 @@ fn pixels_show_texels_and_far_away_their_mean() {
     }
     // Half of the light is 188.
     for samples in [1, 16] {
-        let drawn = seen(&card(checker(), 0.0, "map_Kd a.png"), 8, samples);
+        let drawn = seen(&card(&checker(), 1, 0.0, "map_Kd a.png"), 8, samples);
         assert_eq!(drawn.rgba, [[188, 188, 188, 255]; 64]);
     }
     let [one, three] =
@@ -111,7 +80,7 @@ fn voxels_show_texels_or_their_mean() {
         assert_eq!(found.len(), 20);
         found
     };
-    let mesh = card(letter(), 1.0 / 16.0, "map_Kd a.png");
+    let mesh = card(&letter(), 1, 1.0 / 16.0, "map_Kd a.png");
     let found = on_threads(3, || whole(&mesh));
     assert_eq!(found, on_threads(1, || whole(&mesh)));
     for voxel in found {
@@ -119,13 +88,13 @@ fn voxels_show_texels_or_their_mean() {
         let [r, g, b, _] = letter().get_pixel(x, 7 - y).0;
         assert_eq!(voxel.color, [r, g, b], "{x} {y}");
     }
-    let grey = whole(&card(checker(), 0.0, "map_Kd a.png"));
+    let grey = whole(&card(&checker(), 1, 0.0, "map_Kd a.png"));
     assert!(grey.iter().all(|voxel| voxel.color == [188; 3]));
 }
 
 #[test]
 fn opacities_are_shares_of_light() {
-    let plain = card(disc(), 0.0, "map_Kd a.png\nd 0.5");
+    let plain = card(&disc(102), 1, 0.0, "map_Kd a.png\nd 0.5");
     let drawn = seen(&plain, 32, 256);
     let share = drawn.coverage.iter().map(|&c| f64::from(c)).sum::<f64>() / 1024.0;
     assert!(
@@ -136,7 +105,7 @@ fn opacities_are_shares_of_light() {
     assert_eq!(drawn.rgba[middle], [255, 128, 0, 128]);
     // The brightness of a picture without opacities.
     let grey = RgbaImage::from_pixel(4, 4, Rgba([102, 0, 0, 255]));
-    let drawn = seen(&card(grey, 0.0, "Kd 0 1 0\nmap_d a.png"), 4, 1);
+    let drawn = seen(&card(&grey, 1, 0.0, "Kd 0 1 0\nmap_d a.png"), 4, 1);
     assert_eq!(drawn.rgba, [[0, 255, 0, 102]; 16]);
 }
 
@@ -168,12 +137,7 @@ fn of_layers_the_front_one_counts_first() {
 
 #[test]
 fn voxels_have_holes() {
-    // What is not in the disc is below an eighth.
-    let mut picture = disc();
-    picture
-        .pixels_mut()
-        .for_each(|p| p.0[3] = if p.0[3] < 255 { 0 } else { 255 });
-    let mesh = card(picture, 0.0, "map_Kd a.png");
+    let mesh = card(&disc(0), 1, 0.0, "map_Kd a.png");
     let found = voxels(&mesh, 6);
     let radius = |index: [i32; 3]| {
         let [x, y] = [0, 1].map(|k| f64::from(index[k]) - 31.5);

@@ -104,16 +104,25 @@ fn gltf_files_have_textures() {
     json["accessors"].as_array_mut().unwrap().push(uvs);
     json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(2);
     json["textures"] = json!([{"source": 0}]);
-    let mut mesh = |image: Value, transform: Value| {
+    let mut mesh_as = |mode: &str, image: Value, transform: Value| {
         let texture = json!({
             "index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": transform},
         });
         json["materials"][0]["pbrMetallicRoughness"] =
             json!({"baseColorFactor": [1, 0.5, 1, 1], "baseColorTexture": texture});
         json["images"] = json!([image]);
+        json["materials"][0]["alphaMode"] = mode.into();
         fs::write(&path, json.to_string()).unwrap();
         read(&path)
     };
+    let picture = || json!({"uri": "a%20picture.png"});
+    for (mode, opacity) in [("OPAQUE", 1.0), ("MASK", 0.0), ("BLEND", 0.0)] {
+        // The middle of the first triangle is in the transparent part.
+        let mesh = mesh_as(mode, picture(), json!({"offset": [0, 0.5]}));
+        let found = Surface::triangle(&mesh, 0).at([1.0 / 3.0; 3], 0.0).1;
+        assert_eq!(found, opacity, "{mode}");
+    }
+    let mut mesh = |image: Value, transform: Value| mesh_as("MASK", image, transform);
     let (green, red) = ([0.0, 0.5, 0.0], [1.0, 0.0, 0.0]);
     let in_buffer = json!({"bufferView": 3, "mimeType": "image/png"});
     let in_address = json!({"uri": data_uri(&png)});
@@ -121,7 +130,7 @@ fn gltf_files_have_textures() {
     // (u, v) becomes (v, -u), less than the transparent part.
     let turned = json!({"rotation": PI / 2.0, "scale": [0.3, 0.7], "offset": [0, 0.6]});
     for (image, transform, color) in [
-        (json!({"uri": "a%20picture.png"}), json!({}), green),
+        (picture(), json!({}), green),
         (in_buffer.clone(), json!({}), green),
         (in_address, moved, red),
         (in_buffer.clone(), json!({"scale": [0.5, 1]}), red),

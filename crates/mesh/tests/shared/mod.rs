@@ -5,12 +5,15 @@
     reason = "each test crate uses a part of it"
 )]
 
+use std::collections::HashMap;
 use std::fmt::Debug;
+use std::io::{self, Cursor};
 
 use glam::DVec3;
+use image::{ImageFormat, Rgba, RgbaImage};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
-use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
+use shiftvox_mesh::{Beside, LoadOptions, Material, Mesh, MeshBuilder, MeshFormat, Surface, read};
 use xxhash_rust::xxh3::xxh3_64;
 
 pub type Corners = [[f32; 3]; 3];
@@ -177,6 +180,55 @@ pub fn ball(rows: u32) -> Mesh {
 pub fn one_box(low: [f32; 3], high: [f32; 3]) -> Mesh {
     shape(|builder| cuboid(builder, low, high, 0))
 }
+
+/// A square from (0, 0) to (1, 1), of so many cells a side, with a picture on it. Its corners are that share of the
+/// picture inside.
+pub fn card(picture: &RgbaImage, cells: u32, inside: f64, mtl: &str) -> Mesh {
+    let mut png = Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png).unwrap();
+    let mtl = format!("newmtl a\n{mtl}\n").into_bytes();
+    let files = Files(HashMap::from([("a.mtl", mtl), ("a.png", png.into_inner())]));
+    let mut obj = "mtllib a.mtl\nusemtl a\n".to_owned();
+    for (i, j) in (0..cells * cells).map(|cell| (cell % cells, cell / cells)) {
+        for [x, y] in [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]] {
+            let [x, y] = [x, y].map(|c| f64::from(c) / f64::from(cells));
+            let [u, v] = [x, y].map(|c| inside + c * (1.0 - 2.0 * inside));
+            obj += &format!("v {x} {y} 0\nvt {u} {v}\n");
+        }
+        obj += "f -4/-4 -3/-3 -2/-2 -1/-1\n";
+    }
+    let options = LoadOptions::default();
+    read(
+        obj.as_bytes(),
+        MeshFormat::Obj,
+        "a.obj",
+        &files,
+        &options,
+        &Silent,
+    )
+    .unwrap()
+}
+
+struct Files(HashMap<&'static str, Vec<u8>>);
+
+impl Beside for Files {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let found = self.0.get(name).cloned();
+        found.ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+}
+
+/// An opaque disc of a radius of 24 of 64 texels, and the opacity around it.
+pub fn disc(around: u8) -> RgbaImage {
+    RgbaImage::from_fn(64, 64, |x, y| {
+        let [x, y] = [x, y].map(|c| f64::from(c) + 0.5 - 32.0);
+        let alpha = if x * x + y * y < 576.0 { 255 } else { around };
+        Rgba([255, 128, 0, alpha])
+    })
+}
+
+/// The disc's share of the picture.
+pub const DISC: f64 = std::f64::consts::PI * 0.375 * 0.375;
 
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);

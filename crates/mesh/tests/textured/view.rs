@@ -10,7 +10,7 @@ use shiftvox_mesh::textured::view::{
 use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
 use super::scenes::{balls, built, file_of, middle, options, view};
-use super::shared::{around, directions, plain, triangles};
+use super::shared::{DISC, around, card, directions, disc, plain, triangles};
 
 fn shown(detail: Detail) -> ViewOptions {
     ViewOptions {
@@ -152,4 +152,20 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
             assert!(is_good, "{kind:?}, {distance}: {auto} {rival}");
         }
     }
+}
+
+/// A disc on a card: texels cover it, and nothing around it.
+#[test]
+fn texels_have_holes() {
+    let mesh = card(&disc(0), 1, 0.0, "map_Kd a.png");
+    let data = built(&mesh, 16, 16, Element::Cube);
+    let (grid, mut covered) = (&data.grids[0], 0);
+    for voxel in &grid.voxels {
+        let first = voxel.textures[2] as usize * 256;
+        let texels = grid.textures.get(first..first + 256).unwrap_or_default();
+        covered += texels.iter().filter(|texel| !texel.is_clear()).count();
+    }
+    let share = covered as f64 / (256.0 * 256.0) / DISC;
+    // The grid is as large as the mesh.
+    assert!((0.97..1.03).contains(&share), "{share}");
 }
