@@ -8,6 +8,7 @@ mod compare;
 mod count;
 mod grid;
 mod levels;
+mod ordered;
 mod parts;
 mod rays;
 mod room;
@@ -33,17 +34,16 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::geometry::{barycentric, plane_normal};
 use crate::{Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
-use count::{Seen, SurfaceSample};
+use count::Seen;
 use grid::Grid;
+use ordered::Ordered;
 use rays::Around;
 use room::{Room, shares};
 use sample::Rays;
 use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
-use shiftvox::split_mix::mix;
 use shot::Target;
 use split::{Branch, split};
 use spool::{Done, Spool};
@@ -181,55 +181,6 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
     BuildError::File {
         file: file.to_owned(),
         problem: problem.to_string(),
-    }
-}
-
-/// Triangles in the order of the hierarchy, scaled by a power of two to a size of about 1.
-struct Ordered<'s> {
-    surface: &'s dyn Surface,
-    order: &'s [u32],
-    centre: DVec3,
-    scale: f64,
-}
-
-impl Ordered<'_> {
-    fn place(&self, point: DVec3) -> DVec3 {
-        (point - self.centre) * self.scale
-    }
-
-    fn corners(&self, number: usize) -> [DVec3; 3] {
-        let corners = self.surface.corners(self.order[number] as usize);
-        corners.map(|p| self.place(p))
-    }
-
-    fn plane(&self, number: usize) -> DVec3 {
-        plane_normal(self.corners(number))
-    }
-
-    /// Whether a triangle stops a ray at a point: where it lets light through, by lot.
-    fn stops(&self, number: usize, point: DVec3) -> bool {
-        let number = self.order[number] as usize;
-        if self.surface.is_opaque(number) {
-            return true;
-        }
-        let triangle = self.surface.triangle(number);
-        let corners = triangle.corners.map(|p| self.place(p));
-        let (_, opacity) = triangle.at(barycentric(&corners, point), 0.0);
-        let bits = point.to_array().map(f64::to_bits);
-        let lot = bits.iter().fold(0, |lot, &bits| mix(lot ^ bits));
-        (lot >> 11) as f64 / (1u64 << 53) as f64 <= opacity && opacity > 0.0
-    }
-
-    /// Normal and colour at a point. The colour is the mean of a square of that side.
-    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3, side: f64) -> SurfaceSample {
-        let mut triangle = self.surface.triangle(self.order[number] as usize);
-        triangle.corners = triangle.corners.map(|p| self.place(p));
-        let (normal, color) = triangle.seen_from(point, towards_eye, side);
-        SurfaceSample {
-            towards_eye,
-            normal,
-            color,
-        }
     }
 }
 
