@@ -84,7 +84,11 @@ fn run(page: &Path) -> (usize, Vec<String>) {
         let has_written = files(folder.path()) > before && printed.starts_with("shiftvox");
         if !output.status.success() {
             failed.push(format!("{}: {small}\n{told}", page.display()));
-        } else if has_written && !["--force", " > "].iter().any(|word| printed.contains(word)) {
+        } else if has_written
+            && !["--force", "--resume", " > "]
+                .iter()
+                .any(|word| printed.contains(word))
+        {
             failed.push(format!("{}: {printed}: without --force", page.display()));
         }
     }
