@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::error::CliError;
 use super::{outputs, scenes};
 use shiftvox::scene::{FORMATS, Source};
+use shiftvox::whole;
 
 /// A scene, and the picture to write, if any.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,10 +73,19 @@ pub(super) fn jobs(
         let advice = "name a folder with -o FOLDER/, or put {stem} into the name";
         return Err(CliError::usage(message).advise(advice));
     }
+    let folder = whole::folder_of(Path::new(pattern));
+    if !folder.to_string_lossy().contains("{stem}") {
+        whole::check_folder(folder)?;
+    }
     let mut pictures = HashSet::new();
     let mut jobs = Vec::new();
     for scene in all {
-        let picture = PathBuf::from(pattern.replace("{stem}", &scenes::stem(&scene)));
+        let named = |name: &str| PathBuf::from(pattern.replace("{stem}", name));
+        let mut picture = named(&scenes::stem(&scene));
+        // Of `a.obj` beside `a.vox`.
+        if let (true, Some(name)) = (pictures.contains(&picture), Path::new(&scene).file_name()) {
+            picture = named(&name.to_string_lossy());
+        }
         if !pictures.insert(picture.clone()) {
             let message = format!("two scenes would both be drawn to {}", picture.display());
             let advice = "draw them into different folders, one after the other";
@@ -105,7 +115,8 @@ fn files(folder: &str) -> Result<Vec<String>, CliError> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        let name = outputs::check_text(&path)?.to_owned();
+        // A name that is not UTF-8 is not found later, like a file that has been removed.
+        let name = path.to_string_lossy().into_owned();
         let is_scene = |name: &str| FORMATS.iter().any(|format| name.ends_with(format.ending));
         if is_scene(&name.to_lowercase()) && path.is_file() {
             found.push(name);

@@ -203,7 +203,9 @@ fn scene_place(line: &[OsString], error: &clap::Error) -> Option<usize> {
     };
     let is_scene =
         Path::new(word).exists() || Source::is_generated(word) || word.contains(['.', '/']);
-    is_scene.then(|| line.iter().position(|of| of == word.as_str()))?
+    let place = line.iter().position(|of| of == word.as_str())?;
+    let is_marked = place > 1 && line[place - 1] == "--";
+    is_scene.then_some(place - usize::from(is_marked))
 }
 
 fn run(line: Vec<OsString>) -> Result<(), CliError> {

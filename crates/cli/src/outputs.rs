@@ -54,7 +54,7 @@ pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     }
     Err(
         CliError::usage(format!("{}: pictures are written as PNG", path.display()))
-            .advise("end the name in .png; for numbers use --aov, which writes .npy files"),
+            .advise("end the name in .png, or in / for a folder; for numbers use --aov, which writes .npy files"),
     )
 }
 

@@ -70,9 +70,14 @@ pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> 
     let jobs = batch::jobs(&args.scenes, args.output.as_deref(), is_needed, args.part)?;
     let mut results = Vec::new();
     let mut failures: Vec<Kind> = Vec::new();
+    let is_batch = jobs.len() > 1 || args.part.is_some();
+    let mut left_out = 0;
     for job in &jobs {
-        match render_one(args, job, jobs.len() > 1, console) {
-            Ok(result) => results.push(result),
+        match render_one(args, job, is_batch, console) {
+            Ok(result) => {
+                left_out += usize::from(result["is_left_out"] == true);
+                results.push(result);
+            }
             Err(error) if jobs.len() == 1 || error.kind == Kind::Pipe => return Err(error),
             Err(error) => {
                 console::report_error(&error);
@@ -80,6 +85,12 @@ pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> 
                 results.push(json!({ "scene": job.scene, "error": error.message }));
             }
         }
+    }
+    if left_out > 0 {
+        let drawn = jobs.len() - left_out - failures.len();
+        console.note(format!(
+            "{drawn} drawn, {left_out} left out because their pictures exist"
+        ));
     }
     console.report("render", json!({ "scenes": results }));
     match failures.first() {
@@ -113,7 +124,7 @@ fn render_one(
     let name = &job.scene;
     let files = job.picture.as_deref();
     let files = files.map_or_else(Vec::new, |path| outputs::paths(path, &args.picture.aov));
-    if args.resume && files.iter().all(|path| path.exists()) {
+    if args.resume && files.iter().all(|path| path.is_file()) {
         console.detail(format!("{}: exists, left out", files[0].display()));
         return Ok(json!({ "scene": name, "output": job.picture, "is_left_out": true }));
     }
@@ -126,11 +137,9 @@ fn render_one(
         is_hashed,
     };
     let size = args.picture.size();
-    // With `--resume`, a picture that lacks some of its buffers is drawn again.
-    let force = args.force || args.resume;
     let output = &job.picture;
     if let Some(path) = output {
-        outputs::check_free(&files, force)?;
+        outputs::check_free(&files, args.force)?;
         outputs::check_room(path, &args.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
@@ -152,7 +161,7 @@ fn render_one(
         })?;
     }
     if let Some(path) = output {
-        outputs::write(&shown, path, &args.picture.aov, force)?;
+        outputs::write(&shown, path, &args.picture.aov, args.force)?;
     }
     print_times(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
