@@ -13,7 +13,7 @@ use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
-use shiftvox_mesh::{LoadOptions, Mesh};
+use shiftvox_mesh::{LoadOptions, Material, Mesh};
 
 #[derive(Debug)]
 pub(super) struct Scene {
@@ -107,6 +107,16 @@ pub(super) fn read_mesh(
     let (mesh, y_up) =
         shiftvox_mesh::open::read_mesh(Path::new(source), &load_options(args), progress)?;
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
+}
+
+/// Of a file that is built of a mesh.
+pub(super) fn tell_losses(name: &str, mesh: &Mesh, console: &Console) {
+    let is_lost = |of: &Material| of.texture.is_some() || of.alpha < 1.0;
+    if mesh.materials().iter().any(is_lost) {
+        console.note(format!(
+            "warning: {name}: textures and opacities are kept by voxels, but not by the triangles of a .far or .tvx file"
+        ));
+    }
 }
 
 pub(super) fn open_mesh(
