@@ -24,7 +24,7 @@ files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]+
 # (:check), because naming all cells takes longer than the rest.
 echo "synthesis: $out/yosys.log"
 "$yosys" -q -l "$out/yosys.log" -p "read_verilog -sv -I.$(printf ' -I%s' $folders) $files fpga/pins.v
-  synth_ecp5 -nodsp -top pins -run :check; hierarchy -check; tee -o $out/cells.txt stat; proc =*; write_json $out/pins.json"
+  synth_ecp5 -nodsp -top pins -run :check; hierarchy -check; tee -o $out/cells.txt stat; blackbox =A:whitebox; write_json $out/pins.json"
 sed -n '/cells/,$p' "$out/cells.txt"
 echo "place and route: $out/nextpnr.log"
 "$nextpnr" --85k --package CABGA756 --speed 6 --json "$out/pins.json" --lpf-allow-unconstrained --timing-allow-fail \
