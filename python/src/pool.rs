@@ -13,7 +13,7 @@ use crate::refused;
 
 /// Bytes of stack per thread, as many as a program's first thread has.
 const STACK: usize = 8 << 20;
-/// Between two looks at signals.
+/// Time between two checks for signals.
 const SIGNALS: Duration = Duration::from_millis(20);
 
 /// The pool and its process.
@@ -38,7 +38,8 @@ fn pool(_holds_the_gil: Python<'_>) -> PyResult<Arc<ThreadPool>> {
 }
 
 /// Works on all threads, while other Python threads run. After a signal such as Ctrl-C, Python's exception is raised and
-/// the work is to stop. Work that does not look at its `Stop` goes on without an effect.
+/// the work is to stop. Work that never checks its `Stop` ends later, in the background, and
+/// its result is dropped.
 pub(crate) fn on_all_threads<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,

@@ -1,4 +1,4 @@
-//! The end of a frame that takes too many records, or that nobody waits for.
+//! Ends frames that take too many records, and drawings that are stopped.
 
 use crate::project::{EngineError, Stop};
 

@@ -34,7 +34,8 @@ pub(super) fn part(text: &str) -> Result<Part, String> {
     }
 }
 
-/// What to draw. Without a name and with `is_needed`, a picture is `{stem}.png`.
+/// The scenes of a call and their pictures, in order. Without `output` a picture is `{stem}.png` if one `is_needed`, and
+/// otherwise none. Errors: no scene in a folder, two scenes of one picture, a name that cannot be a picture's.
 pub(super) fn jobs(
     names: &[String],
     output: Option<&Path>,
