@@ -34,7 +34,7 @@ pub(super) fn part(text: &str) -> Result<Part, String> {
     }
 }
 
-/// The scenes of a call and their pictures, in order. Without `output` a picture is `{stem}.png` if one `is_needed`, and
+/// The scenes of a call and their pictures, in order. Without `output` a picture is `{stem}.png` if one `is_needed`,
 /// otherwise none. Errors: no scene in a folder, two scenes of one picture, a name that cannot be a picture's.
 pub(super) fn jobs(
     names: &[String],

@@ -1,8 +1,8 @@
 //! Colour and normal of a voxel, from the parts of the triangles within it.
 //!
 //! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
-//! triangles that only touch the cube count, too. A texture is averaged over a square as large as the part. A part with
-//! less than a quarter of opacity is a hole, and a cube with holes alone is no voxel.
+//! triangles that only touch the cube count, too. A texture is averaged over a square as large as the part. A part whose
+//! texture has less than a quarter of opacity is a hole, and a cube with holes alone is no voxel.
 
 use glam::DVec3;
 

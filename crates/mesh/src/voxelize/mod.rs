@@ -33,8 +33,8 @@ pub struct VoxelizeReport {
     pub looked_at: u64,
 }
 
-/// Hands every voxel that a triangle touches, but not with a hole, to `sink`, once, in Morton order, on any number of threads. Indices run
-/// from 0 to `2^depth - 1`.
+/// Hands every voxel that a triangle touches, but not with a hole of its texture, to `sink`: once, in Morton order, on any
+/// number of threads. Indices run from 0 to `2^depth - 1`.
 pub fn voxelize<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,
