@@ -47,6 +47,7 @@ fn set_up(graph: &Graph, places: [[f64; 3]; 2], size: u32, options: &SetupOption
         target,
         up: DVec3::Z,
         fov_degrees: 60.0,
+        ortho: None,
         width: size,
         height: size,
     };

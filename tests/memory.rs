@@ -62,6 +62,7 @@ fn set_up(graph: &Graph, (width, height): (u32, u32), (lod_px, aa_log2): (f64, u
         target: glam::DVec3::splat(0.4) * side,
         up: glam::DVec3::Z,
         fov_degrees: 60.0,
+        ortho: None,
         width,
         height,
     };

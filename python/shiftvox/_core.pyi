@@ -63,10 +63,16 @@ class Camera:
         elevation: float | None = None,
         zoom: float = 1.0,
         fov: float | None = None,
+        ortho: bool = False,
     ) -> Camera: ...
     @staticmethod
     def look_at(
-        eye: Sequence[float], target: Sequence[float], *, up: Sequence[float] | None = None, fov: float | None = None
+        eye: Sequence[float],
+        target: Sequence[float],
+        *,
+        up: Sequence[float] | None = None,
+        fov: float | None = None,
+        ortho: float | None = None,
     ) -> Camera: ...
 
 class Picture:

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Error, Scene};
 use crate::project;
-use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
+use crate::project::{Bounds, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
 
 /// A camera at a chosen place. [`Camera::fit`] makes one that finds its own place.
 ///
@@ -27,6 +27,7 @@ impl Camera {
             target: target.into(),
             up: DVec3::Z,
             fov_degrees: DEFAULT_FOV,
+            ortho: None,
             width: 0,
             height: 0,
         })
@@ -41,7 +42,7 @@ impl Camera {
             up: scene.up(),
             direction: Direction::CORNER,
             zoom: 1.0,
-            fov_degrees: DEFAULT_FOV,
+            lens: Lens::Degrees(DEFAULT_FOV),
         }
     }
 
@@ -51,6 +52,9 @@ impl Camera {
         up(direction: [f64; 3]) 0.up = direction.into();
         /// Vertical field of view, degrees, above 0 and below 180.
         field_of_view(degrees: f64) 0.fov_degrees = degrees;
+        /// Parallel rays: the picture is `height` world units high, above 0. The field of view does not count, and what lies
+        /// behind the eye is seen, too.
+        orthographic(height: f64) 0.ortho = Some(height);
     }
 }
 
@@ -69,7 +73,7 @@ pub struct FittedCamera {
     up: Up,
     direction: Direction,
     zoom: f64,
-    fov_degrees: f64,
+    lens: Lens,
 }
 
 impl FittedCamera {
@@ -81,7 +85,15 @@ impl FittedCamera {
         /// Magnification, above 0: 2 halves the eye's distance.
         zoom(factor: f64) zoom = factor;
         /// Vertical field of view, degrees, above 0 and below 180.
-        field_of_view(degrees: f64) fov_degrees = degrees;
+        field_of_view(degrees: f64) lens = Lens::Degrees(degrees);
+    }
+
+    /// Parallel rays. From the default direction that is an isometric picture, at 30 degrees of elevation one whose
+    /// horizontal edges rise one pixel in two.
+    #[must_use]
+    pub fn orthographic(mut self) -> Self {
+        self.lens = Lens::Ortho;
+        self
     }
 
     /// Keeps the same distance for every azimuth, for turntables.
@@ -115,7 +127,7 @@ impl View for FittedCamera {
             up,
             direction,
             zoom,
-            fov_degrees,
+            lens,
             ..
         } = self;
         if !(zoom.is_finite() && zoom > 0.0) {
@@ -123,7 +135,7 @@ impl View for FittedCamera {
             return Err(Error::Setting(reason));
         }
         let size = (width, height);
-        let camera = fit_camera(&self.bounds, up, direction, fov_degrees, zoom, size);
+        let camera = fit_camera(&self.bounds, up, direction, lens, zoom, size);
         Ok(camera)
     }
 }

@@ -327,6 +327,7 @@ pub(super) mod tests {
                 target,
                 up: DVec3::Z,
                 fov_degrees: 0.5 + 150.0 * dice.unit() * dice.unit(),
+                ortho: None,
                 width: 400,
                 height: 300,
             };

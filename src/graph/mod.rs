@@ -50,6 +50,15 @@ pub struct Placement {
     pub mesh: Option<MeshBox>,
 }
 
+impl Placement {
+    /// Object coordinates, finest voxels, of a point in world units.
+    pub(crate) fn in_voxels(&self, point: glam::DVec3) -> [f64; 3] {
+        [0, 1, 2].map(|k| {
+            (point[k] - self.world_origin[k]) / self.voxel_size - self.origin_index[k] as f64
+        })
+    }
+}
+
 impl Default for Placement {
     fn default() -> Self {
         Self {

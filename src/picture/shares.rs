@@ -191,6 +191,7 @@ mod tests {
                 target,
                 up: DVec3::Z,
                 fov_degrees,
+                ortho: None,
                 width: side,
                 height: side,
             };

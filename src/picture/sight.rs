@@ -19,12 +19,21 @@ pub(super) struct Sight {
     depth_unit: f64,
     pub(super) root_doubled: f64,
     axes: [DVec3; 3],
+    ortho: Option<OrthoDepth>,
+}
+
+/// Depth of parallel rays: too small a part of the large `W` of their distant eye.
+struct OrthoDepth {
+    /// Zero of depth, object coordinates.
+    eye: DVec3,
+    /// Along the rays, world units per voxel.
+    forward: DVec3,
 }
 
 /// The visible part of a voxel's cube at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Meeting {
-    /// View-axis depth in world units, 0 or more.
+    /// View-axis depth in world units, 0 or more; of parallel rays below 0 behind the eye.
     pub(super) depth: f64,
     pub(super) face: DVec3,
     pub(super) ray: DVec3,
@@ -41,7 +50,24 @@ impl Sight {
         // Rows of the view: the gradients of X, Y and W over the object. W grows along the view axis; the share of W in
         // X and Y is removed.
         let rows = to_clip.transpose();
-        let forward = rows.z_axis.normalize();
+        let forward = match setup.ortho_eye {
+            None => rows.z_axis.normalize(),
+            // W's small integers are coarse. The ray in the middle of the picture leaves both of its planes' gradients
+            // unchanged.
+            Some(_) => {
+                let root = (1u64 << setup.levels) as f64;
+                let plane =
+                    |row: DVec3, size: u32| row - rows.z_axis * (f64::from(size) / 2.0 / root);
+                let [x, y] = [(rows.x_axis, setup.width), (rows.y_axis, setup.height)]
+                    .map(|(row, size)| plane(row, size));
+                let along = x.cross(y).normalize();
+                if along.dot(rows.z_axis) < 0.0 {
+                    -along
+                } else {
+                    along
+                }
+            }
+        };
         let across = |row: DVec3| (row - forward * row.dot(forward)).normalize();
         Self {
             origin: setup.origin_clip,
@@ -52,6 +78,10 @@ impl Sight {
             depth_unit: setup.depth_unit_world(),
             root_doubled: 2.0 * (1u64 << setup.levels) as f64,
             axes: [across(rows.x_axis), -across(rows.y_axis), -forward],
+            ortho: setup.ortho_eye.map(|eye| OrthoDepth {
+                eye: eye.into(),
+                forward: forward * setup.placement.voxel_size,
+            }),
         }
     }
 
@@ -69,7 +99,7 @@ impl Sight {
             let mut face = DVec3::ZERO;
             face[axis] = if direction[axis] > 0.0 { -1.0 } else { 1.0 };
             return Meeting {
-                depth: enter * self.depth_unit,
+                depth: self.depth(enter, voxel, eye + direction * enter),
                 face,
                 ray: direction.normalize_or_zero(),
             };
@@ -83,10 +113,19 @@ impl Sight {
             (corner.z + to_centre).max(0.0)
         };
         Meeting {
-            depth: depth * self.depth_unit,
+            depth: self.depth(depth, voxel, DVec3::splat(side / 2.0)),
             face: facing(eye - DVec3::splat(side / 2.0)),
             ray: direction.normalize_or_zero(),
         }
+    }
+
+    /// Depth of a point with this `W`, in world units; the point's place counts from the voxel's lowest corner.
+    fn depth(&self, w: f64, voxel: [i32; 4], place: DVec3) -> f64 {
+        let Some(OrthoDepth { eye, forward }) = &self.ortho else {
+            return w * self.depth_unit;
+        };
+        let [x, y, z, _] = voxel.map(f64::from);
+        (DVec3::new(x, y, z) - eye + place).dot(*forward)
     }
 
     /// Unit object direction of a sample's ray, as in [`Sight::meet`].

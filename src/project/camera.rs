@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A pinhole camera and the size of its picture.
+/// A pinhole camera, or one of parallel rays, and the size of its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     pub eye: DVec3,
@@ -12,6 +12,10 @@ pub struct Camera {
     pub up: DVec3,
     /// Vertical field of view, degrees, above 0 and below 180.
     pub fov_degrees: f64,
+    /// For parallel rays (orthographic): world units from the picture's bottom to its top, above 0. Then the field of view
+    /// does not count, and the eye only gives the direction and the zero of depth: what lies behind it is seen, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ortho: Option<f64>,
     pub width: u32,
     pub height: u32,
 }
@@ -33,6 +37,11 @@ pub enum CameraError {
     /// Field of view outside 0..180 degrees.
     #[error("the field of view must lie between 0 and 180 degrees, not {0}")]
     FieldOfView(f64),
+    /// A height of parallel rays that is not a length.
+    #[error(
+        "the height of an orthographic picture must be a number of world units above 0, not {0}"
+    )]
+    Height(f64),
     /// The picture has no pixels, or too many.
     #[error("a picture has 1 to {MAX_SIDE} pixels a side, not {0} x {1}")]
     Size(u32, u32),
@@ -47,15 +56,22 @@ pub struct Axes {
     pub up: DVec3,
     /// Along the view axis, away from the eye.
     pub forward: DVec3,
-    /// Pixels per unit of slope: half the height divided by the tangent of half the field of view.
+    /// Pixels per unit of slope: half the height divided by the tangent of half the field of view. Of parallel rays: pixels
+    /// per world unit.
     pub focal_px: f64,
 }
 
 impl Camera {
     pub fn axes(&self) -> Result<Axes, CameraError> {
-        if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
-            return Err(CameraError::FieldOfView(self.fov_degrees));
-        }
+        let focal_px = match self.ortho {
+            Some(height) if height > 0.0 && height.is_finite() => f64::from(self.height) / height,
+            Some(height) => return Err(CameraError::Height(height)),
+            None if self.fov_degrees > 0.0 && self.fov_degrees < 180.0 => {
+                let half_angle = self.fov_degrees * (std::f64::consts::PI / 360.0);
+                f64::from(self.height) / 2.0 / libm::tan(half_angle)
+            }
+            None => return Err(CameraError::FieldOfView(self.fov_degrees)),
+        };
         if self.width == 0 || self.height == 0 || self.width > MAX_SIDE || self.height > MAX_SIDE {
             return Err(CameraError::Size(self.width, self.height));
         }
@@ -79,12 +95,11 @@ impl Camera {
             return Err(CameraError::NoUp);
         }
         let right = right * (1.0 / right_length);
-        let half_angle = self.fov_degrees * (std::f64::consts::PI / 360.0);
         Ok(Axes {
             right,
             up: right.cross(forward),
             forward,
-            focal_px: f64::from(self.height) / 2.0 / libm::tan(half_angle),
+            focal_px,
         })
     }
 }

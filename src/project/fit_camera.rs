@@ -224,12 +224,21 @@ impl Direction {
     };
 }
 
-/// The nearest camera in a direction that sees everything; `zoom` divides its distance.
+/// How a fitted camera sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Lens {
+    /// Vertical field of view, degrees.
+    Degrees(f64),
+    /// Parallel rays.
+    Ortho,
+}
+
+/// The nearest camera in a direction that sees everything; `zoom` divides its distance, or the height of parallel rays.
 pub fn fit_camera(
     bounds: &Bounds,
     up: Up,
     direction: Direction,
-    fov_degrees: f64,
+    lens: Lens,
     zoom: f64,
     (width, height): (u32, u32),
 ) -> Camera {
@@ -243,23 +252,41 @@ pub fn fit_camera(
     let camera_right = camera_up.cross(towards_eye);
 
     let centre = (bounds.low + bounds.high) / 2.0;
-    let slope_up = libm::tan(fov_degrees * (std::f64::consts::PI / 360.0)) * FILL;
+    let fov_degrees = match lens {
+        Lens::Degrees(degrees) => degrees,
+        Lens::Ortho => DEFAULT_FOV,
+    };
+    let slope_up = match lens {
+        Lens::Degrees(_) => libm::tan(fov_degrees * (std::f64::consts::PI / 360.0)) * FILL,
+        Lens::Ortho => 0.5 * FILL,
+    };
     let slope_right = slope_up * f64::from(width) / f64::from(height);
-    let distance = bounds
-        .hull
-        .iter()
-        .map(|&point| {
-            let offset = point - centre;
-            let across = (offset.dot(camera_right).abs() / slope_right)
-                .max(offset.dot(camera_up).abs() / slope_up);
-            across + offset.dot(towards_eye)
-        })
-        .fold(0.0, f64::max);
+    let farthest = |of: &dyn Fn(DVec3) -> f64| {
+        let offsets = bounds.hull.iter().map(|&point| point - centre);
+        offsets.map(of).fold(0.0, f64::max)
+    };
+    let across = |offset: DVec3| {
+        (offset.dot(camera_right).abs() / slope_right).max(offset.dot(camera_up).abs() / slope_up)
+    };
+    let before = |offset: DVec3| offset.dot(towards_eye);
+    let (distance, scale, ortho) = match lens {
+        Lens::Degrees(_) => {
+            let distance = farthest(&|offset| across(offset) + before(offset));
+            (distance / zoom, distance, None)
+        }
+        // The eye is before everything.
+        Lens::Ortho => {
+            let height = farthest(&across);
+            let distance = farthest(&before) + height;
+            (distance, distance, Some(tidied(height / zoom, height)))
+        }
+    };
     Camera {
-        eye: tidy(centre + towards_eye * (distance / zoom), distance),
+        eye: tidy(centre + towards_eye * distance, scale),
         target: centre,
         up: tidy(camera_up, 1.0),
         fov_degrees,
+        ortho,
         width,
         height,
     }
@@ -267,18 +294,19 @@ pub fn fit_camera(
 
 /// Rounds to about six decimal digits of `scale`, so that a printed camera is short and exact.
 fn tidy(point: DVec3, scale: f64) -> DVec3 {
+    DVec3::from_array(point.to_array().map(|x| tidied(x, scale)))
+}
+
+fn tidied(x: f64, scale: f64) -> f64 {
     let digits = 6 - libm::ceil(libm::log10(scale.max(f64::MIN_POSITIVE))) as i32;
-    let round = |x: f64| -> f64 {
-        // A power of ten up to 22 is exact, so x becomes the f64 nearest to a short decimal.
-        let rounded = match digits {
-            0..=22 => libm::round(x * power_of_ten(digits)) / power_of_ten(digits),
-            -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),
-            _ => x,
-        };
-        // Not -0.
-        rounded + 0.0
+    // A power of ten up to 22 is exact, so x becomes the f64 nearest to a short decimal.
+    let rounded = match digits {
+        0..=22 => libm::round(x * power_of_ten(digits)) / power_of_ten(digits),
+        -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),
+        _ => x,
     };
-    DVec3::new(round(point.x), round(point.y), round(point.z))
+    // Not -0.
+    rounded + 0.0
 }
 
 fn power_of_ten(exponent: i32) -> f64 {
@@ -296,7 +324,7 @@ mod tests {
 
     fn camera(bounds: &Bounds, up: Up, [azimuth, elevation]: [f64; 2], size: (u32, u32)) -> Camera {
         let direction = Direction { azimuth, elevation };
-        fit_camera(bounds, up, direction, 40.0, 1.0, size)
+        fit_camera(bounds, up, direction, Lens::Degrees(40.0), 1.0, size)
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub mod viewer;
 
 pub use camera::{Camera, CameraError};
 pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats, most_records};
-pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
+pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
 pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 pub use options::{CageKind, Coverage, SetupOptions};
 pub use setup::{FrameSetup, SetupError};

@@ -14,40 +14,53 @@ use crate::graph::Placement;
 
 pub(super) struct RealView {
     edge: [[f64; 3]; 3],
-    eye: [f64; 3],
+    /// A point of the object, voxels, that rounding leaves in place, and its clip vector: the eye, or what parallel rays
+    /// have in the middle.
+    anchor: [f64; 3],
+    anchor_clip: [f64; 3],
     /// Pixels of the image root, as a power of two.
     root_px_log2: u32,
 }
 
 impl RealView {
+    /// Parallel rays meet `distance` voxels before the target; other cameras do not use it.
     pub(super) fn new(
         camera: &Camera,
         axes: &Axes,
         placement: &Placement,
         root_px_log2: u32,
+        distance: f64,
     ) -> Self {
         let root_px = (1u64 << root_px_log2) as f64;
         let half = |pixels: u32| f64::from(pixels) / 2.0;
         let (centre_x, centre_y) = (half(camera.width), half(camera.height));
-        let up_focal = -axes.focal_px;
+        let focal_px = match camera.ortho {
+            Some(_) => axes.focal_px * placement.voxel_size * distance,
+            None => axes.focal_px,
+        };
+        let up_focal = -focal_px;
         let edge = [0, 1, 2].map(|k| {
             let (right, up, forward) = (axes.right[k], axes.up[k], axes.forward[k]);
-            let x = (right * axes.focal_px + forward * centre_x) / root_px;
+            let x = (right * focal_px + forward * centre_x) / root_px;
             let y = (up * up_focal + forward * centre_y) / root_px;
             [x, y, forward]
         });
-        let eye = [0, 1, 2].map(|k| {
-            let origin = placement.origin_index[k] as f64;
-            (camera.eye[k] - placement.world_origin[k]) / placement.voxel_size - origin
-        });
+        let (anchor, anchor_clip) = match camera.ortho {
+            Some(_) => {
+                let [x, y] = [centre_x, centre_y].map(|c| c / root_px * distance);
+                (camera.target, [x, y, distance])
+            }
+            None => (camera.eye, [0.0; 3]),
+        };
         Self {
             edge,
-            eye,
+            anchor: placement.in_voxels(anchor),
+            anchor_clip,
             root_px_log2,
         }
     }
 
-    /// Integers of `2^-frac` voxels, if they fit. The origin follows from the rounded edges, so the eye stays in place.
+    /// Integers of `2^-frac` voxels, if they fit. The origin follows from the rounded edges, so the anchor stays in place.
     pub(super) fn quantise(&self, frac: u32) -> Option<Quantised> {
         let scale = (1u64 << frac) as f64;
         let mut edge = [[0; 3]; 3];
@@ -58,8 +71,8 @@ impl RealView {
         }
         let mut origin = [0; 3];
         for (c, value) in origin.iter_mut().enumerate() {
-            let [x, y, z] = [0, 1, 2].map(|k| edge[k][c] as f64 * self.eye[k]);
-            *value = to_i64(-(x + y + z))?;
+            let [x, y, z] = [0, 1, 2].map(|k| edge[k][c] as f64 * self.anchor[k]);
+            *value = to_i64(self.anchor_clip[c] * scale - (x + y + z))?;
         }
         Some(Quantised { origin, edge })
     }

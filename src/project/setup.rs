@@ -112,6 +112,8 @@ pub struct FrameSetup {
     /// Size, in samples, up to which a node with children becomes a solid. `None`: only leaves are drawn.
     pub lod_limit: Option<ShiftSum>,
     pub placement: Placement,
+    /// Of parallel rays: the camera's eye in object coordinates, from which depth counts.
+    pub ortho_eye: Option<[f64; 3]>,
 }
 
 impl FrameSetup {
@@ -129,18 +131,40 @@ impl FrameSetup {
         }
         let root_px_log2 = root_log2(camera.width, camera.height);
         let levels = root_px_log2 + options.aa_log2;
-        let real_view = RealView::new(camera, &axes, placement, root_px_log2);
-
         let format = {
             let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
             Format::new(options.bits, frac)?
         };
-        let (clip_frac, sub_levels) = match options.frac {
-            Some(frac) => split_fraction(frac, MAX_CLIP_FRAC, options.coverage),
-            None => real_view.widest_fraction(depth, format, options.coverage),
+        let view_from = |distance: f64| {
+            let view = RealView::new(camera, &axes, placement, root_px_log2, distance);
+            let (clip_frac, sub_levels) = match options.frac {
+                Some(frac) => split_fraction(frac, MAX_CLIP_FRAC, options.coverage),
+                None => view.widest_fraction(depth, format, options.coverage),
+            };
+            let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
+            (view, clip_frac, sub_levels)
         };
-        let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
+        let (real_view, clip_frac, sub_levels) = match camera.ortho {
+            None => view_from(0.0),
+            // Parallel rays are those of a distant eye. If words have room, they converge over the object by at most a 64th
+            // of a sample, under `any` and `center` by a quarter.
+            Some(_) => {
+                let share = if options.coverage.draws_outlines() {
+                    6
+                } else {
+                    2
+                };
+                let fits = |(view, clip_frac, sub_levels): &(RealView, u32, u32)| {
+                    let quantised = view.quantise(*clip_frac);
+                    let reach = quantised.and_then(|quantised| Reach::of(&quantised, depth));
+                    *clip_frac > 0 && reach.is_some_and(|reach| reach.fits(format, *sub_levels))
+                };
+                let distances = (0..=depth + levels + share).rev();
+                let mut views = distances.map(|log2| view_from(libm::ldexp(1.0, log2 as i32)));
+                views.find(fits).ok_or(SetupError::OutOfRange)?
+            }
+        };
         let quantised = real_view
             .quantise(clip_frac)
             .ok_or(SetupError::OutOfRange)?;
@@ -189,6 +213,7 @@ impl FrameSetup {
             size_limit: size_limit(options, 1.0).unwrap_or_default(),
             lod_limit: detail_limit(options),
             placement: *placement,
+            ortho_eye: camera.ortho.map(|_| placement.in_voxels(camera.eye)),
         })
     }
 

@@ -169,6 +169,7 @@ mod tests {
                 target: eye + glam::DVec3::Y,
                 up: glam::DVec3::Z,
                 fov_degrees: 90.0,
+                ortho: None,
                 width: 32,
                 height: 32,
             };

@@ -11,7 +11,7 @@ use shiftvox::rays::Rays;
 
 use crate::common::{number_of, stat};
 use crate::scene_table::SCENES;
-use crate::scenes::{Dice, PLACES, camera_at, cube, graph_of_spec, up_of};
+use crate::scenes::{Dice, PLACES, any_height, camera_at, cube, graph_of_spec, up_of};
 
 const SAMPLES: u32 = 4_000_000;
 
@@ -24,9 +24,10 @@ fn any_camera(graph: &Graph, dice: &mut Dice) -> Camera {
         camera.eye = corner + dice.point(-30.0, 30.0) * side;
         camera.up = up_of(camera.target - camera.eye);
     }
-    match dice.below(4) {
+    match dice.below(5) {
         0 => camera.fov_degrees = 10f64.powf(dice.between(0.005f64.log10(), 1.0)),
         1 => camera.fov_degrees = dice.between(90.0, 170.0),
+        2 => camera.ortho = Some(any_height(graph, dice)),
         _ => {}
     }
     camera
@@ -115,6 +116,7 @@ fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
             target,
             up,
             fov_degrees: of_camera[0],
+            ortho: None,
             width: 64,
             height: 2000,
         };

@@ -114,6 +114,7 @@ fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, Options) {
         target,
         up: dice.of(&[DVec3::Z, DVec3::Z, DVec3::Y, DVec3::new(0.3, -2.0, 9.0)]),
         fov_degrees: dice.between(0.5, 179.0),
+        ortho: None,
         width: dice.of(&[1, 17, 512, 1024, 1000, 32768]),
         height: dice.of(&[1, 30, 512, 1024, 720]),
     };

@@ -10,6 +10,7 @@ mod differential;
 mod golden;
 mod oracle;
 mod order;
+mod ortho;
 mod rules;
 mod scene_table;
 mod scenes;

@@ -119,6 +119,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
                 target: glam::DVec3::splat(13.0),
                 up: glam::DVec3::Z,
                 fov_degrees: 50.0,
+                ortho: None,
                 width,
                 height,
             };

@@ -14,6 +14,7 @@ pub(super) fn camera(camera: &Camera) -> Value {
         "target": camera.target.to_array(),
         "up": camera.up.to_array(),
         "fov_degrees": camera.fov_degrees,
+        "ortho": camera.ortho,
         "flags": camera_line(camera),
     })
 }

@@ -101,6 +101,7 @@ impl Opened {
             target,
             up,
             fov_degrees,
+            ortho: None,
             width,
             height,
         })

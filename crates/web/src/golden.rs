@@ -164,6 +164,7 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
         target,
         up: DVec3::Z,
         fov_degrees: numbers(4)[0],
+        ortho: None,
         width: size[0] as u32,
         height: size[1] as u32,
     };

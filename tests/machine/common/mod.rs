@@ -116,6 +116,7 @@ pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
             false => DVec3::Z,
         },
         fov_degrees: 60.0,
+        ortho: None,
         width: size,
         height: size,
     }

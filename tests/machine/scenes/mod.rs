@@ -154,6 +154,7 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
             target,
             up: up_of(target - eye),
             fov_degrees: dice.between(5.0, 150.0),
+            ortho: None,
             width: size.0,
             height: size.1,
         };
@@ -174,18 +175,33 @@ fn camera_of_ties(side: f64, dice: &mut Dice) -> Camera {
         target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
         up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
         fov_degrees: 90.0,
+        ortho: None,
         width: size,
         height: size,
     }
 }
 
-/// From any place, one time in three with many ties.
+/// From any place, one time in three with many ties, one time in four with parallel rays.
 pub fn any_camera(graph: &Graph, sizes: std::ops::Range<u32>, dice: &mut Dice) -> Camera {
     let mut side = || sizes.start + dice.below(sizes.end - sizes.start);
     let size = (side(), side());
-    match dice.below(3) {
+    let camera = match dice.below(3) {
         0 => camera_of_ties(cube(graph).1, dice),
         _ => camera_at(dice.of(&PLACES), graph, size, dice),
+    };
+    let ortho = (dice.below(4) == 0).then(|| any_height(graph, dice));
+    Camera { ortho, ..camera }
+}
+
+/// A height of a picture with parallel rays, from a hundredth of the object's side to three sides; every other time so
+/// many whole voxels.
+pub fn any_height(graph: &Graph, dice: &mut Dice) -> f64 {
+    let side = cube(graph).1;
+    let height = side * 10f64.powf(dice.between(-2.0, 0.5));
+    let voxel = graph.placement.voxel_size;
+    match dice.below(2) {
+        0 => height,
+        _ => (height / voxel).ceil() * voxel,
     }
 }
 

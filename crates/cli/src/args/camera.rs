@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 
 use super::values::{point, point_text};
-use shiftvox::project::{Bounds, Camera, DEFAULT_FOV, Direction, Up, fit_camera};
+use shiftvox::project::{Bounds, Camera, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ViewName {
@@ -57,6 +57,10 @@ pub(crate) struct CameraArgs {
     /// Vertical field of view in degrees [default: 40]
     #[arg(long, value_name = "DEG")]
     pub(crate) fov: Option<f64>,
+    /// Parallel rays (orthographic). With --view iso that is isometric, with --elevation 30 edges rise
+    /// one pixel in two. HEIGHT is the picture's, in world units [default: fitted]
+    #[arg(long, value_name = "HEIGHT", num_args = 0..=1, require_equals = true, conflicts_with = "fov")]
+    pub(crate) ortho: Option<Option<f64>>,
     /// Named view, fitted to the object [default: iso]. In model and bench, the terrain, the sponge
     /// and the bundled tree have default views of their own
     #[arg(long, value_enum)]
@@ -88,6 +92,7 @@ impl CameraArgs {
                 target,
                 up: self.up.unwrap_or(up.axis()),
                 fov_degrees,
+                ortho: self.ortho.flatten(),
                 width,
                 height,
             };
@@ -98,12 +103,31 @@ impl CameraArgs {
             elevation: self.elevation.unwrap_or(named.elevation),
         };
         let zoom = self.zoom.unwrap_or(1.0);
-        fit_camera(bounds, up, direction, fov_degrees, zoom, (width, height))
+        let lens = match self.ortho {
+            Some(_) => Lens::Ortho,
+            None => Lens::Degrees(fov_degrees),
+        };
+        let mut camera = fit_camera(bounds, up, direction, lens, zoom, (width, height));
+        camera.ortho = self.ortho.flatten().or(camera.ortho);
+        camera
     }
 
     pub(crate) fn check(&self) -> Result<(), String> {
         if self.fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
             return Err("--fov must lie between 0 and 180 degrees".to_owned());
+        }
+        if self.eye.is_some() && self.ortho == Some(None) {
+            return Err("with --eye, --ortho needs a height: --ortho=HEIGHT".to_owned());
+        }
+        if let Some(Some(height)) = self.ortho {
+            if !(height > 0.0 && height.is_finite()) {
+                return Err("--ortho must be a height above 0".to_owned());
+            }
+            if self.zoom.is_some() {
+                return Err(
+                    "--ortho=HEIGHT and --zoom both give the size: leave one out".to_owned(),
+                );
+            }
         }
         let is_zoom = |zoom: f64| zoom > 0.0 && zoom.is_finite();
         if self.zoom.is_some_and(|zoom| !is_zoom(zoom)) {
@@ -120,11 +144,10 @@ impl CameraArgs {
 }
 
 pub(crate) fn camera_line(camera: &Camera) -> String {
-    format!(
-        "--eye {} --target {} --up {} --fov {}",
-        point_text(camera.eye),
-        point_text(camera.target),
-        point_text(camera.up),
-        camera.fov_degrees
-    )
+    let [eye, target, up] = [camera.eye, camera.target, camera.up].map(point_text);
+    let lens = match camera.ortho {
+        Some(height) => format!("--ortho={height}"),
+        None => format!("--fov {}", camera.fov_degrees),
+    };
+    format!("--eye {eye} --target {target} --up {up} {lens}")
 }

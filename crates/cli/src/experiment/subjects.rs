@@ -81,6 +81,7 @@ fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
         target,
         up: DVec3::Z,
         fov_degrees: 60.0,
+        ortho: None,
         width: 1,
         height: 1,
     })

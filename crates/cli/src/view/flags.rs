@@ -40,6 +40,7 @@ pub(super) fn camera(request: &Request) -> Option<Camera> {
         target,
         up,
         fov_degrees,
+        ortho: None,
         width: request.size[0],
         height: request.size[1],
     })

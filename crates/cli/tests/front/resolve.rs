@@ -64,6 +64,7 @@ fn setup(
         target,
         up: DVec3::Z,
         fov_degrees,
+        ortho: None,
         width,
         height,
     };

@@ -243,6 +243,7 @@ mod tests {
             target: at(target),
             up: DVec3::Z,
             fov_degrees: 60.0,
+            ortho: None,
             width: 80,
             height: 56,
         };

@@ -290,6 +290,7 @@ mod tests {
             target: DVec3::splat(8.0),
             up: DVec3::Z,
             fov_degrees: 60.0,
+            ortho: None,
             width: 200,
             height: 100,
         };

@@ -424,6 +424,7 @@ mod tests {
             target: DVec3::splat(4.0),
             up: DVec3::Z,
             fov_degrees: 60.0,
+            ortho: None,
             width: 8,
             height: 8,
         };

@@ -77,6 +77,7 @@ mod tests {
         target: DVec3::new(2.0, 1.0, 3.0),
         up: DVec3::new(0.0, 0.0, 4.0),
         fov_degrees: 90.0,
+        ortho: None,
         width: 100,
         height: 100,
     };

@@ -173,6 +173,7 @@ mod tests {
             target: DVec3::new(x, 0.0, z),
             up: DVec3::Z,
             fov_degrees: 2.0 * libm::atan(4.0 / (8.0 * side)).to_degrees(),
+            ortho: None,
             width: 8,
             height: 8,
         };

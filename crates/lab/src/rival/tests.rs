@@ -23,6 +23,7 @@ fn view(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, Frame
         target: in_world(target),
         up: DVec3::Z,
         fov_degrees: 60.0,
+        ortho: None,
         width: side,
         height: side,
     };

@@ -34,7 +34,11 @@ impl fmt::Display for Case {
             write!(f, ";{key}={},{},{}", v.x, v.y, v.z)?;
         }
         let (width, height) = (camera.width, camera.height);
-        write!(f, ";fov={};size={width}x{height}", camera.fov_degrees)?;
+        match camera.ortho {
+            Some(height_world) => write!(f, ";ortho={height_world}")?,
+            None => write!(f, ";fov={}", camera.fov_degrees)?,
+        }
+        write!(f, ";size={width}x{height}")?;
         write!(f, ";bits={}", options.bits)?;
         if let Some(frac) = options.frac {
             write!(f, ";frac={frac}")?;
@@ -55,6 +59,7 @@ impl FromStr for Case {
             target: DVec3::Y,
             up: DVec3::Z,
             fov_degrees: 60.0,
+            ortho: None,
             width: 48,
             height: 48,
         };
@@ -76,6 +81,7 @@ impl FromStr for Case {
                 "target" => camera.target = vector(value).ok_or_else(|| wrong("x,y,z"))?,
                 "up" => camera.up = vector(value).ok_or_else(|| wrong("x,y,z"))?,
                 "fov" => camera.fov_degrees = real("degrees")?,
+                "ortho" => camera.ortho = Some(real("world units")?),
                 "size" => {
                     let (width, height) = value.split_once('x').unwrap_or((value, value));
                     let side = |text: &str| text.parse().map_err(|_| wrong("pixels, as 48x48"));
@@ -102,7 +108,7 @@ impl FromStr for Case {
                 }
                 _ => {
                     return Err(format!(
-                        "a case has no `{key}`: it has scene, eye, target, up, fov, size, shift, \
+                        "a case has no `{key}`: it has scene, eye, target, up, fov, ortho, size, shift, \
                          bits, frac, cage, tolerance, coverage and lod"
                     ));
                 }

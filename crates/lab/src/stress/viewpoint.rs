@@ -71,6 +71,7 @@ pub(super) fn viewpoints(
                 target,
                 up: if is_vertical { DVec3::Y } else { DVec3::Z },
                 fov_degrees,
+                ortho: None,
                 width: pixels,
                 height: pixels,
             },

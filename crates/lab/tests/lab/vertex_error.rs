@@ -21,6 +21,7 @@ fn views() -> [Camera; 4] {
         target: centre,
         up: DVec3::Z,
         fov_degrees,
+        ortho: None,
         width: 1024,
         height: 1024,
     };

@@ -132,7 +132,15 @@ impl<M: Method> Drawable for MethodDrawing<M> {
         let aa_log2 = self.method.aa_log2();
         check_samples(camera, aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES, 0)?;
         let view = self.view(camera)?;
-        self.kept = Some(timed(runs, || Ok(self.method.draw(&view)?))?);
+        let (mut drawn, times) = timed(runs, || Ok(self.method.draw(&view)?))?;
+        if camera.ortho.is_some() {
+            // The distant eye's depths become the camera's.
+            let behind = (camera.eye - view.eye).dot(view.forward);
+            for depth in &mut drawn.picture.depth {
+                *depth = (f64::from(*depth) - behind) as f32;
+            }
+        }
+        self.kept = Some((drawn, times));
         Ok(())
     }
 

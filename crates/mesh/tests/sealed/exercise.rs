@@ -9,7 +9,7 @@ use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::graph::{Graph, LinkedGraph, MergeBy, Silent, merge, vxg};
 use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Shading, hash_rows};
-use shiftvox::project::{Direction, Engine, SetupOptions, fit_camera};
+use shiftvox::project::{Direction, Engine, Lens, SetupOptions, fit_camera};
 use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
@@ -214,7 +214,14 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
 fn draw(drawable: &mut dyn Drawable) {
     let (bounds, up) = (drawable.bounds(), drawable.up());
     for zoom in [0.05, 1.0, 20.0] {
-        let camera = fit_camera(&bounds, up, Direction::CORNER, 40.0, zoom, (12, 12));
+        let camera = fit_camera(
+            &bounds,
+            up,
+            Direction::CORNER,
+            Lens::Degrees(40.0),
+            zoom,
+            (12, 12),
+        );
         assert!(camera.axes().is_ok(), "{camera:?}");
         if drawable.draw(&camera, 1).is_ok() {
             let shown = drawable.shown().ok().flatten();

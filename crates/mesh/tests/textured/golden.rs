@@ -60,6 +60,7 @@ fn pictures(file: &TexturedFile) -> Vec<u8> {
                 target,
                 up: DVec3::Y,
                 fov_degrees,
+                ortho: None,
                 width: 64,
                 height: 60,
             };
