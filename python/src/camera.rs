@@ -1,10 +1,14 @@
 //! Cameras.
 
 use pyo3::prelude::*;
+use pyo3::types::PyAny;
+use shiftvox::View;
+use shiftvox::project::Camera as Place;
 
 use crate::scene::Scene;
+use crate::{Error, arguments, refused};
 
-/// A view of a scene. Cannot be pickled: make it where it is used.
+/// A view of a scene. Only one with a place, of `look_at` or `placed`, has an eye and can be pickled.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Camera {
     pub(crate) camera: Kind,
@@ -77,6 +81,97 @@ impl Camera {
         }
         Self {
             camera: Kind::Placed(camera),
+        }
+    }
+
+    /// This camera at the place from which it sees a picture of this size, in pixels: one number or (width, height).
+    fn placed(&self, size: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let [width, height] = arguments::size(size)?;
+        let placed = match &self.camera {
+            Kind::Placed(camera) => camera.of_size(width, height),
+            Kind::Fitted(camera) => camera.of_size(width, height),
+        };
+        let at = placed.map_err(refused)?;
+        let lens = (at.ortho.is_none().then_some(at.fov_degrees), at.ortho);
+        let [eye, target, up] = [at.eye, at.target, at.up].map(<[f64; 3]>::from);
+        Ok(Self::look_at(eye, target, Some(up), lens.0, lens.1))
+    }
+
+    /// World units.
+    #[getter]
+    fn eye(&self) -> PyResult<[f64; 3]> {
+        Ok(self.place()?.eye.into())
+    }
+
+    /// World units.
+    #[getter]
+    fn target(&self) -> PyResult<[f64; 3]> {
+        Ok(self.place()?.target.into())
+    }
+
+    /// The direction that points up in the picture.
+    #[getter]
+    fn up(&self) -> PyResult<[f64; 3]> {
+        Ok(self.place()?.up.into())
+    }
+
+    /// Vertical field of view, degrees. None with parallel rays.
+    #[getter]
+    fn fov(&self) -> PyResult<Option<f64>> {
+        let place = self.place()?;
+        Ok(place.ortho.is_none().then_some(place.fov_degrees))
+    }
+
+    /// Height of the picture with parallel rays, world units, otherwise None.
+    #[getter]
+    fn ortho(&self) -> PyResult<Option<f64>> {
+        Ok(self.place()?.ortho)
+    }
+
+    #[expect(clippy::type_complexity, reason = "the arguments of look_at")]
+    fn __reduce__(
+        &self,
+        py: Python<'_>,
+    ) -> PyResult<(
+        Py<PyAny>,
+        ([f64; 3], [f64; 3], [f64; 3], Option<f64>, Option<f64>),
+    )> {
+        let unpickle = py.get_type::<Self>().getattr("_unpickle")?.unbind();
+        let [eye, target, up] = [self.eye()?, self.target()?, self.up()?];
+        Ok((unpickle, (eye, target, up, self.fov()?, self.ortho()?)))
+    }
+
+    #[staticmethod]
+    fn _unpickle(
+        eye: [f64; 3],
+        target: [f64; 3],
+        up: [f64; 3],
+        fov: Option<f64>,
+        ortho: Option<f64>,
+    ) -> Self {
+        Self::look_at(eye, target, Some(up), fov, ortho)
+    }
+
+    fn __repr__(&self) -> String {
+        let Ok(at) = self.place() else {
+            return "<shiftvox.Camera that is fitted to a scene>".to_owned();
+        };
+        let lens = match at.ortho {
+            Some(height) => format!("ortho={height}"),
+            None => format!("fov={}", at.fov_degrees),
+        };
+        let [eye, target, up] = [at.eye, at.target, at.up].map(<[f64; 3]>::from);
+        format!("Camera.look_at({eye:?}, {target:?}, up={up:?}, {lens})")
+    }
+}
+
+impl Camera {
+    fn place(&self) -> PyResult<Place> {
+        match &self.camera {
+            Kind::Placed(camera) => camera.of_size(1, 1).map_err(refused),
+            Kind::Fitted(_) => Err(Error::new_err(
+                "the place of a fitted camera depends on the picture: take camera.placed(size)",
+            )),
         }
     }
 }

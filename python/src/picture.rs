@@ -50,7 +50,7 @@ const BUFFERS: [(&str, Buffer); 4] = [
 ];
 
 /// A buffer as an array that owns it.
-fn array(py: Python<'_>, values: Values, shape: &[usize]) -> PyResult<Py<PyAny>> {
+pub(crate) fn array(py: Python<'_>, values: Values, shape: &[usize]) -> PyResult<Py<PyAny>> {
     fn shaped<T: Element>(py: Python<'_>, flat: Vec<T>, shape: &[usize]) -> PyResult<Py<PyAny>> {
         let array = flat.into_pyarray(py).reshape(shape)?;
         Ok(array.into_any().unbind())

@@ -4,17 +4,20 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::PyAny;
+use pyo3::types::{PyAny, PyBytes};
 use shiftvox::Voxel;
+use shiftvox::graph::vxg::write_to;
+use shiftvox::picture::npy::Values;
 use shiftvox_mesh::SceneOptions;
 
 use crate::arguments::{AXES, count, one_of, rows_of_three, whole};
+use crate::picture::array;
 use crate::ply::ply;
 use crate::pool::on_all_threads;
 use crate::{Error, refused};
 
 /// A graph of voxels. World units are those of the file. A voxel of index i fills [i, i + 1) along each axis, unless
-/// the file sets another size and place. Cannot be pickled: pass the name of a file to other processes.
+/// the file sets another size and place. A pickle has the whole graph: for large scenes pass the name of a file instead.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Scene {
     pub(crate) scene: Arc<shiftvox::Scene>,
@@ -39,6 +42,34 @@ fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8
         return Err(Error::new_err(told));
     }
     Ok(colors)
+}
+
+/// Indices and colours of a grid's voxels; other arrays as they are.
+fn entries_of_grid<'py>(
+    grid: &Bound<'py, PyAny>,
+    colors: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyAny>>)> {
+    let numpy = grid.py().import("numpy")?;
+    let grid = numpy.call_method1("asarray", (grid,))?;
+    if grid.getattr("ndim")?.extract::<usize>()? != 3 {
+        return Ok((grid, colors.cloned()));
+    }
+    let colors = colors.map(|colors| {
+        let colors = numpy.call_method1("asarray", (colors,))?;
+        let [of_grid, of_colors] = [&grid, &colors].map(|array| {
+            let shape = array.getattr("shape")?;
+            shape.extract::<Vec<usize>>()
+        });
+        let (shape, found) = (of_grid?, of_colors?);
+        if found.split_last() != Some((&3, &shape)) {
+            let told =
+                format!("colors: the shape is {found:?}, not that of the grid {shape:?} and 3");
+            return Err(Error::new_err(told));
+        }
+        colors.get_item(grid.call_method1("__ne__", (0,))?)
+    });
+    let indices = numpy.call_method1("argwhere", (&grid,))?;
+    Ok((indices, colors.transpose()?))
 }
 
 fn made(
@@ -88,9 +119,10 @@ impl Scene {
     }
 
     /// A scene of voxels. Indices (N, 3) are 32-bit integers, and colours (N, 3) are integers 0 to 255 in sRGB, by
-    /// default grey. Of rows with the same index the last counts.
+    /// default grey. Of rows with the same index the last counts. Or a grid (X, Y, Z), whose entries other than 0 (False)
+    /// are voxels, with colours (X, Y, Z, 3) for all its entries.
     ///
-    /// Raises `Error` for other shapes and numbers, for no rows, and for voxels more than 2**21 apart.
+    /// Raises `Error` for other shapes and numbers, for no voxels, and for voxels more than 2**21 apart.
     #[staticmethod]
     #[pyo3(signature = (indices, colors=None, *, up="z"))]
     fn from_numpy(
@@ -99,8 +131,9 @@ impl Scene {
         colors: Option<&Bound<'_, PyAny>>,
         up: &str,
     ) -> PyResult<Self> {
-        let indices = rows_of_three("indices", indices)?;
-        let colors = colors_of(colors, indices.len())?;
+        let (indices, colors) = entries_of_grid(indices, colors)?;
+        let indices = rows_of_three("indices", &indices)?;
+        let colors = colors_of(colors.as_ref(), indices.len())?;
         let up = one_of("up", up, &AXES)?;
         let voxels = indices.into_iter().zip(colors);
         let voxels = voxels.map(|(index, color)| Voxel {
@@ -140,6 +173,46 @@ impl Scene {
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let scene = Arc::clone(&self.scene);
         on_all_threads(py, move |_| scene.save_vxg(path))?.map_err(refused)
+    }
+
+    /// Indices int32 (N, 3) and colours uint8 (N, 3) of the finest voxels, as `from_numpy` takes them.
+    fn to_numpy(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let scene = Arc::clone(&self.scene);
+        let (indices, colors) = on_all_threads(py, move |stop| {
+            let voxels = scene.graph().finest_voxels();
+            let voxels = voxels.take_while(|_| !stop.is_requested());
+            let rows = voxels.map(|voxel| (voxel.index, voxel.color));
+            rows.collect::<(Vec<_>, Vec<_>)>()
+        })?;
+        let shape = [indices.len(), 3];
+        Ok((
+            array(py, Values::I32(indices.into_flattened()), &shape)?,
+            array(py, Values::U8(colors.into_flattened()), &shape)?,
+        ))
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, (Py<PyBytes>, bool))> {
+        let scene = Arc::clone(&self.scene);
+        let bytes = on_all_threads(py, move |_| {
+            let mut bytes = Vec::new();
+            write_to(scene.graph(), &mut bytes).map(|()| bytes)
+        })?;
+        let bytes = bytes.map_err(refused)?;
+        let unpickle = py.get_type::<Self>().getattr("_unpickle")?.unbind();
+        let is_y_up = self.scene.up() == shiftvox::Up::Y;
+        Ok((unpickle, (PyBytes::new(py, &bytes).unbind(), is_y_up)))
+    }
+
+    #[staticmethod]
+    fn _unpickle(py: Python<'_>, bytes: Vec<u8>, is_y_up: bool) -> PyResult<Self> {
+        let up = if is_y_up {
+            shiftvox::Up::Y
+        } else {
+            shiftvox::Up::Z
+        };
+        made(py, move || {
+            Ok(shiftvox::Scene::from_bytes(&bytes, "the pickle")?.with_up(up))
+        })
     }
 
     /// Voxels of the finest level.

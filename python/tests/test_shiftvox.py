@@ -4,6 +4,7 @@ import ast
 import inspect
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -303,8 +304,64 @@ def test_nothing_is_printed(capfd):
     assert capfd.readouterr().out == ""
 
 
-@pytest.mark.parametrize("script", sorted(p.name for p in (ROOT / "python" / "examples").glob("*.py")))
-def test_examples_run(script, tmp_path):
-    path = ROOT / "python" / "examples" / script
-    env = {**os.environ, "SHIFTVOX_ASSETS": str(ROOT / "assets")}
-    subprocess.run([sys.executable, path], cwd=tmp_path, check=True, env=env)
+def test_arrays_come_and_go():
+    tree = shiftvox.Scene.open(TREE)
+    indices, colors = tree.to_numpy()
+    assert indices.shape == colors.shape == (tree.voxels, 3)
+    again = shiftvox.Scene.from_numpy(indices, colors)
+    size = (64, 48)
+    camera = shiftvox.Camera.fit(tree, ortho=True).placed(size)
+    drawn = shiftvox.render(tree, camera, size)
+    assert (shiftvox.render(again, camera, size).rgba == drawn.rgba).all()
+    # A dense grid, with colours.
+    low = indices.min(axis=0)
+    grid = np.zeros(indices.max(axis=0) - low + 1, dtype=bool)
+    grid[tuple((indices - low).T)] = True
+    painted = np.zeros((*grid.shape, 3), dtype=np.uint8)
+    painted[tuple((indices - low).T)] = colors
+    dense, rows = shiftvox.Scene.from_numpy(grid, painted), shiftvox.Scene.from_numpy(indices - low, colors)
+    assert shiftvox.render(dense, size=48).hash == shiftvox.render(rows, size=48).hash
+    with pytest.raises(shiftvox.Error, match="not that of the grid"):
+        shiftvox.Scene.from_numpy(grid, painted[1:])
+
+
+def test_scenes_and_placed_cameras_are_pickled():
+    for scene in (shiftvox.Scene.open(TREE), shiftvox.Scene.generate("menger,depth=2")):
+        again = pickle.loads(pickle.dumps(scene))
+        assert shiftvox.render(again, size=40).hash == shiftvox.render(scene, size=40).hash
+        for options in ({}, {"ortho": True}, {"fov": 12.0, "azimuth": 100}):
+            fitted = shiftvox.Camera.fit(scene, **options)
+            placed = fitted.placed((40, 30))
+            camera = pickle.loads(pickle.dumps(placed))
+            assert (camera.eye, camera.up, camera.fov, camera.ortho) == (placed.eye, placed.up, placed.fov, placed.ortho)
+            assert (camera.fov is None) == (camera.ortho is not None) == ("ortho" in options)
+            hashes = {shiftvox.render(scene, view, (40, 30)).hash for view in (fitted, placed, camera)}
+            assert len(hashes) == 1
+            assert repr(eval(repr(placed), {"Camera": shiftvox.Camera})) == repr(placed)
+        with pytest.raises(shiftvox.Error, match="placed"):
+            fitted.eye
+        with pytest.raises(shiftvox.Error, match="placed"):
+            pickle.dumps(fitted)
+
+
+def test_parallel_rays_are_the_programs(tmp_path):
+    command = [program(), "render", TREE, "--ortho", "--size", "80x60", "--json", "--hash"]
+    told = json.loads(subprocess.run(command, check=True, capture_output=True, cwd=tmp_path).stdout)
+    scene = shiftvox.Scene.open(TREE)
+    picture = shiftvox.render(scene, shiftvox.Camera.fit(scene, ortho=True), (80, 60))
+    assert picture.hash in json.dumps(told)
+
+
+EXAMPLES = sorted(p.name for p in (ROOT / "python" / "examples").iterdir() if p.suffix in (".py", ".ipynb"))
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_run(name, tmp_path):
+    path = ROOT / "python" / "examples" / name
+    text = path.read_text()
+    if path.suffix == ".ipynb":
+        cells = (cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code")
+        text = "\n".join("".join(cell["source"]) for cell in cells)
+    env = {**os.environ, "SHIFTVOX_ASSETS": str(ROOT / "assets"), "MPLBACKEND": "agg"}
+    subprocess.run([sys.executable, "-c", text], cwd=tmp_path, check=True, env=env)
+    assert list(tmp_path.iterdir()), "it wrote no picture"

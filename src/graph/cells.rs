@@ -1,6 +1,6 @@
 //! Walks over a graph: its cells in Morton order, and counts per level.
 
-use super::Graph;
+use super::{Graph, Voxel};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
@@ -62,6 +62,24 @@ impl Graph {
             graph: self,
             stack: drawable.then_some(root).into_iter().collect(),
         }
+    }
+
+    /// All finest voxels, also those of solid leaves, by their index in the file.
+    pub fn finest_voxels(&self) -> impl Iterator<Item = Voxel> + '_ {
+        self.voxels().flat_map(move |cell| {
+            let corner = self.file_index(&cell);
+            let side = 1i64 << (self.depth - cell.level);
+            let color = self.color_of(cell.node);
+            let normal = self.normal_of(cell.node);
+            (0..side * side * side).map(move |i| {
+                let offset = [i / (side * side), i / side % side, i % side];
+                Voxel {
+                    index: std::array::from_fn(|k| (corner[k] + offset[k]) as i32),
+                    color,
+                    normal: Some(normal).filter(|n| !n.is_none()),
+                }
+            })
+        })
     }
 
     /// Lowest corner, in finest voxels, and level of the one voxel that shows a node. None where nodes may be in several

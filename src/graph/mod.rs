@@ -3,6 +3,7 @@
 mod average;
 pub mod build;
 pub mod cells;
+mod crop;
 pub mod external;
 pub mod file;
 mod layout;
@@ -24,6 +25,7 @@ pub mod vxg;
 pub use build::{BuildError, BuildOptions, Builder, Normals};
 
 pub use cells::Cell;
+pub use crop::Crop;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use layout::NodeLayout;
 pub use linked::LinkedGraph;

@@ -197,6 +197,11 @@ fn build_outside_memory(
         ))
         .advise("end the name in .vxg, or leave --memory out"));
     }
+    if args.scene.crop.is_some() {
+        return Err(CliError::usage(
+            "--crop needs the scene in memory: leave --memory out",
+        ));
+    }
     let beside = whole::folder_of(&args.output);
     whole::make_folder(beside)?;
     let external = ExternalOptions {

@@ -14,8 +14,6 @@ use shiftvox::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, v
 use shiftvox::scene::{self, Source};
 use shiftvox::whole;
 
-const MAX_WRITTEN: u64 = 1 << 28;
-
 /// Least bytes of a node in a `.vxg`, of a voxel in a `.ply` and in a `.vox`.
 const NODE_BYTES: u64 = 5;
 const PLY_BYTES: u64 = 27;
@@ -123,27 +121,14 @@ pub(super) fn build_file(
 
 /// The finest voxels of a graph at their file indices; a large leaf is many.
 fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
-    if graph.voxels > MAX_WRITTEN {
+    if graph.voxels > scenes::MAX_LISTED {
         return Err(CliError::new(
             Kind::Limit,
             format!("a voxel file of {} voxels is too large", graph.voxels),
         )
         .advise("write a .vxg, or convert a scene of fewer levels"));
     }
-    Ok(graph.voxels().flat_map(move |cell| {
-        let corner = graph.file_index(&cell);
-        let side = 1i64 << (graph.depth - cell.level);
-        let color = graph.color_of(cell.node);
-        let normal = graph.normal_of(cell.node);
-        (0..side * side * side).map(move |i| {
-            let offset = [i / (side * side), i / side % side, i % side];
-            Voxel {
-                index: std::array::from_fn(|k| (corner[k] + offset[k]) as i32),
-                color,
-                normal: Some(normal).filter(|n| !n.is_none()),
-            }
-        })
-    }))
+    Ok(graph.finest_voxels())
 }
 
 /// `what`: voxels or triangles.

@@ -5,15 +5,18 @@ use std::time::Instant;
 
 use super::args::SceneArgs;
 use super::console::Console;
-use super::error::CliError;
+use super::error::{CliError, Kind};
 use super::fatal_signals;
 use shiftvox::drawing::milliseconds_since;
-use shiftvox::graph::{Graph, Progress};
+use shiftvox::graph::{BuildError, Crop, Graph, Progress};
 use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
 use shiftvox_mesh::{LoadOptions, Material, Mesh};
+
+/// Most voxels that are listed one by one.
+pub(super) const MAX_LISTED: u64 = 1 << 28;
 
 #[derive(Debug)]
 pub(super) struct Scene {
@@ -57,7 +60,10 @@ pub(super) fn open_source(
         options.voxels.verify_up_to = u64::MAX;
     }
     let opened = scene::open_source(source, &options.voxels, &options.mesh, console.progress())?;
-    let scene = ready(opened, name, args.mesh_up, started);
+    let mut scene = ready(opened, name, args.mesh_up, started);
+    if let Some(crop) = &args.crop {
+        crop_scene(&mut scene, crop, console)?;
+    }
     if !scene.is_verified {
         console.note(format!(
             "{name}: not verified, so that only what is seen is read; `shiftvox info` checks it all"
@@ -89,6 +95,25 @@ pub(super) fn open_source(
     Ok(scene)
 }
 
+fn crop_scene(scene: &mut Scene, crop: &Crop, console: &Console) -> Result<(), CliError> {
+    let (graph, name) = (&scene.graph, &scene.source);
+    if !graph.opacity.is_empty() {
+        return Err(CliError::usage(
+            "--crop keeps no opacities: leave out --opacities, or alpha",
+        ));
+    }
+    if graph.voxels > MAX_LISTED {
+        let reason = format!("{name}: too many voxels to crop: {}", grouped(graph.voxels));
+        return Err(CliError::new(Kind::Limit, reason));
+    }
+    let part = graph.cropped(crop, console.progress());
+    scene.graph = part.map_err(|error| match error {
+        BuildError::Empty => CliError::usage(format!("{name}: --crop leaves no voxel")),
+        error => CliError::new(Kind::Limit, format!("{name}: {error}")),
+    })?;
+    Ok(())
+}
+
 pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
     Ok(Source::find(name)?.kind().is_some_and(FileKind::is_mesh))
 }
@@ -102,6 +127,11 @@ pub(super) fn read_mesh(
         return Err(CliError::input(format!(
             "{source}: a generator makes voxels, and a mesh is needed here"
         )));
+    }
+    if args.crop.is_some() {
+        return Err(CliError::usage(
+            "--crop is for voxels, and triangles are needed here",
+        ));
     }
     fatal_signals::reads(source);
     let (mesh, y_up) =

@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use shiftvox::graph::Crop;
 use shiftvox::project::Up;
 use shiftvox::scene::OutOfBounds;
 use shiftvox_mesh::ColorSpace;
@@ -20,6 +21,10 @@ pub(crate) struct SceneArgs {
     /// Give the voxels of a mesh six opacities, as --coverage alpha does for itself
     #[arg(long)]
     pub(crate) opacities: bool,
+    /// Only the voxels within a box, to look inside: ranges of voxel indices along x, y and z, such as
+    /// ..20,..,3..9
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) crop: Option<Crop>,
     /// Up axis, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and
     /// of files made of them, else z]
     #[arg(long, value_enum)]
@@ -43,6 +48,7 @@ impl SceneArgs {
     pub(crate) fn given(&self) -> impl Iterator<Item = &'static str> {
         let flags = [
             ("depth", self.depth.is_some()),
+            ("crop", self.crop.is_some()),
             ("opacities", self.opacities),
             ("oob", self.oob != OutOfBounds::default()),
             ("mesh-colors", self.mesh_colors != ColorSpace::default()),
