@@ -48,6 +48,23 @@ pub fn answer(
     (head, picture)
 }
 
+/// An answer to [`Ask::Pick`](crate::Ask::Pick). `voxel`: index in the file, finest voxels, and level; a negative level
+/// is that of no voxel. `origin`: world position of index 0. `size`: world length of a finest voxel's side.
+#[must_use]
+pub fn picked(voxel: [i32; 4], color: [u8; 3], levels: u32, origin: [f64; 3], size: f64) -> Answer {
+    let [i, j, k, level] = voxel;
+    let head = u32::try_from(level).ok().map(|level| {
+        let low: Vec<f64> = [i, j, k]
+            .iter()
+            .zip(origin)
+            .map(|(&index, origin)| origin + size * f64::from(index))
+            .collect();
+        let side = size * f64::from(1u32 << levels.saturating_sub(level).min(31));
+        json!({ "index": [i, j, k], "level": level, "levels": levels, "color": color, "low": low, "side": side })
+    });
+    (json!({ "voxel": head }), Vec::new())
+}
+
 /// A scene's name, quoted for bash and zsh.
 #[must_use]
 pub fn quoted(name: &str) -> String {

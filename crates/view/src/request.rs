@@ -40,6 +40,9 @@ pub struct Request {
     /// The buffer of `render` that is shown, if it is not `color`.
     #[serde(default)]
     pub show: Option<String>,
+    /// The picked pixel, across and down.
+    #[serde(default)]
+    pub at: [u32; 2],
     /// Whether the answer has the picture's hash.
     #[serde(default)]
     pub hash: bool,
@@ -49,11 +52,13 @@ pub struct Request {
 }
 
 /// The kind of answer that a page asks for.
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ask {
     /// A picture.
     Picture,
+    /// The voxel that a pixel of a picture shows.
+    Pick,
     /// Figures of the hardware model.
     Figures,
 }

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 use shiftvox::project::Camera as Placed;
-use shiftvox::{Buffer, CageKind, Camera, Coverage, EngineKind, Renderer, Scene, Shading, View};
-use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, quoted};
+use shiftvox::{Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View};
+use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, picked, quoted};
 
 #[derive(Debug)]
 pub(super) struct Opened {
@@ -37,13 +37,7 @@ impl Opened {
             );
         }
         let [width, height] = request.size;
-        let camera = self.camera(request)?;
-        let renderer = settings(request)?;
-        let placed = Camera::look_at(camera.eye.into(), camera.target.into())
-            .up(camera.up.into())
-            .field_of_view(camera.fov_degrees);
-        let picture = renderer.render(&self.scene, &placed, width, height);
-        let picture = picture.map_err(|error| error.to_string())?;
+        let (camera, picture) = self.draw(request, &[Buffer::Node])?;
         let drawn_ms = now() - started;
         let nodes = picture.nodes().map_err(|error| error.to_string())?;
         let hash = request
@@ -87,6 +81,37 @@ impl Opened {
         Ok((head, picture.rgba().as_flattened().to_vec()))
     }
 
+    fn draw(&self, request: &Request, buffers: &[Buffer]) -> Result<(Placed, Picture), String> {
+        let [width, height] = request.size;
+        let camera = self.camera(request)?;
+        let renderer = settings(request)?.buffers(buffers.iter().copied());
+        let placed = Camera::look_at(camera.eye.into(), camera.target.into())
+            .up(camera.up.into())
+            .field_of_view(camera.fov_degrees);
+        let picture = renderer.render(&self.scene, &placed, width, height);
+        Ok((camera, picture.map_err(|error| error.to_string())?))
+    }
+
+    fn pick(&self, request: &Request) -> Result<Answer, String> {
+        let (_, picture) = self.draw(request, &[Buffer::Voxel, Buffer::Node])?;
+        let ([x, y], [width, height]) = (request.at, request.size);
+        if x >= width || y >= height {
+            return Err("this pixel is outside the picture".to_owned());
+        }
+        let at = y as usize * width as usize + x as usize;
+        let voxels = picture.voxels().map_err(|error| error.to_string())?;
+        let nodes = picture.nodes().map_err(|error| error.to_string())?;
+        let graph = self.scene.graph();
+        let place = &graph.placement;
+        Ok(picked(
+            voxels[at],
+            graph.color_of(nodes[at] as u32),
+            graph.depth,
+            place.world_origin,
+            place.voxel_size,
+        ))
+    }
+
     /// As `view` places it. Drawing rejects cameras that see nothing.
     fn camera(&self, request: &Request) -> Result<Placed, String> {
         let [width, height] = request.size;
@@ -120,6 +145,7 @@ impl Program for Opened {
     ) -> impl FnMut(&Request) -> Result<Answer, String> {
         |request| match request.ask {
             Ask::Picture => self.picture(request),
+            Ask::Pick => self.pick(request),
             Ask::Figures => Err(
                 "figures of the hardware: `shiftvox model`, or the page of `shiftvox view`"
                     .to_owned(),
@@ -130,10 +156,7 @@ impl Program for Opened {
 
 /// The settings of a request's flags.
 fn settings(request: &Request) -> Result<Renderer, String> {
-    let mut renderer = Renderer::new()
-        .samples(request.aa)
-        .hashed(request.hash)
-        .buffers([Buffer::Node]);
+    let mut renderer = Renderer::new().samples(request.aa).hashed(request.hash);
     let (mut bits, mut frac) = (64, None);
     for (name, value) in &request.flags {
         let wrong = || format!("--{name} has no value {value} here");
@@ -152,6 +175,7 @@ fn settings(request: &Request) -> Result<Renderer, String> {
             ("shade", "lambert") => renderer.shading(Shading::Lambert),
             ("shade", "flat") => renderer.shading(Shading::Flat),
             ("lod", _) => renderer.level_of_detail(number()?),
+            ("background", _) => renderer.background(value.parse()?),
             ("tolerance", "inf") => renderer.tolerance(f64::INFINITY),
             ("tolerance", _) => renderer.tolerance(number()?),
             ("bits" | "frac", _) => {

@@ -120,7 +120,21 @@ mod tests {
         assert_eq!(head["hash"], expected.hash().unwrap(), "{head}");
         assert_eq!(head["seq"], 7);
         assert_eq!(picture, expected.rgba().as_flattened());
+        put(br#"{"seq":8,"ask":"pick","scene":0,"size":[64,48],"aa":2,"at":[32,20]}"#);
+        let (head, _) = answered(ask());
+        let voxels = shiftvox::Renderer::new()
+            .samples(2)
+            .buffers([shiftvox::Buffer::Voxel])
+            .render(&scene, &shiftvox::Camera::fit(&scene), 64, 48)
+            .unwrap();
+        let (index, level) = voxels.voxel_at(32, 20).unwrap().unwrap();
+        assert_eq!(head["voxel"]["index"], json!(index), "{head}");
+        assert_eq!(head["voxel"]["level"], level);
         for (request, reason) in [
+            (
+                r#"{"seq":1,"ask":"pick","scene":0,"size":[64,48],"aa":1,"at":[64,0]}"#,
+                "outside",
+            ),
             (
                 r#"{"seq":1,"ask":"figures","scene":0,"size":[64,48],"aa":1}"#,
                 "shiftvox model",

@@ -4,10 +4,12 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use serde_json::{Value, json};
-use shiftvox::drawing::{Drawable, milliseconds_since};
-use shiftvox::picture::{self, Buffer, Pixels};
+use shiftvox::drawing::{Drawable, Shown, milliseconds_since};
+use shiftvox::graph::{Graph, Placement};
+use shiftvox::picture::npy::Values;
+use shiftvox::picture::{self, Buffer, Pixels, Rows};
 use shiftvox::project::{Camera, Stop};
-use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, quoted};
+use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, picked, quoted};
 
 use super::flags::{self, MODEL_FLAGS};
 use super::{Shared, overlay};
@@ -53,7 +55,7 @@ impl Program for Shared {
         let stop = Stop::when(is_stale);
         move |request| {
             let answer = match request.ask {
-                Ask::Picture => self.picture(request, &mut kept, &stop),
+                Ask::Picture | Ask::Pick => self.picture(request, &mut kept, &stop),
                 Ask::Figures => self.figures(request),
             };
             answer.map_err(|error| error.to_string())
@@ -71,8 +73,10 @@ impl Shared {
         let started = Instant::now();
         let settings = flags::settings(request)?;
         let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
+        // All buffers are kept for the hash, and one of them has the picked voxel.
+        let is_hashed = request.hash || request.ask == Ask::Pick;
         let args = DrawArgs {
-            is_hashed: request.hash,
+            is_hashed,
             ..self.args.draw_args(&settings.engine, &settings.picture)
         };
         let show = settings.picture.aov.first().copied();
@@ -81,7 +85,7 @@ impl Shared {
             flags: request.flags.clone(),
             aa: request.aa,
             show,
-            hash: request.hash,
+            hash: is_hashed,
         };
         let opened = listed.for_flags(&args)?;
         let drawable = match kept.iter().position(|(of, _)| *of == key) {
@@ -101,12 +105,18 @@ impl Shared {
             args.camera(&drawable.bounds(), up, (width, height), 0.0)
         });
         let shown = methods::frame(&mut **drawable, &camera, 1)?;
+        if request.ask == Ask::Pick {
+            let graph = opened
+                .graph()
+                .ok_or_else(|| CliError::usage("this scene has no voxels that can be picked"))?;
+            return pick(&shown, graph, request.at);
+        }
         let hash = request.hash.then(|| picture::hash_rows(&shown.buffers));
         let hash = hash.transpose()?;
         let overlay = show.map(|buffer| overlay::colors(&shown.buffers, buffer));
         let overlay = overlay.transpose()?;
-        let ends = overlay.as_ref().and_then(|(_, ends)| ends.clone());
-        let made = overlay.map(|(colors, _)| Pixels::new(width, height, colors));
+        let (colors, legend) = overlay.unzip();
+        let made = colors.map(|colors| Pixels::new(width, height, colors));
         let pixels = made.as_ref().unwrap_or(&*shown.pixels);
         let mut picture = Vec::new();
         if request.png {
@@ -130,7 +140,7 @@ impl Shared {
             "hash": hash,
             "counters": shown.counters,
             "pixels_drawn": shown.pixels_drawn,
-            "ends": ends.map(|ends| [ends.start, ends.end]),
+            "legend": legend,
             "draw_ms": shown.times_ms.last(),
             "all_ms": milliseconds_since(started),
         });
@@ -170,6 +180,27 @@ impl Shared {
         all.push(camera_line(camera));
         all.join(" ")
     }
+}
+
+/// The voxel at a pixel, as `--aov voxel` of `render` has it.
+fn pick(shown: &Shown<'_>, graph: &Graph, [x, y]: [u32; 2]) -> Result<Answer, CliError> {
+    let (width, height) = shown.buffers.size();
+    if x >= width || y >= height {
+        return Err(CliError::usage("this pixel is outside the picture"));
+    }
+    let row = |buffer| match shown.buffers.rows(buffer, y..y + 1)? {
+        Values::I32(values) => Ok(values),
+        _ => Err(CliError::usage("this buffer has no integers")),
+    };
+    let voxel = row(Buffer::Voxel)?.as_chunks().0[x as usize];
+    let node = row(Buffer::Node)?[x as usize] as u32;
+    let Placement {
+        world_origin,
+        voxel_size,
+        ..
+    } = graph.placement;
+    let color = graph.color_of(node);
+    Ok(picked(voxel, color, graph.depth, world_origin, voxel_size))
 }
 
 fn no_scene() -> CliError {

@@ -1,6 +1,6 @@
-//! Buffers of a picture as colours.
+//! Buffers of a picture as colours, and their legends.
 
-use std::ops::Range;
+use std::collections::BTreeSet;
 
 use shiftvox::drawing::Buffers;
 use shiftvox::picture::npy::Values;
@@ -11,7 +11,8 @@ use crate::error::CliError;
 
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
 
-pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
+/// Colours of pixels, and of some values by their names.
+pub(super) type Painted = (Vec<[u8; 4]>, Vec<(String, [u8; 4])>);
 
 pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, CliError> {
     let rows = 0..buffers.size().1;
@@ -19,19 +20,44 @@ pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, C
     Ok(match (buffer, values) {
         (Buffer::Records, Values::F32(records)) => {
             let (colors, most) = heat::colors(&records);
-            (colors, Some(0.0..f64::from(most)))
+            // The scale is logarithmic.
+            let values = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| (1.0 + most).powf(share) - 1.0);
+            let name = |value: f32| format!("{value:.1}");
+            (colors, named(&values, heat::colors(&values).0, name))
         }
         (Buffer::Depth, Values::F32(depths)) => depth(&depths),
         (Buffer::Normal, Values::F32(normals)) => (
             normals.as_chunks::<3>().0.iter().map(normal).collect(),
-            None,
+            AXES.map(|(name, axis)| (name.to_owned(), normal(&axis)))
+                .to_vec(),
         ),
         (Buffer::Voxel, Values::I32(voxels)) => level(voxels.as_chunks::<4>().0),
         _ => return Err(CliError::usage("a page does not show this buffer")),
     })
 }
 
-fn depth(depths: &[f32]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
+fn named<T: Copy>(
+    values: &[T],
+    colors: Vec<[u8; 4]>,
+    name: impl Fn(T) -> String,
+) -> Vec<(String, [u8; 4])> {
+    values
+        .iter()
+        .map(|&value| name(value))
+        .zip(colors)
+        .collect()
+}
+
+const AXES: [(&str, [f32; 3]); 6] = [
+    ("+x", [1.0, 0.0, 0.0]),
+    ("-x", [-1.0, 0.0, 0.0]),
+    ("+y", [0.0, 1.0, 0.0]),
+    ("-y", [0.0, -1.0, 0.0]),
+    ("+z", [0.0, 0.0, 1.0]),
+    ("-z", [0.0, 0.0, -1.0]),
+];
+
+fn depth(depths: &[f32]) -> Painted {
     let seen = || depths.iter().copied().filter(|depth| depth.is_finite());
     let (near, far) = (
         seen().fold(f32::INFINITY, f32::min),
@@ -45,8 +71,15 @@ fn depth(depths: &[f32]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
         let grey = (255.0 - 200.0 * (depth - near) / span) as u8;
         [grey, grey, grey, 255]
     };
-    let ends = near.is_finite().then(|| f64::from(near)..f64::from(far));
-    (depths.iter().map(color).collect(), ends)
+    let mut values = [0.0, 0.25, 0.5, 0.75, 1.0]
+        .map(|share| near + share * (far - near))
+        .to_vec();
+    values.retain(|value| value.is_finite());
+    let legend = values.iter().map(color).collect();
+    (
+        depths.iter().map(color).collect(),
+        named(&values, legend, |value| format!("{value:.4}")),
+    )
 }
 
 /// A direction's coordinates as red, green and blue, -1 dark and 1 bright.
@@ -69,21 +102,17 @@ const LEVELS: [[u8; 4]; 8] = [
     [69, 117, 180, 255],
 ];
 
-fn level(voxels: &[[i32; 4]]) -> (Vec<[u8; 4]>, Option<Range<f64>>) {
-    let color = |voxel: &[i32; 4]| match usize::try_from(voxel[3]) {
+fn level(voxels: &[[i32; 4]]) -> Painted {
+    let color = |&[_, _, _, level]: &[i32; 4]| match usize::try_from(level) {
         Ok(level) => LEVELS[level % LEVELS.len()],
         Err(_) => NOTHING,
     };
-    let seen = || {
-        voxels
-            .iter()
-            .map(|voxel| voxel[3])
-            .filter(|&level| level >= 0)
-    };
-    let ends = seen().min().zip(seen().max());
+    let seen: BTreeSet<i32> = voxels.iter().map(|voxel| voxel[3]).collect();
+    let seen = seen.into_iter().filter(|&level| level >= 0);
     (
         voxels.iter().map(color).collect(),
-        ends.map(|(low, high)| f64::from(low)..f64::from(high)),
+        seen.map(|level| (format!("level {level}"), color(&[0, 0, 0, level])))
+            .collect(),
     )
 }
 
@@ -93,13 +122,20 @@ mod tests {
 
     #[test]
     fn near_is_bright_and_nothing_is_dark() {
-        let (colors, ends) = depth(&[f32::INFINITY, 2.0, 4.0]);
+        let (colors, legend) = depth(&[f32::INFINITY, 2.0, 4.0]);
         assert_eq!(colors, [NOTHING, [255; 4], [55, 55, 55, 255]]);
-        assert_eq!(ends, Some(2.0..4.0));
-        assert_eq!(depth(&[f32::INFINITY]).1, None);
+        assert_eq!(legend[0], ("2.0000".to_owned(), [255; 4]));
+        assert_eq!(legend[4], ("4.0000".to_owned(), [55, 55, 55, 255]));
+        assert_eq!(depth(&[f32::INFINITY]).1, []);
         assert_eq!(normal(&[0.0, 0.0, 1.0]), [127, 127, 255, 255]);
-        let (colors, ends) = level(&[[0, 0, 0, -1], [0, 0, 0, 3], [0, 0, 0, 4]]);
+        let (colors, legend) = level(&[[0, 0, 0, -1], [0, 0, 0, 3], [0, 0, 0, 4]]);
         assert_eq!(colors, [NOTHING, LEVELS[3], LEVELS[4]]);
-        assert_eq!(ends, Some(3.0..4.0));
+        assert_eq!(
+            legend,
+            [
+                ("level 3".to_owned(), LEVELS[3]),
+                ("level 4".to_owned(), LEVELS[4])
+            ]
+        );
     }
 }

@@ -6,7 +6,7 @@ use serde_json::json;
 use shiftvox::picture::png;
 
 use crate::chromium::Browser;
-use crate::program::{Program, run_command};
+use crate::program::{Program, run_command, voxel_of};
 
 /// True when everything that is wanted is shown.
 const STILL: &str = "view.camera && shown.still === view.version && fast.isFree && !('stale' in document.body.dataset)";
@@ -105,6 +105,57 @@ fn the_page_turns_compares_and_shows_what_render_draws() {
     browser.value("$('first').click()");
     assert_is_renders(browser);
     assert_eq!(browser.text("$('error').textContent"), "");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+/// A click, a finger and a key pick the voxel that `--aov voxel` has at that pixel.
+#[test]
+#[ignore = "needs chromium"]
+fn voxels_are_picked() {
+    let program = Program::start("assets/tree.vox tests/data/axes.vox --size 256");
+    let browser = &mut Browser::open(&program.address);
+    browser.wait(STILL);
+    for engine in ["", "machine"] {
+        browser.value(&format!(
+            "view.flags.engine = '{engine}'; $('scene').onchange()"
+        ));
+        let command = assert_is_renders(browser);
+        let at = browser.value("(() => { const b = canvas.getBoundingClientRect(); return [b.left, b.top, b.width / 256]; })()");
+        let [left, top, scale] = [0, 1, 2].map(|k| at[k].as_f64().unwrap());
+        let picked = |browser: &mut Browser, [x, y]: [usize; 2]| {
+            browser.wait("voxel && shown.whole === view.version && fast.isFree");
+            let [i, j, k, level] = voxel_of(&command, [x, y], 256);
+            let said = browser.text("$('voxel').innerText");
+            let expected = [format!("{i}, {j}, {k}"), format!("{level} of ")];
+            assert!(expected.iter().all(|part| said.contains(part)), "{expected:?}: {said}");
+            browser.text("$('outline').getAttribute('d')")
+        };
+        let place = |x: usize, y: usize| [x, y].map(|at| (at as f64 + 0.5) * scale);
+        let [x, y] = place(120, 100);
+        browser.drag([left + x, top + y], [left + x + 1.0, top + y], "left");
+        let first = picked(browser, [120, 100]);
+        browser.value("unpick()");
+        let [x, y] = place(150, 140);
+        let touch = |kind: &str, points| json!({ "type": kind, "touchPoints": points });
+        let finger = json!([{ "x": left + x, "y": top + y }]);
+        browser.input("Touch", [touch("touchStart", finger), touch("touchEnd", json!([]))]);
+        let second = picked(browser, [150, 140]);
+        browser.value("unpick(); canvas.focus()");
+        let key = |key: &str| ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": key }));
+        browser.input("Key", key("p"));
+        let third = picked(browser, [128, 128]);
+        assert!(first.starts_with('M') && first != second && second != third);
+        assert_eq!(assert_is_renders(browser), command, "the view did not move");
+    }
+    browser.shot("picked.png");
+    // The mark follows the view. Another scene ends it, and so does Escape.
+    let outline = browser.text("$('outline').getAttribute('d')");
+    browser.value("$('around').click()");
+    assert_is_renders(browser);
+    assert_ne!(browser.text("$('outline').getAttribute('d')"), outline);
+    browser.value("canvas.focus()");
+    browser.input("Key", ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": "Escape" })));
+    browser.wait("$('picked').hidden && !$('outline').getAttribute('d')");
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }
 

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use shiftvox::picture::png;
 
-use crate::program::{Page, Program, question, run_command, shiftvox};
+use crate::program::{Page, Program, question, run_command, shiftvox, voxel_of};
 
 /// Asks for a picture as bytes and as PNG, and compares both, and the hash, with the command's.
 fn assert_is_renders(page: &mut Page, mut fields: Value) -> Value {
@@ -108,8 +108,8 @@ fn overlays_are_buffers_as_colours() {
     for show in ["color", "records", "voxel", "depth", "normal"] {
         let (head, rgba) = page.ask(json!({ "show": show, "hash": true, "size": [64, 64] }));
         assert_eq!(rgba.len(), 64 * 64 * 4, "{head}");
-        let has_no_ends = ["color", "normal"].contains(&show);
-        assert_eq!(head["ends"].is_null(), has_no_ends, "{head}");
+        let legend = head["legend"].as_array().map_or(0, Vec::len);
+        assert_eq!(legend > 0, show != "color", "{head}");
         seen.push(rgba);
         // The buffer that is shown does not change the picture's hash.
         let (_, hash) = run_command(head["command"].as_str().unwrap());
@@ -118,6 +118,45 @@ fn overlays_are_buffers_as_colours() {
     seen.sort();
     seen.dedup();
     assert_eq!(seen.len(), 5);
+}
+
+#[test]
+fn a_picked_voxel_is_that_of_the_buffer() {
+    let program = Program::start("assets/tree.vox gen:menger,depth=3 assets/knot.obj");
+    let mut page = program.page();
+    for (scene, engine, lod) in [
+        (0, "fast", "0"),
+        (0, "machine", "0"),
+        (0, "rays", "4"),
+        (1, "fast", "0"),
+        (2, "fast", "2"),
+    ] {
+        let mut fields = json!({ "scene": scene, "aa": 2, "flags": { "engine": engine, "lod": lod } });
+        let command = page.ask(fields.clone()).0["command"].take();
+        let command = command.as_str().unwrap_or_else(|| panic!("{command}"));
+        fields["ask"] = json!("pick");
+        let mut count = 0;
+        for at in [[60, 45], [50, 40], [70, 60], [1, 1]] {
+            fields["at"] = json!(at);
+            let (head, _) = page.ask(fields.clone());
+            let voxel = voxel_of(command, at, 120);
+            if voxel[3] < 0 {
+                assert!(head["voxel"].is_null() && head["error"].is_null(), "{head}");
+                continue;
+            }
+            count += 1;
+            let picked = &head["voxel"];
+            assert_eq!(picked["index"], json!(voxel[..3]), "{command} {head}");
+            assert_eq!(picked["level"], voxel[3], "{head}");
+            let [levels, level] = ["levels", "level"].map(|name| picked[name].as_u64().unwrap());
+            if scene == 0 {
+                assert_eq!(picked["side"], 2f64.powi((levels - level) as i32), "{head}");
+            }
+        }
+        assert!(count > 0, "{command}");
+    }
+    let outside = json!({ "ask": "pick", "at": [120, 0] });
+    assert!(page.ask(outside).0["error"].as_str().unwrap().contains("outside"));
 }
 
 #[test]

@@ -146,6 +146,21 @@ pub(crate) fn shiftvox(line: &str) -> Output {
     command(line).output().unwrap()
 }
 
+/// The index and level of the voxel that a pixel of a printed command's picture shows, by `--aov voxel`.
+pub(crate) fn voxel_of(command: &str, [x, y]: [usize; 2], width: usize) -> [i32; 4] {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("picture.png");
+    let words = command.strip_prefix("shiftvox ").unwrap();
+    let words = words.strip_suffix(" -o picture.png --force").unwrap();
+    let output = shiftvox(&format!("{words} --aov voxel -o {}", path.display()));
+    assert!(output.status.success(), "{command}");
+    let array = std::fs::read(path.with_extension("voxel.npy")).unwrap();
+    // The array follows the line of its head.
+    let begin = array.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    let pixel: [u8; 16] = *array[begin..].as_chunks().0.get(y * width + x).unwrap();
+    std::array::from_fn(|k| i32::from_le_bytes(pixel.as_chunks().0[k]))
+}
+
 /// Draws the picture of a printed command: its bytes, and its hash.
 pub(crate) fn run_command(command: &str) -> (Vec<u8>, String) {
     let folder = tempfile::tempdir().unwrap();
