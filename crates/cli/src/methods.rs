@@ -113,6 +113,22 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
     })
 }
 
+/// Opens the voxels of a file in memory.
+#[cfg(feature = "view")]
+pub(super) fn open_bytes(
+    name: &str,
+    bytes: &[u8],
+    args: &DrawArgs<'_>,
+) -> Result<Opened, CliError> {
+    args.engine.check_of_voxels().map_err(CliError::usage)?;
+    let scene = scenes::open_bytes(name, bytes, args.scene)?;
+    Ok(Opened {
+        engine: args.engine.engine.unwrap_or_default(),
+        load_ms: scene.load_ms,
+        content: Content::Graph(Box::new(scene)),
+    })
+}
+
 fn check_memory(args: &DrawArgs<'_>) -> Result<(), CliError> {
     match args.memory {
         Some(_) => Err(CliError::usage("--memory is for .far files")),

@@ -114,6 +114,15 @@ fn crop_scene(scene: &mut Scene, crop: &Crop, console: &Console) -> Result<(), C
     Ok(())
 }
 
+/// As [`open_source`], of voxels in memory.
+#[cfg(feature = "view")]
+pub(super) fn open_bytes(name: &str, bytes: &[u8], args: &SceneArgs) -> Result<Scene, CliError> {
+    let started = Instant::now();
+    let (options, silent) = (options(args).voxels, shiftvox::graph::Silent);
+    let opened = scene::open_bytes(bytes, name, &options, &NoMeshes, &silent)?;
+    Ok(ready(opened, name, args.mesh_up, started))
+}
+
 pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
     Ok(Source::find(name)?.kind().is_some_and(FileKind::is_mesh))
 }

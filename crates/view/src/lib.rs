@@ -31,6 +31,11 @@ pub trait Program: Sync {
     /// begins.
     fn hello(&self) -> Value;
 
+    /// Adds a dropped file to the end of the list of scenes; an error is the reason of a refusal.
+    fn open(&self, _name: &str, _bytes: &[u8]) -> Result<(), String> {
+        Err("this program takes no files".to_owned())
+    }
+
     /// Answers the requests of one socket; an error is the reason of a refusal. It is dropped after 10 s without one.
     /// When `is_stale`, which should be asked every few milliseconds, the answer to the current request is of no use.
     fn drawer(

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use crate::request::{MOST_PIXELS, MOST_SAMPLES, Request};
+use crate::request::{MOST_FILE, MOST_PIXELS, MOST_SAMPLES, Request};
 use crate::{Answer, Program};
 
 /// The head of the first message.
@@ -14,6 +14,7 @@ pub fn hello(program: &impl Program) -> Value {
     hello["version"] = json!(env!("CARGO_PKG_VERSION"));
     hello["most_pixels"] = json!(MOST_PIXELS);
     hello["most_samples"] = json!(MOST_SAMPLES);
+    hello["most_file"] = json!(MOST_FILE);
     hello
 }
 

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) const MOST_PIXELS: u64 = 1 << 22;
 /// Most samples of a picture: 16 per pixel at 1024 x 1024.
 pub(crate) const MOST_SAMPLES: u64 = 1 << 24;
+/// Most bytes of a dropped file.
+pub(crate) const MOST_FILE: usize = 256 << 20;
 const MOST_LETTERS: usize = 24;
 
 /// Flags of `render` that a page may set. None of them names a file.

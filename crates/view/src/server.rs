@@ -2,9 +2,13 @@
 //! (against DNS rebinding). Sockets are for the page itself (Origin). A connection serves one request.
 
 use std::collections::VecDeque;
-use std::io::{self, Read, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::{Arc, Weak};
+#[cfg(unix)]
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::Path;
+use std::sync::{Arc, Mutex, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -34,6 +38,8 @@ pub struct Server {
     token: String,
     /// One more reference for each socket.
     sockets: Arc<()>,
+    /// Held while a file is taken, so that memory has only one.
+    file: Mutex<()>,
 }
 
 impl Server {
@@ -48,7 +54,39 @@ impl Server {
             listener,
             token: random_word()?,
             sockets: Arc::new(()),
+            file: Mutex::new(()),
         })
+    }
+
+    /// Uses the token of a file that only its owner can read, or writes a new one there, for servers after a restart.
+    ///
+    /// # Errors
+    /// The file cannot be used, others can read it, or it holds no token.
+    pub fn keep_token(&mut self, file: &Path) -> io::Result<()> {
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        options.mode(0o600);
+        match options.open(file) {
+            Ok(mut file) => return file.write_all(self.token.as_bytes()),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+        let file = File::open(file)?;
+        #[cfg(unix)]
+        if file.metadata()?.mode() & 0o077 != 0 {
+            return Err(io::Error::other("other users can read it"));
+        }
+        let mut token = String::new();
+        file.take(64).read_to_string(&mut token)?;
+        let token = token.trim();
+        if token.len() != 32 || !token.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+            return Err(io::Error::other(
+                "it holds no token of 32 hexadecimal digits",
+            ));
+        }
+        token.clone_into(&mut self.token);
+        Ok(())
     }
 
     /// The page's address, with the token.
@@ -101,22 +139,31 @@ impl Server {
                 (response(status, headers, reason), None)
             });
         let sent = (&*stream).write_all(&response);
-        if let (Ok(()), Some(_place), Some(stream)) = (sent, place, Arc::into_inner(stream)) {
-            socket::talk(stream, program);
+        let (Ok(()), Some((what, _place)), Some(stream)) = (sent, place, Arc::into_inner(stream))
+        else {
+            return;
+        };
+        match what {
+            What::Page => socket::talk(stream, program),
+            What::File => {
+                let _one = self.file.lock();
+                socket::take_file(stream, program);
+            }
         }
     }
 
     /// The response, and the place of the socket that it opens.
-    fn respond(&self, request: &Request) -> Result<(Vec<u8>, Option<Arc<()>>), Refused> {
-        let is_socket = match request.uri().path() {
-            "/" => false,
-            "/socket" => true,
+    fn respond(&self, request: &Request) -> Result<(Vec<u8>, Option<Place>), Refused> {
+        let what = match request.uri().path() {
+            "/" => None,
+            "/socket" => Some(What::Page),
+            "/file" => Some(What::File),
             _ => return Err((StatusCode::NOT_FOUND, "there is no such page")),
         };
         let host = self.check(request)?;
-        if !is_socket {
+        let Some(what) = what else {
             return Ok((page(host)?, None));
-        }
+        };
         let origin = only(request, header::ORIGIN);
         if origin.and_then(|origin| origin.strip_prefix("http://")) != Some(host) {
             return Err((StatusCode::FORBIDDEN, "sockets are for the page itself"));
@@ -129,7 +176,7 @@ impl Server {
         if Arc::strong_count(&place) > 1 + MOST_SOCKETS {
             return Err((StatusCode::SERVICE_UNAVAILABLE, "too many pages are open"));
         }
-        Ok((head, Some(place)))
+        Ok((head, Some((what, place))))
     }
 
     /// Returns the name under which the page is requested.
@@ -152,6 +199,13 @@ impl Server {
     }
 }
 
+/// The use of a socket.
+enum What {
+    Page,
+    File,
+}
+
+type Place = (What, Arc<()>);
 type Refused = (StatusCode, &'static str);
 
 fn read_head(mut stream: &TcpStream) -> Result<Request, Refused> {
@@ -211,7 +265,7 @@ fn page(host: &str) -> Result<Vec<u8>, Refused> {
     let headers = format!(
         "content-type: text/html; charset=utf-8\r\n\
          content-security-policy: default-src 'none'; script-src 'nonce-{nonce}'; \
-         style-src 'nonce-{nonce}'; connect-src ws://{host}; img-src data: blob:; \
+         style-src 'nonce-{nonce}'; connect-src 'self' ws://{host}; img-src data: blob:; \
          base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n\
          x-content-type-options: nosniff\r\n\
          referrer-policy: no-referrer\r\n\

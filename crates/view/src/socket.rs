@@ -8,15 +8,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use serde_json::json;
 use tungstenite::protocol::frame::Frame;
 use tungstenite::protocol::frame::coding::{CloseCode, Data, OpCode};
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Error, Message, Utf8Bytes, WebSocket};
 
+use crate::request::MOST_FILE;
 use crate::{Answer, Program, answer, hello, message};
 
 /// Of a page.
 const MOST_BYTES: usize = 4096;
+/// Of a file's name, bytes.
+const MOST_NAME: usize = 255;
 /// Per second.
 const MOST_MESSAGES: u32 = 250;
 const SECOND: Duration = Duration::from_secs(1);
@@ -56,6 +60,34 @@ pub(crate) fn talk(stream: TcpStream, program: &impl Program) {
             reason: reason.into(),
         });
         let _ = socket.close(frame);
+    }
+}
+
+/// Takes a dropped file: its name, then its bytes. The answer is the first message of a page, with one more scene.
+pub(crate) fn take_file(stream: TcpStream, program: &impl Program) {
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(MOST_FILE))
+        .max_frame_size(Some(MOST_FILE));
+    let mut socket = WebSocket::from_raw_socket(Patient(stream), Role::Server, Some(config));
+    let read = |socket: &mut WebSocket<Patient>| {
+        socket.get_ref().0.set_read_timeout(Some(IDLE))?;
+        Ok::<_, Error>((socket.read()?, socket.read()?))
+    };
+    let opened = match read(&mut socket) {
+        Ok((Message::Text(name), Message::Binary(bytes))) if name.len() <= MOST_NAME => {
+            let open = || program.open(&name, &bytes);
+            catch_unwind(AssertUnwindSafe(open)).unwrap_or(Err("it has a fault".to_owned()))
+        }
+        Ok(_) => Err("this is not a name and a file".to_owned()),
+        Err(Error::Capacity(_)) => Err("the file is too large".to_owned()),
+        Err(_) => return,
+    };
+    let head = match opened {
+        Ok(()) => hello(program),
+        Err(error) => json!({ "ask": "error", "error": error }),
+    };
+    if send(&mut socket, (head, Vec::new())).is_ok() {
+        let _ = socket.close(None);
     }
 }
 

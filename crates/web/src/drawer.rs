@@ -3,7 +3,9 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 use shiftvox::project::Camera as Placed;
-use shiftvox::{Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View};
+use shiftvox::{
+    Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View,
+};
 use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, picked, quoted};
 
 #[derive(Debug)]

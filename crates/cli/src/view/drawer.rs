@@ -1,5 +1,6 @@
 //! Draws what a page asks for, with the engines and files of the command line.
 
+use std::sync::PoisonError;
 use std::time::Instant;
 
 use clap::ValueEnum;
@@ -12,7 +13,7 @@ use shiftvox::project::{Camera, Stop};
 use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, picked, quoted};
 
 use super::flags::{self, MODEL_FLAGS};
-use super::{Shared, overlay};
+use super::{Listed, MOST_DROPPED, Shared, overlay};
 use crate::args::camera_line;
 use crate::error::{CliError, Kind};
 use crate::methods::{self, DrawArgs};
@@ -37,7 +38,7 @@ type Kept<'s> = Vec<(Key, Box<dyn Drawable + 's>)>;
 
 impl Program for Shared {
     fn hello(&self) -> Value {
-        let names: Vec<&str> = self.scenes.iter().map(|s| s.name.as_str()).collect();
+        let names: Vec<&str> = self.scenes().iter().map(|s| s.name.as_str()).collect();
         let picture = &self.args.picture;
         json!({
             "scenes": names,
@@ -45,6 +46,17 @@ impl Program for Shared {
             "size": picture.size.map(|size| [size.width, size.height]),
             "aa": 1 << picture.aa_log2(),
         })
+    }
+
+    fn open(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
+        let count = self.scenes().len();
+        if count >= self.args.scenes.len() + MOST_DROPPED {
+            return Err("too many files were dropped: start the program again".to_owned());
+        }
+        let scene = Listed::dropped(name, bytes, &self.args).map_err(|error| error.to_string())?;
+        let mut scenes = self.scenes.write().unwrap_or_else(PoisonError::into_inner);
+        scenes.push(Box::leak(Box::new(scene)));
+        Ok(())
     }
 
     fn drawer(
@@ -64,6 +76,16 @@ impl Program for Shared {
 }
 
 impl Shared {
+    fn scenes(&self) -> Vec<&'static Listed> {
+        let scenes = self.scenes.read();
+        scenes.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn scene(&self, number: usize) -> Result<&'static Listed, CliError> {
+        let scene = self.scenes().get(number).copied();
+        scene.ok_or_else(|| CliError::usage("there is no scene of this number"))
+    }
+
     fn picture<'s>(
         &'s self,
         request: &Request,
@@ -72,7 +94,7 @@ impl Shared {
     ) -> Result<Answer, CliError> {
         let started = Instant::now();
         let settings = flags::settings(request)?;
-        let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
+        let listed = self.scene(request.scene)?;
         // All buffers are kept for the hash, and one of them has the picked voxel.
         let is_hashed = request.hash || request.ask == Ask::Pick;
         let args = DrawArgs {
@@ -149,7 +171,7 @@ impl Shared {
 
     fn figures(&self, request: &Request) -> Result<Answer, CliError> {
         let settings = flags::settings(request)?;
-        let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
+        let listed = self.scene(request.scene)?;
         let args = self.args.draw_args(&settings.engine, &settings.picture);
         let graph = listed.for_flags(&args)?.graph().ok_or_else(|| {
             CliError::usage("the hardware model is of voxels, and this scene has none")
@@ -201,10 +223,6 @@ fn pick(shown: &Shown<'_>, graph: &Graph, [x, y]: [u32; 2]) -> Result<Answer, Cl
     } = graph.placement;
     let color = graph.color_of(node);
     Ok(picked(voxel, color, graph.depth, world_origin, voxel_size))
-}
-
-fn no_scene() -> CliError {
-    CliError::usage("there is no scene of this number")
 }
 
 fn of_model_size(camera: Camera) -> Camera {

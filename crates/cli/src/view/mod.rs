@@ -5,7 +5,10 @@ mod flags;
 mod overlay;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::sync::OnceLock;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::{OnceLock, RwLock};
+use std::{io, thread};
 
 use clap::{ArgMatches, Args};
 use serde_json::json;
@@ -30,6 +33,13 @@ pub(super) struct ViewArgs {
     /// everybody who knows the printed address can look
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     bind: IpAddr,
+    /// Keep the token of the address in this file, so that open pages go on after a restart on the same --port
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
+    /// Open the page in a browser: that of the variable BROWSER, or this computer's. Other users of this computer
+    /// may see the address among its processes
+    #[arg(long)]
+    open: bool,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -46,8 +56,12 @@ struct Shared {
     first: Flags,
     /// The flags with which scenes were read.
     scene_words: Vec<String>,
-    scenes: Vec<Listed>,
+    /// Those of dropped files are last. They stay until the program ends, so drawings borrow them.
+    scenes: RwLock<Vec<&'static Listed>>,
 }
+
+/// Dropped files until the program ends.
+const MOST_DROPPED: usize = 16;
 
 struct Listed {
     name: String,
@@ -71,6 +85,15 @@ impl Listed {
             name: name.to_owned(),
             opened,
             blended: reads_twice.then(OnceLock::new),
+        })
+    }
+
+    fn dropped(name: &str, bytes: &[u8], args: &ViewArgs) -> Result<Self, CliError> {
+        let draw_args = args.draw_args(&args.engine, &args.picture);
+        Ok(Self {
+            name: name.to_owned(),
+            opened: methods::open_bytes(name, bytes, &draw_args)?,
+            blended: None,
         })
     }
 
@@ -109,10 +132,15 @@ pub(super) fn run(args: ViewArgs, matches: &ArgMatches, console: &Console) -> Re
         shiftvox_view::check_size(size, 1 << args.picture.aa_log2())
             .map_err(|reason| CliError::new(Kind::Limit, reason))?;
     }
-    let server = listen(SocketAddr::new(args.bind, args.port))?;
+    let mut server = listen(SocketAddr::new(args.bind, args.port))?;
+    if let Some(file) = &args.token_file {
+        let kept = server.keep_token(file);
+        kept.map_err(|error| CliError::input(format!("{}: {error}", file.display())))?;
+    }
     let opened = args.scenes.iter();
     let opened = opened.map(|name| Listed::open(name, &args, console));
-    let scenes = opened.collect::<Result<Vec<_>, _>>()?;
+    let opened = opened.map(|scene| Ok(&*Box::leak(Box::new(scene?))));
+    let scenes = opened.collect::<Result<Vec<_>, CliError>>()?;
     let address = server.page_address();
     match console.json {
         true => {
@@ -120,7 +148,13 @@ pub(super) fn run(args: ViewArgs, matches: &ArgMatches, console: &Console) -> Re
         }
         false => console.data(&address),
     }?;
-    console.note("open this address in a browser; Ctrl-C ends the program");
+    match args.open.then(|| open_browser(&address)) {
+        Some(Ok(())) => console.note("Ctrl-C ends the program"),
+        Some(Err(error)) => console.note(format!(
+            "no browser has started ({error}): open this address"
+        )),
+        None => console.note("open this address in a browser; Ctrl-C ends the program"),
+    }
     if !args.bind.is_loopback() {
         let under = match args.bind.is_unspecified() {
             true => ", under this one's address,",
@@ -134,15 +168,32 @@ pub(super) fn run(args: ViewArgs, matches: &ArgMatches, console: &Console) -> Re
     server.serve(&Shared {
         first: flags::first(matches),
         scene_words: flags::scene_words(matches),
+        scenes: RwLock::new(scenes),
         args,
-        scenes,
     })
+}
+
+fn open_browser(address: &str) -> io::Result<()> {
+    let own = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let program = std::env::var_os("BROWSER").unwrap_or_else(|| own.into());
+    let mut command = Command::new(program);
+    let quiet = command
+        .arg(address)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null());
+    let mut child = quiet.stderr(Stdio::null()).spawn()?;
+    thread::spawn(move || child.wait());
+    Ok(())
 }
 
 fn listen(at: SocketAddr) -> Result<Server, CliError> {
     Server::bind(at).map_err(|error| {
         let advice = match error.kind() {
-            std::io::ErrorKind::AddrNotAvailable => "--bind takes an address of this computer",
+            io::ErrorKind::AddrNotAvailable => "--bind takes an address of this computer",
             _ => "leave --port out: a free one is found",
         };
         CliError::new(Kind::Run, format!("cannot listen on {at}: {error}")).advise(advice)

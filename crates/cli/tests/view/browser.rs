@@ -15,8 +15,7 @@ const MIDDLE: [f64; 2] = [430.0, 400.0];
 
 /// The page's picture is that of its command, by its hash and by each pixel. Returns the command.
 pub(crate) fn assert_is_renders(browser: &mut Browser) -> String {
-    browser.wait(STILL);
-    browser.wait("$('command').value.startsWith('shiftvox render')");
+    assert_is_still(browser);
     let command = browser.text("$('command').value");
     let (file, hash) = run_command(&command);
     assert_eq!(browser.text("$('live').dataset.hash"), hash, "{command}");
@@ -127,7 +126,10 @@ fn voxels_are_picked() {
             let [i, j, k, level] = voxel_of(&command, [x, y], 256);
             let said = browser.text("$('voxel').innerText");
             let expected = [format!("{i}, {j}, {k}"), format!("{level} of ")];
-            assert!(expected.iter().all(|part| said.contains(part)), "{expected:?}: {said}");
+            assert!(
+                expected.iter().all(|part| said.contains(part)),
+                "{expected:?}: {said}"
+            );
             browser.text("$('outline').getAttribute('d')")
         };
         let place = |x: usize, y: usize| [x, y].map(|at| (at as f64 + 0.5) * scale);
@@ -138,7 +140,10 @@ fn voxels_are_picked() {
         let [x, y] = place(150, 140);
         let touch = |kind: &str, points| json!({ "type": kind, "touchPoints": points });
         let finger = json!([{ "x": left + x, "y": top + y }]);
-        browser.input("Touch", [touch("touchStart", finger), touch("touchEnd", json!([]))]);
+        browser.input(
+            "Touch",
+            [touch("touchStart", finger), touch("touchEnd", json!([]))],
+        );
         let second = picked(browser, [150, 140]);
         browser.value("unpick(); canvas.focus()");
         let key = |key: &str| ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": key }));
@@ -154,9 +159,202 @@ fn voxels_are_picked() {
     assert_is_renders(browser);
     assert_ne!(browser.text("$('outline').getAttribute('d')"), outline);
     browser.value("canvas.focus()");
-    browser.input("Key", ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": "Escape" })));
+    browser.input(
+        "Key",
+        ["keyDown", "keyUp"].map(|kind| json!({ "type": kind, "key": "Escape" })),
+    );
     browser.wait("$('picked').hidden && !$('outline').getAttribute('d')");
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+/// The background follows the dark scheme and the choice, in the picture, its command and the address.
+#[test]
+#[ignore = "needs chromium"]
+fn backgrounds_and_legends() {
+    let program = Program::start("assets/tree.vox");
+    let browser = &mut Browser::open(&program.address);
+    assert!(!assert_is_renders(browser).contains("--background"));
+    browser.emulate(false, true);
+    browser.wait("$('command').value.includes('--background=21,24,29')");
+    assert_is_renders(browser);
+    browser.shot("dark.png");
+    let choose =
+        |value: &str| format!("$('background').value = '{value}'; $('background').onchange()");
+    browser.value(&choose("none"));
+    assert!(assert_is_renders(browser).contains("--background=none"));
+    browser.value(&choose("color"));
+    browser.value("$('color').value = '#102030'; $('color').onchange()");
+    let command = assert_is_renders(browser);
+    assert!(command.contains("--background=16,32,48"), "{command}");
+    browser.value("globalThis.isOld = true; setTimeout(() => location.reload())");
+    browser.wait("!globalThis.isOld && limits");
+    assert_eq!(assert_is_renders(browser), command);
+    assert_eq!(browser.text("$('color').value"), "#102030");
+    // A phone: the picture stays while the settings scroll, and fingers hit them.
+    browser.emulate(true, false);
+    browser.wait("$('pictures').clientWidth <= 390");
+    assert_is_renders(browser);
+    browser.value("$('background').value = ''; $('background').onchange()");
+    assert_is_renders(browser);
+    browser.shot("phone.png");
+    let seen = "document.querySelector('aside').scrollTo(0, 500); scrollTo(0, 500);
+        [$('mine').getBoundingClientRect().top >= 0, $('mine').getBoundingClientRect().bottom <= innerHeight / 2 + 60,
+         [...document.querySelectorAll('aside label, aside button')].every((e) => !e.offsetParent || e.offsetHeight >= 44)]";
+    assert_eq!(browser.value(seen), json!([true, true, true]));
+    browser.shot("phone-settings.png");
+    browser.emulate(false, false);
+    for (show, first, caption) in [
+        ("records", "0.0", "records per pixel"),
+        ("voxel", "level 8", "level drawn"),
+        ("depth", "", "depth"),
+        ("normal", "+x", "normal"),
+    ] {
+        browser.value(&format!("$('show').value = '{show}'; $('show').onchange()"));
+        assert_is_still(browser);
+        let said = browser.text("$('legend').innerText");
+        assert!(said.starts_with(caption) && said.contains(first), "{said}");
+        browser.shot(&format!("{show}.png"));
+    }
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+fn assert_is_still(browser: &mut Browser) {
+    browser.wait(STILL);
+    browser.wait("$('command').value.startsWith('shiftvox render')");
+}
+
+/// Each frame of the animated PNG is the picture of its camera.
+#[test]
+#[ignore = "needs chromium"]
+fn a_turntable_is_saved() {
+    let program = Program::start("assets/tree.vox --size 96x72 --aa 2");
+    let browser = &mut Browser::open(&program.address);
+    assert_is_renders(browser);
+    // Chromium's decoder reads the file.
+    let made = browser.value(
+        "new Promise((done) => {
+           const cameras = [], ask = slow.ask;
+           slow.ask = (question, ...rest) => {
+             if (question.ask === 'picture') cameras.push(question.camera);
+             return ask.call(slow, question, ...rest);
+           };
+           download = async (file, name) => {
+             const decoder = new ImageDecoder({ data: await file.arrayBuffer(), type: file.type });
+             await decoder.tracks.ready;
+             const count = decoder.tracks.selectedTrack.frameCount, shots = [];
+             for (const at of [0, 9, 35]) {
+               const { image } = await decoder.decode({ frameIndex: at });
+               const canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight), context = canvas.getContext('2d');
+               context.drawImage(image, 0, 0);
+               const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+               shots.push([String(data), image.duration]);
+             }
+             globalThis.made = { cameras, shots };
+             done([name, file.size, count, cameras.length, shots.map(([, us]) => us)]);
+           };
+           $('turn').click();
+         })",
+    );
+    println!("{made}");
+    assert_eq!(made[0], "turntable.png");
+    assert_eq!(json!([made[2], made[3]]), json!([36, 36]));
+    assert!(
+        (made[4][1].as_f64().unwrap() - 1e6 / 18.0).abs() < 1000.0,
+        "{made}"
+    );
+    for (place, at) in [0, 9, 35].iter().enumerate() {
+        browser.value(&format!("view.camera = made.cameras[{at}]; changed()"));
+        assert_is_renders(browser);
+        let is_same = format!(
+            "String(canvas.getContext('2d').getImageData(0, 0, 96, 72).data) === made.shots[{place}][0]"
+        );
+        assert_eq!(browser.value(&is_same), true, "frame {at}");
+    }
+    // A second click ends it.
+    browser.wait("$('turn').textContent === 'Turntable'");
+    browser.value("download = () => { throw 'not ended' }; $('turn').click()");
+    browser.value("$('turn').click()");
+    browser.wait("$('turn').textContent === 'Turntable' && !frame");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+/// The view is within limits: the eye does not enter the target, nor leave the scene far behind.
+#[test]
+#[ignore = "needs chromium"]
+fn files_are_dropped_and_zoom_has_limits() {
+    let program = Program::start("assets/tree.vox --size 128");
+    let browser = &mut Browser::open(&program.address);
+    let fitted = assert_is_renders(browser);
+    let distance = "Math.hypot(...add(view.camera.eye, view.camera.target, -1)) / view.fit";
+    for (by, least, most) in [(1e-9, 0.0002, 0.0003), (1e9, 7.9, 8.1)] {
+        browser.value(&format!("for (let k = 0; k < 3; k++) zoom({by})"));
+        let at = browser.value(distance).as_f64().unwrap();
+        assert!(at > least && at < most, "{at}");
+        assert_is_renders(browser);
+    }
+    browser.value("$('first').click()");
+    assert_eq!(assert_is_renders(browser), fitted);
+
+    let drop = |bytes: &[u8], name: &str| {
+        format!(
+            "document.ondrop({{ preventDefault() {{}}, dataTransfer: {{ files: [new File([Uint8Array.from(atob('{}'),
+             (c) => c.charCodeAt(0))], '{name}')] }} }})",
+            BASE64_STANDARD.encode(bytes)
+        )
+    };
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let axes = std::fs::read(root.join("tests/data/axes.vox")).unwrap();
+    browser.value(&drop(&axes, "tests/data/axes.vox"));
+    browser.wait("document.title.startsWith('tests/data/axes.vox')");
+    assert!(assert_is_renders(browser).contains("axes.vox"));
+    let mesh = std::fs::read(root.join("assets/knot.obj")).unwrap();
+    for (bytes, name) in [(&b"nonsense"[..], "wrong.vox"), (&mesh, "knot.obj")] {
+        browser.value(&drop(bytes, name));
+        browser.wait(&format!("$('of-file').textContent.startsWith('{name}: ') && !$('of-file').textContent.endsWith('reading')"));
+        println!("{}", browser.text("$('of-file').textContent"));
+        assert_eq!(browser.value("$('scene').options.length"), 2);
+    }
+    browser.value("take({ name: 'large.vox', size: 300 << 20 })");
+    browser.wait("$('of-file').textContent.includes('256 MB')");
+    browser.value("turn(0.3, 0)");
+    assert!(assert_is_renders(browser).contains("axes.vox"));
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+/// A page says why it is closed, and goes on with a program that has been started again.
+#[test]
+#[ignore = "needs chromium"]
+fn pages_wait_for_a_place_and_for_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("token");
+    let scenes = "tests/data/axes.vox assets/tree.vox --size 128";
+    let line = format!("{scenes} --token-file {}", file.display());
+    let program = Program::start(&line);
+    let others: Vec<_> = (0..8).map(|_| program.page()).collect();
+    let browser = &mut Browser::open(&program.address);
+    browser.wait("$('error').textContent.startsWith('Too many pages')");
+    drop(others);
+    assert_is_renders(browser);
+    browser.value("$('scene').value = 1; $('scene').onchange()");
+    assert_is_renders(browser);
+    browser.value("turn(0.4, 0.1)");
+    let command = assert_is_renders(browser);
+    browser.value("globalThis.isSame = true");
+    let (address, host) = (program.address.clone(), program.host.clone());
+    drop(program);
+    browser.wait("$('error').textContent.startsWith('The program has ended')");
+    let port = host.rsplit(':').next().unwrap();
+    // The list has another order now.
+    let scenes = "assets/tree.vox tests/data/axes.vox --size 128";
+    let line = format!("{scenes} --port {port}");
+    let other = Program::start(&line);
+    browser.wait("$('error').textContent.includes('another address')");
+    drop(other);
+    let program = Program::start(&format!("{line} --token-file {}", file.display()));
+    assert_eq!(program.address, address);
+    browser.wait("fast.isOpen && slow.isOpen && $('error').textContent === ''");
+    assert_eq!(assert_is_renders(browser), command);
+    assert_eq!(browser.value("isSame"), true);
 }
 
 #[test]

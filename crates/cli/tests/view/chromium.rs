@@ -162,12 +162,28 @@ impl Browser {
         self.input("Mouse", events);
     }
 
-    /// Keeps a picture of the page, at 0.6 of its size, in the folder `SHIFTVOX_SHOTS` if there is one.
+    /// Makes the page that of a phone, or one of dark colours.
+    pub(crate) fn emulate(&mut self, is_phone: bool, is_dark: bool) {
+        let [width, height] = if is_phone { [390, 844] } else { [1200, 800] };
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        let touch = json!({ "enabled": is_phone });
+        self.call("Emulation.setTouchEmulationEnabled", touch);
+        let scheme = if is_dark { "dark" } else { "light" };
+        let scheme = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        self.call("Emulation.setEmulatedMedia", scheme);
+    }
+
+    /// Keeps a picture of the page, a wide one at 0.6 of its size, in the folder `SHIFTVOX_SHOTS` if there is one.
     pub(crate) fn shot(&mut self, name: &str) {
         let Some(folder) = std::env::var_os("SHIFTVOX_SHOTS") else {
             return;
         };
-        let clip = json!({ "x": 0, "y": 0, "width": 1200, "height": 800, "scale": 0.6 });
+        let [width, height] =
+            ["innerWidth", "innerHeight"].map(|side| self.value(side).as_f64().unwrap());
+        let scale = if width > 1000.0 { 0.6 } else { 1.0 };
+        let clip = json!({ "x": 0, "y": 0, "width": width, "height": height, "scale": scale });
         let parameters = json!({ "format": "png", "clip": clip });
         let shot = self.call("Page.captureScreenshot", parameters);
         let bytes = BASE64_STANDARD.decode(shot["data"].as_str().unwrap());

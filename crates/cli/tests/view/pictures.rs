@@ -131,7 +131,8 @@ fn a_picked_voxel_is_that_of_the_buffer() {
         (1, "fast", "0"),
         (2, "fast", "2"),
     ] {
-        let mut fields = json!({ "scene": scene, "aa": 2, "flags": { "engine": engine, "lod": lod } });
+        let mut fields =
+            json!({ "scene": scene, "aa": 2, "flags": { "engine": engine, "lod": lod } });
         let command = page.ask(fields.clone()).0["command"].take();
         let command = command.as_str().unwrap_or_else(|| panic!("{command}"));
         fields["ask"] = json!("pick");
@@ -156,7 +157,12 @@ fn a_picked_voxel_is_that_of_the_buffer() {
         assert!(count > 0, "{command}");
     }
     let outside = json!({ "ask": "pick", "at": [120, 0] });
-    assert!(page.ask(outside).0["error"].as_str().unwrap().contains("outside"));
+    assert!(
+        page.ask(outside).0["error"]
+            .as_str()
+            .unwrap()
+            .contains("outside")
+    );
 }
 
 #[test]

@@ -58,6 +58,9 @@ const REQUESTS: &str = "\
 403 GET SOCKET | Host: HERE | Origin: http://127.0.0.1:1 | UPGRADE
 403 GET SOCKET | Host: HERE | Origin: http://evil.example | UPGRADE
 403 GET SOCKET | Host: evil.example | Origin: http://evil.example | UPGRADE
+403 GET /file?token=TOKEN | Host: HERE | Origin: http://evil.example | UPGRADE
+403 GET /file | Host: HERE | Origin: http://HERE | UPGRADE
+101 GET /file?token=TOKEN | Host: HERE | Origin: http://HERE | UPGRADE
 403 GET /socket | Host: HERE | Origin: http://HERE | UPGRADE
 403 GET /socket?token=SHORT0 | Host: HERE | Origin: http://HERE | UPGRADE";
 const UPGRADE: &str = "Connection: Upgrade | Upgrade: websocket | Sec-WebSocket-Version: 13 | \
@@ -98,7 +101,7 @@ fn the_page_loads_nothing_from_elsewhere() {
     let policy = policy.unwrap();
     for part in [
         "default-src 'none'; script-src 'nonce-",
-        &format!("connect-src ws://{host};"),
+        &format!("connect-src 'self' ws://{host};"),
         "frame-ancestors 'none'",
     ] {
         assert!(policy.contains(part), "{policy}");
