@@ -270,6 +270,12 @@ fn a_turntable_is_saved() {
         );
         assert_eq!(browser.value(&is_same), true, "frame {at}");
     }
+    // Half of a turn is on the other side.
+    let sum = browser.value(
+        "(() => { const [a, b] = [0, 18].map((at) => add(made.cameras[at].eye, made.cameras[at].target, -1));
+           return Math.hypot(...add(add(a, b), view.axis, -2 * dot(a, view.axis))) / Math.hypot(...a); })()",
+    );
+    assert!(sum.as_f64().unwrap() < 1e-9, "{sum}");
     // A second click ends it.
     browser.wait("$('turn').textContent === 'Turntable'");
     browser.value("download = () => { throw 'not ended' }; $('turn').click()");

@@ -19,7 +19,7 @@ pub(crate) struct Program {
 }
 
 /// `shiftvox` with these words, in the folder of the sources.
-fn command(line: &str) -> Command {
+pub(crate) fn command(line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
     command.args(line.split(' '));
     command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
@@ -70,14 +70,18 @@ impl Program {
     }
 
     /// Opens a socket as the page does, if there is a place for it.
-    pub(crate) fn try_page(&self) -> Option<Page> {
+    pub(crate) fn socket(&self, path: &str) -> Option<Page> {
         let Self { host, token, .. } = self;
-        let uri = format!("ws://{host}/socket?token={token}").parse().unwrap();
+        let uri = format!("ws://{host}/{path}?token={token}").parse().unwrap();
         let request =
             ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{host}"));
         let (socket, _) = tungstenite::client(request, self.stream()).ok()?;
         let hello = Value::Null;
-        let mut page = Page { socket, hello };
+        Some(Page { socket, hello })
+    }
+
+    pub(crate) fn try_page(&self) -> Option<Page> {
+        let mut page = self.socket("socket")?;
         page.hello = page.answer().0;
         Some(page)
     }

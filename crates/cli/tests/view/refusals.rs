@@ -1,16 +1,17 @@
 //! Rejected requests, which disturb no other page.
 
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::json;
 use tungstenite::Message;
 use tungstenite::protocol::frame::coding::CloseCode;
 
-use crate::program::{Page, Program, question};
+use crate::program::{Page, Program, command, question, run_command};
 
 fn scene() -> Program {
     Program::start("tests/data/axes.vox")
@@ -242,6 +243,104 @@ fn a_slow_link_gets_a_large_picture() {
     let _ = stream.read_to_end(&mut rest);
     count += rest.len();
     assert!(count > 4 * 2048 * 2048, "{count} bytes came");
+}
+
+#[test]
+fn dropped_files_are_taken_or_refused_with_the_reason() {
+    let program = scene();
+    let dropped = |name: &str, bytes: &[u8]| {
+        let mut page = program.socket("file").unwrap();
+        page.send(name);
+        page.socket.send(Message::binary(bytes.to_vec())).unwrap();
+        page.answer().0
+    };
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let tree = std::fs::read(root.join("assets/tree.vox")).unwrap();
+    let mesh = std::fs::read(root.join("assets/knot.obj")).unwrap();
+    let long = "x".repeat(300);
+    for (name, bytes, reason) in [
+        ("wrong.vox", &b"nonsense"[..], "wrong.vox"),
+        ("", &[], ""),
+        ("/etc/passwd", &[], ""),
+        ("half.vox", &tree[..1000], ""),
+        ("knot.obj", &mesh, "mesh"),
+        (&long, &tree, "not a name"),
+    ] {
+        let head = dropped(name, bytes);
+        let said = head["error"].as_str().unwrap_or_else(|| panic!("{head}"));
+        println!("{name:.10}: {said}");
+        assert!(said.contains(reason), "{head}");
+    }
+    // The head of a frame announces one byte too many.
+    let mut page = program.socket("file").unwrap();
+    page.send("large.vox");
+    let length = ((256u64 << 20) + 1).to_be_bytes();
+    let head = [&[0x82, 0xff][..], &length, &[0; 4]].concat();
+    page.socket.get_mut().write_all(&head).unwrap();
+    let said = page.answer().0;
+    assert_eq!(said["error"], "the file is too large", "{said}");
+
+    // A page that was open draws the new scene, and the program takes a limited number.
+    let mut page = program.page();
+    for count in 2..=17 {
+        let head = dropped("assets/tree.vox", &tree);
+        assert_eq!(head["scenes"].as_array().unwrap().len(), count, "{head}");
+    }
+    let said = dropped("assets/tree.vox", &tree);
+    assert!(
+        said["error"].as_str().unwrap().contains("too many"),
+        "{said}"
+    );
+    let (head, _) = page.ask(json!({ "scene": 16, "hash": true }));
+    let (_, hash) = run_command(head["command"].as_str().unwrap());
+    assert_eq!(head["hash"], hash);
+    assert_serves(&mut page);
+}
+
+#[test]
+fn a_browser_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let [script, seen] = ["browser", "seen"].map(|name| folder.path().join(name));
+    let text = format!(
+        "#!/bin/sh\necho \"$1\" >{}.new\nmv {0}.new {0}\n",
+        seen.display()
+    );
+    std::fs::write(&script, text).unwrap();
+    std::fs::set_permissions(&script, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut view = command("view tests/data/axes.vox --quiet --open");
+    view.env("BROWSER", script).stdout(Stdio::piped());
+    let mut child = view.spawn().unwrap();
+    let mut address = String::new();
+    let mut printed = BufReader::new(child.stdout.take().unwrap());
+    printed.read_line(&mut address).unwrap();
+    let until = Instant::now() + Duration::from_secs(10);
+    while !seen.exists() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(std::fs::read_to_string(seen).unwrap(), address);
+}
+
+#[test]
+fn a_token_that_others_can_read_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("token");
+    let line = format!("tests/data/axes.vox --token-file {}", file.display());
+    let first = Program::start(&line).token.clone();
+    let mode = std::fs::metadata(&file).unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o600);
+    assert_eq!(Program::start(&line).token, first);
+    let refused = || {
+        let output = command(&format!("view {line}")).output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    std::fs::write(&file, "short").unwrap();
+    assert!(refused().contains("32 hexadecimal digits"));
+    std::fs::write(&file, first).unwrap();
+    std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640)).unwrap();
+    assert!(refused().contains("other users can read it"));
 }
 
 /// Opens a page as soon as there is a place for it.

@@ -55,6 +55,8 @@ fn the_page_without_a_server_shows_what_render_draws() {
     browser.value("$('coverage').value = ''; $('coverage').onchange()");
     browser.drag([430.0, 400.0], [500.0, 360.0], "left");
     assert_is_renders(browser);
+    browser.value("pickAt(0.5, 0.5)");
+    browser.wait("voxel && $('voxel').innerText.includes('level')");
     // Times of whole frames, for the documents.
     let times = browser.value(
         "new Promise((done) => { const times = [];
@@ -72,6 +74,13 @@ fn the_page_without_a_server_shows_what_render_draws() {
     ));
     browser.wait("document.title.startsWith('tests/data/axes.vox')");
     assert!(assert_is_renders(browser).contains("tests/data/axes.vox"));
+    browser.value("$('background').value = 'none'; $('background').onchange()");
+    assert!(assert_is_renders(browser).contains("--background=none"));
+    browser.value(
+        "new Promise((done) => { const save = download; download = (file, name) => {
+           download = save; done(1); if (name !== 'turntable.png' || file.size < 10000) throw name; };
+           $('turn').click(); })",
+    );
     browser.value(&open("'nonsense'", "wrong.vox"));
     browser.wait("$('of-file').textContent.includes('wrong.vox')");
     // Memory grows.
