@@ -10,9 +10,7 @@ use super::fatal_signals;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::{BuildError, Crop, Graph, Progress};
 use shiftvox::project::Up;
-use shiftvox::scene::{
-    self, FileKind, MeshSummary, NoMeshes, OpenError, Opened, ReadOptions, Source,
-};
+use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
 use shiftvox_mesh::{LoadOptions, Material, Mesh};
@@ -123,7 +121,7 @@ pub(super) fn open_bytes(name: &str, bytes: &[u8], args: &SceneArgs) -> Result<S
     let (options, silent) = (options(args).voxels, shiftvox::graph::Silent);
     let opened = scene::open_bytes(bytes, name, &options, &NoMeshes, &silent);
     let opened = opened.map_err(|error| match error {
-        OpenError::NoMeshes(name) => CliError::input(format!(
+        scene::OpenError::NoMeshes(name) => CliError::input(format!(
             "{name}: this is a mesh, and a page takes files of voxels; start `shiftvox view` with it"
         )),
         error => error.into(),

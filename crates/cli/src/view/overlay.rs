@@ -76,9 +76,10 @@ fn depth(depths: &[f32]) -> Painted {
         .to_vec();
     values.retain(|value| value.is_finite());
     let legend = values.iter().map(color).collect();
+    let digits = 3usize.saturating_sub(libm::log10f(far.max(1.0)) as usize);
     (
         depths.iter().map(color).collect(),
-        named(&values, legend, |value| format!("{value:.4}")),
+        named(&values, legend, |value| format!("{value:.digits$}")),
     )
 }
 
@@ -124,8 +125,8 @@ mod tests {
     fn near_is_bright_and_nothing_is_dark() {
         let (colors, legend) = depth(&[f32::INFINITY, 2.0, 4.0]);
         assert_eq!(colors, [NOTHING, [255; 4], [55, 55, 55, 255]]);
-        assert_eq!(legend[0], ("2.0000".to_owned(), [255; 4]));
-        assert_eq!(legend[4], ("4.0000".to_owned(), [55, 55, 55, 255]));
+        assert_eq!(legend[0], ("2.000".to_owned(), [255; 4]));
+        assert_eq!(legend[4], ("4.000".to_owned(), [55, 55, 55, 255]));
         assert_eq!(depth(&[f32::INFINITY]).1, []);
         assert_eq!(normal(&[0.0, 0.0, 1.0]), [127, 127, 255, 255]);
         let (colors, legend) = level(&[[0, 0, 0, -1], [0, 0, 0, 3], [0, 0, 0, 4]]);
