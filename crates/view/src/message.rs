@@ -49,8 +49,12 @@ pub fn answer(
     (head, picture)
 }
 
-/// An answer to [`Ask::Pick`](crate::Ask::Pick). `voxel`: index in the file, finest voxels, and level; a negative level
-/// is that of no voxel. `origin`: world position of index 0. `size`: world length of a finest voxel's side.
+/// An answer to [`Ask::Pick`](crate::Ask::Pick).
+///
+/// - `voxel`: index in the file, in finest voxels, and level. A negative level means no voxel.
+/// - `levels`: level of the finest voxels.
+/// - `origin`: world position of index 0.
+/// - `size`: world length of a finest voxel's side.
 #[must_use]
 pub fn picked(voxel: [i32; 4], color: [u8; 3], levels: u32, origin: [f64; 3], size: f64) -> Answer {
     let [i, j, k, level] = voxel;

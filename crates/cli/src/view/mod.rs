@@ -33,7 +33,7 @@ pub(super) struct ViewArgs {
     /// everybody who knows the printed address can look
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     bind: IpAddr,
-    /// Keep the token of the address in this file, so that open pages go on after a restart on the same --port
+    /// Keep the token of the address in this file, so that open pages continue after a restart on the same --port
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
     /// Open the page in a browser: that of the variable BROWSER, or this computer's. Other users of this computer

@@ -327,7 +327,7 @@ fn files_are_dropped_and_zoom_has_limits() {
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }
 
-/// A page says why it is closed, and goes on with a program that has been started again.
+/// A page shows why it is closed, and continues with a restarted program.
 #[test]
 #[ignore = "needs chromium"]
 fn pages_wait_for_a_place_and_for_the_program() {
