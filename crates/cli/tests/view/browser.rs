@@ -196,7 +196,11 @@ fn backgrounds_and_legends() {
     assert_is_renders(browser);
     browser.value("$('background').value = ''; $('background').onchange()");
     assert_is_renders(browser);
+    browser.value("pickAt(0.4, 0.5)");
+    browser.wait("voxel && $('unpick').offsetHeight >= 44");
     browser.shot("phone.png");
+    browser.value("$('unpick').click()");
+    browser.wait("$('picked').hidden");
     let seen = "document.querySelector('aside').scrollTo(0, 500); scrollTo(0, 500);
         [$('mine').getBoundingClientRect().top >= 0, $('mine').getBoundingClientRect().bottom <= innerHeight / 2 + 60,
          [...document.querySelectorAll('aside label, aside button')].every((e) => !e.offsetParent || e.offsetHeight >= 44)]";
