@@ -10,6 +10,8 @@ use super::error::{CliError, Kind};
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
+#[cfg(feature = "view")]
+use shiftvox::graph::Crop;
 use shiftvox::picture::Buffer;
 use shiftvox::project::{Camera, Stop};
 use shiftvox::scene::{FileKind, Source};
@@ -184,6 +186,22 @@ impl Opened {
             Content::Graph(scene) => Some(&scene.graph),
             Content::Far(_) | Content::Textured(_) => None,
         }
+    }
+
+    /// The part of a scene of voxels within a box.
+    #[cfg(feature = "view")]
+    pub(super) fn cropped(&self, crop: &Crop) -> Result<Self, CliError> {
+        let Content::Graph(scene) = &self.content else {
+            return Err(CliError::usage(
+                "--crop is for voxels, and this scene has none",
+            ));
+        };
+        let graph = scene.cropped(crop, &shiftvox::graph::Silent)?;
+        Ok(Self {
+            engine: self.engine,
+            load_ms: 0.0,
+            content: Content::Graph(Box::new(scene.with(graph))),
+        })
     }
 
     /// Rejects flags that the scene's method does not follow, as [`open`] does.

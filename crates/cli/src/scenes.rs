@@ -62,7 +62,7 @@ pub(super) fn open_source(
     let opened = scene::open_source(source, &options.voxels, &options.mesh, console.progress())?;
     let mut scene = ready(opened, name, args.mesh_up, started);
     if let Some(crop) = &args.crop {
-        crop_scene(&mut scene, crop, console)?;
+        scene.graph = scene.cropped(crop, console.progress())?;
     }
     if !scene.is_verified {
         console.note(format!(
@@ -95,23 +95,39 @@ pub(super) fn open_source(
     Ok(scene)
 }
 
-fn crop_scene(scene: &mut Scene, crop: &Crop, console: &Console) -> Result<(), CliError> {
-    let (graph, name) = (&scene.graph, &scene.source);
-    if !graph.opacity.is_empty() {
-        return Err(CliError::usage(
-            "--crop keeps no opacities: leave out --opacities, or alpha",
-        ));
+impl Scene {
+    /// The same scene with another graph.
+    #[cfg(feature = "view")]
+    pub(super) fn with(&self, graph: Graph) -> Self {
+        let (source, format) = (self.source.clone(), self.format.clone());
+        let (mesh, warnings) = (self.mesh.clone(), self.warnings.clone());
+        Self {
+            graph,
+            source,
+            format,
+            mesh,
+            warnings,
+            ..*self
+        }
     }
-    if graph.voxels > MAX_LISTED {
-        let reason = format!("{name}: too many voxels to crop: {}", grouped(graph.voxels));
-        return Err(CliError::new(Kind::Limit, reason));
+
+    /// The part within a box.
+    pub(super) fn cropped(&self, crop: &Crop, progress: &dyn Progress) -> Result<Graph, CliError> {
+        let (graph, name) = (&self.graph, &self.source);
+        if !graph.opacity.is_empty() {
+            let reason = "--crop keeps no opacities: leave out --opacities, or alpha";
+            return Err(CliError::usage(reason));
+        }
+        if graph.voxels > MAX_LISTED {
+            let reason = format!("{name}: too many voxels to crop: {}", grouped(graph.voxels));
+            return Err(CliError::new(Kind::Limit, reason));
+        }
+        let part = graph.cropped(crop, progress);
+        part.map_err(|error| match error {
+            BuildError::Empty => CliError::usage(format!("{name}: --crop leaves no voxel")),
+            error => CliError::new(Kind::Limit, format!("{name}: {error}")),
+        })
     }
-    let part = graph.cropped(crop, console.progress());
-    scene.graph = part.map_err(|error| match error {
-        BuildError::Empty => CliError::usage(format!("{name}: --crop leaves no voxel")),
-        error => CliError::new(Kind::Limit, format!("{name}: {error}")),
-    })?;
-    Ok(())
 }
 
 /// As [`open_source`], of voxels in memory.

@@ -10,10 +10,10 @@ pub(crate) const MOST_PIXELS: u64 = 1 << 22;
 pub(crate) const MOST_SAMPLES: u64 = 1 << 24;
 /// Most bytes of a dropped file.
 pub(crate) const MOST_FILE: usize = 256 << 20;
-const MOST_LETTERS: usize = 24;
+const MOST_LETTERS: usize = 64;
 
 /// Flags of `render` that a page may set. None of them names a file.
-pub const FLAGS: &str = "background bits cage coverage engine erosion erosion-grid far-opacity frac \
+pub const FLAGS: &str = "background bits cage coverage crop engine erosion erosion-grid far-opacity frac \
                          isa lod overflow shade tolerance";
 
 /// Values of flags by their names.
@@ -74,6 +74,8 @@ pub struct Camera {
     pub target: [Option<f64>; 3],
     pub up: [Option<f64>; 3],
     pub fov: Option<f64>,
+    #[serde(default)]
+    pub ortho: Option<f64>,
 }
 
 impl Camera {

@@ -58,10 +58,11 @@ impl Opened {
         ] {
             command.push(format!("--{name} {}", point(of)));
         }
-        command.push(format!(
-            "--fov {} -o picture.png --force",
-            camera.fov_degrees
-        ));
+        command.push(match camera.ortho {
+            Some(height) => format!("--ortho={height}"),
+            None => format!("--fov {}", camera.fov_degrees),
+        });
+        command.push("-o picture.png --force".to_owned());
         let head = json!({
             "width": width,
             "height": height,
@@ -71,6 +72,7 @@ impl Opened {
                 "target": camera.target.to_array(),
                 "up": camera.up.to_array(),
                 "fov_degrees": camera.fov_degrees,
+                "ortho": camera.ortho,
             },
             "axis": self.scene.up().axis().to_array(),
             "engine": request.flags.get("engine").map_or("fast", String::as_str),
@@ -87,9 +89,12 @@ impl Opened {
         let [width, height] = request.size;
         let camera = self.camera(request)?;
         let renderer = settings(request)?.buffers(buffers.iter().copied());
-        let placed = Camera::look_at(camera.eye.into(), camera.target.into())
+        let mut placed = Camera::look_at(camera.eye.into(), camera.target.into())
             .up(camera.up.into())
             .field_of_view(camera.fov_degrees);
+        if let Some(height) = camera.ortho {
+            placed = placed.orthographic(height);
+        }
         let picture = renderer.render(&self.scene, &placed, width, height);
         Ok((camera, picture.map_err(|error| error.to_string())?))
     }
@@ -128,7 +133,7 @@ impl Opened {
             target,
             up,
             fov_degrees,
-            ortho: None,
+            ortho: camera.ortho,
             width,
             height,
         })

@@ -109,24 +109,38 @@ impl Shared {
             show,
             hash: is_hashed,
         };
-        let opened = listed.for_flags(&args)?;
-        let drawable = match kept.iter().position(|(of, _)| *of == key) {
-            Some(at) => kept.remove(at).1,
+        let part = settings.crop.as_ref();
+        let part = part.map(|crop| listed.part(&args, crop)).transpose()?;
+        let mut of_part = part
+            .as_ref()
+            .map(|part| part.drawable(&args, stop))
+            .transpose()?;
+        let opened = match &part {
+            Some(part) => &**part,
+            None => listed.for_flags(&args)?,
+        };
+        let drawable: &mut (dyn Drawable + '_) = match &mut of_part {
+            Some(drawable) => &mut **drawable,
             None => {
-                opened.check(&listed.name, &args)?;
-                kept.truncate(KEPT - 1);
-                opened.drawable(&args, stop)?
+                let drawable = match kept.iter().position(|(of, _)| *of == key) {
+                    Some(at) => kept.remove(at).1,
+                    None => {
+                        opened.check(&listed.name, &args)?;
+                        kept.truncate(KEPT - 1);
+                        listed.for_flags(&args)?.drawable(&args, stop)?
+                    }
+                };
+                kept.insert(0, (key, drawable));
+                &mut *kept[0].1
             }
         };
-        kept.insert(0, (key, drawable));
-        let drawable = &mut kept[0].1;
         let up = self.args.scene.up_or(drawable.up());
         let (width, height) = settings.picture.size();
         let camera = flags::camera(request).unwrap_or_else(|| {
             let args = &self.args.camera;
             args.camera(&drawable.bounds(), up, (width, height), 0.0)
         });
-        let shown = methods::frame(&mut **drawable, &camera, 1)?;
+        let shown = methods::frame(drawable, &camera, 1)?;
         if request.ask == Ask::Pick {
             let graph = opened
                 .graph()
@@ -157,6 +171,7 @@ impl Shared {
             "png": request.png,
             "camera": report::camera(&camera),
             "axis": up.axis().to_array(),
+            "extent": listed.extent(),
             "engine": engine.as_ref().map(clap::builder::PossibleValue::get_name),
             "command": self.command("render", &listed.name, words, &camera) + " -o picture.png --force",
             "hash": hash,
@@ -173,18 +188,25 @@ impl Shared {
         let settings = flags::settings(request)?;
         let listed = self.scene(request.scene)?;
         let args = self.args.draw_args(&settings.engine, &settings.picture);
-        let graph = listed.for_flags(&args)?.graph().ok_or_else(|| {
+        let part = settings.crop.as_ref();
+        let part = part.map(|crop| listed.part(&args, crop)).transpose()?;
+        let opened = match &part {
+            Some(part) => &**part,
+            None => listed.for_flags(&args)?,
+        };
+        let graph = opened.graph().ok_or_else(|| {
             CliError::usage("the hardware model is of voxels, and this scene has none")
         })?;
         let camera = flags::camera(request)
             .ok_or_else(|| CliError::usage("figures are of a placed camera"))?;
         let camera = of_model_size(camera);
-        let words = request.words(MODEL_FLAGS).map(Into::into);
+        let crop = request.words("crop");
+        let words = request.words(MODEL_FLAGS);
         let head = json!({
-            "figures": model::brief(words, graph, &camera)?,
+            "figures": model::brief(words.map(Into::into), graph, &camera)?,
             "width": camera.width,
             "height": camera.height,
-            "command": self.command("model", &listed.name, request.words(MODEL_FLAGS), &camera),
+            "command": self.command("model", &listed.name, request.words(MODEL_FLAGS).chain(crop), &camera),
         });
         Ok((head, Vec::new()))
     }

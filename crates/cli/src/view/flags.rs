@@ -4,6 +4,7 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Parser};
 use glam::DVec3;
+use shiftvox::graph::Crop;
 use shiftvox::project::Camera;
 use shiftvox_view::{FLAGS, Flags, Request};
 
@@ -19,6 +20,8 @@ pub(super) struct Settings {
     pub(super) picture: PictureArgs,
     #[command(flatten)]
     pub(super) engine: EngineArgs,
+    #[arg(long, allow_hyphen_values = true)]
+    pub(super) crop: Option<Crop>,
 }
 
 pub(super) fn settings(request: &Request) -> Result<Settings, CliError> {
@@ -33,20 +36,21 @@ pub(super) fn settings(request: &Request) -> Result<Settings, CliError> {
 
 /// The camera of a request, if it has one. Drawing rejects cameras that see nothing.
 pub(super) fn camera(request: &Request) -> Option<Camera> {
-    let (points, fov_degrees) = request.camera.as_ref()?.numbers();
+    let camera = request.camera.as_ref()?;
+    let (points, fov_degrees) = camera.numbers();
     let [eye, target, up] = points.map(DVec3::from_array);
     Some(Camera {
         eye,
         target,
         up,
         fov_degrees,
-        ortho: None,
+        ortho: camera.ortho,
         width: request.size[0],
         height: request.size[1],
     })
 }
 
-const SCENE_FLAGS: &str = "crop depth mesh-colors mesh-up oob opacities";
+const SCENE_FLAGS: &str = "depth mesh-colors mesh-up oob opacities";
 
 /// Flags of a list that the command line of `view` has, with their values.
 fn given<'m>(

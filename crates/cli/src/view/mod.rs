@@ -7,12 +7,13 @@ mod overlay;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::{OnceLock, RwLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 use std::{io, thread};
 
 use clap::{ArgMatches, Args};
 use serde_json::json;
-use shiftvox::project::{Coverage, Stop};
+use shiftvox::graph::Crop;
+use shiftvox::project::{Bounds, Coverage, Stop};
 use shiftvox_view::{Flags, Server};
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs};
@@ -68,6 +69,9 @@ struct Listed {
     opened: Opened,
     /// A mesh with the opacities that `--coverage alpha` draws, after the first request for them.
     blended: Option<OnceLock<Result<Opened, CliError>>>,
+    /// The last part of it that a page has asked for.
+    part: Mutex<Option<(Crop, Arc<Opened>)>>,
+    extent: OnceLock<Option<[[i64; 3]; 2]>>,
 }
 
 impl Listed {
@@ -85,6 +89,8 @@ impl Listed {
             name: name.to_owned(),
             opened,
             blended: reads_twice.then(OnceLock::new),
+            part: Mutex::default(),
+            extent: OnceLock::new(),
         })
     }
 
@@ -94,6 +100,8 @@ impl Listed {
             name: name.to_owned(),
             opened: methods::open_bytes(name, bytes, &draw_args)?,
             blended: None,
+            part: Mutex::default(),
+            extent: OnceLock::new(),
         })
     }
 
@@ -105,6 +113,31 @@ impl Listed {
                 .map_err(Clone::clone),
             _ => Ok(&self.opened),
         }
+    }
+
+    /// The part within a box.
+    fn part(&self, args: &DrawArgs<'_>, crop: &Crop) -> Result<Arc<Opened>, CliError> {
+        let whole = self.for_flags(args)?;
+        let mut kept = self.part.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((of, part)) = &*kept
+            && of == crop
+            && std::ptr::eq(whole, &raw const self.opened)
+        {
+            return Ok(Arc::clone(part));
+        }
+        let part = Arc::new(whole.cropped(crop)?);
+        *kept = Some((crop.clone(), Arc::clone(&part)));
+        Ok(part)
+    }
+
+    /// The least and the greatest index of its voxels in the file, plus one.
+    fn extent(&self) -> Option<[[i64; 3]; 2]> {
+        *self.extent.get_or_init(|| {
+            let graph = self.opened.graph()?;
+            let (low, high) = Bounds::in_voxels(graph)?;
+            let origin = graph.placement.origin_index;
+            Some([low, high].map(|at| [0, 1, 2].map(|k| at[k] + origin[k])))
+        })
     }
 }
 
@@ -120,8 +153,14 @@ impl ViewArgs {
     }
 }
 
-pub(super) fn run(args: ViewArgs, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
+pub(super) fn run(
+    mut args: ViewArgs,
+    matches: &ArgMatches,
+    console: &Console,
+) -> Result<(), CliError> {
     args.camera.check().map_err(CliError::usage)?;
+    // Scenes are whole: a page crops them.
+    args.scene.crop = None;
     if !args.picture.aov.is_empty() {
         return Err(CliError::usage(
             "--aov is for render; the page shows the same buffers as overlays",

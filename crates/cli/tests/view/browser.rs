@@ -222,6 +222,56 @@ fn backgrounds_and_legends() {
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }
 
+/// Sections and parallel rays are those of the command, and the address keeps them.
+#[test]
+#[ignore = "needs chromium"]
+fn sections_and_parallel_rays() {
+    let program = Program::start("assets/tree.vox");
+    let browser = &mut Browser::open(&program.address);
+    let whole = assert_is_renders(browser);
+    browser.value("$('section').value = '2<'; $('section').onchange()");
+    let half = assert_is_renders(browser);
+    assert!(half.contains("--crop=..,..,..128"), "{half}");
+    browser.wait("!$('model').classList.contains('old') && $('modelled').textContent.includes('--crop=..,..,..128')");
+    browser.value("$('plane').value = 64; $('plane').oninput()");
+    assert!(assert_is_renders(browser).contains("--crop=..,..,..64"));
+    browser.value("$('mine').dispatchEvent(new KeyboardEvent('keydown', { key: ']' }))");
+    assert!(assert_is_renders(browser).contains("--crop=..,..,..69"));
+    browser.value("pickAt(0.5, 0.6)");
+    browser.wait("voxel && voxel.index[2] < 69");
+    browser.value("$('mine').dispatchEvent(new KeyboardEvent('keydown', { key: 'o' }))");
+    browser.wait("$('ortho').checked");
+    let command = assert_is_renders(browser);
+    assert!(
+        command.contains("--ortho=") && !command.contains("--fov"),
+        "{command}"
+    );
+    browser.shot("section.png");
+    browser.value("globalThis.isOld = true; setTimeout(() => location.reload())");
+    browser.wait("!globalThis.isOld && limits && $('ortho').checked && $('plane').value === '69'");
+    assert_eq!(assert_is_renders(browser), command);
+    browser.value("zoom(0.5)");
+    let nearer = assert_is_renders(browser);
+    let height = |command: &str| {
+        let after = command
+            .split("--ortho=")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next());
+        after.and_then(|height| height.parse::<f64>().ok()).unwrap()
+    };
+    assert!(
+        (height(&nearer) * 2.0 - height(&command)).abs() < 0.01,
+        "{nearer}"
+    );
+    // Back to the first picture.
+    browser.value("zoom(2); $('ortho').click()");
+    browser.value("$('section').value = ''; $('section').onchange()");
+    let back = assert_is_renders(browser);
+    assert!(!back.contains("--crop") && back.contains("--fov"), "{back}");
+    assert_eq!(back.split("--eye").next(), whole.split("--eye").next());
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
 fn assert_is_still(browser: &mut Browser) {
     browser.wait(STILL);
     browser.wait("$('command').value.startsWith('shiftvox render')");
