@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::generate::Spec;
 use super::mesh::{MeshReader, MeshSummary};
-use super::open::OpenOptions;
+use super::open::{self, OpenOptions};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
@@ -36,7 +36,7 @@ pub fn build_file(
     let mut builder = ExternalBuilder::new(external.clone());
     let mut info = None;
     let mut mesh = None;
-    let mut placement = ([0.0; 3], 1.0);
+    let mut placement = open::UNIT;
     match source {
         Source::Generated(spec) => {
             let spec = Spec::parse(&spec)?;
@@ -80,14 +80,16 @@ pub fn build_file(
                 ..options.read.clone()
             };
             let found = file.read_voxels(&read, &mut |voxel| builder.push(voxel), progress);
-            info = Some(match found {
+            let found = match found {
                 // The limit was the builder's room, not the caller's.
                 Err(SceneError::TooMany { voxels, most, .. }) if most < wanted => {
                     builder.expect(voxels, output).map_err(failed)?;
                     found?
                 }
                 found => found?,
-            });
+            };
+            placement = open::placement(&found);
+            info = Some(found);
         }
     }
     let report = builder

@@ -98,6 +98,8 @@ impl<R: Read + Seek> SceneFile<R> {
         { beginning }.read_to_end(&mut self.beginning)?;
         self.stream.seek(SeekFrom::Start(0))?;
         self.kind = formats::detect(&self.beginning, self.length);
+        let extension = self.path.extension();
+        let ends = |ending: &str| extension.is_some_and(|e| e.eq_ignore_ascii_case(ending));
         match self.kind {
             Some(FileKind::Ply) => {
                 if ply::has_faces(&mut BufReader::new(&mut self.stream)) {
@@ -105,14 +107,9 @@ impl<R: Read + Seek> SceneFile<R> {
                 }
                 self.stream.seek(SeekFrom::Start(0))?;
             }
+            Some(FileKind::Schem) if ends("litematic") => self.kind = Some(FileKind::Litematic),
             // A truncated binary STL is known by its name only.
-            None if self
-                .path
-                .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case("stl")) =>
-            {
-                self.kind = Some(FileKind::Stl);
-            }
+            None if ends("stl") => self.kind = Some(FileKind::Stl),
             _ => {}
         }
         Ok(())

@@ -16,7 +16,7 @@ const VERIFY_BYTES: u64 = 1 << 20;
 /// Least bytes per voxel: 20 while voxels are collected and sorted, 5 in the graph (`spec/graph.md`).
 const LEAST_BYTES: u64 = 25;
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct OpenOptions {
     pub read: ReadOptions,
     /// Graph files of up to this many bytes are checked in full; of larger ones, only the header.
@@ -121,16 +121,21 @@ fn open_file<R: Read + Seek>(
     {
         gathered.expect(voxels, &name)?;
     }
-    let info = Some(read?);
-    let graph = gathered.finish(&name, UNIT, progress)?;
+    let info = read?;
+    let graph = gathered.finish(&name, placement(&info), progress)?;
     Ok(Opened {
-        info,
+        info: Some(info),
         ..Opened::of(graph, ending)
     })
 }
 
 /// Voxels of side 1 from the origin: file indices are world coordinates.
-const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
+pub(super) const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
+
+/// World coordinates are those of the file.
+pub(super) fn placement(info: &SceneInfo) -> ([f64; 3], f64) {
+    ([0.0; 3], info.voxel_size.unwrap_or(1.0))
+}
 
 fn open_mesh(
     mesh: &dyn MeshVoxels,

@@ -14,10 +14,12 @@ pub enum OutOfBounds {
     Error,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ReadOptions {
     /// Voxels outside `SIZE`; only `.vox` has them.
     pub oob: OutOfBounds,
+    /// Side of a voxel, in units of the file, above 0: for clouds of points. Without it, their coordinates are indices.
+    pub voxel_size: Option<f64>,
     /// Most voxels, with those at one index counted each. More are an error.
     pub most_voxels: u64,
 }
@@ -26,12 +28,13 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             oob: OutOfBounds::default(),
+            voxel_size: None,
             most_voxels: u64::MAX,
         }
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneInfo {
     /// Voxels passed on; several at one index count each, a model with several equal placements once.
     pub voxels: u64,
@@ -47,6 +50,8 @@ pub struct SceneInfo {
     pub palette: Vec<[u8; 4]>,
     pub has_colors: bool,
     pub has_normals: bool,
+    /// Of a cloud of points, if one was asked for.
+    pub voxel_size: Option<f64>,
     /// Warnings about a file that could be read, one sentence each.
     pub warnings: Vec<String>,
 }

@@ -1,8 +1,10 @@
 //! Voxel files and generators.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+mod blocks;
 mod clouds;
 mod generators;
+mod points;
 mod vox;
 mod vox_file;
 mod vox_scenes;

@@ -43,7 +43,7 @@ POINTS 1 2 3;1 2; | vertex 1 at byte 100: expected a number for property z, foun
 POINTS 1 2 x; | found \"x\"
 POINTS 1 2 3 4; | found \"4\" after them
 POINTS 0 0 3000000000; | fit 32 bits with sign, found z = 3000000000
-POINTS 0 NaN 0; | vertex 0, property y at byte 94: expected a whole number, the voxel's index, found NaN
+POINTS 0 NaN 0;0 0 0; | vertex 0, property y at byte 94: expected a whole number, the voxel's index, found NaN
 #binvox 3; | expected \"#binvox 1\" or \"#binvox 2\", found \"#binvox 3\"
 #binvox 1;data; | header at byte 10: expected a line \"dim\"
 #binvox 1;dim 0 1 1; | expected sizes from 1 to 2097151
@@ -93,7 +93,7 @@ const NUMBERS: &str = "
 binary_little_endian | float x, float y, float z | 0 0 0; 1 0.5 2 | vertex 1, property y at byte 145: expected a whole number, the voxel's index, found 0.5
 binary_little_endian | float x, float y, float z | inf 0 0 | found inf
 binary_big_endian | int x, int y, int z, int red, int green, int blue | 0 0 0 256 0 0 | property red at byte
-<f4 | rows | 0 0 0; 1 2 2.5 | row 1, column 2 at byte 93: expected a whole number of 64 bits, the voxel's index, found 2.5
+<f4 | rows | 0 0 0; 1 2 2.5 | row 1, column 2 at byte 93: expected a whole number, the voxel's index, found 2.5
 <f8 | columns | NaN 0 0 | row 0, column 0
 <i4 | rows | 0 0 0 1 -2 3 | expected a colour from 0 to 255, found -2
 <i8 | columns | 0 0 0; 0 1e12 0 | row 1 at byte 80: expected voxel indices that fit 32 bits with sign, found y = 1000000000000
@@ -209,7 +209,7 @@ fn messages_about_vox_files() {
 }
 
 /// No beginning shorter than `whole` is accepted, and no damage panics.
-fn cut_and_damaged(bytes: &[u8], whole: usize, rounds: u64) {
+pub(crate) fn cut_and_damaged(bytes: &[u8], whole: usize, rounds: u64) {
     for length in 0..whole {
         assert!(read(&bytes[..length]).is_err(), "{length}");
     }

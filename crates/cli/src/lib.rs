@@ -48,7 +48,7 @@ use shiftvox::scene::{FORMATS, Source};
 fn long_about() -> String {
     let formats: String = FORMATS
         .iter()
-        .map(|format| format!("  {:<8} {}\n", format.ending, format.name))
+        .map(|format| format!("  {:<10} {}\n", format.ending, format.name))
         .collect();
     format!(
         "\

@@ -206,6 +206,7 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
         voxels: scene::OpenOptions {
             read: ReadOptions {
                 oob: args.oob,
+                voxel_size: args.voxel_size,
                 ..ReadOptions::default()
             },
             ..scene::OpenOptions::default()

@@ -48,7 +48,7 @@ impl MeshReader for MeshOptions {
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct OpenOptions {
     pub voxels: scene::OpenOptions,
     pub mesh: MeshOptions,

@@ -49,6 +49,13 @@ impl SceneOptions {
         self
     }
 
+    /// The side of a voxel of a cloud of points, in units of the file, above 0. Without it, coordinates are indices.
+    #[must_use]
+    pub fn voxel_size(mut self, size: f64) -> Self {
+        self.options.voxels.read.voxel_size = Some(size);
+        self
+    }
+
     /// The axis that points up, by default that of the file's format.
     #[must_use]
     pub fn up(mut self, up: Up) -> Self {

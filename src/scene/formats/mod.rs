@@ -4,10 +4,15 @@
 //! the format in `spec/input.md`.
 
 mod binvox;
+mod cloud;
+mod minecraft;
 mod npy;
+mod pcd;
 mod ply;
 mod ply_write;
+mod qb;
 mod vox;
+mod xyz;
 
 use std::fmt;
 
@@ -19,6 +24,7 @@ use crate::graph::vxg;
 
 pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};
+use xyz::is_xyz;
 
 pub(super) const DETECT_BYTES: usize = 4096;
 
@@ -39,6 +45,12 @@ pub enum FileKind {
     Stl,
     Far,
     Tvx,
+    Xyz,
+    Pcd,
+    Qb,
+    Schem,
+    /// Its bytes are those of [`Schem`](Self::Schem), so the name tells them apart.
+    Litematic,
 }
 
 pub(super) type Reader =
@@ -66,7 +78,7 @@ pub struct Format {
 
 /// All formats, in the order of [`FileKind`].
 #[rustfmt::skip]
-pub static FORMATS: [Format; 12] = {
+pub static FORMATS: [Format; 17] = {
     use Contents::{BuiltOfMesh, Graph, Mesh, Voxels};
     use FileKind::*;
     type Marks = &'static [&'static [u8]];
@@ -78,8 +90,8 @@ pub static FORMATS: [Format; 12] = {
     }
     [
         row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   &[b"VOX "],              no,      Voxels(vox::read)),
-        row(Ply,     ".ply",    "cloud of voxel indices",           &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
-        row(Npy,     ".npy",    "NumPy array of voxel indices",     &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
+        row(Ply,     ".ply",    "cloud of points",           &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
+        row(Npy,     ".npy",    "NumPy array of points",           &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
         row(Binvox,  ".binvox", "grid of the program binvox",       &[b"#binvox "],          no,      Voxels(binvox::read)),
         row(Vxg,     ".vxg",    "voxel graph of this program",      &[&vxg::MAGIC],          no,      Graph),
         row(Obj,     ".obj",    "Wavefront mesh",                   &[],                     is_obj,  Mesh),
@@ -90,6 +102,11 @@ pub static FORMATS: [Format; 12] = {
         // The crate of meshes writes these two, and its tests compare their marks.
         row(Far,     ".far",    "far voxels, built of a mesh",      &[b"\x89FAR\r\n\x1a\n"], no,      BuiltOfMesh),
         row(Tvx,     ".tvx",    "textured voxels, built of a mesh", &[b"\x89TVX\r\n\x1a\n"], no,      BuiltOfMesh),
+        row(Xyz,     ".xyz",    "text with a point per line",       &[],                     is_xyz,  Voxels(xyz::read)),
+        row(Pcd,     ".pcd",    "cloud of the Point Cloud Library", &[b"# .PCD", b"VERSION "], no,    Voxels(pcd::read)),
+        row(Qb,      ".qb",     "Qubicle Binary scene",             &[b"\x01\x01\0\0"],    no,      Voxels(qb::read)),
+        row(Schem,   ".schem",  "Minecraft schematic of Sponge",    &[b"\x1f\x8b", b"\x0a\0"], no,   Voxels(minecraft::read)),
+        row(Litematic, ".litematic", "Minecraft schematic of Litematica", &[],                 no,      Voxels(minecraft::read)),
     ]
 };
 

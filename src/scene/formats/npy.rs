@@ -1,9 +1,10 @@
-//! NumPy arrays of voxel indices: N x 3, or N x 6 and N x 7 with colours.
+//! NumPy arrays of points: N x 3, or N x 6 and N x 7 with colours.
 //!
 //! In Fortran order each column is contiguous, and a block is collected by seeking.
 
 use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
+use super::cloud::Cloud;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem, printable};
 use crate::scene::input::Input;
@@ -15,7 +16,6 @@ const MAX_HEADER: u64 = 1 << 16;
 
 const SAVE_AGAIN: &str =
     "save it with numpy.save(file, indices), where indices is an N x 3 array of whole numbers";
-const FLOOR: &str = "divide the positions by the voxel's size and round them down first: numpy.floor(p / size).astype(int)";
 
 struct Layout {
     scalar: Scalar,
@@ -42,7 +42,7 @@ impl Layout {
 
 pub(super) fn read(
     Input { reader, length }: &mut Input<'_>,
-    _: &ReadOptions,
+    options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
     let layout = read_header(reader, *length)?;
@@ -54,9 +54,6 @@ pub(super) fn read(
         return Err(Fault::new("array", layout.data, expected, there.to_string(), advice).into());
     }
     let mut info = SceneInfo {
-        models: 1,
-        instances: 1,
-        stored_voxels: layout.rows,
         has_colors: layout.columns > 3,
         ..SceneInfo::default()
     };
@@ -66,14 +63,15 @@ pub(super) fn read(
             "{more} bytes after the end of the array were not read"
         ));
     }
-    let mut block = Vec::new();
+    let (mut block, mut cloud) = (Vec::new(), Cloud::new(options));
     for first in (0..layout.rows).step_by(BLOCK_ROWS as usize) {
         let rows = BLOCK_ROWS.min(layout.rows - first);
         read_block(reader, &layout, first, rows, &mut block).map_err(Problem::Read)?;
         for row in 0..rows {
-            pass_on(&layout, &block, (first, rows, row), emitter)?;
+            pass_on(&layout, &block, (first, rows, row), &mut cloud, emitter)?;
         }
     }
+    cloud.finish(&mut info)?;
     Ok(info)
 }
 
@@ -99,6 +97,7 @@ fn pass_on(
     layout: &Layout,
     block: &[u8],
     (first, rows, row): (u64, u64, u64),
+    cloud: &mut Cloud,
     emitter: &mut Emitter<'_>,
 ) -> Result<(), Problem> {
     let number = |column: u64| -> Number {
@@ -109,29 +108,27 @@ fn pass_on(
     };
     let offset =
         |column| layout.data + layout.slot(layout.rows, first + row, column) * layout.width();
-    let fault = |column: u64, expected: &str, advice: &str| {
-        let part = format!("row {}, column {column}", first + row);
-        let found = number(column).to_string();
-        Fault::new(part, offset(column), expected, found, advice)
+    let place = |column: Option<u64>| match column {
+        Some(column) => (
+            format!("row {}, column {column}", first + row),
+            offset(column),
+        ),
+        None => (format!("row {}", first + row), offset(0)),
     };
-    let mut index = [0; 3];
-    for (column, i) in (0..).zip(&mut index) {
-        let expected = "a whole number of 64 bits, the voxel's index";
-        *i = number(column)
-            .whole()
-            .ok_or_else(|| fault(column, expected, FLOOR))?;
-    }
     let mut color = DEFAULT_COLOR;
     if layout.columns > 3 {
         for (column, byte) in (3..).zip(&mut color) {
             let value = number(column).whole().and_then(|v| u8::try_from(v).ok());
-            let advice = "columns 3, 4 and 5 hold red, green and blue as whole numbers";
-            *byte = value.ok_or_else(|| fault(column, "a colour from 0 to 255", advice))?;
+            *byte = value.ok_or_else(|| {
+                let (part, offset) = place(Some(column));
+                let (expected, found) = ("a colour from 0 to 255", number(column).to_string());
+                let advice = "columns 3, 4 and 5 hold red, green and blue as whole numbers";
+                Fault::new(part, offset, expected, found, advice)
+            })?;
         }
     }
-    emitter.voxel(index, color, None, || {
-        (format!("row {}", first + row), offset(0))
-    })
+    let place = |axis: Option<usize>| place(axis.map(|axis| axis as u64));
+    cloud.point([0, 1, 2].map(number), color, None, place, emitter)
 }
 
 /// Reads the header: magic, version, and a Python dictionary in text.

@@ -1,7 +1,8 @@
-//! PLY clouds whose positions are voxel indices: one voxel per vertex.
+//! PLY clouds: one voxel per vertex.
 
 use glam::DVec3;
 
+use super::cloud::Cloud;
 use crate::graph::KnownNormals;
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
@@ -12,12 +13,12 @@ use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
 
 pub(super) fn read(
     input: &mut Input<'_>,
-    _: &ReadOptions,
+    options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
     let mut file = PlyFile::open(&mut input.reader)?;
     let Some(vertices) = file.header.element("vertex").cloned() else {
-        let advice = "this PLY holds no points; a cloud of voxel indices has an element vertex";
+        let advice = "this PLY holds no points; a cloud has an element vertex";
         return Err(Fault::new("header", 0, "an element \"vertex\"", "none", advice).into());
     };
     let positions = vertices.positions(file.offset())?;
@@ -27,39 +28,47 @@ pub(super) fn read(
         file.skip(element)?;
     }
     let mut known = KnownNormals::default();
+    let mut cloud = Cloud::new(options);
     file.rows(&vertices, None, |row| {
-        let part = |names: [&str; 3], k: usize| {
-            format!("vertex {}, property {}", row.number, names[k])
-        };
-        let mut index = [0; 3];
-        for axis in 0..3 {
-            let value = row.values[positions[axis]];
-            index[axis] = value.whole().ok_or_else(|| {
-                let (part, advice) = (part(["x", "y", "z"], axis), "only clouds whose positions are voxel \
-                    indices can be read; divide the positions by the voxel's size and round them down first");
-                Fault::new(part, row.offset, "a whole number, the voxel's index", value.to_string(), advice)
-            })?;
-        }
+        let part =
+            |names: [&str; 3], k: usize| format!("vertex {}, property {}", row.number, names[k]);
         let mut color = DEFAULT_COLOR;
         for (k, at) in colors.into_iter().flatten().enumerate() {
             let value = row.values[at];
             color[k] = value.channel().ok_or_else(|| {
                 let part = part(["red", "green", "blue"], k);
                 let expected = "a whole number from 0 to 255, or a real one from 0 to 1";
-                Fault::new(part, row.offset, expected, value.to_string(), "export the colours as uchar")
+                Fault::new(
+                    part,
+                    row.offset,
+                    expected,
+                    value.to_string(),
+                    "export the colours as uchar",
+                )
             })?;
         }
         let normal = normals.map(|at| DVec3::from_array(at.map(|k| Number::real(row.values[k]))));
         // A normal of length zero says that there is none.
-        let normal = normal.map(|normal| known.encode(normal)).filter(|normal| !normal.is_none());
-        emitter.voxel(index, color, normal, || (format!("vertex {}", row.number), row.offset))
+        let normal = normal
+            .map(|normal| known.encode(normal))
+            .filter(|normal| !normal.is_none());
+        let place = |axis: Option<usize>| match axis {
+            Some(axis) => (part(["x", "y", "z"], axis), row.offset),
+            None => (format!("vertex {}", row.number), row.offset),
+        };
+        cloud.point(
+            positions.map(|at| row.values[at]),
+            color,
+            normal,
+            place,
+            emitter,
+        )
     })?;
-    Ok(SceneInfo {
-        models: 1,
-        instances: 1,
-        stored_voxels: vertices.count,
+    let mut info = SceneInfo {
         has_colors: colors.is_some(),
         has_normals: normals.is_some(),
         ..SceneInfo::default()
-    })
+    };
+    cloud.finish(&mut info)?;
+    Ok(info)
 }

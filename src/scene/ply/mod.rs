@@ -10,7 +10,7 @@ use std::io::BufRead;
 use super::fault::{Fault, Problem, printable};
 use super::numbers::{Number, Scalar};
 pub use header::{Element, Header, Property};
-use source::Source;
+pub(in crate::scene) use source::Source;
 
 const MAX_LINE: usize = 1 << 20;
 

@@ -5,18 +5,18 @@ use std::io::{BufRead, ErrorKind, Read};
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::numbers::{Number, Scalar};
 
-pub(super) struct Source<'a, R> {
+pub(in crate::scene) struct Source<'a, R> {
     reader: &'a mut R,
-    pub(super) offset: u64,
+    pub(in crate::scene) offset: u64,
 }
 
 impl<'a, R: BufRead> Source<'a, R> {
-    pub(super) fn new(reader: &'a mut R) -> Self {
+    pub(in crate::scene) fn new(reader: &'a mut R) -> Self {
         Self { reader, offset: 0 }
     }
 
     /// Reads a line without its end; `false` at the end of the file.
-    pub(super) fn line(
+    pub(in crate::scene) fn line(
         &mut self,
         line: &mut Vec<u8>,
         longest: usize,
@@ -47,7 +47,7 @@ impl<'a, R: BufRead> Source<'a, R> {
     }
 
     /// Skips bytes; `false` if the file ends first.
-    pub(super) fn skip(&mut self, mut count: u64) -> Result<bool, Problem> {
+    pub(in crate::scene) fn skip(&mut self, mut count: u64) -> Result<bool, Problem> {
         while count > 0 {
             let here = self.reader.fill_buf().map_err(Problem::Read)?.len();
             if here == 0 {
@@ -63,7 +63,7 @@ impl<'a, R: BufRead> Source<'a, R> {
 
     /// Reads `count` bytes; `None` if the file ends first. `scratch` holds those that the reader's buffer cuts.
     #[inline]
-    pub(super) fn bytes<T>(
+    pub(in crate::scene) fn bytes<T>(
         &mut self,
         count: usize,
         scratch: &mut Vec<u8>,
@@ -87,11 +87,15 @@ impl<'a, R: BufRead> Source<'a, R> {
     }
 
     /// Bytes that can be read without another call of the system.
-    pub(super) fn buffered(&mut self) -> Result<usize, Problem> {
+    pub(in crate::scene) fn buffered(&mut self) -> Result<usize, Problem> {
         Ok(self.reader.fill_buf().map_err(Problem::Read)?.len())
     }
 
-    pub(super) fn number(&mut self, scalar: Scalar, big: bool) -> Result<Option<Number>, Problem> {
+    pub(in crate::scene) fn number(
+        &mut self,
+        scalar: Scalar,
+        big: bool,
+    ) -> Result<Option<Number>, Problem> {
         self.bytes(scalar.size(), &mut Vec::new(), |bytes| {
             scalar.decode_one(big, bytes)
         })

@@ -14,6 +14,10 @@ pub(crate) struct SceneArgs {
     /// Voxels outside a .vox model's SIZE (VoxelShop writes them, modulo 256)
     #[arg(long, value_enum, default_value_t)]
     pub(crate) oob: OutOfBounds,
+    /// Side of a voxel, in the file's units, for clouds of points (.ply .xyz .pcd .npy) whose
+    /// coordinates are not voxel indices
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    pub(crate) voxel_size: Option<f64>,
     /// Voxelise meshes with N levels, at most 2^N voxels per side [default: 9]
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
@@ -34,6 +38,14 @@ pub(crate) struct SceneArgs {
     pub(crate) mesh_colors: ColorSpace,
 }
 
+fn size(text: &str) -> Result<f64, String> {
+    let size = text
+        .parse()
+        .ok()
+        .filter(|size: &f64| size.is_normal() && *size > 0.0);
+    size.ok_or_else(|| "it is not a number above 0".to_owned())
+}
+
 impl SceneArgs {
     pub(crate) fn mesh_depth(&self) -> u32 {
         self.depth.unwrap_or(DEFAULT_DEPTH)
@@ -50,6 +62,7 @@ impl SceneArgs {
             ("depth", self.depth.is_some()),
             ("crop", self.crop.is_some()),
             ("opacities", self.opacities),
+            ("voxel-size", self.voxel_size.is_some()),
             ("oob", self.oob != OutOfBounds::default()),
             ("mesh-colors", self.mesh_colors != ColorSpace::default()),
         ];

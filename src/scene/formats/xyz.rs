@@ -1,0 +1,87 @@
+//! Points in text, one per line: `x y z`, then colours or other columns.
+
+use super::cloud::Cloud;
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem, printable};
+use crate::scene::input::Input;
+use crate::scene::numbers::Number;
+use crate::scene::ply::Source;
+use crate::scene::{DEFAULT_COLOR, ReadOptions, SceneInfo};
+
+pub(super) const MAX_LINE: usize = 1 << 12;
+
+pub(super) fn read(
+    input: &mut Input<'_>,
+    options: &ReadOptions,
+    emitter: &mut Emitter<'_>,
+) -> Result<SceneInfo, Problem> {
+    let mut source = Source::new(&mut input.reader);
+    let mut cloud = Cloud::new(options);
+    let mut line = Vec::new();
+    let mut numbers = Vec::new();
+    // Columns, and the first one of the colours.
+    let mut layout: Option<(usize, Option<usize>)> = None;
+    for number in 1.. {
+        let begin = source.offset;
+        if !source.line(&mut line, MAX_LINE, "points")? {
+            break;
+        }
+        let Some(words) = words(&line) else { continue };
+        let part = || (format!("line {number}"), begin);
+        let fault = |expected: String, found: &[u8]| {
+            let advice = "every line needs the same columns; export the points again";
+            Fault::new(part().0, begin, expected, printable(found), advice)
+        };
+        numbers.clear();
+        for word in words {
+            let parsed = Number::parse(word);
+            numbers.push(parsed.ok_or_else(|| fault("a number".to_owned(), word))?);
+        }
+        let (columns, colors) = *layout.get_or_insert_with(|| (numbers.len(), colors(&numbers)));
+        if numbers.len() != columns || columns < 3 {
+            let expected = format!("{} numbers", columns.max(3));
+            return Err(fault(expected, &line).into());
+        }
+        let mut color = DEFAULT_COLOR;
+        for (k, at) in (colors.unwrap_or(columns)..columns).take(3).enumerate() {
+            let byte = numbers[at].whole().and_then(|n| u8::try_from(n).ok());
+            color[k] = byte.ok_or_else(|| fault("colours from 0 to 255".to_owned(), &line))?;
+        }
+        let position = [numbers[0], numbers[1], numbers[2]];
+        cloud.point(position, color, None, |_| part(), emitter)?;
+    }
+    let mut info = SceneInfo {
+        has_colors: matches!(layout, Some((_, Some(_)))),
+        ..SceneInfo::default()
+    };
+    cloud.finish(&mut info)?;
+    Ok(info)
+}
+
+/// The words of a line, or `None` of a comment or a blank line.
+fn words(line: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
+    let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
+    let text = line.trim_ascii();
+    let is_data = !text.is_empty() && !text.starts_with(b"#") && !text.starts_with(b"//");
+    let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b';');
+    is_data.then(|| text.split(ends).filter(|word| !word.is_empty()))
+}
+
+/// The columns from the fourth, or of seven columns from the fifth (after an intensity), if the first point has bytes there.
+fn colors(first: &[Number]) -> Option<usize> {
+    let at = if first.len() == 7 { 4 } else { 3 };
+    let is_byte = |n: &Number| matches!(n, Number::Whole(0..=255));
+    first.get(at..at + 3)?.iter().all(is_byte).then_some(at)
+}
+
+/// Whether the first line with contents has three numbers or more, and only numbers.
+pub(super) fn is_xyz(beginning: &[u8], _: u64) -> bool {
+    let first = beginning.split(|byte| *byte == b'\n').find_map(words);
+    first.is_some_and(|mut words| {
+        let mut numbers = 0;
+        words.all(|word| {
+            numbers += 1;
+            Number::parse(word).is_some()
+        }) && numbers >= 3
+    })
+}
