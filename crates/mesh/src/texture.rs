@@ -20,10 +20,22 @@ pub(crate) enum AlphaMode {
     Blend,
 }
 
+/// The picture beyond its edge, along one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Wrap {
+    #[default]
+    Repeat,
+    /// Every other repetition is mirrored.
+    Mirror,
+    /// The edge continues.
+    Clamp,
+}
+
 /// A picture for triangles, with its coarser copies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     levels: Vec<Level>,
+    wrap: [Wrap; 2],
     is_opaque: bool,
     is_mask: bool,
 }
@@ -39,7 +51,12 @@ struct Level {
 const SPREAD: f64 = 1.732_050_807_568_877_2;
 
 impl Texture {
-    pub(crate) fn new(size: [usize; 2], mut texels: Vec<[u8; 4]>, mode: AlphaMode) -> Self {
+    pub(crate) fn new(
+        size: [usize; 2],
+        mut texels: Vec<[u8; 4]>,
+        mode: AlphaMode,
+        wrap: [Wrap; 2],
+    ) -> Self {
         for [.., alpha] in &mut texels {
             *alpha = match mode {
                 AlphaMode::Opaque => 255,
@@ -55,6 +72,7 @@ impl Texture {
         }
         Self {
             levels,
+            wrap,
             is_opaque,
             is_mask: matches!(mode, AlphaMode::Mask(_)),
         }
@@ -73,19 +91,28 @@ impl Texture {
         self.levels[0].size.map(|side| side as f64)
     }
 
+    /// The beginning of the repetition that has a place.
+    pub(crate) fn repetition(&self, place: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| match self.wrap[k] {
+            Wrap::Repeat => libm::floor(place[k]),
+            Wrap::Mirror => 2.0 * libm::floor(place[k] / 2.0),
+            Wrap::Clamp => 0.0,
+        })
+    }
+
     /// Colour, linear light, and opacity around a place: across from the left and down from the top, in sizes of the
-    /// picture, which repeats. They are the mean of a square of so many texels a side.
+    /// picture. They are the mean of a square of so many texels a side.
     pub(crate) fn at(&self, place: [f64; 2], side: f64) -> (DVec3, f64) {
         let mut read = DVec4::ZERO;
         if side <= SPREAD {
-            read = self.levels[0].at(place);
+            read = self.levels[0].at(place, self.wrap);
         } else {
             let coarsest = (self.levels.len() - 1) as f64;
             let level = libm::log2(side / SPREAD).min(coarsest);
             let (finer, rest) = (level as usize, level.fract());
             for (level, share) in [(finer, 1.0 - rest), (finer + 1, rest)] {
                 if share > 0.0 {
-                    read += self.levels[level].at(place) * share;
+                    read += self.levels[level].at(place, self.wrap) * share;
                 }
             }
         }
@@ -103,15 +130,27 @@ impl Texture {
 
 impl Level {
     /// Colour times opacity, and opacity, between the four nearest texels.
-    fn at(&self, place: [f64; 2]) -> DVec4 {
+    fn at(&self, place: [f64; 2], wrap: [Wrap; 2]) -> DVec4 {
         let near = [0, 1].map(|k| {
             let size = self.size[k];
+            let (inside, [before, after]) = match wrap[k] {
+                Wrap::Repeat => (place[k] - place[k].floor(), [size - 1, 0]),
+                Wrap::Mirror => {
+                    let turn = place[k] - 2.0 * (place[k] / 2.0).floor();
+                    (1.0 - (turn - 1.0).abs(), [0, size - 1])
+                }
+                Wrap::Clamp => (place[k].clamp(0.0, 1.0), [0, size - 1]),
+            };
             // The middle of the first texel is at 0; from -1/2 to size - 1/2.
-            let at = (place[k] - place[k].floor()) * size as f64 - 0.5;
+            let at = inside * size as f64 - 0.5;
             let low = at.floor();
-            let first = if low < 0.0 { size - 1 } else { low as usize };
-            let next = if first + 1 < size { first + 1 } else { 0 };
-            ([first, next], at - low)
+            let first = if low < 0.0 {
+                before
+            } else {
+                (low as usize).min(size - 1)
+            };
+            let next = if low < 0.0 { 0 } else { first + 1 };
+            ([first, if next < size { next } else { after }], at - low)
         });
         let [(columns, right), (rows, down)] = near;
         let row = |y: usize| {

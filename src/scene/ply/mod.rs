@@ -42,9 +42,11 @@ pub struct Row<'r> {
     pub list: &'r [Number],
 }
 
-/// Whether the header of a PLY file declares faces, so that it is a mesh. `false` for a damaged header.
+/// Whether the header of a PLY file declares faces or strips of triangles, so that it is a mesh. `false` for a damaged header.
 pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
-    let faces = |element: &Element| element.name == b"face" && element.count > 0;
+    let faces = |element: &Element| {
+        [&b"face"[..], b"tristrips"].contains(&&element.name[..]) && element.count > 0
+    };
     PlyFile::open(reader).is_ok_and(|file| file.header.elements.iter().any(faces))
 }
 

@@ -1,9 +1,10 @@
-//! Material libraries of Wavefront files: `newmtl`, `Kd`, `map_Kd`, `d`, `Tr` and `map_d`. All else is passed over.
+//! Material libraries of Wavefront files: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`. All else is passed over.
 
 use shiftvox::scene::DEFAULT_COLOR;
 
 use super::{LoadOptions, text};
 use crate::Material;
+use crate::texture::Wrap;
 
 pub(super) struct Library {
     /// In the order of the file.
@@ -16,6 +17,25 @@ pub(super) struct Library {
 pub(super) struct Pictures {
     pub(super) color: Option<String>,
     pub(super) opacity: Option<String>,
+    pub(super) place: Place,
+}
+
+/// The place of a picture: texture coordinates are multiplied by the scale, and the offset is added.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    pub(super) scale: [f64; 2],
+    pub(super) offset: [f64; 2],
+    pub(super) wrap: Wrap,
+}
+
+impl Default for Place {
+    fn default() -> Self {
+        Self {
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            wrap: Wrap::Repeat,
+        }
+    }
 }
 
 #[derive(Default)]
@@ -63,12 +83,24 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
                 value.is_some()
             }
             ("map_Kd", Some(last)) => {
-                last.pictures.color = file_name(rest);
-                last.pictures.color.is_some()
+                let found = picture(rest);
+                let is_understood = found.is_some();
+                if let Some((name, place)) = found {
+                    (last.pictures.color, last.pictures.place) = (Some(name), place);
+                }
+                is_understood
             }
             ("map_d", Some(last)) => {
-                last.pictures.opacity = file_name(rest);
-                last.pictures.opacity.is_some()
+                let found = picture(rest);
+                let is_understood = found.is_some();
+                if let Some((name, place)) = found {
+                    last.pictures.opacity = Some(name);
+                    // One place serves both pictures.
+                    if last.pictures.color.is_none() {
+                        last.pictures.place = place;
+                    }
+                }
+                is_understood
             }
             _ => true,
         };
@@ -83,8 +115,9 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
     }
 }
 
-/// The name in a `map_Kd` or `map_d`, after its options: `-s 1 1 1 -clamp on wood grain.png`.
-fn file_name(mut rest: &str) -> Option<String> {
+/// The name and the options of a `map_Kd` or `map_d`: `-s 1 1 1 -clamp on wood grain.png`.
+fn picture(mut rest: &str) -> Option<(String, Place)> {
+    let mut place = Place::default();
     while rest.starts_with('-') {
         let (option, after) = rest.split_once(char::is_whitespace)?;
         rest = after.trim_start();
@@ -94,15 +127,22 @@ fn file_name(mut rest: &str) -> Option<String> {
             "-mm" => (2, true),
             _ => (1, true),
         };
-        for _ in 0..most {
+        for k in 0..most {
             let (word, after) = rest.split_once(char::is_whitespace)?;
-            if !any && word.parse::<f64>().is_err() {
+            let number = word.parse::<f64>();
+            if !any && number.is_err() {
                 break;
+            }
+            match (option, number) {
+                ("-s", Ok(number)) if k < 2 => place.scale[k] = number,
+                ("-o", Ok(number)) if k < 2 => place.offset[k] = number,
+                ("-clamp", _) if word == "on" => place.wrap = Wrap::Clamp,
+                _ => {}
             }
             rest = after.trim_start();
         }
     }
-    (!rest.is_empty()).then(|| rest.to_owned())
+    (!rest.is_empty()).then(|| (rest.to_owned(), place))
 }
 
 impl Found {

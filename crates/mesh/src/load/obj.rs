@@ -187,6 +187,7 @@ impl File {
             let pictures = Pictures {
                 color: pictures.color.map(path),
                 opacity: pictures.opacity.map(path),
+                place: pictures.place,
             };
             self.by_name
                 .insert(material.name.clone(), self.materials.len());
@@ -218,6 +219,7 @@ impl File {
                     color: pictures.color.as_deref(),
                     opacity: pictures.opacity.as_deref(),
                     mode: AlphaMode::Blend,
+                    wrap: [pictures.place.wrap; 2],
                 };
                 let texture = textures.get(parts, |name| beside.read(name));
                 let texture = texture.map(|texture| builder.set_texture(*material, texture));
@@ -239,7 +241,10 @@ impl File {
                 let normals = all(triangle, 2, &self.normals);
                 let normals = normals.map(|normals| normals.map(|n| n.map(|c| c as f32)));
                 let places = all(triangle, 1, &self.texture_coordinates).filter(|_| is_textured);
-                let places = places.map(|places| places.map(|[u, v]| [u, 1.0 - v]));
+                let mtl::Place { scale, offset, .. } = pictures.place;
+                let moved =
+                    |[u, v]: [f64; 2]| [u * scale[0] + offset[0], 1.0 - (v * scale[1] + offset[1])];
+                let places = places.map(|places| places.map(moved));
                 without += usize::from(face.material == 0);
                 // In range: the builder gave the numbers.
                 let _ = builder.textured_triangle(positions, normals, *material, places);

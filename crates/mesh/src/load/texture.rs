@@ -10,7 +10,7 @@ use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::texture::AlphaMode;
+use crate::texture::{AlphaMode, Wrap};
 use crate::{MeshBuilder, Texture};
 use shiftvox::picture::png;
 
@@ -75,6 +75,7 @@ pub(super) struct Parts<'n> {
     /// Opacity, if it is not that of the colour.
     pub(super) opacity: Option<&'n str>,
     pub(super) mode: AlphaMode,
+    pub(super) wrap: [Wrap; 2],
 }
 
 #[derive(Default)]
@@ -104,7 +105,8 @@ impl Textures {
             (Some(color), None) => Some((color.size, color.texels.clone())),
             (color, Some(opacity)) => Some(together(color.as_deref(), &opacity)),
         };
-        let made = made.map(|(size, texels)| Arc::new(Texture::new(size, texels, parts.mode)));
+        let made =
+            made.map(|(size, texels)| Arc::new(Texture::new(size, texels, parts.mode, parts.wrap)));
         self.made.insert(key, made.clone());
         made
     }

@@ -125,3 +125,53 @@ fn only_the_folder_of_the_mesh_is_searched() {
         assert!(beside.read(name).is_err(), "{name}");
     }
 }
+
+#[test]
+fn ply_files_have_strips_and_colours_of_faces() {
+    let vertices =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty int x\nproperty int y\nproperty int z\n";
+    let places = "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+    // Two strips, the second led to its second part by equal corners.
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    let strips = format!("{vertices}{strips}{places}12 0 1 2 3 -1 3 2 2 1 1 0 2\n");
+    let mesh = load(strips.as_bytes(), MeshFormat::Ply).unwrap();
+    let corner = |corner: [f32; 3]| corner.map(|c| c.to_string()).concat();
+    let triangles: Vec<String> = soup(&mesh)
+        .into_iter()
+        .map(|t| t.map(corner).join(" "))
+        .collect();
+    let expected = ["000 100 010", "010 100 110", "100 000 010"];
+    assert_eq!(
+        (&triangles[..], mesh.warnings()),
+        (&expected.map(str::to_owned)[..], &[][..])
+    );
+    let opened =
+        shiftvox_mesh::open::open_bytes(strips.as_bytes(), "a.ply", &Default::default(), &Silent);
+    assert_eq!(opened.unwrap().format, ".ply mesh");
+
+    let face = "element face 3\nproperty list uchar int vertex_indices\nproperty uchar red\n\
+        property uchar green\nproperty uchar blue\n";
+    let faces = "3 0 1 2 255 0 0\n3 1 3 2 0 0 255\n3 0 3 2 255 0 0\n";
+    let mesh = load(
+        format!("{vertices}{face}{places}{faces}").as_bytes(),
+        MeshFormat::Ply,
+    )
+    .unwrap();
+    let color = |&m: &u32| mesh.materials()[m as usize].diffuse;
+    let colors: Vec<_> = mesh.material_of().iter().map(color).collect();
+    let [red, blue] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(
+        (&colors[..], mesh.materials().len()),
+        (&[red, blue, red][..], 4)
+    );
+    let both = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let places = places.replace(" 0\n", " 0 9 9 9\n");
+    let mesh = load(
+        format!("{vertices}{both}{face}{places}{faces}").as_bytes(),
+        MeshFormat::Ply,
+    );
+    has(
+        mesh.unwrap().warnings(),
+        &["colours of faces were passed over"],
+    );
+}

@@ -24,6 +24,10 @@ const SCENES: &str = r#"
 {"nodes": [{"mesh": 0, "translation": [1, 2, 3], "rotation": [1, 1, 1, 1], "scale": [2, 1, 3]}]} | 123 143 144, 123 144 124
 {"nodes": [{"mesh": 0, "translation": [2, 0, 0], "rotation": [0, 0, 0, 0], "scale": [-1, 1, 1]}]} | 200 110 100, 200 210 110
 {"scenes": [], "nodes": [{"mesh": 0, "scale": [2, 2, 2]}, {"children": [2], "translation": [1, 1, 1]}, {"mesh": 0, "scale": [1, 3, 1]}]} | 000 200 220, 000 220 020, 111 211 241, 111 241 141
+{"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": null}}]}]} | 000 100 110
+{"accessors": [{"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 2, "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5123}, "values": {"bufferView": 0, "byteOffset": 12}}}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}]} | 000 100 110
+{"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 2, "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5123}, "values": {"bufferView": 0, "byteOffset": 24}}}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}]} | 000 110 010
+{"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}, {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}, {"bufferView": 0, "byteOffset": 24, "componentType": 5126, "count": 2, "type": "VEC3"}], "extensionsRequired": ["EXT_mesh_gpu_instancing"], "nodes": [{"mesh": 0, "scale": [2, 1, 1], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "ROTATION": null}}}}]} | 210 410 420, 210 420 220, 010 210 220, 010 220 020
 {"nodes": [{"children": [2, 1], "scale": [2, 1, 1]}, {"mesh": 0, "translation": [3, 0, 0]}, {"mesh": 0}, {"mesh": 0}]} | 000 200 210, 000 210 010, 600 800 810, 600 810 610
 "#;
 

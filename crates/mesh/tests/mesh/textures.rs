@@ -58,7 +58,7 @@ fn obj_files_have_textures() {
     let at = folder.path();
     let materials = at.join("materials");
     fs::create_dir_all(materials.join("pictures")).unwrap();
-    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 pictures/wood grain.png\n";
+    let mtl = "newmtl wood\nKd 1 0.5 1\nmap_Kd -clamp off -mm 0 1 pictures/wood grain.png\n";
     fs::write(materials.join("a.mtl"), mtl).unwrap();
     fs::write(at.join("a.obj"), OBJ.replace("a.mtl", "materials/a.mtl")).unwrap();
     let picture = materials.join("pictures/wood grain.png");
@@ -76,6 +76,23 @@ fn obj_files_have_textures() {
             check(&mesh, triangle, expected, within);
         }
     }
+    // The middle of the third triangle is at (0.7, 0.37), of the fourth at (-3.77, 5.5).
+    for (options, third, fourth) in [
+        ("-clamp on -s 1 1 1", right, left),
+        ("-o -0.5", left, right),
+        ("-s 1.5 1 -o -0.5 0 0 -clamp on", right, left),
+    ] {
+        fs::write(
+            &picture,
+            halves([255, 255, 0], [0, 0, 255], ImageFormat::Jpeg),
+        )
+        .unwrap();
+        fs::write(materials.join("a.mtl"), mtl.replace("-clamp off", options)).unwrap();
+        let mesh = read(&at.join("a.obj"));
+        check(&mesh, 2, third, 0.02);
+        check(&mesh, 3, fourth, 0.02);
+    }
+    fs::write(materials.join("a.mtl"), mtl).unwrap();
     // A warning names an unreadable texture, and the plain colour is kept.
     fs::write(&picture, "no picture").unwrap();
     let mesh = read(&at.join("a.obj"));
@@ -142,5 +159,26 @@ fn gltf_files_have_textures() {
     }
     let mesh = mesh(json!({"uri": "none.png"}), json!({}));
     has(mesh.warnings(), &["none.png cannot be read"]);
-    check(&mesh, 1, [1.0, 0.5, 1.0], 0.001);
+    let plain = [1.0, 0.5, 1.0];
+    check(&mesh, 1, plain, 0.001);
+    // The middle of the first triangle is beyond the right edge. The older extension gives its colour.
+    let texture = json!({
+        "index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}},
+    });
+    let older = json!({"diffuseFactor": [1, 0.5, 1, 1], "diffuseTexture": texture});
+    json["materials"][0]["extensions"] = json!({"KHR_materials_pbrSpecularGlossiness": older});
+    json["materials"][0]["pbrMetallicRoughness"] = json!({"baseColorFactor": [0, 0, 0, 1]});
+    json["images"] = json!([picture()]);
+    json["textures"] = json!([{"source": 0, "sampler": 0}]);
+    for (wrap, color) in [(10497, red), (33071, green), (33648, green)] {
+        json["samplers"] = json!([{"wrapS": wrap}]);
+        fs::write(&path, json.to_string()).unwrap();
+        check(&read(&path), 0, color, 0.001);
+    }
+    json["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
+    json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    fs::write(&path, json.to_string()).unwrap();
+    let mesh = read(&path);
+    has(mesh.warnings(), &["it has no PNG or JPEG picture"]);
+    check(&mesh, 0, plain, 0.001);
 }

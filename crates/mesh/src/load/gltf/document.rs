@@ -1,17 +1,30 @@
 //! The parts of a glTF document that are read.
 
 use std::collections::HashMap;
+use std::fmt;
 
 use serde::Deserialize;
+use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, Visitor};
 
 use crate::load::{Fault, Place, Problem};
 
 /// Extensions that a file may require and that change nothing that is read here.
-const HARMLESS: [&str; 4] = [
+const HARMLESS: [&str; 8] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_lights_punctual",
+    // Pictures that are not read cause a warning each.
     "KHR_texture_basisu",
+    "EXT_texture_webp",
+    "EXT_texture_avif",
+    "MSFT_texture_dds",
+    "EXT_mesh_gpu_instancing",
+];
+
+const COMPRESSED: [&str; 3] = [
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
 ];
 
 #[derive(Debug, Default, Deserialize)]
@@ -24,6 +37,7 @@ pub(super) struct Document {
     pub(super) meshes: Vec<Mesh>,
     pub(super) materials: Vec<Material>,
     pub(super) textures: Vec<Texture>,
+    pub(super) samplers: Vec<Sampler>,
     pub(super) images: Vec<Image>,
     pub(super) accessors: Vec<Accessor>,
     pub(super) buffer_views: Vec<BufferView>,
@@ -52,6 +66,22 @@ pub(super) struct Node {
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    pub(super) extensions: NodeExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instances: Option<Instances>,
+}
+
+/// Accessors of `TRANSLATION`, `ROTATION` and `SCALE` of each instance.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Instances {
+    #[serde(deserialize_with = "attributes")]
+    pub(super) attributes: HashMap<String, usize>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -63,26 +93,45 @@ pub(super) struct Mesh {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Primitive {
+    #[serde(deserialize_with = "attributes")]
     pub(super) attributes: HashMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
     pub(super) mode: Option<u32>,
-    pub(super) targets: Vec<serde::de::IgnoredAny>,
+    pub(super) targets: Vec<IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Material {
     pub(super) name: String,
-    pub(super) pbr_metallic_roughness: Pbr,
+    pbr_metallic_roughness: Pbr,
+    extensions: MaterialExtensions,
     pub(super) alpha_mode: Option<String>,
     pub(super) alpha_cutoff: Option<f32>,
+}
+
+impl Material {
+    /// The base colour, or the diffuse one of the older extension.
+    pub(super) fn base(&self) -> &Pbr {
+        let older = self.extensions.specular_glossiness.as_ref();
+        older.unwrap_or(&self.pbr_metallic_roughness)
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    specular_glossiness: Option<Pbr>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Pbr {
+    #[serde(alias = "diffuseFactor")]
     pub(super) base_color_factor: Option<[f32; 4]>,
+    #[serde(alias = "diffuseTexture")]
     pub(super) base_color_texture: Option<TextureInfo>,
 }
 
@@ -115,6 +164,14 @@ pub(super) struct TextureTransform {
 #[serde(default)]
 pub(super) struct Texture {
     pub(super) source: Option<usize>,
+    pub(super) sampler: Option<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Sampler {
+    pub(super) wrap_s: u32,
+    pub(super) wrap_t: u32,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -136,7 +193,24 @@ pub(super) struct Accessor {
     pub(super) count: u64,
     #[serde(rename = "type")]
     pub(super) shape: String,
-    pub(super) sparse: Option<serde::de::IgnoredAny>,
+    pub(super) sparse: Option<Sparse>,
+}
+
+/// Elements that differ from the accessor's buffer view, or from 0.
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub(super) count: u64,
+    pub(super) indices: SparsePart,
+    pub(super) values: SparsePart,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparsePart {
+    pub(super) buffer_view: usize,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) component_type: Option<u32>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -164,11 +238,38 @@ impl Document {
             ("asset", "version 2", version, "export as glTF 2.0")
         } else if let Some(unknown) = extensions.iter().find(|name| !is_known(name)) {
             let expected = "no extension that has to be understood";
-            let advice = "export without compression";
+            let advice = match COMPRESSED.contains(&unknown.as_str()) {
+                true => "unpack it: gltf-transform cp IN OUT",
+                false => "export without it",
+            };
             ("extensionsRequired", expected, unknown, advice)
         } else {
             return Ok(());
         };
         Err(Fault::new(part, Place::Whole, expected, found.clone(), advice).into())
     }
+}
+
+/// Accessors by their names. Some exporters write `null` for an attribute that is not there.
+fn attributes<'de, D: Deserializer<'de>>(from: D) -> Result<HashMap<String, usize>, D::Error> {
+    struct Attributes;
+    impl<'de> Visitor<'de> for Attributes {
+        type Value = HashMap<String, usize>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("accessors by the names of attributes")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut found = HashMap::new();
+            while let Some((name, accessor)) = map.next_entry::<String, Option<usize>>()? {
+                if found.contains_key(&name) {
+                    return Err(A::Error::custom(format!("two attributes {name}")));
+                }
+                found.extend(accessor.map(|accessor| (name, accessor)));
+            }
+            Ok(found)
+        }
+    }
+    from.deserialize_map(Attributes)
 }

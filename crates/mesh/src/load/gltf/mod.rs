@@ -1,9 +1,9 @@
 //! glTF 2.0, by a small reader of our own over `serde_json`.
 //!
 //! Supported: nodes of the default scene with their transforms. Triangles, strips and fans with positions, normals,
-//! first vertex colours and indices. Base colours of materials with their textures. Buffers may be in the file, in a
+//! first vertex colours and indices, also sparse ones, and instances. Base colours of materials with their textures. Buffers may be in the file, in a
 //! `data:` address or in a file of the same folder. Not supported: other textures, skins, morph targets and animations,
-//! which are skipped with a warning. Sparse accessors and compressed meshes are refused.
+//! which are skipped with a warning. Compressed meshes are refused.
 
 mod accessor;
 mod document;

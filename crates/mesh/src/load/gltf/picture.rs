@@ -8,7 +8,7 @@ use super::document::{Document, TextureTransform};
 use super::{Beside, Buffers, decoded, unescaped};
 use crate::Texture;
 use crate::load::texture::{Parts, Textures};
-use crate::texture::AlphaMode;
+use crate::texture::{AlphaMode, Wrap};
 
 /// Places of vertices in the picture of their material.
 pub(super) struct Places<'d> {
@@ -34,6 +34,14 @@ fn moved([u, v]: [f64; 2], transform: &TextureTransform) -> [f64; 2] {
     [cos * u + sin * v + offset[0], cos * v - sin * u + offset[1]]
 }
 
+fn wrap(number: u32) -> Wrap {
+    match number {
+        33071 => Wrap::Clamp,
+        33648 => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}
+
 pub(super) fn find(
     document: &Document,
     buffers: &Buffers,
@@ -41,7 +49,9 @@ pub(super) fn find(
     (texture, mode): (usize, AlphaMode),
     textures: &mut Textures,
 ) -> Option<Arc<Texture>> {
-    let source = document.textures.get(texture).and_then(|t| t.source);
+    let found = document.textures.get(texture);
+    let source = found.and_then(|texture| texture.source);
+    let sampler = found.and_then(|texture| document.samplers.get(texture.sampler?));
     let image = source.and_then(|source| document.images.get(source));
     let uri = image.and_then(|image| image.uri.as_deref());
     let file = uri.filter(|uri| !uri.starts_with("data:")).map(unescaped);
@@ -50,6 +60,7 @@ pub(super) fn find(
         color: Some(&name),
         opacity: None,
         mode,
+        wrap: sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap)),
     };
     textures.get(parts, |_| {
         let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());

@@ -5,7 +5,9 @@ use std::collections::{HashMap, HashSet};
 use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
-use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
+use super::document::{
+    Document, Instances, Material as FileMaterial, Mesh as FileMesh, Node, Primitive,
+};
 use super::picture::{self, Places};
 use super::{Beside, Buffers, Fault, Place, Problem, broken};
 use crate::load::texture::Textures;
@@ -62,6 +64,11 @@ impl<'d> Reader<'d> {
         for material in &self.document.materials {
             builder.material(understood(material));
         }
+        for (number, accessor) in self.document.accessors.iter().enumerate() {
+            if accessor.sparse.is_some() {
+                self.numbers(number)?.check_order(number)?;
+            }
+        }
         let shown = self.shown()?;
         self.make_room(&shown, builder)?;
         for (number, placed) in shown {
@@ -113,11 +120,49 @@ impl<'d> Reader<'d> {
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
                 self.skinned += u64::from(node.skin.is_some());
-                shown.push((mesh, placed));
+                match &node.extensions.instances {
+                    None => shown.push((mesh, placed)),
+                    Some(instances) => {
+                        let instances = self
+                            .instances(instances, self.most.saturating_sub(shown.len() as u64))?;
+                        shown.extend(instances.map(|instance| (mesh, placed * instance)));
+                    }
+                }
             }
             open.extend(node.children.iter().rev().map(|&child| (child, placed)));
         }
         Ok(shown)
+    }
+
+    /// The places of a mesh that a node shows several times, at most `most`.
+    fn instances(
+        &self,
+        instances: &Instances,
+        most: u64,
+    ) -> Result<impl Iterator<Item = DMat4> + use<'d>, Problem> {
+        let find = |name: &str| {
+            let accessor = instances.attributes.get(name);
+            accessor.map(|&accessor| self.numbers(accessor)).transpose()
+        };
+        let [moves, turns, scales] = [find("TRANSLATION")?, find("ROTATION")?, find("SCALE")?];
+        let counts = [&moves, &turns, &scales]
+            .into_iter()
+            .flatten()
+            .map(|n| n.count);
+        let count = counts.max().unwrap_or(0);
+        if count as u64 > most {
+            return Err(too_many());
+        }
+        Ok((0..count).map(move |at| {
+            let turn = turns.as_ref().map_or(DQuat::IDENTITY, |turns| {
+                DQuat::from_array([0, 1, 2, 3].map(|k| f64::from(turns.real(at, k))))
+            });
+            let scale = scales
+                .as_ref()
+                .map_or(DVec3::ONE, |scales| scales.point(at));
+            let moved = moves.as_ref().map_or(DVec3::ZERO, |moves| moves.point(at));
+            placed(scale, turn, moved)
+        }))
     }
 
     fn mesh(&self, number: usize) -> Result<&'d FileMesh, Problem> {
@@ -130,10 +175,6 @@ impl<'d> Reader<'d> {
         shown: &[(usize, DMat4)],
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
-        let fault = |expected: String, found: String| {
-            let advice = "export a part of the scene";
-            Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
-        };
         let mut of_mesh: HashMap<usize, [usize; 2]> = HashMap::new();
         let mut sum = [0; 2];
         for &(mesh, _) in shown {
@@ -144,14 +185,11 @@ impl<'d> Reader<'d> {
             sum = [0, 1].map(|k| size[k].saturating_add(sum[k]));
             // Positions count as triangles: they take memory too.
             if sum[0].saturating_add(sum[1]) as u64 > self.most {
-                return Err(fault(
-                    format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
-                    "more: they show meshes very often".to_owned(),
-                ));
+                return Err(too_many());
             }
         }
         let room = builder.reserve(sum[0], sum[1]);
-        room.map_err(|short| fault("memory for all triangles".to_owned(), short.to_string()))
+        room.map_err(|short| too_large("memory for all triangles".to_owned(), short.to_string()))
     }
 
     fn size_of(&self, mesh: usize) -> Result<[usize; 2], Problem> {
@@ -198,7 +236,7 @@ impl<'d> Reader<'d> {
         let Some(material) = primitive.material.and_then(|m| document.materials.get(m)) else {
             return Ok(None);
         };
-        let Some(info) = &material.pbr_metallic_roughness.base_color_texture else {
+        let Some(info) = &material.base().base_color_texture else {
             return Ok(None);
         };
         let transform = info.extensions.transform.as_ref();
@@ -303,22 +341,39 @@ fn transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix);
     }
-    let rotation = DQuat::from_array(node.rotation.unwrap_or_default());
-    let is_sound = rotation.length_squared() > 0.0 && rotation.is_finite();
-    DMat4::from_scale_rotation_translation(
+    placed(
         DVec3::from_array(node.scale.unwrap_or([1.0; 3])),
-        if is_sound {
-            rotation.normalize()
-        } else {
-            DQuat::IDENTITY
-        },
+        DQuat::from_array(node.rotation.unwrap_or_default()),
         DVec3::from_array(node.translation.unwrap_or_default()),
     )
 }
 
+/// Scaled, turned and moved, in this order. A quaternion without length turns nothing.
+fn placed(scale: DVec3, turn: DQuat, moved: DVec3) -> DMat4 {
+    let is_sound = turn.length_squared() > 0.0 && turn.is_finite();
+    let turn = if is_sound {
+        turn.normalize()
+    } else {
+        DQuat::IDENTITY
+    };
+    DMat4::from_scale_rotation_translation(scale, turn, moved)
+}
+
+fn too_many() -> Problem {
+    too_large(
+        format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
+        "more: they show meshes very often".to_owned(),
+    )
+}
+
+fn too_large(expected: String, found: String) -> Problem {
+    let advice = "export a part of the scene";
+    Problem::Limit(Fault::new("nodes", Place::Whole, expected, found, advice))
+}
+
 /// Of the texture's texels, whose opacity the material's multiplies.
 fn alpha_mode(material: &FileMaterial) -> AlphaMode {
-    let factor = material.pbr_metallic_roughness.base_color_factor;
+    let factor = material.base().base_color_factor;
     match material.alpha_mode.as_deref() {
         Some("BLEND") => AlphaMode::Blend,
         Some("MASK") => {
@@ -330,7 +385,7 @@ fn alpha_mode(material: &FileMaterial) -> AlphaMode {
 }
 
 fn understood(material: &FileMaterial) -> Material {
-    let factor = material.pbr_metallic_roughness.base_color_factor;
+    let factor = material.base().base_color_factor;
     let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
     let alpha = match material.alpha_mode.as_deref() {
         Some("BLEND") => a,
