@@ -1,6 +1,7 @@
 """Writes small seed files of each reader into corpus/READER; run in fuzz/."""
 
 import base64
+import gzip
 import json
 import pathlib
 import struct
@@ -56,12 +57,54 @@ NPY = {
 }
 
 BINVOX = {"usual": b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"}
-VOXELS = {"vox": VOX, "ply": PLY, "npy": NPY, "binvox": BINVOX}
-# The first byte selects one of four ways to treat voxels outside of the grid.
+XYZ_TEXT = {"plain": b"# a\n0.5 1 2\n-3 4 5\n", "colors": b"1,2,3,255,0,9\n4,5,6,1,2,3\n", "pts": b"1 2 3 7 255 0 9\n"}
+FIELDS = b"0.7\nFIELDS a x y z rgb\nSIZE 2 4 4 4 4\nTYPE U F F F F\nCOUNT 2 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
+PCD = {"text": FIELDS + b"ascii\n1 2 0.5 1 nan 0\n1 2 3 4 5 4e-39\n", "binary": FIELDS + b"binary\n" + bytes(range(20)) * 2}
+PLACE = numbers(2, 1, 2, 5, 6, -7)
+QB = {
+    "plain": numbers(0, 0, 0, 0, 1) + b"\1a" + PLACE + numbers(0xFF0000C8, 0, 1 << 24, 0xFF0000C8),
+    "packed": numbers(1, 1, 1, 1, 1) + b"\0" + PLACE + numbers(2, 2, 0xFF0000C8, 6, 0, 0x01020304, 6),
+}
+
+
+def tag(kind, name, content):
+    return bytes([kind]) + struct.pack(">H", len(name)) + name.encode() + content
+
+
+def compound(name, *entries):
+    return tag(10, name, b"".join(entries) + b"\0")
+
+
+def array(kind, name, count, content):
+    return tag(kind, name, struct.pack(">i", count) + content)
+
+
+def vector(name, *values):
+    return compound(name, *(tag(3, axis, struct.pack(">i", value)) for axis, value in zip("xyz", values)))
+
+
+def named(name):
+    return tag(8, "Name", struct.pack(">H", len(name)) + name.encode()) + b"\0"
+
+
+SIZE = b"".join(tag(2, name, struct.pack(">h", side)) for name, side in (("Width", 2), ("Height", 1), ("Length", 2)))
+STATES = compound("Palette", tag(3, "minecraft:air", bytes(4)), tag(3, "oak_log[axis=y]", struct.pack(">i", 300)))
+BLOCKS = b"\0\xac\2\xac\2\0"
+TWO = compound("Schematic", SIZE, STATES, array(7, "BlockData", 6, BLOCKS), tag(5, "a", bytes(4)), array(11, "b", 1, bytes(4)))
+THREE = compound("", compound("Schematic", SIZE, compound("Blocks", STATES, array(7, "Data", 6, BLOCKS))))
+KINDS = tag(9, "BlockStatePalette", b"\n" + struct.pack(">i", 2) + named("air") + named("minecraft:stone"))
+REGION = compound("one", vector("Position", 1, 2, 3), vector("Size", -2, 1, 2), KINDS, array(12, "BlockStates", 1, struct.pack(">Q", 0x51)))
+FILES = {"two": TWO, "three": THREE, "litematic": compound("", compound("Regions", REGION))}
+# The marks are 1f 8b of gzip and 0a 00 of NBT, by the bits above those of the ways to treat voxels outside.
+SCHEM = {name: file[2:] for name, file in FILES.items()}
+VOXELS = {"vox": VOX, "ply": PLY, "npy": NPY, "binvox": BINVOX, "xyz": XYZ_TEXT, "pcd": PCD, "qb": QB}
+# The first byte selects one of four ways to treat voxels outside of the grid, and the size of a voxel.
 SEEDS = {
-    reader: {f"{name}_{oob}": bytes([oob]) + seed for name, seed in seeds.items() for oob in range(4)}
+    reader: {f"{name}_{oob}": bytes([oob]) + seed for name, seed in seeds.items() for oob in (0, 1, 2, 3, 64, 128, 192)}
     for reader, seeds in VOXELS.items()
 }
+SEEDS["schem"] = {name: b"\4" + seed for name, seed in SCHEM.items()}
+SEEDS["schem"] |= {f"{name}_gzip": b"\0" + gzip.compress(file)[2:] for name, file in FILES.items()}
 
 # A triangle and a square of two: positions, normals, indices.
 BUFFER = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 2) + struct.pack("<12f", *(0, 0, 1) * 4) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
@@ -100,12 +143,17 @@ def glb(document):
 
 
 INSIDE = {"byteLength": len(BUFFER), "uri": "data:application/octet-stream;base64," + base64.b64encode(BUFFER).decode()}
+INSTANCES = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
+SPARSE = {"count": 2, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}}
+ACCESSORS = gltf()["accessors"]
 STRIP = [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}]
 COLORS = [{"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "mode": 6}]}]
 SMALL = {"materials": [{}], "nodes": [{"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]}
 GLTF = {
     "inside": text(gltf(buffers=[INSIDE])),
     "strip": text(gltf(buffers=[INSIDE], meshes=STRIP)),
+    "sparse": text(gltf(buffers=[INSIDE], accessors=[ACCESSORS[0] | {"sparse": SPARSE}, *ACCESSORS[1:]])),
+    "instances": text(gltf(buffers=[INSIDE], nodes=[{"mesh": 0, "extensions": INSTANCES}])),
     "none": text({"asset": {"version": "2.0"}}),
 }
 GLB = {
@@ -126,6 +174,10 @@ SEEDS["obj"] = {"usual": OBJ + b"\n%\n" + MTL, "colored": COLORED}
 SEEDS["ply-mesh"] = {
     "ascii": b"format ascii 1.0\n" + CORNERS + FACES + b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
     "little": b"format binary_little_endian 1.0\n" + CORNERS + FACES + SQUARE + b"\3" + numbers(0, 1, 2),
+    "strips": b"format ascii 1.0\n" + CORNERS + b"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    + b"0 0 0\n1 0 0\n1 1 0\n7 0 1 2 -1 2 1 0\n",
+    "faces": b"format ascii 1.0\n" + CORNERS + FACES.replace(b"end", b"property uchar red\nproperty uchar green\nproperty uchar blue\nend")
+    + b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 9\n",
 }
 SEEDS["stl"] = {
     "text": b"solid " + STL,

@@ -11,9 +11,9 @@ pub(crate) fn run(ending: &str, bytes: &[u8]) {
     };
     // The format's mark is given, so that no run has to guess it.
     let mut rows = FORMATS.iter().filter(|row| row.ending[1..] == *ending);
-    let marks = rows.find_map(|row| Some(row.voxel_marks()).filter(|marks| !marks.is_empty()));
-    let marks = marks.unwrap_or_else(|| panic!("{ending} is no format of voxels"));
-    let mark = marks[usize::from(choice) / 4 % marks.len()];
+    let row = rows.next().unwrap_or_else(|| panic!("{ending} is no format of voxels"));
+    let marks = row.voxel_marks();
+    let mark = marks.get(usize::from(choice) / 4 % marks.len().max(1)).copied().unwrap_or_default();
     let mut bytes = mark.to_vec();
     if mark == b"VOX " {
         bytes.extend(b"\x96\0\0\0MAIN\0\0\0\0");
@@ -23,6 +23,7 @@ pub(crate) fn run(ending: &str, bytes: &[u8]) {
     use OutOfBounds::{Drop, Error, Keep, Wrap};
     let options = ReadOptions {
         oob: [Wrap, Keep, Drop, Error][usize::from(choice) % 4],
+        voxel_size: [None, Some(0.5), Some(1e-3), Some(1e30)][usize::from(choice) / 64],
         most_voxels: MOST,
     };
     let mut count = 0u64;

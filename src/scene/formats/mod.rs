@@ -49,7 +49,7 @@ pub enum FileKind {
     Pcd,
     Qb,
     Schem,
-    /// Its bytes are those of [`Schem`](Self::Schem), so the name tells them apart.
+    /// Recognised as [`Schem`](Self::Schem), which has the same beginning, and by the ending of its name.
     Litematic,
 }
 
