@@ -90,8 +90,8 @@ pub static FORMATS: [Format; 17] = {
     }
     [
         row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   &[b"VOX "],              no,      Voxels(vox::read)),
-        row(Ply,     ".ply",    "cloud of points",           &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
-        row(Npy,     ".npy",    "NumPy array of points",           &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
+        row(Ply,     ".ply",    "cloud of points",                  &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
+        row(Npy,     ".npy",    "NumPy array of points",            &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
         row(Binvox,  ".binvox", "grid of the program binvox",       &[b"#binvox "],          no,      Voxels(binvox::read)),
         row(Vxg,     ".vxg",    "voxel graph of this program",      &[&vxg::MAGIC],          no,      Graph),
         row(Obj,     ".obj",    "Wavefront mesh",                   &[],                     is_obj,  Mesh),
@@ -103,8 +103,8 @@ pub static FORMATS: [Format; 17] = {
         row(Far,     ".far",    "far voxels, built of a mesh",      &[b"\x89FAR\r\n\x1a\n"], no,      BuiltOfMesh),
         row(Tvx,     ".tvx",    "textured voxels, built of a mesh", &[b"\x89TVX\r\n\x1a\n"], no,      BuiltOfMesh),
         row(Xyz,     ".xyz",    "text with a point per line",       &[],                     is_xyz,  Voxels(xyz::read)),
-        row(Pcd,     ".pcd",    "cloud of the Point Cloud Library", &[b"# .PCD", b"VERSION "], no,    Voxels(pcd::read)),
-        row(Qb,      ".qb",     "Qubicle Binary scene",             &[b"\x01\x01\0\0"],    no,      Voxels(qb::read)),
+        row(Pcd,     ".pcd",    "cloud of the Point Cloud Library", &[b"# .PCD", b"VERSION "], no,      Voxels(pcd::read)),
+        row(Qb,      ".qb",     "Qubicle Binary scene",             &[b"\x01\x01\0\0"],     no,      Voxels(qb::read)),
         row(Schem,   ".schem",  "Minecraft schematic of Sponge",    &[b"\x1f\x8b", b"\x0a\0"], no,   Voxels(minecraft::read)),
         row(Litematic, ".litematic", "Minecraft schematic of Litematica", &[],                 no,      Voxels(minecraft::read)),
     ]
