@@ -202,6 +202,9 @@ mod tests {
         assert_eq!(kind(&[0; 90], "a.stl"), Some(FileKind::Stl));
         assert_eq!(kind(&[0; 90], "a"), None);
         assert_eq!(kind(b"VOX ", "a.stl"), Some(FileKind::Vox));
+        // Two formats of gzip.
+        assert_eq!(kind(b"\x1f\x8b", "a.Litematic"), Some(FileKind::Litematic));
+        assert_eq!(kind(b"\x1f\x8b", "a"), Some(FileKind::Schem));
         let far = SceneFile::in_memory(b"\x89FAR\r\n\x1a\n", "a.far").unwrap();
         let refused = far.read_voxels(&ReadOptions::default(), &mut |_| (), &crate::graph::Silent);
         assert!(matches!(refused, Err(SceneError::BuiltOfMesh { .. })));

@@ -166,7 +166,7 @@ fn schematics_of_sponge() {
         for bytes in [&packed(&bytes), &bytes] {
             assert_eq!(read_plain(bytes), expected, "{version}");
             let (_, info) = read(bytes).unwrap();
-            let part = "1 kinds of blocks have no colour of their own and got the default one; the first is \"mod:widget\"";
+            let part = "kinds of blocks without a colour of their own, which got the default one: 1, such as \"mod:widget\"";
             assert_eq!(info.warnings, [part]);
         }
         cut_and_damaged(&bytes, bytes.len(), 10_000);

@@ -228,7 +228,7 @@ impl Scene<'_, '_> {
         if let Some(first) = self.unknown.first() {
             let count = self.unknown.len();
             self.info.warnings.push(format!(
-                "{count} kinds of blocks have no colour of their own and got the default one; the first is {first:?}"
+                "kinds of blocks without a colour of their own, which got the default one: {count}, such as {first:?}"
             ));
         }
     }
