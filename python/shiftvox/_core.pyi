@@ -25,6 +25,7 @@ class Scene:
         opacities: bool = False,
         up: Axis | None = None,
         verify: bool = False,
+        voxel_size: float | None = None,
     ) -> Scene: ...
     @staticmethod
     def generate(specification: str) -> Scene: ...

@@ -87,10 +87,11 @@ impl Scene {
     /// Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is
     /// voxelised with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: for `coverage="alpha"`.
     /// `up`: the up axis, by default the format's. `verify`: check also a .vxg file of more than 1 MiB in full.
+    /// `voxel_size`: the side of a voxel, for clouds of points with any coordinates.
     ///
     /// Raises `Error` for a file that is missing, damaged, unknown or too large.
     #[staticmethod]
-    #[pyo3(signature = (path, *, depth=9, opacities=false, up=None, verify=false))]
+    #[pyo3(signature = (path, *, depth=9, opacities=false, up=None, verify=false, voxel_size=None))]
     fn open(
         py: Python<'_>,
         path: PathBuf,
@@ -98,8 +99,12 @@ impl Scene {
         opacities: bool,
         up: Option<&str>,
         verify: bool,
+        voxel_size: Option<f64>,
     ) -> PyResult<Self> {
-        let options = options(depth, opacities, up)?;
+        let mut options = options(depth, opacities, up)?;
+        if let Some(side) = voxel_size {
+            options = options.voxel_size(side);
+        }
         made(py, move || {
             let mut scene = options.open(path)?;
             if verify && !scene.is_verified() {
