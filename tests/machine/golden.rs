@@ -131,7 +131,9 @@ fn the_integers_of_frames_are_those_recorded() {
         let (camera, placement, depth, options) = any_frame(&mut dice);
         let made = FrameSetup::new(&camera, &placement, depth, &options);
         let opacity_eye = made.as_ref().map(FrameSetup::opacity_eye);
-        hash.update(format!("{made:?} {opacity_eye:?}").as_bytes());
+        // Parallel rays came after the record.
+        let made = format!("{made:?}").replace(", ortho_eye: None", "");
+        hash.update(format!("{made} {opacity_eye:?}").as_bytes());
     }
     compare("20000 frames", hash.digest128());
 }
