@@ -41,6 +41,13 @@ class Scene:
         opacities: bool = False,
         up: Axis | None = None,
     ) -> Scene: ...
+    def crop(
+        self,
+        *,
+        x: tuple[int | None, int | None] | None = None,
+        y: tuple[int | None, int | None] | None = None,
+        z: tuple[int | None, int | None] | None = None,
+    ) -> Scene: ...
     def save(self, path: str | PathLike[str]) -> None: ...
     def to_numpy(self) -> tuple[NDArray[np.int32], NDArray[np.uint8]]: ...
     @property

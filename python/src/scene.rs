@@ -23,6 +23,9 @@ pub(crate) struct Scene {
     pub(crate) scene: Arc<shiftvox::Scene>,
 }
 
+/// Ends of a range, or none.
+type Ends = (Option<i64>, Option<i64>);
+
 fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOptions> {
     let depth = count("depth", depth)?;
     let options = SceneOptions::new().mesh_depth(depth).opacities(opacities);
@@ -172,6 +175,25 @@ impl Scene {
         let options = options(depth, opacities, up)?;
         let bytes = ply(&positions, &colors, &triangles)?;
         made(py, move || options.from_bytes(&bytes, "the mesh"))
+    }
+
+    /// The voxels whose indices in the file lie within ranges (from, to) along the axes, without `to`: `z=(None, 69)`.
+    ///
+    /// Raises `Error` if no voxel is left.
+    #[pyo3(signature = (*, x=None, y=None, z=None))]
+    fn crop(
+        &self,
+        py: Python<'_>,
+        x: Option<Ends>,
+        y: Option<Ends>,
+        z: Option<Ends>,
+    ) -> PyResult<Self> {
+        let ranges = [x, y, z].map(|ends| {
+            let (from, to) = ends.unwrap_or_default();
+            from.unwrap_or(i64::MIN)..to.unwrap_or(i64::MAX)
+        });
+        let scene = Arc::clone(&self.scene);
+        made(py, move || scene.cropped(ranges))
     }
 
     /// Write a .vxg file, replacing an existing one. Raises `Error` if the system refuses.

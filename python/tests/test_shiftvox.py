@@ -321,6 +321,10 @@ def test_arrays_come_and_go():
     painted[tuple((indices - low).T)] = colors
     dense, rows = shiftvox.Scene.from_numpy(grid, painted), shiftvox.Scene.from_numpy(indices - low, colors)
     assert shiftvox.render(dense, size=48).hash == shiftvox.render(rows, size=48).hash
+    below = tree.crop(z=(None, 69))
+    assert len(below.to_numpy()[0]) == (indices[:, 2] < 69).sum()
+    with pytest.raises(shiftvox.Error):
+        tree.crop(x=(10**6, None))
     with pytest.raises(shiftvox.Error, match="not that of the grid"):
         shiftvox.Scene.from_numpy(grid, painted[1:])
 

@@ -1,10 +1,11 @@
 //! A scene: a voxel graph, its place, and its vertical axis.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::Error;
 use super::kept::start_threads;
-use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
+use crate::graph::{BuildOptions, Builder, Crop, Graph, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
 use crate::scene::{
@@ -82,6 +83,26 @@ impl Scene {
         let place = Placement::default();
         let graph = builder.finish((place.world_origin, place.voxel_size), &Silent);
         Ok(graph.map_err(|e| Error::Build(e.into()))?.into())
+    }
+
+    /// The voxels whose indices in the file lie within ranges along x, y and z, in the same place, to look inside. They
+    /// have no opacities, and those that the ranges lay open have normals of their own.
+    ///
+    /// ```
+    /// use shiftvox::Scene;
+    ///
+    /// let sponge = Scene::generate("menger,depth=2")?;
+    /// let below = sponge.cropped([i64::MIN..i64::MAX, i64::MIN..i64::MAX, 0..4])?;
+    /// assert!(below.voxels() < sponge.voxels());
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Build`] if no voxel is left, and as [`Scene::from_voxels`].
+    pub fn cropped(&self, ranges: [Range<i64>; 3]) -> Result<Self, Error> {
+        let part = self.graph.cropped(&Crop(ranges), &Silent);
+        let part: Self = part.map_err(|e| Error::Build(e.into()))?.into();
+        Ok(part.with_up(self.up))
     }
 
     /// With another axis up, for [`Camera::fit`](super::Camera::fit).

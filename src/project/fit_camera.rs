@@ -91,6 +91,13 @@ impl Bounds {
         (low[0] < high[0]).then_some((low, high))
     }
 
+    /// The least indices of a graph's voxels in the file, and the greatest plus one, as [`Bounds::in_voxels`].
+    pub fn in_file(graph: &Graph) -> Option<[[i64; 3]; 2]> {
+        let (low, high) = Self::in_voxels(graph)?;
+        let origin = graph.placement.origin_index;
+        Some([low, high].map(|at| [0, 1, 2].map(|k| at[k] + origin[k])))
+    }
+
     pub fn of(graph: &Graph) -> Self {
         match &graph.placement.mesh {
             Some(mesh) => Self::of_mesh(mesh),

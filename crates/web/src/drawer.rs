@@ -1,8 +1,11 @@
 //! Draws what a page asks for, by the library.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use glam::DVec3;
 use serde_json::{Value, json};
-use shiftvox::project::Camera as Placed;
+use shiftvox::graph::Crop;
+use shiftvox::project::{Bounds, Camera as Placed};
 use shiftvox::{
     Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View,
 };
@@ -12,6 +15,9 @@ use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, picked, quoted};
 pub(super) struct Opened {
     name: String,
     scene: Scene,
+    extent: Option<[[i64; 3]; 2]>,
+    /// The last part of it that the page has asked for.
+    part: Mutex<Option<(String, Arc<Scene>)>>,
 }
 
 impl Opened {
@@ -20,15 +26,37 @@ impl Opened {
             "" => Scene::from_bytes(shiftvox::scene::BUNDLED_TREE, "tree.vox"),
             name => Scene::from_bytes(bytes, name),
         };
+        let scene = scene.map_err(|error| error.to_string())?;
         Ok(Self {
+            extent: Bounds::in_file(scene.graph()),
+            part: Mutex::default(),
             name: if name.is_empty() {
                 "assets/tree.vox"
             } else {
                 name
             }
             .to_owned(),
-            scene: scene.map_err(|error| error.to_string())?,
+            scene,
         })
+    }
+
+    /// The part within the request's box.
+    fn part(&self, request: &Request) -> Result<Option<Arc<Scene>>, String> {
+        let Some(text) = request.flags.get("crop") else {
+            return Ok(None);
+        };
+        let mut kept = self.part.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, part)) = kept.as_ref().filter(|(of, _)| of == text) {
+            return Ok(Some(Arc::clone(part)));
+        }
+        let crop: Crop = text.parse()?;
+        let part = self
+            .scene
+            .cropped(crop.0)
+            .map_err(|error| error.to_string())?;
+        let part = Arc::new(part);
+        *kept = Some((text.clone(), Arc::clone(&part)));
+        Ok(Some(part))
     }
 
     fn picture(&self, request: &Request) -> Result<Answer, String> {
@@ -75,6 +103,7 @@ impl Opened {
                 "ortho": camera.ortho,
             },
             "axis": self.scene.up().axis().to_array(),
+            "extent": self.extent,
             "engine": request.flags.get("engine").map_or("fast", String::as_str),
             "command": command.join(" "),
             "hash": hash.map_err(|error| error.to_string())?,
@@ -95,7 +124,9 @@ impl Opened {
         if let Some(height) = camera.ortho {
             placed = placed.orthographic(height);
         }
-        let picture = renderer.render(&self.scene, &placed, width, height);
+        let part = self.part(request)?;
+        let scene = part.as_deref().unwrap_or(&self.scene);
+        let picture = renderer.render(scene, &placed, width, height);
         Ok((camera, picture.map_err(|error| error.to_string())?))
     }
 
@@ -108,7 +139,8 @@ impl Opened {
         let at = y as usize * width as usize + x as usize;
         let voxels = picture.voxels().map_err(|error| error.to_string())?;
         let nodes = picture.nodes().map_err(|error| error.to_string())?;
-        let graph = self.scene.graph();
+        let part = self.part(request)?;
+        let graph = part.as_deref().unwrap_or(&self.scene).graph();
         let place = &graph.placement;
         Ok(picked(
             voxels[at],
@@ -182,6 +214,8 @@ fn settings(request: &Request) -> Result<Renderer, String> {
             ("shade", "lambert") => renderer.shading(Shading::Lambert),
             ("shade", "flat") => renderer.shading(Shading::Flat),
             ("lod", _) => renderer.level_of_detail(number()?),
+            // Of the scene, not of the renderer.
+            ("crop", _) => renderer,
             ("background", _) => renderer.background(value.parse()?),
             ("tolerance", "inf") => renderer.tolerance(f64::INFINITY),
             ("tolerance", _) => renderer.tolerance(number()?),

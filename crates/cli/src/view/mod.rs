@@ -132,12 +132,8 @@ impl Listed {
 
     /// The least and the greatest index of its voxels in the file, plus one.
     fn extent(&self) -> Option<[[i64; 3]; 2]> {
-        *self.extent.get_or_init(|| {
-            let graph = self.opened.graph()?;
-            let (low, high) = Bounds::in_voxels(graph)?;
-            let origin = graph.placement.origin_index;
-            Some([low, high].map(|at| [0, 1, 2].map(|k| at[k] + origin[k])))
-        })
+        let find = || self.opened.graph().and_then(Bounds::in_file);
+        *self.extent.get_or_init(find)
     }
 }
 
