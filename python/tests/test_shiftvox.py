@@ -61,6 +61,8 @@ def test_arrays_are_the_buffers():
 
 def interrupted(work):
     """Calls a function that is interrupted as by Ctrl-C a moment after its begin."""
+    # A shell's background jobs ignore the signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
         timer.start()
@@ -77,6 +79,7 @@ def test_ctrl_c_ends_every_call():
     # The first call of a process, too.
     script = f"""
 import os, signal, threading, shiftvox
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = shiftvox.Scene.open({str(TREE)!r})
 threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
