@@ -7,7 +7,7 @@ use super::{BuildError, BuildOptions, Builder, Graph, Progress};
 
 /// A box of voxels: ranges of file indices along x, y and z.
 ///
-/// As text `0..20,..,-5..`: what is left out reaches to the end.
+/// As text `0..20,..,-5..`: the end is not included, and what is left out reaches to the end of the scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Crop(pub [Range<i64>; 3]);
 
@@ -15,20 +15,28 @@ impl FromStr for Crop {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let range = |text: &str| -> Option<Range<i64>> {
-            let (from, to) = text.split_once("..")?;
+        let range = |text: &str| {
+            let ends = text.trim().split_once("..");
             let end = |text: &str, all: i64| match text {
                 "" => Some(all),
                 text => text.parse().ok(),
             };
-            let range = end(from, i64::MIN)?..end(to, i64::MAX)?;
-            (!range.is_empty()).then_some(range)
+            let range = ends.and_then(|(from, to)| Some(end(from, i64::MIN)?..end(to, i64::MAX)?));
+            let range = range.ok_or_else(|| {
+                format!("`{text}` is no range of voxel indices, such as 3..9, ..20 or ..")
+            })?;
+            match range.is_empty() {
+                true => Err(format!("`{text}` is empty: the end is not included")),
+                false => Ok(range),
+            }
         };
-        let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
-        let ranges = ranges.and_then(|ranges| ranges.try_into().ok());
-        ranges.map(Self).ok_or_else(|| {
-            "three ranges of voxel indices are needed, along x, y and z, such as ..20,..,3..9"
-                .to_owned()
+        let ranges = text.split(',').map(range).collect::<Result<Vec<_>, _>>()?;
+        let three = <[Range<i64>; 3]>::try_from(ranges);
+        three.map(Self).map_err(|ranges| {
+            format!(
+                "{} ranges, and three are needed: along x, y and z, such as ..20,..,3..9",
+                ranges.len()
+            )
         })
     }
 }

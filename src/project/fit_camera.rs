@@ -10,7 +10,7 @@ pub const DEFAULT_FOV: f64 = 40.0;
 /// Largest share of the picture that a fitted object fills.
 const FILL: f64 = 0.94;
 /// Nodes examined to find an object's bounds; others are only enclosed. Cyclic graphs have any number.
-const MAX_VISITS: u32 = if cfg!(fuzzing) { 10_000 } else { 4_000_000 };
+const MAX_VISITS: u32 = if cfg!(fuzzing) { 10_000 } else { 16_000_000 };
 
 /// The world axis that is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,10 +73,15 @@ impl Bounds {
                 continue;
             }
             visits += 1;
-            if level == graph.depth || view.mask(node) == 0 || visits > MAX_VISITS {
-                for k in 0..3 {
-                    low[k] = low[k].min(corner[k]);
-                    high[k] = high[k].max(corner[k] + side);
+            let mask = view.mask(node);
+            if level + 1 >= graph.depth || mask == 0 || visits > MAX_VISITS {
+                // Of the finest voxels the mask is enough.
+                let is_split = level + 1 == graph.depth && mask != 0;
+                for (k, upper) in [0xf0u8, 0xcc, 0xaa].into_iter().enumerate() {
+                    let half = side / 2 * i64::from(is_split);
+                    low[k] = low[k].min(corner[k] + if mask & !upper == 0 { half } else { 0 });
+                    let above = if mask & upper == 0 { half } else { 0 };
+                    high[k] = high[k].max(corner[k] + side - above);
                 }
                 continue;
             }

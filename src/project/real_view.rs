@@ -23,13 +23,15 @@ pub(super) struct RealView {
 }
 
 impl RealView {
-    /// Parallel rays meet `distance` voxels before the target; other cameras do not use it.
+    /// Parallel rays meet `distance` voxels before the target, and the picture is moved by `shift` pixels to the left and
+    /// up; other cameras do not use either.
     pub(super) fn new(
         camera: &Camera,
         axes: &Axes,
         placement: &Placement,
         root_px_log2: u32,
         distance: f64,
+        shift: f64,
     ) -> Self {
         let root_px = (1u64 << root_px_log2) as f64;
         let half = |pixels: u32| f64::from(pixels) / 2.0;
@@ -47,7 +49,7 @@ impl RealView {
         });
         let (anchor, anchor_clip) = match camera.ortho {
             Some(_) => {
-                let [x, y] = [centre_x, centre_y].map(|c| c / root_px * distance);
+                let [x, y] = [centre_x, centre_y].map(|c| (c - shift) / root_px * distance);
                 (camera.target, [x, y, distance])
             }
             None => (camera.eye, [0.0; 3]),

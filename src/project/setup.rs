@@ -21,6 +21,9 @@ const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Boxes widened by more samples may leave their words.
 const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
 const SCREEN_HEADROOM_BITS: u32 = 5;
+/// Samples by which a picture with parallel rays is moved to the left and up. Where samples lie on borders of voxels, as
+/// at one voxel per pixel, the converging rays would see both sides.
+const ORTHO_SHIFT: f64 = 1.0 / 32.0;
 
 /// Why a frame cannot be set up.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -136,8 +139,9 @@ impl FrameSetup {
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
             Format::new(options.bits, frac)?
         };
+        let shift = ORTHO_SHIFT / f64::from(1u32 << options.aa_log2);
         let view_from = |distance: f64| {
-            let view = RealView::new(camera, &axes, placement, root_px_log2, distance);
+            let view = RealView::new(camera, &axes, placement, root_px_log2, distance, shift);
             let (clip_frac, sub_levels) = match options.frac {
                 Some(frac) => split_fraction(frac, MAX_CLIP_FRAC, options.coverage),
                 None => view.widest_fraction(depth, format, options.coverage),

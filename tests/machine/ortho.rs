@@ -1,5 +1,6 @@
 //! Parallel rays against a slow way to the same truth: each ray cut with each voxel in real numbers. Voxels are compared
-//! where rays a 32nd of a sample beside agree, because the eye is not at infinity (`SPEC.md`, "Frame set-up").
+//! where rays a 32nd of a sample beside agree, because the eye is not at infinity. The picture is moved by as much
+//! (`SPEC.md`, "Frame set-up").
 
 use glam::DVec3;
 use shiftvox::{Buffer, Camera, Renderer, Scene, Voxel};
@@ -45,8 +46,9 @@ fn parallel_rays_see_the_voxels_and_depths_of_real_numbers() {
         for y in 0..pixels {
             for x in 0..width {
                 let met = |by: [f64; 2]| {
-                    let across = f64::from(x) + 0.5 + by[0] - f64::from(width) / 2.0;
-                    let down = f64::from(y) + 0.5 + by[1] - f64::from(pixels) / 2.0;
+                    let beside = 0.5 + 1.0 / 32.0;
+                    let across = f64::from(x) + beside + by[0] - f64::from(width) / 2.0;
+                    let down = f64::from(y) + beside + by[1] - f64::from(pixels) / 2.0;
                     let from = eye + (right * across - up * down) * pixel;
                     first(&voxels, from, forward)
                 };
@@ -81,4 +83,35 @@ fn parallel_rays_see_the_voxels_and_depths_of_real_numbers() {
         compared > 60 * 31 * 48 * 9 / 10 && seen > compared / 5,
         "{compared}, {seen}"
     );
+}
+
+/// Pictures of one voxel per pixel, also where the samples lie on borders of voxels.
+#[test]
+fn at_one_voxel_per_pixel_each_column_has_a_pixel() {
+    for (across, size) in [(5, 16), (5, 17), (4, 5), (7, 64), (16, 33), (64, 64)] {
+        let plate = (0..across * across).map(|i| Voxel {
+            index: [i % across, 3, i / across],
+            ..Voxel::default()
+        });
+        let scene = Scene::from_voxels(plate).unwrap();
+        let middle = f64::from(across) / 2.0;
+        let camera = Camera::look_at([middle, -9.0, middle], [middle, 3.5, middle]);
+        let camera = camera.orthographic(f64::from(size));
+        let renderer = Renderer::new().buffers([Buffer::Voxel]);
+        let picture = renderer.render(&scene, &camera, size, size).unwrap();
+        let voxels = picture.voxels().unwrap();
+        let mut seen: Vec<[i32; 2]> = voxels
+            .iter()
+            .filter(|voxel| voxel[3] >= 0)
+            .map(|voxel| [voxel[0], voxel[2]])
+            .collect();
+        let drawn = seen.len();
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(
+            [drawn, seen.len()],
+            [(across * across) as usize; 2],
+            "{across} in {size}"
+        );
+    }
 }

@@ -1,6 +1,6 @@
 //! The pictures of one call of `render`: files of folders, and parts of a batch for several computers.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -78,15 +78,20 @@ pub(super) fn jobs(
     if !folder.to_string_lossy().contains("{stem}") {
         whole::check_folder(folder)?;
     }
+    let named = |name: &str| PathBuf::from(pattern.replace("{stem}", name));
+    let mut stems = HashMap::new();
+    for scene in &all {
+        *stems.entry(scenes::stem(scene)).or_insert(0) += 1;
+    }
     let mut pictures = HashSet::new();
     let mut jobs = Vec::new();
     for scene in all {
-        let named = |name: &str| PathBuf::from(pattern.replace("{stem}", name));
-        let mut picture = named(&scenes::stem(&scene));
-        // Of `a.obj` beside `a.vox`.
-        if let (true, Some(name)) = (pictures.contains(&picture), Path::new(&scene).file_name()) {
-            picture = named(&name.to_string_lossy());
-        }
+        let stem = scenes::stem(&scene);
+        // `a.obj` and `a.vox` both keep their endings: a picture `a.png` may be of an earlier call, and of either.
+        let picture = match Path::new(&scene).file_name() {
+            Some(name) if stems[&stem] > 1 => named(&name.to_string_lossy()),
+            _ => named(&stem),
+        };
         if !pictures.insert(picture.clone()) {
             let message = format!("two scenes would both be drawn to {}", picture.display());
             let advice = "draw them into different folders, one after the other";
@@ -110,7 +115,7 @@ fn is_folder(path: &Path) -> bool {
         || path.is_dir()
 }
 
-/// The files of a folder whose names end like a format's, sorted by name.
+/// The files of a folder whose names end like a format's, without hidden ones, sorted by name.
 fn files(folder: &str) -> Result<Vec<String>, CliError> {
     let failed = |error| CliError::input(format!("{folder}: {error}"));
     let mut found = Vec::new();
@@ -119,7 +124,10 @@ fn files(folder: &str) -> Result<Vec<String>, CliError> {
         // A name that is not UTF-8 is not found later, like a file that has been removed.
         let name = path.to_string_lossy().into_owned();
         let is_scene = |name: &str| FORMATS.iter().any(|format| name.ends_with(format.ending));
-        if is_scene(&name.to_lowercase()) && path.is_file() {
+        let is_hidden = path
+            .file_name()
+            .is_some_and(|of| of.to_string_lossy().starts_with('.'));
+        if is_scene(&name.to_lowercase()) && !is_hidden && path.is_file() {
             found.push(name);
         }
     }

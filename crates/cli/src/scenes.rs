@@ -15,6 +15,9 @@ use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
 use shiftvox_mesh::{LoadOptions, Material, Mesh};
 
+/// Most voxels of a file that is dropped on a page: a small one may have runs without end.
+#[cfg(feature = "view")]
+const MOST_DROPPED_VOXELS: u64 = 1 << 26;
 /// Most voxels that are listed one by one.
 pub(super) const MAX_LISTED: u64 = 1 << 28;
 
@@ -134,7 +137,8 @@ impl Scene {
 #[cfg(feature = "view")]
 pub(super) fn open_bytes(name: &str, bytes: &[u8], args: &SceneArgs) -> Result<Scene, CliError> {
     let started = Instant::now();
-    let (options, silent) = (options(args).voxels, shiftvox::graph::Silent);
+    let (mut options, silent) = (options(args).voxels, shiftvox::graph::Silent);
+    options.read.most_voxels = MOST_DROPPED_VOXELS;
     let opened = scene::open_bytes(bytes, name, &options, &NoMeshes, &silent);
     let opened = opened.map_err(|error| match error {
         scene::OpenError::NoMeshes(name) => CliError::input(format!(

@@ -148,6 +148,7 @@ impl<R: BufRead> Reader<'_, '_, R> {
         if visible == 0 {
             return Ok(());
         }
+        self.emitter.expect((run.end - run.start) as u64)?;
         let color = if self.is_bgra { [b, g, a] } else { [a, g, b] };
         let begin = self.source.offset;
         for at in run {

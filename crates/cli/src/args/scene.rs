@@ -25,8 +25,8 @@ pub(crate) struct SceneArgs {
     /// Give the voxels of a mesh six opacities, as --coverage alpha does for itself
     #[arg(long)]
     pub(crate) opacities: bool,
-    /// Only the voxels within a box, to look inside: ranges of voxel indices along x, y and z, such as
-    /// ..20,..,3..9
+    /// Only the voxels within a box, to look inside: ranges of voxel indices along x, y and z without
+    /// their ends, such as ..20,..,3..9
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) crop: Option<Crop>,
     /// Up axis, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and
