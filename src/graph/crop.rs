@@ -7,7 +7,7 @@ use super::{BuildError, BuildOptions, Builder, Graph, Progress};
 
 /// A box of voxels: ranges of file indices along x, y and z.
 ///
-/// As text `0..20,..,-5..`: the end is not included, and what is left out reaches to the end of the scene.
+/// As text `0..20,..,-5..`. An end is not included. A missing number means the end of the scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Crop(pub [Range<i64>; 3]);
 

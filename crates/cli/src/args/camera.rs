@@ -58,7 +58,7 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "DEG")]
     pub(crate) fov: Option<f64>,
     /// Parallel rays (orthographic). With --view iso that is isometric, with --elevation 30 edges rise
-    /// one pixel in two. HEIGHT is the picture's, in world units: --ortho=256 [default: fitted]
+    /// one pixel in two. The picture is HEIGHT world units high, as in --ortho=256 [default: fitted]
     #[arg(long, value_name = "HEIGHT", num_args = 0..=1, require_equals = true, conflicts_with = "fov")]
     pub(crate) ortho: Option<Option<f64>>,
     /// Named view, fitted to the object [default: iso]. In model and bench, the terrain, the sponge

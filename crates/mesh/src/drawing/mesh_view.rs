@@ -9,8 +9,8 @@ use shiftvox::project::{Camera, CameraError};
 /// Share of the distance to the farthest corner below which nothing is drawn.
 const NEAR: f64 = 1e-6;
 
-/// Distance, in heights of the picture, of the eye that stands for parallel rays. Over a scene as deep as the picture is
-/// high, these converge by less than an 8,000th of the picture. Depths of 32 bits still tell a 4,000th of the height.
+/// Parallel rays are drawn from an eye at this distance, in heights of the picture. Over a scene as deep as the picture is
+/// high, they converge by less than an 8,000th of the picture. Depths of 32 bits differ by a 4,000th of the height.
 const ORTHO_HEIGHTS: f64 = 4096.0;
 
 /// A camera's view of the contents of a box.
