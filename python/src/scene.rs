@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyBytes};
 use shiftvox::Voxel;
-use shiftvox::graph::vxg::write_to;
+use shiftvox::graph::{BuildError, vxg::write_to};
 use shiftvox::picture::npy::Values;
 use shiftvox_mesh::SceneOptions;
 
@@ -179,7 +179,7 @@ impl Scene {
 
     /// The voxels whose indices in the file lie within ranges (from, to) along the axes, without `to`: `z=(None, 69)`.
     ///
-    /// Raises `Error` if no voxel is left.
+    /// Raises `Error` if no voxel is left, and for a scene of more than 2**28 voxels.
     #[pyo3(signature = (*, x=None, y=None, z=None))]
     fn crop(
         &self,
@@ -203,14 +203,17 @@ impl Scene {
     }
 
     /// Indices int32 (N, 3) and colours uint8 (N, 3) of the finest voxels, as `from_numpy` takes them.
+    ///
+    /// Raises `Error` for more than 2**28 voxels.
     fn to_numpy(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let scene = Arc::clone(&self.scene);
         let (indices, colors) = on_all_threads(py, move |stop| {
-            let voxels = scene.graph().finest_voxels();
+            let voxels = scene.graph().finest_voxels()?;
             let voxels = voxels.take_while(|_| !stop.is_requested());
             let rows = voxels.map(|voxel| (voxel.index, voxel.color));
-            rows.collect::<(Vec<_>, Vec<_>)>()
-        })?;
+            Ok(rows.collect::<(Vec<_>, Vec<_>)>())
+        })?
+        .map_err(|error: BuildError| refused(error))?;
         let shape = [indices.len(), 3];
         Ok((
             array(py, Values::I32(indices.into_flattened()), &shape)?,

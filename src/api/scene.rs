@@ -98,7 +98,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Build`] if no voxel is left, and as [`Scene::from_voxels`].
+    /// [`Error::Build`] if no voxel is left, for a scene of more than 2^28 voxels, and as [`Scene::from_voxels`].
     pub fn cropped(&self, ranges: [Range<i64>; 3]) -> Result<Self, Error> {
         let part = self.graph.cropped(&Crop(ranges), &Silent);
         let part: Self = part.map_err(|e| Error::Build(e.into()))?.into();

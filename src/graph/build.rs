@@ -285,6 +285,8 @@ pub enum BuildError {
     TooLarge { axis: char, extent: u64 },
     #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
     TooMany(u64),
+    #[error("{0} voxels are too many to be listed one by one")]
+    TooManyToList(u64),
     #[error(transparent)]
     Memory(#[from] Shortage),
     #[error(

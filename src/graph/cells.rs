@@ -1,6 +1,8 @@
 //! Walks over a graph: its cells in Morton order, and counts per level.
 
-use super::{Graph, Voxel};
+use super::{BuildError, Graph, Voxel};
+
+const MOST_LISTED: u64 = 1 << 28;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
@@ -64,9 +66,14 @@ impl Graph {
         }
     }
 
-    /// All finest voxels, also those of solid leaves, by their index in the file.
-    pub fn finest_voxels(&self) -> impl Iterator<Item = Voxel> + '_ {
-        self.voxels().flat_map(move |cell| {
+    /// All finest voxels, also those of solid leaves, by their index in the file. Fails for more than 2^28, which graphs
+    /// have that share parts.
+    pub fn finest_voxels(&self) -> Result<impl Iterator<Item = Voxel> + '_, BuildError> {
+        let count = self.voxels;
+        if count > MOST_LISTED {
+            return Err(BuildError::TooManyToList(count));
+        }
+        Ok(self.voxels().flat_map(move |cell| {
             let corner = self.file_index(&cell);
             let side = 1i64 << (self.depth - cell.level);
             let color = self.color_of(cell.node);
@@ -79,7 +86,7 @@ impl Graph {
                     normal: Some(normal).filter(|n| !n.is_none()),
                 }
             })
-        })
+        }))
     }
 
     /// Lowest corner, in finest voxels, and level of the one voxel that shows a node. None where nodes may be in several

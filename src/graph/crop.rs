@@ -46,14 +46,14 @@ impl Graph {
     /// own.
     ///
     /// # Errors
-    /// [`BuildError`], also if no voxel is left.
+    /// [`BuildError`], also if no voxel is left, and as [`Graph::finest_voxels`].
     pub fn cropped(&self, crop: &Crop, progress: &dyn Progress) -> Result<Self, BuildError> {
         let mut builder = Builder::new(BuildOptions::default());
         let is_inside = |index: [i32; 3]| {
             let mut axes = crop.0.iter().zip(index);
             axes.all(|(range, at)| range.contains(&i64::from(at)))
         };
-        for voxel in self.finest_voxels().filter(|voxel| is_inside(voxel.index)) {
+        for voxel in self.finest_voxels()?.filter(|voxel| is_inside(voxel.index)) {
             builder.push(voxel);
         }
         let place = &self.placement;
@@ -85,8 +85,12 @@ mod tests {
         let graph = builder.finish(([1.0, 2.0, 3.0], 0.5), &Silent).unwrap();
         let crop: Crop = "..3,2..9,95..".parse().unwrap();
         let part = graph.cropped(&crop, &Silent).unwrap();
-        let mut found: Vec<_> = part.finest_voxels().map(|v| (v.index, v.color)).collect();
-        let all = graph.finest_voxels().map(|v| (v.index, v.color));
+        let mut found: Vec<_> = part
+            .finest_voxels()
+            .unwrap()
+            .map(|v| (v.index, v.color))
+            .collect();
+        let all = graph.finest_voxels().unwrap().map(|v| (v.index, v.color));
         let mut expected: Vec<_> = all
             .filter(|([x, y, z], _)| *x < 3 && (2..9).contains(y) && *z >= 95)
             .collect();

@@ -121,14 +121,11 @@ pub(super) fn build_file(
 
 /// The finest voxels of a graph at their file indices; a large leaf is many.
 fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
-    if graph.voxels > scenes::MAX_LISTED {
-        return Err(CliError::new(
-            Kind::Limit,
-            format!("a voxel file of {} voxels is too large", graph.voxels),
-        )
-        .advise("write a .vxg, or convert a scene of fewer levels"));
-    }
-    Ok(graph.finest_voxels())
+    let voxels = graph.finest_voxels();
+    voxels.map_err(|error| {
+        let error = CliError::new(Kind::Limit, error.to_string());
+        error.advise("write a .vxg, or convert a scene of fewer levels")
+    })
 }
 
 /// `what`: voxels or triangles.

@@ -18,8 +18,6 @@ use shiftvox_mesh::{LoadOptions, Material, Mesh};
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
 #[cfg(feature = "view")]
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
-/// Most voxels that are listed one by one.
-pub(super) const MAX_LISTED: u64 = 1 << 28;
 
 #[derive(Debug)]
 pub(super) struct Scene {
@@ -120,10 +118,6 @@ impl Scene {
         if !graph.opacity.is_empty() {
             let reason = "--crop keeps no opacities: leave out --opacities, or alpha";
             return Err(CliError::usage(reason));
-        }
-        if graph.voxels > MAX_LISTED {
-            let reason = format!("{name}: too many voxels to crop: {}", grouped(graph.voxels));
-            return Err(CliError::new(Kind::Limit, reason));
         }
         let part = graph.cropped(crop, progress);
         part.map_err(|error| match error {

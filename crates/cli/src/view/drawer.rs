@@ -13,7 +13,7 @@ use shiftvox::project::{Camera, Stop};
 use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, picked, quoted};
 
 use super::flags::{self, MODEL_FLAGS};
-use super::{Listed, MOST_DROPPED, Shared, overlay};
+use super::{Chosen, Listed, MOST_DROPPED, Shared, overlay};
 use crate::args::camera_line;
 use crate::error::{CliError, Kind};
 use crate::methods::{self, DrawArgs};
@@ -109,25 +109,22 @@ impl Shared {
             show,
             hash: is_hashed,
         };
-        let part = settings.crop.as_ref();
-        let part = part.map(|crop| listed.part(&args, crop)).transpose()?;
-        let mut of_part = part
-            .as_ref()
-            .map(|part| part.drawable(&args, stop))
-            .transpose()?;
-        let opened = match &part {
-            Some(part) => &**part,
-            None => listed.for_flags(&args)?,
-        };
-        let drawable: &mut (dyn Drawable + '_) = match &mut of_part {
-            Some(drawable) => &mut **drawable,
-            None => {
+        let opened = listed.chosen(&args, settings.crop.as_ref())?;
+        let mut of_part;
+        let drawable: &mut (dyn Drawable + '_) = match &opened {
+            // Another part is drawn anew: the last one is gone.
+            Chosen::Part(part) => {
+                part.check(&listed.name, &args)?;
+                of_part = part.drawable(&args, stop)?;
+                &mut *of_part
+            }
+            Chosen::Whole(whole) => {
                 let drawable = match kept.iter().position(|(of, _)| *of == key) {
                     Some(at) => kept.remove(at).1,
                     None => {
-                        opened.check(&listed.name, &args)?;
+                        whole.check(&listed.name, &args)?;
                         kept.truncate(KEPT - 1);
-                        listed.for_flags(&args)?.drawable(&args, stop)?
+                        whole.drawable(&args, stop)?
                     }
                 };
                 kept.insert(0, (key, drawable));
@@ -188,12 +185,7 @@ impl Shared {
         let settings = flags::settings(request)?;
         let listed = self.scene(request.scene)?;
         let args = self.args.draw_args(&settings.engine, &settings.picture);
-        let part = settings.crop.as_ref();
-        let part = part.map(|crop| listed.part(&args, crop)).transpose()?;
-        let opened = match &part {
-            Some(part) => &**part,
-            None => listed.for_flags(&args)?,
-        };
+        let opened = listed.chosen(&args, settings.crop.as_ref())?;
         let graph = opened.graph().ok_or_else(|| {
             CliError::usage("the hardware model is of voxels, and this scene has none")
         })?;

@@ -5,6 +5,7 @@ mod flags;
 mod overlay;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::ops::Deref;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
@@ -74,6 +75,23 @@ struct Listed {
     extent: OnceLock<Option<[[i64; 3]; 2]>>,
 }
 
+/// A scene, or the part of one within a box.
+enum Chosen {
+    Whole(&'static Opened),
+    Part(Arc<Opened>),
+}
+
+impl Deref for Chosen {
+    type Target = Opened;
+
+    fn deref(&self) -> &Opened {
+        match self {
+            Self::Whole(opened) => opened,
+            Self::Part(opened) => opened,
+        }
+    }
+}
+
 impl Listed {
     fn open(name: &str, args: &ViewArgs, console: &Console) -> Result<Self, CliError> {
         let draw_args = args.draw_args(&args.engine, &args.picture);
@@ -115,19 +133,22 @@ impl Listed {
         }
     }
 
-    /// The part within a box.
-    fn part(&self, args: &DrawArgs<'_>, crop: &Crop) -> Result<Arc<Opened>, CliError> {
+    /// What a request draws.
+    fn chosen(&'static self, args: &DrawArgs<'_>, crop: Option<&Crop>) -> Result<Chosen, CliError> {
         let whole = self.for_flags(args)?;
+        let Some(crop) = crop else {
+            return Ok(Chosen::Whole(whole));
+        };
         let mut kept = self.part.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((of, part)) = &*kept
             && of == crop
             && std::ptr::eq(whole, &raw const self.opened)
         {
-            return Ok(Arc::clone(part));
+            return Ok(Chosen::Part(Arc::clone(part)));
         }
         let part = Arc::new(whole.cropped(crop)?);
         *kept = Some((crop.clone(), Arc::clone(&part)));
-        Ok(part)
+        Ok(Chosen::Part(part))
     }
 
     /// The least and the greatest index of its voxels in the file, plus one.
