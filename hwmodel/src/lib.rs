@@ -38,7 +38,9 @@
 macro_rules! named {
     ($(#[$meta:meta])* $visible:vis enum $type:ident { $($(#[$doc:meta])* $variant:ident = $name:literal,)+ }) => {
         $(#[$meta])*
-        $visible enum $type { $(#[doc = $name] $(#[$doc])* $variant,)+ }
+        $visible enum $type {
+            $($(#[$doc])* #[doc = ""] #[doc = concat!("`", $name, "`")] $variant,)+
+        }
 
         impl $type {
             /// All values, in the order of their discriminants.

@@ -24,6 +24,18 @@ static NO_DARKER: LazyLock<[u8; 4096]> = LazyLock::new(|| {
     std::array::from_fn(|upper| LINEAR.partition_point(|&light| light < (upper as u32) << 12) as u8)
 });
 
+/// By the bits of a packed normal: its direction times [`UNIT_NORMAL`], towards zero for both signs. Zero is no normal.
+static DIRECTIONS: LazyLock<Vec<[i32; 3]>> = LazyLock::new(|| {
+    let direction = |bits| PackedNormal(bits).decode().unwrap_or(DVec3::ZERO);
+    (0..=u16::MAX)
+        .map(|bits| {
+            direction(bits)
+                .to_array()
+                .map(|part| (part * UNIT_NORMAL) as i32)
+        })
+        .collect()
+});
+
 fn encode(linear: u64) -> u8 {
     let linear = linear.min(FULL as u64) as u32;
     let table: &[u32; 256] = &LINEAR;
@@ -51,11 +63,9 @@ impl Sum {
         for (light, value) in self.light.iter_mut().zip(color) {
             *light += u64::from(linear[usize::from(value)]);
         }
-        if let Some(unit) = normal.decode() {
-            for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                // Towards zero, for both signs.
-                *sum += (part * UNIT_NORMAL) as i64;
-            }
+        let direction = DIRECTIONS[usize::from(normal.0)];
+        for (sum, part) in self.normal.iter_mut().zip(direction) {
+            *sum += i64::from(part);
         }
     }
 

@@ -67,12 +67,15 @@ impl PackedNormal {
     }
 }
 
+/// A megabyte, which a core's second cache holds: of the normals of a terrain, nine in ten are found.
+const KNOWN_BITS: u32 = 15;
+
 /// Encodes directions. Clouds repeat theirs, so the last ones are kept.
 pub(crate) struct KnownNormals(Vec<(DVec3, PackedNormal)>);
 
 impl Default for KnownNormals {
     fn default() -> Self {
-        Self(vec![(DVec3::ZERO, PackedNormal::NONE); 1 << 12])
+        Self(vec![(DVec3::ZERO, PackedNormal::NONE); 1 << KNOWN_BITS])
     }
 }
 
@@ -80,7 +83,7 @@ impl KnownNormals {
     pub(crate) fn encode(&mut self, direction: DVec3) -> PackedNormal {
         let [x, y, z] = direction.to_array().map(f64::to_bits);
         let mixed = (x ^ y.rotate_left(21) ^ z.rotate_left(42)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let known = &mut self.0[(mixed >> 52) as usize];
+        let known = &mut self.0[(mixed >> (64 - KNOWN_BITS)) as usize];
         if known.0 != direction {
             *known = (direction, PackedNormal::encode(direction));
         }

@@ -255,6 +255,11 @@ impl From<OpenError> for CliError {
                 "{file}: this is a {kind} file: render and turntable draw it, info describes it"
             ))
             .advise("for anything else take the mesh that it was made of"),
+            OpenError::Scene(SceneError::Io { source, .. })
+                if source.kind() == io::ErrorKind::IsADirectory =>
+            {
+                failure.advise("only render takes a folder, and draws all scenes in it")
+            }
             OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }

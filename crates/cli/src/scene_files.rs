@@ -82,6 +82,12 @@ pub(super) fn write(
         }
         _ => check_ending(output)?,
     }
+    let side = graph.placement.voxel_size;
+    if ending != "vxg" && side != 1.0 {
+        warnings.push(format!(
+            "a .{ending} holds no size of voxels, and theirs is {side}; a .vxg keeps it"
+        ));
+    }
     progress.end();
     let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
     Ok(Written {

@@ -28,6 +28,11 @@ pub(super) fn read(
         }
         let Some(words) = words(&line) else { continue };
         let part = || (format!("line {number}"), begin);
+        if has_decimal_commas(&line) {
+            let advice = "write decimal points in place of commas";
+            let expected = "commas, semicolons or spaces between numbers";
+            return Err(Fault::new(part().0, begin, expected, printable(&line), advice).into());
+        }
         let fault = |expected: String, found: &[u8]| {
             let advice = "every line needs the same columns; export the points again";
             Fault::new(part().0, begin, expected, printable(found), advice)
@@ -65,6 +70,20 @@ fn words(line: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
     let is_data = !text.is_empty() && !text.starts_with(b"#") && !text.starts_with(b"//");
     let ends = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b';');
     is_data.then(|| text.split(ends).filter(|word| !word.is_empty()))
+}
+
+/// Whether commas stand within the words of a line that other characters separate.
+fn has_decimal_commas(line: &[u8]) -> bool {
+    let parts = line
+        .trim_ascii()
+        .split(|byte| byte.is_ascii_whitespace() || *byte == b';');
+    let words: Vec<&[u8]> = parts
+        .map(|word| word.strip_suffix(b",").unwrap_or(word))
+        .collect();
+    words.len() > 1
+        && words
+            .iter()
+            .any(|word| word[..].iter().skip(1).any(|byte| *byte == b','))
 }
 
 /// The columns from the fourth, or of seven columns from the fifth (after an intensity), if the first point has bytes there.
