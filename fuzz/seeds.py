@@ -95,15 +95,15 @@ THREE = compound("", compound("Schematic", SIZE, compound("Blocks", STATES, arra
 KINDS = tag(9, "BlockStatePalette", b"\n" + struct.pack(">i", 2) + named("air") + named("minecraft:stone"))
 REGION = compound("one", vector("Position", 1, 2, 3), vector("Size", -2, 1, 2), KINDS, array(12, "BlockStates", 1, struct.pack(">Q", 0x51)))
 FILES = {"two": TWO, "three": THREE, "litematic": compound("", compound("Regions", REGION))}
-# The marks are 1f 8b of gzip and 0a 00 of NBT, by the bits above those of the ways to treat voxels outside.
+# The marks are 1f 8b of gzip and 0a 00 of NBT.
 SCHEM = {name: file[2:] for name, file in FILES.items()}
 VOXELS = {"vox": VOX, "ply": PLY, "npy": NPY, "binvox": BINVOX, "xyz": XYZ_TEXT, "pcd": PCD, "qb": QB}
-# The first byte selects one of four ways to treat voxels outside of the grid, and the size of a voxel.
+# The first byte selects the mark, and with its two highest bits the size of a voxel.
 SEEDS = {
-    reader: {f"{name}_{oob}": bytes([oob]) + seed for name, seed in seeds.items() for oob in (0, 1, 2, 3, 64, 128, 192)}
+    reader: {f"{name}_{size}": bytes([size]) + seed for name, seed in seeds.items() for size in (0, 64, 128, 192)}
     for reader, seeds in VOXELS.items()
 }
-SEEDS["schem"] = {name: b"\4" + seed for name, seed in SCHEM.items()}
+SEEDS["schem"] = {name: b"\1" + seed for name, seed in SCHEM.items()}
 SEEDS["schem"] |= {f"{name}_gzip": b"\0" + gzip.compress(file)[2:] for name, file in FILES.items()}
 
 # A triangle and a square of two: positions, normals, indices.

@@ -1,7 +1,7 @@
 //! A byte of options, then a voxel file without its mark; of `.vox`, the chunks within `MAIN`. Voxels or an error.
 
 use shiftvox::graph::Silent;
-use shiftvox::scene::{FORMATS, OutOfBounds, ReadOptions, read_voxels_from};
+use shiftvox::scene::{FORMATS, ReadOptions, read_voxels_from};
 
 const MOST: u64 = 1 << 20;
 
@@ -13,16 +13,14 @@ pub(crate) fn run(ending: &str, bytes: &[u8]) {
     let mut rows = FORMATS.iter().filter(|row| row.ending[1..] == *ending);
     let row = rows.next().unwrap_or_else(|| panic!("{ending} is no format of voxels"));
     let marks = row.voxel_marks();
-    let mark = marks.get(usize::from(choice) / 4 % marks.len().max(1)).copied().unwrap_or_default();
+    let mark = marks.get(usize::from(choice) % 64 % marks.len().max(1)).copied().unwrap_or_default();
     let mut bytes = mark.to_vec();
     if mark == b"VOX " {
         bytes.extend(b"\x96\0\0\0MAIN\0\0\0\0");
         bytes.extend((rest.len() as u32).to_le_bytes());
     }
     bytes.extend(rest);
-    use OutOfBounds::{Drop, Error, Keep, Wrap};
     let options = ReadOptions {
-        oob: [Wrap, Keep, Drop, Error][usize::from(choice) % 4],
         voxel_size: [None, Some(0.5), Some(1e-3), Some(1e30)][usize::from(choice) / 64],
         most_voxels: MOST,
     };

@@ -33,7 +33,7 @@ pub use formats::{
 pub use mesh::{MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
 pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
 pub use open_error::{MeshFailure, OpenError};
-pub use options::{OutOfBounds, ReadOptions, SceneInfo};
+pub use options::{ReadOptions, SceneInfo};
 
 pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
 

@@ -1,23 +1,7 @@
 //! Options of reading a voxel file, and the properties of a file that was read.
 
-/// Treatment of `.vox` voxels outside their model's `SIZE`. VoxelShop stores coordinates left of the box modulo 256.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum OutOfBounds {
-    /// The coordinate modulo 256 that is nearest to the middle of SIZE.
-    #[default]
-    Wrap,
-    /// The byte as it stands.
-    Keep,
-    /// Left out, as MagicaVoxel does.
-    Drop,
-    Error,
-}
-
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadOptions {
-    /// Voxels outside `SIZE`; only `.vox` has them.
-    pub oob: OutOfBounds,
     /// Side of a voxel, in units of the file, above 0: for clouds of points. Without it, their coordinates are indices.
     pub voxel_size: Option<f64>,
     /// Most voxels, with those at one index counted each. More are an error.
@@ -27,7 +11,6 @@ pub struct ReadOptions {
 impl Default for ReadOptions {
     fn default() -> Self {
         Self {
-            oob: OutOfBounds::default(),
             voxel_size: None,
             most_voxels: u64::MAX,
         }

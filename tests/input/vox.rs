@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use shiftvox::graph::Voxel;
-use shiftvox::scene::{OutOfBounds, ReadOptions, VoxWriter, VoxWritten};
+use shiftvox::scene::{VoxWriter, VoxWritten};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::vox_file::{Attributes, VoxFile};
-use crate::{Plain, digest, read, read_plain, read_with, shipped};
+use crate::{Plain, digest, read, read_plain, shipped};
 
 pub(crate) const THREE: [[u8; 4]; 3] = [[10, 20, 30, 255], [40, 50, 60, 0], [70, 80, 90, 255]];
 
@@ -116,37 +116,20 @@ fn the_first_key_frame_is_read() {
 
 /// VoxelShop writes such files: a byte outside `SIZE` means a number below 0, about the same pivot.
 #[test]
-fn voxels_outside_the_size_by_every_rule() {
-    let by = |oob| ReadOptions {
-        oob,
-        ..ReadOptions::default()
-    };
+fn voxels_outside_the_size_are_taken_modulo_256() {
     let stored = [[0, 19, 88, 1], [203, 72, 0, 1], [238, 0, 5, 1]];
     let file = VoxFile::default().model([20, 20, 90], &stored).bytes();
-    for (oob, voxels, low, high) in [
-        (OutOfBounds::Wrap, 3, [-53, 0, 0], [0, 72, 88]),
-        (OutOfBounds::Keep, 3, [0, 0, 0], [238, 72, 88]),
-        (OutOfBounds::Drop, 1, [0, 19, 88], [0, 19, 88]),
-    ] {
-        let (_, info) = read_with(&file, &by(oob)).unwrap();
-        let found = (info.voxels, info.outside_size, info.bounds);
-        assert_eq!(found, (voxels, 2, Some((low, high))), "{oob:?}");
-    }
-    let refused = read_with(&file, &by(OutOfBounds::Error));
-    let told = refused.unwrap_err().to_string();
-    assert!(told.contains("SIZE [20, 20, 90]") && told.contains("wrap, keep or drop"));
+    let (_, info) = read(&file).unwrap();
+    let found = (info.voxels, info.outside_size, info.bounds);
+    assert_eq!(found, (3, 2, Some(([-53, 0, 0], [0, 72, 88]))));
+    assert!(info.warnings[0].contains("were taken modulo 256"));
     // 250 in a size of 4 is -6; centre -6 - 2 + 1/2 = -7.5 along x.
-    for (rotation, oob, index) in [
-        ("4", OutOfBounds::Wrap, [-8, -1, 0]),
-        ("17", OutOfBounds::Wrap, [0, -8, 0]),
-        ("4", OutOfBounds::Keep, [248, -1, 0]),
-    ] {
+    for (rotation, index) in [("4", [-8, -1, 0]), ("17", [0, -8, 0])] {
         let file = VoxFile::default().model([4, 2, 1], &[[250, 0, 0, 1]]);
         let file = file
             .moved([0, 1], &[("_r", rotation)])
             .shape(1, &[(0, &[])]);
-        let (voxels, _) = read_with(&file.bytes(), &by(oob)).unwrap();
-        assert_eq!(voxels[0].index, index);
+        assert_eq!(places(&file), [index]);
     }
 }
 

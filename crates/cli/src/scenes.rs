@@ -203,7 +203,6 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
     OpenOptions {
         voxels: scene::OpenOptions {
             read: ReadOptions {
-                oob: args.oob,
                 voxel_size: args.voxel_size,
                 ..ReadOptions::default()
             },

@@ -4,16 +4,12 @@ use clap::Args;
 
 use shiftvox::graph::Crop;
 use shiftvox::project::Up;
-use shiftvox::scene::OutOfBounds;
 use shiftvox_mesh::ColorSpace;
 use shiftvox_mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
 
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Scene")]
 pub(crate) struct SceneArgs {
-    /// Voxels outside a .vox model's SIZE (VoxelShop writes them, modulo 256)
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) oob: OutOfBounds,
     /// Side of a voxel, in the file's units, for clouds of points (.ply .xyz .pcd .npy) whose
     /// coordinates are not voxel indices
     #[arg(long, value_name = "SIZE", value_parser = size)]
@@ -63,7 +59,6 @@ impl SceneArgs {
             ("crop", self.crop.is_some()),
             ("opacities", self.opacities),
             ("voxel-size", self.voxel_size.is_some()),
-            ("oob", self.oob != OutOfBounds::default()),
             ("mesh-colors", self.mesh_colors != ColorSpace::default()),
         ];
         let given = flags.into_iter().filter(|&(_, is_given)| is_given);

@@ -50,7 +50,7 @@ pub(super) fn camera(request: &Request) -> Option<Camera> {
     })
 }
 
-const SCENE_FLAGS: &str = "depth mesh-colors mesh-up oob opacities voxel-size";
+const SCENE_FLAGS: &str = "depth mesh-colors mesh-up opacities voxel-size";
 
 /// Flags of a list that the command line of `view` has, with their values.
 fn given<'m>(

@@ -14,7 +14,7 @@ pub use write::{VoxWriter, VoxWritten};
 use crate::scene::emit::Emitter;
 use crate::scene::fault::{Fault, Problem};
 use crate::scene::input::Input;
-use crate::scene::{OutOfBounds, ReadOptions, SceneInfo};
+use crate::scene::{ReadOptions, SceneInfo};
 use chunk::{Chunk, Fields};
 use graph::SceneGraph;
 use palette::Palette;
@@ -38,13 +38,13 @@ struct Contents<'a> {
 
 pub(super) fn read(
     input: &mut Input<'_>,
-    options: &ReadOptions,
+    _: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
     let mut info = SceneInfo::default();
     let bytes = input.bytes().map_err(Problem::Read)?;
     let contents = read_contents(&bytes, &mut info)?;
-    survey(&contents, options, &mut info)?;
+    survey(&contents, &mut info);
     let models = contents.models.iter();
     let placed: Vec<(&Model<'_>, Option<Transform>)> = if contents.graph.is_empty() {
         info.instances = info.models;
@@ -67,7 +67,7 @@ pub(super) fn read(
     // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
     emitter.expect(placed.iter().map(|(model, _)| model.visible()).sum())?;
     for (model, transform) in placed {
-        place(model, transform, &contents.palette, options, emitter)?;
+        place(model, transform, &contents.palette, emitter)?;
     }
     if info.hidden_instances > 0 {
         let hidden = info.hidden_instances;
@@ -141,36 +141,20 @@ fn lonely_size(chunk: &Chunk<'_>) -> Box<Fault> {
     Fault::new("chunk SIZE", chunk.offset as u64, expected, found, DAMAGED)
 }
 
-/// Counts voxels, each model once, and rejects those that the options reject.
-fn survey(
-    contents: &Contents<'_>,
-    options: &ReadOptions,
-    info: &mut SceneInfo,
-) -> Result<(), Box<Fault>> {
+/// Counts voxels, each model once.
+fn survey(contents: &Contents<'_>, info: &mut SceneInfo) {
     info.models = u32::try_from(contents.models.len()).unwrap_or(u32::MAX);
     info.nodes = u32::try_from(contents.graph.len()).unwrap_or(u32::MAX);
     info.has_colors = true;
     let mut empty = 0u64;
     let mut without_color = false;
     let given = contents.palette.given;
-    for (number, model) in contents.models.iter().enumerate() {
+    for model in &contents.models {
         info.stored_voxels += model.voxels.len() as u64;
         empty += model.voxels.len() as u64 - model.visible();
-        for (i, [x, y, z, color]) in model.voxels.iter().enumerate() {
+        for [x, y, z, color] in model.voxels {
             without_color |= given > 0 && usize::from(*color) > given;
-            if is_inside([*x, *y, *z], model.size) {
-                continue;
-            }
-            info.outside_size += 1;
-            if options.oob == OutOfBounds::Error {
-                return Err(Fault::new(
-                    format!("model {number}, voxel {i}"),
-                    model.offset + 4 * i as u64,
-                    format!("a position inside SIZE {:?}", model.size),
-                    format!("{:?}", [x, y, z]),
-                    "choose what to do with such voxels: wrap, keep or drop them",
-                ));
-            }
+            info.outside_size += u64::from(!is_inside([*x, *y, *z], model.size));
         }
     }
     if empty > 0 {
@@ -184,31 +168,25 @@ fn survey(
         ));
     }
     if info.outside_size > 0 {
-        let what = match options.oob {
-            OutOfBounds::Wrap => "were taken modulo 256, nearest to the middle of SIZE",
-            OutOfBounds::Keep => "were kept as they stand",
-            OutOfBounds::Drop | OutOfBounds::Error => "were left out",
-        };
         let outside = info.outside_size;
         info.warnings.push(format!(
-            "{outside} voxels lie outside their model's SIZE and {what}"
+            "{outside} voxels lie outside their model's SIZE and were taken modulo 256, nearest to the middle of SIZE"
         ));
     }
-    Ok(())
 }
 
 fn place(
     model: &Model<'_>,
     transform: Option<Transform>,
     palette: &Palette,
-    options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<(), Problem> {
     for (i, [x, y, z, color]) in model.voxels.iter().enumerate() {
-        let position = position([*x, *y, *z], model.size, options.oob);
-        let Some(position) = position.filter(|_| *color != 0) else {
+        if *color == 0 {
             continue;
-        };
+        }
+        let stored = [x, y, z];
+        let position = [0, 1, 2].map(|axis| unwrap(*stored[axis], model.size[axis]));
         let index = transform.map_or(position, |t| t.place(position, model.size));
         emitter.voxel(index, palette.color(*color), None, || {
             (format!("voxel {i} of a model"), model.offset + 4 * i as u64)
@@ -225,15 +203,6 @@ impl Model<'_> {
 
 fn is_inside(position: [u8; 3], size: [u32; 3]) -> bool {
     (0..3).all(|axis| u32::from(position[axis]) < size[axis])
-}
-
-fn position(stored: [u8; 3], size: [u32; 3], rule: OutOfBounds) -> Option<[i64; 3]> {
-    match rule {
-        _ if is_inside(stored, size) => Some(stored.map(i64::from)),
-        OutOfBounds::Wrap => Some([0, 1, 2].map(|axis| unwrap(stored[axis], size[axis]))),
-        OutOfBounds::Keep => Some(stored.map(i64::from)),
-        OutOfBounds::Drop | OutOfBounds::Error => None,
-    }
 }
 
 /// The coordinate of a stored byte. Outside `SIZE` it is the number congruent to it modulo 256 that is nearest to the
