@@ -178,8 +178,11 @@ exit_codes! {
     }
     textured::view::ViewError {
         textured::view::ViewError::File(error) => return error.into(),
-        textured::view::ViewError::Raster(_) | textured::view::ViewError::Grid(..) => Kind::Usage,
-        textured::view::ViewError::TexelSize(_) => Kind::Usage,
+        textured::view::ViewError::NoGrid { has, .. } => {
+            let has: Vec<String> = has.iter().map(u32::to_string).collect();
+            return Self::usage(message).advise(format!("it has grids of {}", has.join(", ")));
+        },
+        textured::view::ViewError::Raster(_) | textured::view::ViewError::TexelSize(_) => Kind::Usage,
     }
     ModelError {
         ModelError::Setup(error) => return error.into(),
@@ -197,10 +200,6 @@ exit_codes! {
     MethodError {
         MethodError::Far(error) => return error.into(),
         MethodError::Textured(error) => return error.into(),
-        MethodError::NoGrid { has, .. } => {
-            let has: Vec<String> = has.iter().map(u32::to_string).collect();
-            return Self::usage(message).advise(format!("it has grids of {}", has.join(", ")));
-        },
         MethodError::Samples(_) => Kind::Usage,
         _ => Kind::Run,
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::{EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
+use super::args::{EngineArgs, EngineName, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::engines;
 use super::error::{CliError, Kind};
@@ -18,6 +18,7 @@ use shiftvox::scene::{FileKind, Source};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
+use shiftvox_mesh::textured::view::Erosion;
 
 #[derive(Clone, Copy)]
 pub(super) struct DrawArgs<'a> {
@@ -286,20 +287,17 @@ pub(super) fn of_graph<'s>(
     Ok(GraphDrawing::new(&scene.graph, scene.up, style, maker))
 }
 
-fn erosion(args: &EngineArgs) -> Result<shiftvox_mesh::drawing::Erosion, CliError> {
-    match args.erosion.unwrap_or_default() {
-        Erosion::Auto if args.erosion_grid.is_some() => Err(CliError::usage(
-            "--erosion-grid needs --erosion K; auto chooses the grid too",
-        )),
-        Erosion::Auto => Ok(shiftvox_mesh::drawing::Erosion::Auto {
-            texel_px: args.rules.mesh_lod(),
-        }),
-        Erosion::Level(_) if args.rules.lod.is_some() => Err(CliError::usage(
+fn erosion(args: &EngineArgs) -> Result<Erosion, CliError> {
+    match (args.erosion, args.erosion_grid) {
+        (Some(Erosion::Level { .. }), _) if args.rules.lod.is_some() => Err(CliError::usage(
             "--lod says how large texels are with --erosion auto, not with a number of erosions",
         )),
-        Erosion::Level(level) => Ok(shiftvox_mesh::drawing::Erosion::Level {
-            level,
-            cells: args.erosion_grid,
+        (Some(Erosion::Level { level, .. }), cells) => Ok(Erosion::Level { level, cells }),
+        (_, Some(_)) => Err(CliError::usage(
+            "--erosion-grid needs --erosion K; auto chooses the grid too",
+        )),
+        (_, None) => Ok(Erosion::Auto {
+            texel_px: args.rules.mesh_lod(),
         }),
     }
 }

@@ -8,6 +8,7 @@ use super::values::tolerance;
 use shiftvox::fast::Instructions;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_mesh::far::view::Opacity;
+use shiftvox_mesh::textured::view::Erosion;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub(crate) enum EngineName {
@@ -24,21 +25,12 @@ pub(crate) enum EngineName {
     Textured,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Erosion {
-    /// The level with the fewest faces whose texels are at most a pixel.
-    #[default]
-    Auto,
-    /// This many. Beyond the last level only primitives are left.
-    Level(u32),
-}
-
 fn erosion(text: &str) -> Result<Erosion, String> {
     match text {
-        "auto" => Ok(Erosion::Auto),
+        "auto" => Ok(Erosion::Auto { texel_px: 1.0 }),
         text => text
             .parse()
-            .map(Erosion::Level)
+            .map(|level| Erosion::Level { level, cells: None })
             .map_err(|_| "expected a number of erosions, 0 or more, or auto".to_owned()),
     }
 }

@@ -5,7 +5,7 @@ mod scene;
 mod values;
 
 pub(crate) use camera::{CameraArgs, camera_line};
-pub(crate) use engine::{EngineArgs, EngineName, Erosion, RuleArgs};
+pub(crate) use engine::{EngineArgs, EngineName, RuleArgs};
 pub(crate) use picture::PictureArgs;
 pub(crate) use scene::SceneArgs;
 pub(crate) use values::{Size, bytes, tolerance};

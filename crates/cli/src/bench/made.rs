@@ -14,9 +14,9 @@ use shiftvox_lab::quality::{
 };
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::decimate::{Decimation, compact, decimate};
-use shiftvox_mesh::drawing::Erosion;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::{self, FarFile};
+use shiftvox_mesh::textured::view::Erosion;
 use shiftvox_mesh::textured::{self, TexturedFile};
 
 /// Grids and texels along a face of automatic erosion. Faces with few texels are off by about a cell.

@@ -9,12 +9,13 @@ use shiftvox::picture::Background;
 use shiftvox::project::Up;
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::drawing::{
-    Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle,
+    FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle,
 };
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::view::Opacity;
 use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox_mesh::textured::TexturedFile;
+use shiftvox_mesh::textured::view::Erosion;
 
 /// Share and counters of a frame. `solid`: parts without which triangles are drawn alone.
 fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str]) -> Examined {

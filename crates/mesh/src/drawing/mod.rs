@@ -18,7 +18,7 @@ use crate::raster::{NO_TRIANGLE, RasterCamera, RasterError, RasterPicture, Sampl
 use mesh_view::view_of;
 
 pub use far::{FarDrawing, FarMethod, FarStyle, resident};
-pub use textured::{Erosion, TexturedDrawing, TexturedMethod, TexturedStyle};
+pub use textured::{TexturedDrawing, TexturedMethod, TexturedStyle};
 pub use triangles::{TrianglesDrawing, TrianglesMethod, TrianglesStyle};
 
 /// Why a method of meshes did not draw a frame: the contents of [`DrawError::Method`].
@@ -28,12 +28,6 @@ pub enum MethodError {
     Far(#[from] crate::far::view::ViewError),
     #[error(transparent)]
     Textured(#[from] crate::textured::view::ViewError),
-    #[error("the file has no grid of {cells} cells")]
-    NoGrid {
-        cells: u32,
-        /// The numbers of cells of the file's grids.
-        has: Vec<u32>,
-    },
     #[error(transparent)]
     Raster(#[from] RasterError),
     #[error(transparent)]

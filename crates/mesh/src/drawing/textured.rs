@@ -6,23 +6,10 @@ use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::raster::{Pattern, RasterCamera, RasterOptions, Samples};
 use crate::textured::TexturedFile;
-use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
+use crate::textured::view::{Erosion, TexturedCounts, ViewOptions, draw};
 use shiftvox::drawing::Figures;
 use shiftvox::graph::MeshBox;
 use shiftvox::picture::{Background, Shading};
-
-/// How often voxels are eroded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Erosion {
-    /// The level of fewest faces, of all grids, whose texels are at most so many pixels; above 0.
-    Auto { texel_px: f64 },
-    /// So often; beyond the last level primitives alone are left.
-    Level {
-        level: u32,
-        /// The grid, by its number of cells; else the one that fits the view best.
-        cells: Option<u32>,
-    },
-}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturedStyle {
@@ -47,26 +34,6 @@ impl<'f> TexturedDrawing<'f> {
     }
 }
 
-impl TexturedMethod<'_> {
-    fn detail(&self, view: &RasterCamera) -> Result<Detail, MethodError> {
-        let (level, cells) = match self.style.erosion {
-            Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
-            Erosion::Level { level, cells } => (level, cells),
-        };
-        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells;
-        let grid = match cells {
-            None => choose_grid(self.file, view, level),
-            Some(cells) => (0..self.file.grids())
-                .find(|&grid| cells_of(grid) == cells)
-                .ok_or_else(|| MethodError::NoGrid {
-                    cells,
-                    has: (0..self.file.grids()).map(cells_of).collect(),
-                })?,
-        };
-        Ok(Detail::Level { grid, level })
-    }
-}
-
 impl Method for TexturedMethod<'_> {
     fn mesh_box(&self) -> MeshBox {
         self.file.mesh_box()
@@ -78,7 +45,7 @@ impl Method for TexturedMethod<'_> {
 
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = ViewOptions {
-            detail: self.detail(view)?,
+            erosion: self.style.erosion,
             raster: RasterOptions {
                 samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
                 light: light_of(view, self.style.shading),

@@ -10,10 +10,10 @@ use shiftvox::graph::{Graph, LinkedGraph, MergeBy, Silent, merge, vxg};
 use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Shading, hash_rows};
 use shiftvox::project::{Direction, Engine, Lens, SetupOptions, fit_camera};
-use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
-use shiftvox_mesh::textured::{self, Element, TexturedFile};
+use shiftvox_mesh::textured::{self, Element, TexturedFile, view::Erosion};
 use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
 use super::seal;

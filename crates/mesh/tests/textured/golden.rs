@@ -8,7 +8,7 @@ use shiftvox::project::Camera;
 use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
 use shiftvox_mesh::generate::{Kind, generate};
 use shiftvox_mesh::textured::store::encode;
-use shiftvox_mesh::textured::view::{Detail, ViewOptions, draw};
+use shiftvox_mesh::textured::view::{Erosion, ViewOptions, draw};
 use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
 use super::scenes::{balls, middle, options};
@@ -50,11 +50,11 @@ fn pictures(file: &TexturedFile) -> Vec<u8> {
         (high + DVec3::ONE, high + DVec3::splat(5.0)),
         (beside, beside.with_z(high.z)),
     ] {
-        let grid = file.grids() - 1;
-        let levels = [0, 1, 9].map(|level| Detail::Level { grid, level });
-        let auto = [0.5, 4.0].map(|texel_px| Detail::Auto { texel_px });
-        let details = levels.into_iter().chain(auto);
-        for (detail, fov_degrees) in details.zip([1.0, 60.0, 170.0].into_iter().cycle()) {
+        let cells = Some(file.grid(file.grids() - 1).cell_grid().cells);
+        let levels = [0, 1, 9].map(|level| Erosion::Level { level, cells });
+        let auto = [0.5, 4.0].map(|texel_px| Erosion::Auto { texel_px });
+        let erosions = levels.into_iter().chain(auto);
+        for (erosion, fov_degrees) in erosions.zip([1.0, 60.0, 170.0].into_iter().cycle()) {
             let camera = Camera {
                 eye,
                 target,
@@ -67,7 +67,7 @@ fn pictures(file: &TexturedFile) -> Vec<u8> {
             let view = view_of(&camera, (low, high)).unwrap();
             let mut raster = plain(4);
             raster.light = light_of(&view, Shading::Lambert);
-            let options = ViewOptions { detail, raster };
+            let options = ViewOptions { erosion, raster };
             let (picture, counts) = draw(file, &view, &options).unwrap();
             bytes.extend(bytes_of(&picture));
             bytes.extend(format!("{view:?} {counts:?}").bytes());

@@ -5,22 +5,23 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::generate::{Kind, generate};
 use shiftvox_mesh::raster::{RasterCamera, RasterPicture};
 use shiftvox_mesh::textured::view::{
-    Detail, TexturedCounts, ViewError, ViewOptions, choose, choose_grid, draw,
+    Erosion, TexturedCounts, ViewError, ViewOptions, choose, choose_grid, draw,
 };
 use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
 use super::scenes::{balls, built, file_of, middle, options, view};
 use super::shared::{DISC, around, card, directions, disc, plain, triangles};
 
-fn shown(detail: Detail) -> ViewOptions {
+fn shown(erosion: Erosion) -> ViewOptions {
     ViewOptions {
-        detail,
+        erosion,
         raster: plain(1),
     }
 }
 
 fn drawn(file: &TexturedFile, view: &RasterCamera, level: u32) -> (RasterPicture, TexturedCounts) {
-    draw(file, view, &shown(Detail::Level { grid: 0, level })).unwrap()
+    let cells = Some(file.grid(0).cell_grid().cells);
+    draw(file, view, &shown(Erosion::Level { level, cells })).unwrap()
 }
 
 fn covered(picture: &RasterPicture) -> Vec<bool> {
@@ -91,7 +92,7 @@ fn levels_are_chosen_by_the_size_of_texels() {
     let mut faces_before = u64::MAX;
     for away in [12.0, 20.0, 40.0, 80.0, 160.0, 320.0, 1000.0, 4000.0] {
         let view = view(centre + direction * away, centre, 256, 40.0);
-        let auto = shown(Detail::Auto { texel_px: 1.0 });
+        let auto = shown(Erosion::Auto { texel_px: 1.0 });
         let chosen = draw(&file, &view, &auto).unwrap().1.choice;
         let is_fine = chosen.texel_px <= 1.0 && chosen.behind_px <= 1.0;
         let row = file.grid(chosen.grid).levels().row(chosen.level);
@@ -110,11 +111,12 @@ fn levels_are_chosen_by_the_size_of_texels() {
         [&far, &near].map(|view| choose_grid(&file, view, 0)),
         [0, 4]
     );
-    let with = |detail| draw(&file, &far, &shown(detail));
-    let none = with(Detail::Level { grid: 5, level: 0 });
-    assert!(matches!(none, Err(ViewError::Grid(5, 5))));
+    let with = |erosion| draw(&file, &far, &shown(erosion));
+    let (level, cells) = (0, Some(5));
+    let none = with(Erosion::Level { level, cells });
+    assert!(matches!(none, Err(ViewError::NoGrid { has, .. }) if has == [2, 4, 8, 16, 32]));
     for texel_px in [0.0, -1.0, f64::NAN] {
-        let auto = with(Detail::Auto { texel_px });
+        let auto = with(Erosion::Auto { texel_px });
         assert!(matches!(auto, Err(ViewError::TexelSize(_))));
     }
 }
@@ -143,7 +145,7 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
             view.focal_px = 176.0;
             let drawn = |samples| triangles(&mesh, &view, samples, background).rgba;
             let reference = drawn(256);
-            let mut auto = shown(Detail::Auto { texel_px: 1.0 });
+            let mut auto = shown(Erosion::Auto { texel_px: 1.0 });
             auto.raster.background = background;
             let auto = draw(&file, &view, &auto).unwrap().0.rgba;
             let [auto, rival] = [auto, drawn(1)].map(|rgba| psnr(&reference, &rgba));

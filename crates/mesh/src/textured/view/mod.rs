@@ -14,23 +14,22 @@ pub use choose::{Choice, choose, choose_grid};
 use super::store::{TexturedError, TexturedFile};
 use scene::Shown;
 
+/// How often voxels are eroded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Detail {
-    /// The level of fewest faces, of all grids, whose texels are at most so many pixels.
-    Auto {
-        /// Pixels, above 0.
-        texel_px: f64,
-    },
+pub enum Erosion {
+    /// The level of fewest faces, of all grids, whose texels are at most so many pixels; above 0.
+    Auto { texel_px: f64 },
+    /// So often; beyond the last level primitives alone are left.
     Level {
-        grid: usize,
-        /// Erosions; from the last level on primitives alone.
         level: u32,
+        /// The grid, by its number of cells; else the one that fits the view best.
+        cells: Option<u32>,
     },
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewOptions {
-    pub detail: Detail,
+    pub erosion: Erosion,
     pub raster: RasterOptions,
 }
 
@@ -40,8 +39,12 @@ pub enum ViewError {
     File(#[from] TexturedError),
     #[error(transparent)]
     Raster(#[from] RasterError),
-    #[error("there is no grid {0}: the file has {1}")]
-    Grid(usize, usize),
+    #[error("the file has no grid of {cells} cells")]
+    NoGrid {
+        cells: u32,
+        /// The numbers of cells of the file's grids.
+        has: Vec<u32>,
+    },
     #[error("texels are wanted at a size above 0 pixels, not {0}")]
     TexelSize(f64),
 }
@@ -59,13 +62,22 @@ pub fn draw(
     view: &RasterCamera,
     options: &ViewOptions,
 ) -> Result<(RasterPicture, TexturedCounts), ViewError> {
-    let choice = match options.detail {
-        Detail::Auto { texel_px } if texel_px > 0.0 => choose(file, view, texel_px),
-        Detail::Auto { texel_px } => return Err(ViewError::TexelSize(texel_px)),
-        Detail::Level { grid, .. } if grid >= file.grids() => {
-            return Err(ViewError::Grid(grid, file.grids()));
+    let cells_of = |grid: usize| file.grid(grid).cell_grid().cells;
+    let choice = match options.erosion {
+        Erosion::Auto { texel_px } if texel_px > 0.0 => choose(file, view, texel_px),
+        Erosion::Auto { texel_px } => return Err(ViewError::TexelSize(texel_px)),
+        Erosion::Level { level, cells } => {
+            let grid = match cells {
+                None => choose_grid(file, view, level),
+                Some(cells) => (0..file.grids())
+                    .find(|&grid| cells_of(grid) == cells)
+                    .ok_or_else(|| ViewError::NoGrid {
+                        cells,
+                        has: (0..file.grids()).map(cells_of).collect(),
+                    })?,
+            };
+            Choice::of(file, view, grid, level)
         }
-        Detail::Level { grid, level } => Choice::of(file, view, grid, level),
     };
     let grid = file.grid(choice.grid);
     grid.ensure()?;
