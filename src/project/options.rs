@@ -94,8 +94,8 @@ impl Coverage {
     #[inline]
     pub const fn default_lod(self) -> f64 {
         match self {
-            Self::Any | Self::Center | Self::Alpha => 1.0,
-            Self::Exact => 0.5,
+            Self::Any | Self::Center => 1.0,
+            Self::Exact | Self::Alpha => 0.5,
         }
     }
 }

@@ -110,7 +110,10 @@ fn settings(text: &str) -> (Options, bool) {
     let mut options = match words.next() {
         Some("paper") => Options::paper(),
         Some("center") => Options::of(Coverage::Center),
-        Some("alpha") => Options::of(Coverage::Alpha),
+        Some("alpha") => Options {
+            lod_px: 1.0,
+            ..Options::of(Coverage::Alpha)
+        },
         _ => Options::default(),
     };
     for word in words {

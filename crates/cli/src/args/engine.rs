@@ -53,7 +53,8 @@ pub(crate) struct RuleArgs {
     #[arg(long)]
     pub(crate) paper: bool,
     /// Draw nodes of at most this many pixels as one voxel, with 0 only leaves [default: 0.5 with
-    /// exact, else 1]. For --engine far and --erosion auto, the largest voxel or texel [default: 1]
+    /// exact and alpha, else 1]. For --engine far and --erosion auto, the largest voxel or texel
+    /// [default: 1]
     #[arg(long, value_name = "PX")]
     pub(crate) lod: Option<f64>,
     /// Width of a machine word in bits, 16 to 64 [default: 64, of `model` 32]
