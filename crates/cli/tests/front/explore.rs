@@ -59,7 +59,6 @@ const SAME: &str = "
     counts/wrong_voxel        coverage_error/wrong_voxel
     units_nand2               area/units/total
     operations_pj             cost/operations/total
-    floor_pj                  floor/energy_pj
     area_nand2                area/total
     verdict/median            comparison/6/median
     verdict/p_light_less      comparison/6/p_light_less

@@ -5,7 +5,6 @@
 //! - [`verdict`] compares both at uncertain prices.
 //! - [`coherent`] draws first what the last frame showed.
 //! - [`clock`] compares units with the clock.
-//! - [`mod@floor`] is a bound for all designs.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
 //!
 //! Functions fail when the cost tables lack a figure, or a word overflows and traps.
@@ -18,7 +17,6 @@ pub mod cost;
 pub mod design;
 pub mod explore;
 pub mod fill_bits;
-pub mod floor;
 pub mod frame;
 pub mod heat;
 pub mod plots;

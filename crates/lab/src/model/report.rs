@@ -17,7 +17,6 @@ use super::clock::ClockCheck;
 use super::cost::{self, FrameCost, Prices};
 use super::design::LightDesign;
 use super::fill_bits;
-use super::floor::{self, Floor};
 use super::frame::{self, Counted};
 use super::ray_caster::RayCasterReport;
 use super::record::{self, NumberWidths, RecordField};
@@ -62,7 +61,6 @@ pub struct Report {
     pub technology_says: String,
     comparison: Vec<ComparedLine>,
     pub ray_caster: RayCasterReport,
-    floor: Floor,
 }
 
 /// Misses of fully associative caches of every size.
@@ -143,7 +141,6 @@ impl Report {
             differing_samples,
             coverage_error: frame::error(&counted.frame, exact),
             clock_says: clock.sentence(),
-            floor: floor::floor(graph, exact, &hardware, &prices.table)?,
             hardware,
             simulated,
             cost,

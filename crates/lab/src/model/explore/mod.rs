@@ -23,7 +23,6 @@ use super::ModelError;
 use super::cost::Prices;
 use super::design::LightDesign;
 use super::fill_bits;
-use super::floor;
 use super::frame::{self, Counted};
 use super::ray_caster;
 use super::safe::Format;
@@ -77,7 +76,6 @@ pub struct PointFigures {
     pub ray_caster: RivalFigures,
     /// On the energy of the frame.
     pub verdict: Verdict,
-    pub floor_pj: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -329,7 +327,6 @@ impl<'a> Shared<'a> {
         let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
         let fill = of(Memory::FillVector);
         let counter = &counted.counter;
-        let floor_pj = floor::floor(graph, exact, hardware, &prices.table)?.energy_pj;
         Ok(PointOutcome::Drawn(Box::new(PointFigures {
             cycles: cycles.cycles,
             time_ms: cycles.cycles as f64 / (hardware.clock_mhz * 1e3),
@@ -362,7 +359,6 @@ impl<'a> Shared<'a> {
             units_nand2: light.area.units.total,
             format: *format,
             verdict: verdict::of_energy(&light.cost, &rays.cost, &prices.table),
-            floor_pj,
             ray_caster: RivalFigures {
                 cycles: rays.cycles.cycles,
                 node_misses: rays.cycles.node_cache.misses,
