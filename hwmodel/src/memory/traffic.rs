@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::MissCurve;
 use crate::count::Accesses;
 use crate::hash::NumberMap;
 use crate::{Memory, OpClass, Operand, Probe, StageLevel};
@@ -49,7 +48,6 @@ pub struct MemoryProbe {
     widths: Widths,
     accesses: [Accesses; MEMORIES],
     touched: [Touched; MEMORIES],
-    curves: Vec<(Memory, MissCurve)>,
     deepest: u64,
 }
 
@@ -60,16 +58,8 @@ impl MemoryProbe {
             widths,
             accesses: Default::default(),
             touched: Default::default(),
-            curves: Vec::new(),
             deepest: 0,
         }
-    }
-
-    /// Adds a memory's miss curve for lines of `line_bytes`.
-    #[must_use]
-    pub fn with_curve(mut self, memory: Memory, line_bytes: u32) -> Self {
-        self.curves.push((memory, MissCurve::new(line_bytes)));
-        self
     }
 
     /// Reads of a memory.
@@ -97,27 +87,9 @@ impl MemoryProbe {
         self.touched[memory as usize].distinct
     }
 
-    /// Miss curves, in the order of requests.
-    pub fn curves(&self) -> &[(Memory, MissCurve)] {
-        &self.curves
-    }
-
     /// Most records on the stack.
     pub fn deepest_stack(&self) -> u64 {
         self.deepest
-    }
-
-    fn access(&mut self, memory: Memory, address: u64) {
-        self.touched[memory as usize].touch(address);
-        let bits = u64::from(self.widths.of(memory));
-        for (of, curve) in &mut self.curves {
-            if *of == memory {
-                // In bits, since elements need not be whole bytes.
-                let start = address.saturating_mul(bits);
-                let end = start.saturating_add(bits.max(1) - 1);
-                curve.access(start / 8, end / 8 - start / 8 + 1);
-            }
-        }
     }
 }
 
@@ -130,7 +102,7 @@ impl Probe for MemoryProbe {
 
     fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
         self.accesses[memory as usize].reads += 1;
-        self.access(memory, address);
+        self.touched[memory as usize].touch(address);
     }
 
     fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
@@ -138,7 +110,7 @@ impl Probe for MemoryProbe {
         if memory == Memory::Stack {
             self.deepest = self.deepest.max(address.saturating_add(1));
         }
-        self.access(memory, address);
+        self.touched[memory as usize].touch(address);
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{CycleReport, Hardware, Observer, Organisation, Recording};
@@ -86,7 +85,7 @@ pub(super) fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_
     }
 }
 
-/// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
+/// Draws a frame and counts.
 pub fn count(
     graph: &Graph,
     setup: &FrameSetup,
@@ -94,8 +93,7 @@ pub fn count(
     overflow: Overflow,
 ) -> Result<Counted, EngineError> {
     let setup = &*in_words(setup, hardware.organisation);
-    let line = hardware.node_cache.line_bytes;
-    let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
+    let memory = MemoryProbe::new(widths(setup, graph, hardware));
     let mut frame = Frame::new(setup.width, setup.height, true);
     let light = lights(graph, setup, Shading::Lambert)?;
     let view = GraphView {

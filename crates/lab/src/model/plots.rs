@@ -3,10 +3,10 @@
 use hwmodel::OpClass;
 
 use super::report::Report;
-use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
+use crate::report::plot::{Chart, Panel, Point, Series};
 
 pub fn panels(report: &Report) -> Vec<Panel> {
-    vec![roofline(report), miss_curve(report)]
+    vec![roofline(report)]
 }
 
 /// Operations per cycle over operations per byte of outer memory.
@@ -50,26 +50,4 @@ fn roofline(report: &Report) -> Panel {
             Series::dots("this frame", vec![this]),
         ],
     ))
-}
-
-fn miss_curve(report: &Report) -> Panel {
-    let axis = |label: &str, scale| Axis {
-        label: label.to_owned(),
-        scale,
-    };
-    let curve = |of: &super::report::MissCurve| {
-        let points = of.points.iter();
-        let points = points.map(|p| (p.bytes as f64, 100.0 * p.miss_rate));
-        Series {
-            dots: false,
-            ..Series::curve(format!("lines of {} bytes", of.line_bytes), points)
-        }
-    };
-    Panel::Chart(Chart {
-        title: "Misses of node caches of every size".to_owned(),
-        x: axis("bytes", Scale::Log),
-        y: axis("percent of the reads", Scale::Linear),
-        series: report.miss_curves.iter().map(curve).collect(),
-        level: None,
-    })
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hwmodel::cost::Technology;
 use hwmodel::count::{Counter, OpCount};
 use hwmodel::cycles::Hardware;
-use hwmodel::memory::{MissPoint, RecordKind};
+use hwmodel::memory::RecordKind;
 use hwmodel::shifts::ShiftSite;
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
@@ -42,7 +42,6 @@ pub struct Report {
     operations_by_stage: Vec<Value>,
     shifts: Vec<ShiftSite>,
     memories: Vec<Value>,
-    pub(super) miss_curves: Vec<MissCurve>,
     /// Of all stacks.
     pub stack_bits: u64,
     pub fill_vector_bits: u64,
@@ -61,14 +60,6 @@ pub struct Report {
     pub technology_says: String,
     comparison: Vec<ComparedLine>,
     pub ray_caster: RayCasterReport,
-}
-
-/// Misses of fully associative caches of every size.
-#[derive(Debug, Serialize)]
-pub(super) struct MissCurve {
-    memory: &'static str,
-    pub(super) line_bytes: u32,
-    pub(super) points: Vec<MissPoint>,
 }
 
 #[derive(Debug)]
@@ -112,11 +103,6 @@ impl Report {
         let comparison = verdict::lines(light, rival, prices);
         let differing_samples = counted.differing(picture);
         let counter = &counted.counter;
-        let curve = |(memory, curve): &(Memory, hwmodel::memory::MissCurve)| MissCurve {
-            memory: memory.name(),
-            line_bytes: curve.line_bytes(),
-            points: curve.points(),
-        };
         Ok(Self {
             word: json!({
                 "bits": setup.format.bits(),
@@ -133,7 +119,6 @@ impl Report {
             operations_by_stage: operations_by_stage(counter),
             shifts: counted.shifts.sites(),
             memories: Memory::ALL.map(|memory| traffic(counted, memory)).into(),
-            miss_curves: counted.memory.curves().iter().map(curve).collect(),
             stack_bits: cost::stack_bits(&hardware, counted.record_bits()),
             fill_vector_bits: fill_bits::fill_store_bits(setup, &hardware),
             accumulator_bits: cost::accumulator_bits(setup),
