@@ -78,12 +78,6 @@ pub(super) struct HardwareArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct FileArgs {
-    /// Web page of one file: tables, plots, picture and heat map
-    #[arg(long, value_name = "FILE")]
-    pub(super) html: Option<PathBuf>,
-    /// Heat map of records per pixel, PNG
-    #[arg(long, value_name = "FILE")]
-    pub(super) heat: Option<PathBuf>,
     /// Trace of the first records, JSON for Perfetto
     #[arg(long, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,

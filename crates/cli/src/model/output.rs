@@ -7,23 +7,19 @@ use serde_json::{Value, json};
 use super::Found;
 use super::args::ModelArgs;
 use crate::console::Console;
-use crate::error::{CliError, Kind};
+use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::{document, report};
-use shiftvox::picture::{Background, Shading, png, resolve};
 use shiftvox::whole;
 use shiftvox_lab::model::design::LIGHT;
 use shiftvox_lab::model::ray_caster::RAY_CASTER;
-use shiftvox_lab::model::{accelergy, heat, plots, tables};
-use shiftvox_lab::report::html::Page;
-use shiftvox_lab::report::{Cell, Table, grouped, plot};
+use shiftvox_lab::model::{accelergy, plots, tables};
+use shiftvox_lab::report::{Cell, Table, grouped};
 
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
     let others = [
-        &files.html,
-        &files.heat,
         &files.trace,
         &files.export_ramulator,
         &files.export_accelergy,
@@ -67,47 +63,7 @@ pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Resul
         panels: plots::panels(&found.report),
         document,
     };
-    let encode = |rgba: &[[u8; 4]]| {
-        let (width, height) = (found.setup.width, found.setup.height);
-        png::encode(width, height, rgba).map_err(|error| CliError::new(Kind::Run, error))
-    };
-    let (map, most) = heat::map(&found.counted.frame);
-    let heat_png = encode(&map)?;
-    if let Some(path) = &args.files.heat {
-        file(path, &heat_png, args.export.force, console)?;
-    }
-    if args.files.html.is_some() {
-        let (frame, graph) = (&found.counted.frame, &found.subject.graph);
-        let background = Background::default();
-        let shown = resolve(frame, graph, &found.setup, Shading::Lambert, background)?;
-        let heat_says = format!("Records per pixel, logarithmic; brightest: {most:.1}");
-        let picture = encode(&shown.rgba)?;
-        let pictures = [(&picture[..], "The picture"), (&heat_png, &heat_says)];
-        let title = format!("The light hardware draws {}", found.subject.name);
-        write_page(&title, &results, &pictures, args, console)?;
-    }
     export::write(&results, &args.export, console)
-}
-
-pub(super) fn write_page(
-    title: &str,
-    results: &Results,
-    pictures: &[(&[u8], &str)],
-    args: &ModelArgs,
-    console: &Console,
-) -> Result<(), CliError> {
-    let Some(path) = &args.files.html else {
-        return Ok(());
-    };
-    let page = Page {
-        title,
-        preface: &results.preface,
-        pictures,
-        tables: &results.tables,
-        plots: &plot::svg(&results.panels),
-        details: &results.more_tables,
-    };
-    file(path, page.finish().as_bytes(), args.export.force, console)
 }
 
 fn summary(found: &Found) -> Table {

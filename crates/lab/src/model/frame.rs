@@ -94,7 +94,7 @@ pub fn count(
 ) -> Result<Counted, EngineError> {
     let setup = &*in_words(setup, hardware.organisation);
     let memory = MemoryProbe::new(widths(setup, graph, hardware));
-    let mut frame = Frame::new(setup.width, setup.height, true);
+    let mut frame = Frame::new(setup.width, setup.height, false);
     let light = lights(graph, setup, Shading::Lambert)?;
     let view = GraphView {
         light: &light,

@@ -1,7 +1,5 @@
 //! The picture of where records went.
 
-use shiftvox::frame::Frame;
-
 /// Colours from little to much: dark violet, blue, green, yellow.
 const STOPS: [[f32; 3]; 5] = [
     [68.0, 1.0, 84.0],
@@ -13,11 +11,6 @@ const STOPS: [[f32; 3]; 5] = [
 
 /// Records by sample, as colours on a logarithmic scale, and the greatest
 /// number. A record counts 1, spread evenly over its quadtree node's samples.
-pub fn map(frame: &Frame) -> (Vec<[u8; 4]>, f32) {
-    colors(frame.records.as_deref().unwrap_or_default())
-}
-
-/// [`map`], of the numbers themselves.
 pub fn colors(records: &[f32]) -> (Vec<[u8; 4]>, f32) {
     let most = records.iter().copied().fold(0.0f32, f32::max);
     let scale = libm::log1pf(most).max(f32::MIN_POSITIVE);
@@ -44,9 +37,7 @@ mod tests {
 
     #[test]
     fn none_is_dark_and_most_is_bright() {
-        let mut frame = Frame::new(3, 1, true);
-        frame.records = Some(vec![0.0, 3.0, 15.0]);
-        let (pixels, most) = map(&frame);
+        let (pixels, most) = colors(&[0.0, 3.0, 15.0]);
         // Half of the way: log 4 is half of log 16.
         let expected = [[68, 1, 84, 255], [33, 145, 140, 255], [253, 231, 37, 255]];
         assert_eq!((&pixels[..], most), (&expected[..], 15.0));

@@ -1,6 +1,5 @@
-//! Results for people and programs: rows, tables, plots, pages. Independent of the experiments.
+//! Results for people and programs: rows, tables, plots. Independent of the experiments.
 
-pub mod html;
 pub mod plot;
 pub mod table;
 

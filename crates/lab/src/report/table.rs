@@ -37,7 +37,7 @@ impl Cell {
         }
     }
 
-    pub(crate) fn for_people(&self) -> String {
+    pub(super) fn for_people(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
             Self::Count(count) => grouped(*count),
@@ -174,7 +174,7 @@ impl Table {
     }
 
     /// Whether a column has an entry in words, which are set to the left.
-    pub(super) fn is_of_words(&self, column: usize) -> bool {
+    fn is_of_words(&self, column: usize) -> bool {
         let words = |row: &Vec<Cell>| matches!(row.get(column), Some(Cell::Text(_)));
         self.rows.iter().any(words)
     }

@@ -9,7 +9,6 @@ use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::model::args::ModelArgs;
-use crate::model::output::write_page;
 use shiftvox_lab::model::explore::front::FrontPoint;
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::tables::TableSpec;
@@ -75,7 +74,6 @@ pub(super) fn write(
             .map(|of| shares(of).unwrap_or_else(|| panel(of)))
             .collect(),
     };
-    write_page("Hardware designs", &results, &[], args, console)?;
     export::write_files(&results, &args.export, console)?;
     if console.json {
         let mut fronts = fronts.iter();

@@ -2,8 +2,6 @@
 
 use std::fmt::Write;
 
-use crate::report::html::escaped;
-
 pub(super) type Color = u32;
 
 #[derive(Debug, Clone, Copy)]
@@ -83,4 +81,9 @@ impl Canvas {
              text-anchor=\"middle\">{text}</text>"
         ));
     }
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
 }
