@@ -60,7 +60,7 @@ pub use engine::Machine;
 #[cfg(feature = "mutants")]
 pub use instruments::mutants;
 pub use instruments::{
-    Cage, Coordinates, Drawing, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
+    Cage, Coordinates, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
     Simulated, cages_along, narrowed, proven_widths,
 };
 pub use listed::Listed;

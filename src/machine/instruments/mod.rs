@@ -8,5 +8,5 @@ mod simulate;
 mod widths;
 
 pub use positions::{Cage, Coordinates, cages_along};
-pub use simulate::{Drawing, SimulateError, Simulated};
+pub use simulate::{SimulateError, Simulated};
 pub use widths::{NumberSpan, NumberSpans, ProvenWidths, RecordNumber, narrowed, proven_widths};

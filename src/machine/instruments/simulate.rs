@@ -30,21 +30,6 @@ pub struct Simulated {
     pub counts: Stats,
 }
 
-/// How the samples find the nearest voxel.
-#[derive(Debug, Clone, Copy, Default)]
-pub enum Drawing<'l> {
-    /// The first record that reaches a sample draws it.
-    #[default]
-    InOrder,
-    /// By keys (`keys.rs`).
-    ByKeys {
-        /// Nodes to draw first, if there are two passes: those, and all.
-        listed: Option<&'l Listed>,
-        /// Whether children on the stack wait for no sibling.
-        in_any_order: bool,
-    },
-}
-
 pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
@@ -63,18 +48,19 @@ impl Machine {
     ) -> Result<Simulated, SimulateError> {
         check_hardware(hardware).map_err(SimulateError::Hardware)?;
         let log = TurnLog::new(hardware);
-        let job = (graph, setup, Drawing::InOrder);
+        let job = (graph, setup, None);
         let (simulated, _) = with_cage!(setup, L => {
             self.simulate_as::<_, L>(job, frame, hardware, observer, log)
         })?;
         Ok(simulated)
     }
 
-    /// As [`Self::simulate`], with a probe, under the rule `exact` and on hardware that is not sequential. Keys need
-    /// words of three bits per level of the graph, and two.
-    pub fn simulate_drawing<P: Probe>(
+    /// As [`Self::simulate`], with a probe, under the rule `exact` and on hardware that is not sequential. If nodes are
+    /// listed, a first pass draws those, and samples find the nearest voxel by keys (`keys.rs`), which need words of
+    /// three bits per level of the graph, and two.
+    pub fn simulate_listed<P: Probe>(
         &mut self,
-        (graph, setup, drawing): (&GraphView<'_>, &FrameSetup, Drawing<'_>),
+        (graph, setup, listed): (&GraphView<'_>, &FrameSetup, Option<&Listed>),
         frame: &mut Frame,
         hardware: &Hardware,
         probe: P,
@@ -82,7 +68,7 @@ impl Machine {
         let mut observer = cycles::NoObserver;
         let probes = (probe, TurnLog::new(hardware));
         let (simulated, (probe, _)) = with_cage!(setup, L => {
-            let job = (graph, setup, drawing);
+            let job = (graph, setup, listed);
             self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
         })?;
         Ok((simulated, probe))
@@ -105,7 +91,7 @@ impl Machine {
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {
-            let job = (graph, setup, Drawing::InOrder);
+            let job = (graph, setup, None);
             self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
         })?;
         Ok(tape.finish())
@@ -113,7 +99,7 @@ impl Machine {
 
     fn simulate_as<P: TurnProbe, L: CageCoordinate>(
         &mut self,
-        (graph, setup, drawing): (&GraphView<'_>, &FrameSetup, Drawing<'_>),
+        (graph, setup, listed): (&GraphView<'_>, &FrameSetup, Option<&Listed>),
         frame: &mut Frame,
         hardware: &Hardware,
         observer: &mut dyn Observer,
@@ -126,17 +112,10 @@ impl Machine {
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
         let mut state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
-        let in_any_order = match drawing {
-            Drawing::InOrder => false,
-            Drawing::ByKeys {
-                listed,
-                in_any_order,
-            } => {
-                state.canvas.fill.keep_keys().map_err(EngineError::from)?;
-                state.job.listed = listed;
-                in_any_order
-            }
-        };
+        if listed.is_some() {
+            state.canvas.fill.keep_keys().map_err(EngineError::from)?;
+        }
+        state.job.listed = listed;
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
             false => Vec::new(),
@@ -151,7 +130,6 @@ impl Machine {
             most_open: 0,
             shown: 0,
             most_records: most_records(setup),
-            in_any_order,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let most_open = steps.most_open;
@@ -217,7 +195,6 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     /// The tile whose view is in place.
     shown: usize,
     most_records: u64,
-    in_any_order: bool,
 }
 
 /// Of a stored parent and of its child, of different classes.
@@ -263,12 +240,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         while let Some(record) = self.state.traversal.stack.pop() {
             let Some(place) = self.state.traversal.watch.0.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
-            };
-            // Children of one class do not wait for each other.
-            let place = if self.in_any_order {
-                FIRST_PLACE
-            } else {
-                place
             };
             self.hand_over(Work::Record(record), place, children);
         }

@@ -1,5 +1,5 @@
 //! Time coherency, the outlook of the image-order paper: "directly rendering voxels which were rendered in the last
-//! frame". Each frame of a film is drawn in several ways, and all must show the same picture.
+//! frame". Each frame of a film is drawn in two ways, and both must show the same picture.
 //!
 //! - *In order*, the machine as it is.
 //! - *List first*, in two passes over a picture or over each of its tiles. The first pass descends from the root to the
@@ -7,11 +7,9 @@
 //!   whole traversal. A listed voxel is drawn early only if it is to be drawn in this frame, too. A sample holds its
 //!   voxel's place in the order, its key, and a pyramid of the largest keys decides what is occluded
 //!   (`src/machine/keys.rs`), like the pyramid of a hierarchical Z-buffer.
-//! - *In any order*, with a list and without. Keys also allow siblings to be drawn at the same time. Hardware with tiles
-//!   gains nothing by that, since a tile has one record at a time.
 //!
 //! The figures favour the list. Making, storing and reading it is free, and its nodes are not read from memory. All caches
-//! are empty when a frame begins, in all ways.
+//! are empty when a frame begins, in both ways.
 
 use hwmodel::Memory;
 use hwmodel::Overflow;
@@ -30,7 +28,7 @@ use super::frame::{self, Counted};
 use super::record::{FieldPresence, RecordField, record_fields};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::{Drawing, Listed};
+use shiftvox::machine::Listed;
 use shiftvox::project::{Coverage, FrameSetup};
 
 /// Sums over the frames of a film.
@@ -47,12 +45,7 @@ pub struct Sums {
     pub differing_samples: u64,
 }
 
-pub const WAYS: [&str; 4] = [
-    "in order",
-    "list first",
-    "in any order",
-    "list first, in any order",
-];
+pub const WAYS: [&str; 2] = ["in order", "list first"];
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Film {
@@ -61,7 +54,7 @@ pub struct Film {
     /// Nodes on the lists, and those above.
     pub listed: u64,
     /// By [`WAYS`].
-    pub sums: [Sums; 4],
+    pub sums: [Sums; 2],
 }
 
 /// Draws a film. Fails under other rules than `exact`, on sequential hardware, and if a key has too many bits.
@@ -80,25 +73,14 @@ pub fn film(
     let mut last: Option<Listed> = None;
     for setup in setups {
         check(setup, hardware)?;
-        let run = |drawing| Run::new(graph, setup, hardware, overflow, drawing);
-        let in_order = run(Drawing::InOrder)?;
+        let run = |listed| Run::new(graph, setup, hardware, overflow, listed);
+        let in_order = run(None)?;
         let shown = Listed::of(&in_order.counted.frame, setup.depth);
         if let Some(list) = last.replace(shown) {
             film.listed += list.len() as u64;
-            let keys = |listed, in_any_order| Drawing::ByKeys {
-                listed,
-                in_any_order,
-            };
-            let others = [
-                keys(Some(&list), false),
-                keys(None, true),
-                keys(Some(&list), true),
-            ];
-            let [first, sums @ ..] = &mut film.sums;
-            in_order.add_to(first, &in_order, graph, setup, prices)?;
-            for (sums, drawing) in sums.iter_mut().zip(others) {
-                run(drawing)?.add_to(sums, &in_order, graph, setup, prices)?;
-            }
+            let [normal, first] = &mut film.sums;
+            in_order.add_to(normal, &in_order, graph, setup, prices)?;
+            run(Some(&list))?.add_to(first, &in_order, graph, setup, prices)?;
         }
     }
     Ok(film)
@@ -131,7 +113,7 @@ impl Run {
         setup: &FrameSetup,
         hardware: &Hardware,
         overflow: Overflow,
-        drawing: Drawing<'_>,
+        listed: Option<&Listed>,
     ) -> Result<Self, ModelError> {
         let view = graph.view();
         let setup = &*frame::in_words(setup, hardware.organisation);
@@ -139,7 +121,7 @@ impl Run {
         let mut fields = record_fields(setup, graph.len(), hardware.organisation);
         let mut fill_access_bits = fill_bits::fill_access_bits(setup, hardware.organisation);
         let mut fill_bits = fill_bits::fill_store_bits(setup, &hardware);
-        if let Drawing::ByKeys { .. } = drawing {
+        if listed.is_some() {
             fill_access_bits = fill_bits::key_word_bits(setup);
             fill_bits = fill_bits::key_store_bits(setup, &hardware);
             // A parent's key is the beginning of its descendant's: an entry of a path needs none.
@@ -167,7 +149,7 @@ impl Run {
             overflow,
             hardware.organisation,
         )
-        .simulate_drawing((&view, setup, drawing), &mut picture, &hardware, probes)?;
+        .simulate_listed((&view, setup, listed), &mut picture, &hardware, probes)?;
         Ok(Self {
             counted: Counted {
                 frame: picture,
@@ -298,24 +280,17 @@ mod tests {
                 let mut serial = Frame::new(setup.width, setup.height, false);
                 let mut machine = Machine::default();
                 machine.render(&graph.view(), &setup, &mut serial).unwrap();
-                let keys = |listed, in_any_order| Drawing::ByKeys {
-                    listed,
-                    in_any_order,
-                };
                 let empty = Listed::default();
-                for (name, drawing) in [
-                    ("in order", Drawing::InOrder),
-                    ("in any order", keys(None, true)),
-                    ("last", keys(Some(&last), false)),
-                    ("last, in any order", keys(Some(&last), true)),
-                    ("empty", keys(Some(&empty), false)),
-                    ("hidden", keys(Some(&hidden), false)),
-                    ("hidden, in any order", keys(Some(&hidden), true)),
-                    ("stranger", keys(Some(&stranger), true)),
+                for (name, listed) in [
+                    ("in order", None),
+                    ("last", Some(&last)),
+                    ("empty", Some(&empty)),
+                    ("hidden", Some(&hidden)),
+                    ("stranger", Some(&stranger)),
                 ] {
                     for design in ["light", "paper"] {
                         let hardware = Hardware::preset(design).unwrap();
-                        let run = Run::new(&graph, &setup, &hardware, Overflow::Trap, drawing);
+                        let run = Run::new(&graph, &setup, &hardware, Overflow::Trap, listed);
                         let counted = run.unwrap().counted;
                         let differing = counted.differing(&serial);
                         assert_eq!(differing, 0, "{spec}, {motion:?}, {name}, {design}");
@@ -339,13 +314,10 @@ mod tests {
         let hardware = Hardware::preset("light").unwrap();
         let prices = Prices::shipped().unwrap();
         let film = film(&graph, &setups[..2], &hardware, Overflow::Trap, &prices).unwrap();
-        let [normal, first, keys, _] = film.sums;
+        let [normal, first] = film.sums;
         assert_eq!(film.frames, 1);
-        // In tiles, one by one, keys change no decision.
-        assert_eq!(keys.records, normal.records);
-        assert_eq!(keys.node_reads, normal.node_reads);
         assert!(first.node_reads <= normal.node_reads);
         assert!(first.records > normal.records);
-        assert_eq!(keys.differing_samples + first.differing_samples, 0);
+        assert_eq!(first.differing_samples, 0);
     }
 }
