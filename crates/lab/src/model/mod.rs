@@ -23,7 +23,6 @@ pub mod plots;
 pub mod ray_caster;
 pub mod record;
 pub mod report;
-pub mod safe;
 pub mod standing;
 pub mod tables;
 pub mod vectors;

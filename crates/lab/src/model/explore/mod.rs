@@ -25,7 +25,6 @@ use super::design::LightDesign;
 use super::fill_bits;
 use super::frame::{self, Counted};
 use super::ray_caster;
-use super::safe::Format;
 use super::verdict::{self, Verdict};
 use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
@@ -72,7 +71,6 @@ pub struct PointFigures {
     pub clock_pj: f64,
     pub outer_pj: f64,
     pub units_nand2: f64,
-    pub format: Format,
     pub ray_caster: RivalFigures,
     /// On the energy of the frame.
     pub verdict: Verdict,
@@ -123,7 +121,7 @@ struct Shared<'a> {
     /// By side of the picture.
     exact: BTreeMap<Option<u32>, Frame>,
     /// By drawing settings.
-    setups: BTreeMap<String, OrReason<(FrameSetup, Format)>>,
+    setups: BTreeMap<String, OrReason<FrameSetup>>,
     /// The machine's counts, by [`machine_key`].
     counted: BTreeMap<String, OrReason<(Counted, Option<Turns>)>>,
     /// Rays, by [`Shared::ray_key`].
@@ -214,10 +212,8 @@ impl<'a> Shared<'a> {
             }
             let setup = || {
                 let placement = &of.graph.placement;
-                let setup = FrameSetup::new(&camera, placement, of.graph.depth, &options)
-                    .map_err(|error| error.to_string())?;
-                let format = Format::new(of.graph, &camera, &setup);
-                Ok((setup, format))
+                FrameSetup::new(&camera, placement, of.graph.depth, &options)
+                    .map_err(|error| error.to_string())
             };
             let key = format!("{:?}", point.drawing);
             shared.setups.entry(key).or_insert_with(setup);
@@ -231,7 +227,7 @@ impl<'a> Shared<'a> {
         let most_bytes = MOST_RECORDED / machines.values().filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
             let draw = || -> OrReason<_> {
-                let (setup, _) = shared.setup(point)?;
+                let setup = shared.setup(point)?;
                 let counted = frame::count(of.graph, setup, &point.hardware, of.overflow)
                     .map_err(|error| error.to_string())?;
                 let view = of.graph.view();
@@ -246,7 +242,7 @@ impl<'a> Shared<'a> {
         };
         let counted = machines.into_par_iter().map(count).collect();
         let cast = |(key, point): (String, &Point)| {
-            let (setup, _) = shared.setup(point).ok()?;
+            let setup = shared.setup(point).ok()?;
             let hardware = of.rival.beside(&point.hardware);
             Some(rival::cast(of.graph, setup, of.rival, &hardware).map(|cast| (key, cast)))
         };
@@ -267,24 +263,22 @@ impl<'a> Shared<'a> {
         format!("{:?} {hardware:?}", point.drawing)
     }
 
-    fn setup(&self, point: &Point) -> OrReason<(&FrameSetup, &Format)> {
+    fn setup(&self, point: &Point) -> OrReason<&FrameSetup> {
         let setup = self.setups[&format!("{:?}", point.drawing)].as_ref();
-        setup
-            .map(|(setup, format)| (setup, format))
-            .map_err(String::clone)
+        setup.map_err(String::clone)
     }
 
     /// A point's frame as the serial machine draws it, and its turns.
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Format, &Counted, Option<&Turns>)> {
-        let (setup, format) = self.setup(point)?;
+    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Counted, Option<&Turns>)> {
+        let setup = self.setup(point)?;
         let counted = self.counted[&machine_key(point)].as_ref();
         let (counted, turns) = counted.map_err(String::clone)?;
-        Ok((setup, format, counted, turns.as_ref()))
+        Ok((setup, counted, turns.as_ref()))
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
     fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
-        let (setup, _, counted, turns) = match self.drawn(point) {
+        let (setup, counted, turns) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
@@ -312,7 +306,7 @@ impl<'a> Shared<'a> {
         point: &Point,
         (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
-        let (setup, format, counted, _) = match self.drawn(point) {
+        let (setup, counted, _) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };
@@ -357,7 +351,6 @@ impl<'a> Shared<'a> {
             clock_pj: light.cost.clock.total,
             outer_pj: light.cost.outer.total,
             units_nand2: light.area.units.total,
-            format: *format,
             verdict: verdict::of_energy(&light.cost, &rays.cost, &prices.table),
             ray_caster: RivalFigures {
                 cycles: rays.cycles.cycles,
