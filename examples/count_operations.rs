@@ -1,6 +1,6 @@
 //! Cost of a picture on the machine: operations by class and stage, records by level, and energy.
 
-use hwmodel::cost::{CostTable, ShiftUnits, energy_of};
+use hwmodel::cost::{CostTable, energy_of};
 use shiftvox::{Camera, Renderer, Scene, hwmodel};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (level, records) in counter.records_by_level() {
         println!("octree level {level}: {records} records");
     }
-    let energy = energy_of(counter, &CostTable::load_shipped()?, ShiftUnits::Wires)?;
+    let energy = energy_of(counter, &CostTable::load_shipped()?)?;
     println!(
         "{} operations, {:.1} uJ in adders and logic",
         counter.ops(),

@@ -1,7 +1,7 @@
 //! Another accelerator: the mean of every four pixels of a line, by a sliding sum.
 //! `cargo run --release -p hwmodel --example box_filter`
 
-use hwmodel::cost::{CostTable, ShiftUnits, energy_of};
+use hwmodel::cost::{CostTable, energy_of};
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Child, Hardware, NoObserver, TurnLog, Workload, simulate};
 use hwmodel::{Datapath, Format, Memory, Overflow, Trap, Word};
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut filter = Filter(dp, [Word::ZERO; 4], Word::ZERO);
     let cycles = simulate(&hardware, &mut filter, &mut NoObserver)?.cycles;
     let (_, counter) = filter.0.into_probe();
-    let picojoules = energy_of(&counter, &table, ShiftUnits::Wires)?.total;
+    let picojoules = energy_of(&counter, &table)?.total;
     let operations = counter.ops();
     println!("{operations} operations, {cycles} cycles, {picojoules:.1} pJ");
     Ok(())

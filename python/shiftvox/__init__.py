@@ -18,7 +18,7 @@ __all__ = ["Camera", "Error", "Picture", "Scene", "__version__", "explore", "har
 
 
 def _words(options):
-    """`size=(32, 24)` as `--size 32x24`, `bits=[24, 32]` as `--bits 24,32`, `shifters=True` as `--shifters`."""
+    """`size=(32, 24)` as `--size 32x24`, `bits=[24, 32]` as `--bits 24,32`, `paper=True` as `--paper`."""
     words = []
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")

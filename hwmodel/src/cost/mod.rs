@@ -13,8 +13,8 @@ pub use leakage::Standing;
 pub use rows::{CostError, Goal, Quantity, Spread};
 pub use sram::MemoryShape;
 pub use sums::{
-    Breakdown, Line, ShiftUnits, Store, Tally, energy_of, energy_of_tallies, memory_energy_of,
-    operation_of, tallies,
+    Breakdown, Line, Store, Tally, energy_of, energy_of_tallies, memory_energy_of, operation_of,
+    tallies, unit_of,
 };
 pub use table::{Cost, CostTable, Fit};
 pub use technology::Technology;

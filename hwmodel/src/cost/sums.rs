@@ -9,31 +9,26 @@ use crate::count::{Accesses, Counter, OpCount};
 use crate::memory::Widths;
 use crate::{Memory, OpClass};
 
-/// Implementation of shifts by a constant or by a level's number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ShiftUnits {
-    /// Wires, by the row `shift_wires`.
-    #[default]
-    Wires,
-    /// Shifters, by the rows of `shift_var`.
-    Variable,
-}
-
-/// The operation of a table for a class. Logic is priced as `xor`.
-pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
+/// The operation of a table for a class. Logic is priced as `xor`, and shifts as wires; those that need a shifter are
+/// `shift_var` ([`ShiftProbe`](crate::shifts::ShiftProbe)).
+pub const fn operation_of(class: OpClass) -> &'static str {
     match class {
         OpClass::Add => "add",
         OpClass::Sub => "sub",
         OpClass::Compare => "less",
         OpClass::MinMax => "min",
         OpClass::Select => "select",
-        OpClass::Shift => match shifts {
-            ShiftUnits::Wires => "shift_wires",
-            ShiftUnits::Variable => "shift_var",
-        },
+        OpClass::Shift => "shift_wires",
         OpClass::Logic => "xor",
         OpClass::DivideStep => "divide_step",
+    }
+}
+
+/// The operation of a table for a unit of a class.
+pub const fn unit_of(class: OpClass) -> &'static str {
+    match class {
+        OpClass::Shift => "shift_var",
+        other => operation_of(other),
     }
 }
 
@@ -118,7 +113,7 @@ pub fn tallies(counter: &Counter, priced: impl Fn(&OpCount) -> (&'static str, u6
 /// Energy of all counted operations, in picojoules.
 ///
 /// ```
-/// use hwmodel::cost::{CostTable, ShiftUnits, energy_of};
+/// use hwmodel::cost::{CostTable, energy_of};
 /// use hwmodel::count::Counter;
 /// use hwmodel::{OpClass, Probe, Stage, StageLevel};
 ///
@@ -126,18 +121,12 @@ pub fn tallies(counter: &Counter, priced: impl Fn(&OpCount) -> (&'static str, u6
 /// let place = StageLevel { stage: Stage::new(0, "blur"), level: 0 };
 /// counter.op(OpClass::Add, 32, place, 1000);
 /// counter.op(OpClass::Shift, 33, place, 1000); // wires
-/// let energy = energy_of(&counter, &CostTable::load_shipped()?, ShiftUnits::Wires)?;
+/// let energy = energy_of(&counter, &CostTable::load_shipped()?)?;
 /// assert!((energy.total - 100.0).abs() < 1e-9); // pJ
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
-pub fn energy_of(
-    counter: &Counter,
-    table: &CostTable,
-    shifts: ShiftUnits,
-) -> Result<Breakdown, CostError> {
-    let tallies = tallies(counter, |cell| {
-        (operation_of(cell.class, shifts), cell.times)
-    });
+pub fn energy_of(counter: &Counter, table: &CostTable) -> Result<Breakdown, CostError> {
+    let tallies = tallies(counter, |cell| (operation_of(cell.class), cell.times));
     energy_of_tallies(&tallies, table)
 }
 

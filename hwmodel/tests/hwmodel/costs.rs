@@ -2,8 +2,7 @@
 
 use crate::common::*;
 use hwmodel::cost::{
-    Cost, CostError, CostTable, Fit, Goal, MemoryShape, ShiftUnits, Store, energy_of,
-    memory_energy_of,
+    Cost, CostError, CostTable, Fit, Goal, MemoryShape, Store, energy_of, memory_energy_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
@@ -221,29 +220,26 @@ fn what_is_no_table() {
 fn energy_line_by_line() {
     use OpClass::{Add, Compare, Logic, Shift};
     let table = shipped();
-    let wires = "add 32 1000, less 32 7, shift_wires 33 500, xor 4 17";
-    let shifters = "add 32 1000, less 32 7, shift_var 33 500, xor 4 17";
-    for (shifts, expected) in [(ShiftUnits::Wires, wires), (ShiftUnits::Variable, shifters)] {
-        let mut counter = Counter::new();
-        let operations = [
-            (Add, 32, 1000),
-            (Shift, 33, 500),
-            (Logic, 4, 17),
-            (Compare, 32, 7),
-        ];
-        for (class, bits, times) in operations {
-            counter.op(class, bits, at(RecordStage::Draw, 3), times);
-        }
-        let sum = energy_of(&counter, &table, shifts).unwrap();
-        let lines = sum.lines.iter();
-        let lines = lines.map(|line| format!("{} {} {}", line.operation, line.width, line.times));
-        assert_eq!(lines.collect::<Vec<_>>().join(", "), expected);
-        for line in &sum.lines {
-            let each = table.energy(&line.operation, line.width).unwrap().value;
-            near(line.total, line.times as f64 * each);
-        }
-        near(sum.total, sum.lines.iter().map(|line| line.total).sum());
+    let mut counter = Counter::new();
+    let operations = [
+        (Add, 32, 1000),
+        (Shift, 33, 500),
+        (Logic, 4, 17),
+        (Compare, 32, 7),
+    ];
+    for (class, bits, times) in operations {
+        counter.op(class, bits, at(RecordStage::Draw, 3), times);
     }
+    let sum = energy_of(&counter, &table).unwrap();
+    let lines = sum.lines.iter();
+    let lines = lines.map(|line| format!("{} {} {}", line.operation, line.width, line.times));
+    let expected = "add 32 1000, less 32 7, shift_wires 33 500, xor 4 17";
+    assert_eq!(lines.collect::<Vec<_>>().join(", "), expected);
+    for line in &sum.lines {
+        let each = table.energy(&line.operation, line.width).unwrap().value;
+        near(line.total, line.times as f64 * each);
+    }
+    near(sum.total, sum.lines.iter().map(|line| line.total).sum());
 }
 
 #[test]

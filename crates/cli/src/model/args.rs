@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use hwmodel::cost::{CostTable, Estimator, Goal, ShiftUnits};
+use hwmodel::cost::{CostTable, Estimator, Goal};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::coherent::CoherentArgs;
@@ -64,9 +64,6 @@ pub(super) struct HardwareArgs {
     /// Choose gates for small area or short delay
     #[arg(long, value_enum, default_value_t)]
     goal: Goal,
-    /// Count shifts by constants as shifters, not as wires
-    #[arg(long)]
-    shifters: bool,
     /// TOML file of the ray caster beside which designs are measured
     #[arg(long, value_name = "FILE")]
     rival: Option<PathBuf>,
@@ -213,10 +210,6 @@ impl HardwareArgs {
         Ok(Prices {
             estimator: self.estimator()?,
             table,
-            shifts: match self.shifters {
-                true => ShiftUnits::Variable,
-                false => ShiftUnits::Wires,
-            },
             goal: self.goal,
         })
     }

@@ -13,7 +13,7 @@
 
 use std::collections::BTreeMap;
 
-use hwmodel::cost::{Breakdown, CostError, MemoryShape, ShiftUnits, operation_of};
+use hwmodel::cost::{Breakdown, CostError, MemoryShape, unit_of};
 use hwmodel::count::Counter;
 use hwmodel::cycles::{self, Built, Cache, CycleReport, Hardware, StageReport};
 use hwmodel::memory::ACCUMULATOR_BITS;
@@ -252,7 +252,7 @@ fn units(
             // Of eight constants: one inversion of the octant.
             (stage, OpClass::Logic) if stage == RecordStage::Order => ("invert", lanes),
             _ => (
-                operation_of(class, ShiftUnits::Variable),
+                unit_of(class),
                 lanes * u64::from(unit.count).min(most.max(1)),
             ),
         };
@@ -263,8 +263,12 @@ fn units(
         let kind = (operation, unit.width.min(widest));
         area.units(stage.name(), kind, count, depth(&unit), prices)?;
     }
-    let shift = operation_of(OpClass::Shift, ShiftUnits::Variable);
-    for ((stage, width), times) in shifters(counter, shifts, hardware, prices) {
+    // Shifts that have shifters; of a sequential hardware by the stage in whose cycles they are done.
+    let shifters = match hardware.sequential {
+        true => shifts.variable_in_steps(),
+        false => shifts.variable(),
+    };
+    for ((stage, width), times) in shifters {
         // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
         let cycles_of = |of: &StageReport| match hardware.sequential {
             true => of.alone,
@@ -273,30 +277,9 @@ fn units(
         let busy = report_of(stage).map_or(1, cycles_of).max(1);
         let name = format!("{}, shifters", stage.name());
         let count = lanes * times.div_ceil(busy);
-        area.units(&name, (shift, width), count, 0, prices)?;
+        area.units(&name, ("shift_var", width), count, 0, prices)?;
     }
     Ok(area)
-}
-
-/// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
-fn shifters(
-    counter: &Counter,
-    shifts: &ShiftProbe,
-    hardware: &Hardware,
-    prices: &Prices,
-) -> BTreeMap<(Stage, u32), u64> {
-    match prices.shifts {
-        ShiftUnits::Wires if hardware.sequential => shifts.variable_in_steps(),
-        ShiftUnits::Wires => shifts.variable(),
-        ShiftUnits::Variable => {
-            let mut cells = counter.sum_by(|cell| (cell.class, cell.stage, cell.bits));
-            cells.retain(|key, _| key.0 == OpClass::Shift);
-            let shifts = cells.into_iter();
-            shifts
-                .map(|((_, stage, bits), times)| ((stage, bits), times))
-                .collect()
-        }
-    }
 }
 
 pub fn of_rays(

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use hwmodel::cost::{CostError, CostTable, Goal, ShiftUnits, operation_of};
+use hwmodel::cost::{CostError, CostTable, Goal, unit_of};
 use hwmodel::count::Counter;
 use hwmodel::cycles::Hardware;
 use hwmodel::{OpClass, Stage};
@@ -97,8 +97,7 @@ fn compare(
         let Some(unit) = hardware.unit(stage, class) else {
             continue;
         };
-        let operation = operation_of(class, ShiftUnits::Variable);
-        let delay = table.delay(operation, unit.width, goal)?;
+        let delay = table.delay(unit_of(class), unit.width, goal)?;
         let depth = unit.latency.saturating_add(1);
         longest_step = longest_step.max(delay.high / f64::from(depth));
         units.push(UnitDelay {

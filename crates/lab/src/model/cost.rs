@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Estimator, Goal, ShiftUnits, Store, energy_of_tallies,
-    memory_energy_of, operation_of, tallies,
+    Breakdown, CostError, CostTable, Estimator, Goal, Store, energy_of_tallies, memory_energy_of,
+    operation_of, tallies,
 };
 use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::{CycleReport, Hardware};
@@ -22,7 +22,6 @@ use shiftvox::project::FrameSetup;
 #[derive(Debug, Clone)]
 pub struct Prices {
     pub table: CostTable,
-    pub shifts: ShiftUnits,
     pub goal: Goal,
     /// Prices the actions of components instead of the tables.
     pub estimator: Option<Arc<dyn Estimator>>,
@@ -33,7 +32,6 @@ impl Prices {
     pub fn shipped() -> Result<Self, CostError> {
         Ok(Self {
             table: CostTable::load_shipped()?,
-            shifts: ShiftUnits::Wires,
             goal: Goal::Area,
             estimator: None,
         })
@@ -198,11 +196,11 @@ pub fn stack_energy(
 const ORDERED_OCTANTS: u64 = 8;
 
 /// The operation of the table for a cell of a counter, and how often.
-fn priced(cell: &OpCount, shifts: ShiftUnits) -> (&'static str, u64) {
+fn priced(cell: &OpCount) -> (&'static str, u64) {
     if cell.stage == RecordStage::Order && cell.class == OpClass::Logic {
         return ("invert", cell.times.div_ceil(ORDERED_OCTANTS));
     }
-    (operation_of(cell.class, shifts), cell.times)
+    (operation_of(cell.class), cell.times)
 }
 
 /// Energy of the operations, pJ: those of the counter, and of its shifts those
@@ -212,17 +210,14 @@ pub fn operations_energy(
     shifts: &ShiftProbe,
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
-    let tallies = tallies(counter, |cell| priced(cell, prices.shifts));
-    let mut sum = energy_of_tallies(&tallies, &prices.table)?;
-    if prices.shifts == ShiftUnits::Wires {
-        let mut by_bits = BTreeMap::<u32, u64>::new();
-        for ((_, bits), times) in shifts.variable() {
-            *by_bits.entry(bits).or_default() += times;
-        }
-        for (bits, times) in by_bits {
-            let each = prices.table.energy("shift_var", bits)?;
-            sum.push("shifts that are no wires", "shift_var", bits, times, each);
-        }
+    let mut sum = energy_of_tallies(&tallies(counter, priced), &prices.table)?;
+    let mut by_bits = BTreeMap::<u32, u64>::new();
+    for ((_, bits), times) in shifts.variable() {
+        *by_bits.entry(bits).or_default() += times;
+    }
+    for (bits, times) in by_bits {
+        let each = prices.table.energy("shift_var", bits)?;
+        sum.push("shifts that are no wires", "shift_var", bits, times, each);
     }
     Ok(sum)
 }
@@ -246,15 +241,10 @@ mod tests {
             dp.shr(word, places); // a shifter
         }
         dp.add(word, word);
-        for (shifts, billed) in [(ShiftUnits::Wires, 5.0), (ShiftUnits::Variable, 10.0)] {
-            let prices = Prices {
-                shifts,
-                ..Prices::shipped().unwrap()
-            };
-            let sum = operations_energy(&probes.0, &probes.1, &prices).unwrap();
-            let expected = 0.1 + billed * 0.1334;
-            assert!((sum.total - expected).abs() < 1e-9, "{}", sum.total);
-        }
+        let prices = Prices::shipped().unwrap();
+        let sum = operations_energy(&probes.0, &probes.1, &prices).unwrap();
+        let expected = 0.1 + 5.0 * 0.1334;
+        assert!((sum.total - expected).abs() < 1e-9, "{}", sum.total);
     }
 
     /// 64 bits from 8 KB are 10 pJ, and so is writing them.
