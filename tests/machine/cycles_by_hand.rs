@@ -16,7 +16,7 @@
 //! to which they are moved. The way back from B to A is out of a quadrant and up a level.
 
 use hwmodel::OpClass;
-use hwmodel::cycles::{Hardware, Organisation, Recorder, StackHolds};
+use hwmodel::cycles::{Hardware, Organisation, StackHolds, VisitSpan};
 use shiftvox::frame::Frame;
 use shiftvox::machine::Machine;
 use shiftvox::project::SetupOptions;
@@ -128,14 +128,14 @@ fn follow(hardware: &Hardware, turns: &str, cycles: u64) {
     camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
     let setup = setup(&graph, &camera, &SetupOptions::default());
     let mut frame = Frame::new(4, 4, false);
-    let mut recorder = Recorder::new(u64::MAX);
+    let mut visits: Vec<VisitSpan> = Vec::new();
     let simulated = Machine::default()
-        .simulate(&graph.view(), &setup, &mut frame, hardware, &mut recorder)
+        .simulate(&graph.view(), &setup, &mut frame, hardware, &mut visits)
         .unwrap();
     let drawn = [frame.voxel[8], frame.voxel[12]];
     assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
     let (mut now, mut last, mut found) = (0, None, String::new());
-    for visit in recorder.visits() {
+    for visit in visits {
         if last != Some(visit.record) {
             found += "\n   ";
         }

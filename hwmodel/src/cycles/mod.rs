@@ -83,7 +83,6 @@ mod sequential;
 mod simulate;
 mod tasks;
 mod totals;
-mod trace;
 mod turn;
 mod wheel;
 
@@ -100,5 +99,4 @@ pub use report::{
     StageReport, Stalls,
 };
 pub use simulate::{SimulationError, simulate};
-pub use trace::Recorder;
 pub use turn::{Child, ImageNode, TurnLog, Workload};

@@ -31,16 +31,13 @@ pub struct VisitSpan {
 
 /// Observes a simulation. Its methods do nothing by default.
 pub trait Observer {
-    /// Whether [`visit`](Self::visit) and [`queue`](Self::queue) are called; constant during a simulation.
+    /// Whether [`visit`](Self::visit) is called; constant during a simulation.
     fn watches_visits(&self) -> bool {
         false
     }
 
     /// A visit of known course, in the order in which they begin.
     fn visit(&mut self, _: &VisitSpan) {}
-
-    /// From a `cycle` on: a `lane`, the number of records on its stack, and of those that are ready.
-    fn queue(&mut self, _cycle: u64, _lane: u32, _stored: u32, _ready: u32) {}
 
     /// Whether [`requests`](Self::requests) is called; constant during a simulation.
     fn watches_requests(&self) -> bool {
@@ -70,6 +67,17 @@ impl<F: FnMut(u64, u64)> Observer for Progress<F> {
     }
 }
 
+/// Keeps all visits.
+impl Observer for Vec<VisitSpan> {
+    fn watches_visits(&self) -> bool {
+        true
+    }
+
+    fn visit(&mut self, span: &VisitSpan) {
+        self.push(*span);
+    }
+}
+
 /// Both observe.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn watches_visits(&self) -> bool {
@@ -79,11 +87,6 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn visit(&mut self, span: &VisitSpan) {
         self.0.visit(span);
         self.1.visit(span);
-    }
-
-    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
-        self.0.queue(cycle, lane, stored, ready);
-        self.1.queue(cycle, lane, stored, ready);
     }
 
     fn watches_requests(&self) -> bool {

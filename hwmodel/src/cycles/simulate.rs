@@ -396,9 +396,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
                 place -= 1;
             }
             ready.insert(place, task);
-            if self.watched {
-                self.tell_queue(now, at);
-            }
         }
         self.newly = newly;
         self.lanes[lane as usize].idle |= 1 << self.contexts[context as usize].number;
@@ -411,17 +408,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
             self.wake(now)?;
         }
         Ok(())
-    }
-
-    fn tell_queue(&mut self, now: u64, at: usize) {
-        let stacks = self.lanes.len() / self.hardware.lanes as usize;
-        let lane = at / stacks;
-        let (stored, ready) = self.lanes[lane * stacks..][..stacks]
-            .iter()
-            .fold((0, 0), |(stored, ready), of| {
-                (stored + of.stored as u32, ready + of.ready.len() as u32)
-            });
-        self.observer.queue(now, lane as u32, stored, ready);
     }
 
     fn wake(&mut self, now: u64) -> Result<(), SimulationError<W::Error>> {
@@ -461,9 +447,6 @@ impl<'a, W: Workload> Simulation<'a, W> {
         self.idle -= 1;
         self.lanes[from].stored -= 1;
         self.totals.stack.stolen += u64::from(stolen);
-        if self.watched {
-            self.tell_queue(now, from);
-        }
         let of = &mut self.contexts[context as usize];
         self.lanes[lane].idle &= !(1 << of.number);
         of.task = task;

@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use crate::common::*;
-use hwmodel::cycles::{Child, Hardware, ImageNode, Recorder, START, VisitSpan, simulate};
+use hwmodel::cycles::{Child, Hardware, ImageNode, START, VisitSpan, simulate};
 use hwmodel::{Memory, OpClass, Probe};
 use serde_json::Value;
 use toml::Table;
@@ -97,8 +97,8 @@ fn check(name: &str, hardware: &Table, sections: &BTreeMap<&str, Vec<&str>>) {
     let (names, nodes) = records(tiles.unwrap_or_else(|| &sections["records"]));
     let mut workload = Listed::new(&nodes, &hardware);
     workload.tiles = tiles.map_or(0, |records| records.len() as u32 - 1);
-    let mut recorder = Recorder::new(u64::MAX);
-    let report = simulate(&hardware, &mut workload, &mut recorder).unwrap();
+    let mut visits: Vec<VisitSpan> = Vec::new();
+    let report = simulate(&hardware, &mut workload, &mut visits).unwrap();
     assert!(report.cycles <= report.serial);
     let row = |visit: &VisitSpan| {
         let record = match workload.turns.get(visit.record as usize) {
@@ -122,7 +122,7 @@ fn check(name: &str, hardware: &Table, sections: &BTreeMap<&str, Vec<&str>>) {
         });
         format!("{record} {lane}.{context} {stage:?} {arrives} {begins} {frees} {ends}{stall}")
     };
-    let found: Vec<String> = recorder.visits().iter().map(row).collect();
+    let found: Vec<String> = visits.iter().map(row).collect();
     let mut left: Vec<&str> = found.iter().map(String::as_str).collect();
     let exact = sections.get("visits");
     for expected in exact.or(sections.get("some visits")).into_iter().flatten() {

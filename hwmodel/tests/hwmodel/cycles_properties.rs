@@ -3,13 +3,12 @@ use std::collections::BTreeMap;
 
 use crate::common::*;
 use hwmodel::cycles::{
-    Cache, Child, CycleReport, Dram, Hardware, ImageNode, Independence, NoObserver, Recorder,
-    START, StackOverflow, Unit, simulate,
+    Cache, Child, CycleReport, Dram, Hardware, ImageNode, Independence, NoObserver, StackOverflow,
+    Unit, VisitSpan, simulate,
 };
 use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Probe};
 use proptest::prelude::*;
-use serde_json::Value;
 
 struct Dice(u64);
 
@@ -166,13 +165,6 @@ fn run(nodes: &[Node], hardware: &Hardware) -> (CycleReport, Vec<u32>) {
     (report, workload.turns)
 }
 
-fn recorded(nodes: &[Node], hardware: &Hardware, most: u64) -> (Recorder, Vec<u32>) {
-    let mut workload = Listed::new(nodes, hardware);
-    let mut recorder = Recorder::new(most);
-    simulate(hardware, &mut workload, &mut recorder).unwrap();
-    (recorder, workload.turns)
-}
-
 fn depth_first(nodes: &[Node]) -> Vec<u32> {
     let mut stack = vec![1];
     let mut order = Vec::new();
@@ -241,10 +233,11 @@ proptest! {
     ) {
         let nodes = records(seed, 120);
         let hardware = hardware(hw, independence);
-        let (recorder, turns) = recorded(&nodes, &hardware, u64::MAX);
+        let (mut workload, mut visits) = (Listed::new(&nodes, &hardware), Vec::<VisitSpan>::new());
+        simulate(&hardware, &mut workload, &mut visits).unwrap();
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();
-        for visit in recorder.visits() {
-            if let Some(&item) = turns.get(visit.record as usize) {
+        for visit in &visits {
+            if let Some(&item) = workload.turns.get(visit.record as usize) {
                 let time = times.entry(item).or_insert((visit.arrives, visit.ends));
                 time.1 = time.1.max(visit.ends);
             }
@@ -353,38 +346,4 @@ fn a_stack_that_does_not_spill_overflows() {
     let mut workload = Listed::new(&nodes, &hardware);
     let error = simulate(&hardware, &mut workload, &mut NoObserver).unwrap_err();
     assert!(error.to_string().contains("the 2 entries of lane"));
-}
-
-#[test]
-fn traces_are_json_with_an_event_per_visit_and_wait() {
-    let nodes = records(5, 100);
-    let mut hardware = hardware(5, Independence::Image);
-    (hardware.lanes, hardware.contexts) = (2, 3);
-    let (recorder, _) = recorded(&nodes, &hardware, u64::MAX);
-    let mut text = Vec::new();
-    recorder.write_chrome(&hardware, &mut text).unwrap();
-    let json: Value = serde_json::from_slice(&text).unwrap();
-    let events = json["traceEvents"].as_array().unwrap();
-    assert!(events.iter().any(|event| event["ph"] == "C"));
-    let spans = events.iter().filter(|event| event["ph"] == "X");
-    let span = |event: &Value| ["pid", "tid", "ts", "dur"].map(|key| event[key].as_u64().unwrap());
-    let mut spans: Vec<_> = spans.map(span).collect();
-    let mut expected = Vec::new();
-    for visit in recorder.visits() {
-        let (lane, context) = (u64::from(visit.lane), u64::from(visit.context));
-        let waits = (visit.arrives, visit.begins - visit.arrives);
-        for (begins, cycles) in [waits, (visit.begins, visit.ends - visit.begins)] {
-            expected.push([lane, context, begins, cycles]);
-        }
-    }
-    expected.retain(|span| span[3] > 0);
-    spans.sort_unstable();
-    expected.sort_unstable();
-    assert_eq!(spans, expected);
-    // On one thread nothing overlaps.
-    let ends_before = |a: &[u64; 4], b: &[u64; 4]| a[..2] < b[..2] || a[2] + a[3] <= b[2];
-    assert!(spans.is_sorted_by(ends_before));
-    let (first, _) = recorded(&nodes, &hardware, 5);
-    let last = first.visits().iter().map(|visit| visit.record);
-    assert_eq!(last.filter(|&record| record != START).max(), Some(4));
 }

@@ -75,12 +75,6 @@ pub(super) struct HardwareArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct FileArgs {
-    /// Trace of the first records, JSON for Perfetto
-    #[arg(long, value_name = "FILE")]
-    pub(super) trace: Option<PathBuf>,
-    /// Records of the trace
-    #[arg(long, value_name = "N", default_value_t = 2000)]
-    pub(super) trace_records: u64,
     /// Requests to outer memory, a memory trace for Ramulator
     #[arg(long, value_name = "FILE")]
     pub(super) export_ramulator: Option<PathBuf>,

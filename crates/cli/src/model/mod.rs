@@ -12,7 +12,7 @@ pub(super) use args::ModelArgs;
 #[cfg(feature = "view")]
 pub(super) use brief::brief;
 
-use hwmodel::cycles::{Hardware, Observer, Progress as Ticks, Recorder, RequestLog};
+use hwmodel::cycles::{Hardware, Progress as Ticks, RequestLog};
 
 use super::console::Console;
 use super::error::CliError;
@@ -121,29 +121,15 @@ fn simulate(
 ) -> Result<(Frame, Simulated), CliError> {
     let (view, overflow) = (subject.graph.view(), args.rules.overflow());
     let mut reported = 0;
-    let files = &args.files;
+    let trace = args.files.export_ramulator.as_ref();
     let ticks = Ticks(|_, records: u64| {
         console.progress().advance(records.saturating_sub(reported));
         reported = records;
     });
-    let mut watched = (RequestLog::new(files.export_ramulator.is_some()), ticks);
-    let mut text = Vec::new();
-    let run =
-        |observer: &mut dyn Observer| frame::simulate(&view, setup, hardware, overflow, observer);
-    let drawn = match &files.trace {
-        None => run(&mut watched)?,
-        Some(path) => {
-            let mut all = (Recorder::new(files.trace_records), watched);
-            let drawn = run(&mut all)?;
-            all.0.write_chrome(hardware, &mut text)?;
-            whole::write(path, &text, args.export.force)?;
-            console.written(path);
-            watched = all.1;
-            drawn
-        }
-    };
-    if let Some(path) = &files.export_ramulator {
-        text.clear();
+    let mut watched = (RequestLog::new(trace.is_some()), ticks);
+    let drawn = frame::simulate(&view, setup, hardware, overflow, &mut watched)?;
+    if let Some(path) = trace {
+        let mut text = Vec::new();
         watched.0.write_ramulator(&mut text)?;
         whole::write(path, &text, args.export.force)?;
         console.written(path);

@@ -20,7 +20,6 @@ use shiftvox_lab::report::{Cell, Table, grouped};
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     let files = &args.files;
     let others = [
-        &files.trace,
         &files.export_ramulator,
         &files.export_accelergy,
         &files.export_ert,

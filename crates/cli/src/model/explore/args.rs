@@ -12,7 +12,7 @@ pub(in crate::model) struct ExploreArgs {
     /// Measure many designs and find the Pareto-optimal ones in time, area, energy and wrong samples. SPACE is bundled,
     /// lanes, map, rules, sizes, steps, words, or a TOML file like those (--print-space). Takes several scenes. --json
     /// prints one line per point
-    #[arg(long, value_name = "SPACE", conflicts_with_all = ["trace", "vectors", "export_ramulator", "export_accelergy", "export_ert"])]
+    #[arg(long, value_name = "SPACE", conflicts_with_all = ["vectors", "export_ramulator", "export_accelergy", "export_ert"])]
     pub(in crate::model) explore: Option<String>,
     /// Print the space and exit
     #[arg(long, requires = "explore")]
