@@ -1,7 +1,7 @@
-//! Traffic to the machine's memories.
+//! Bits of the machine's records and accesses.
 
 mod records;
-mod traffic;
+mod widths;
 
 pub use records::{RecordBits, RecordKind, RecordProbe};
-pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, PIXEL_BITS, Widths};
+pub use widths::{ACCUMULATOR_BITS, PIXEL_BITS, Widths};

@@ -7,5 +7,4 @@ mod counting;
 mod cycles_by_hand;
 mod cycles_hardware;
 mod cycles_properties;
-mod traffic;
 mod words;

@@ -15,7 +15,7 @@ use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{CycleReport, Hardware, StackHolds};
-use hwmodel::memory::{MemoryProbe, RecordProbe};
+use hwmodel::memory::RecordProbe;
 use hwmodel::shifts::ShiftProbe;
 use serde::Serialize;
 
@@ -140,12 +140,8 @@ impl Run {
         }
         let mut picture = Frame::new(setup.width, setup.height, false);
         let records = RecordProbe::new(hardware.stack.record);
-        let widths = frame::widths(setup, graph, &hardware);
-        let probes = (
-            (Counter::new(), ShiftProbe::new()),
-            (records, MemoryProbe::new(widths)),
-        );
-        let (simulated, ((counter, shifts), (records, memory))) = frame::machine(
+        let probes = ((Counter::new(), ShiftProbe::new()), records);
+        let (simulated, ((counter, shifts), records)) = frame::machine(
             overflow,
             hardware.organisation,
         )
@@ -154,7 +150,6 @@ impl Run {
             counted: Counted {
                 frame: picture,
                 counter,
-                memory,
                 shifts,
                 records,
                 stats: simulated.counts,

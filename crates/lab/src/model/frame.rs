@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{CycleReport, Hardware, Observer, Organisation, Recording};
-use hwmodel::memory::{MemoryProbe, PIXEL_BITS, RecordProbe, Widths};
+use hwmodel::memory::{PIXEL_BITS, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
@@ -22,7 +22,6 @@ use shiftvox::rays::Rays;
 pub struct Counted {
     pub frame: Frame,
     pub counter: Counter,
-    pub memory: MemoryProbe,
     pub shifts: ShiftProbe,
     pub records: RecordProbe,
     pub stats: Stats,
@@ -93,7 +92,6 @@ pub fn count(
     overflow: Overflow,
 ) -> Result<Counted, EngineError> {
     let setup = &*in_words(setup, hardware.organisation);
-    let memory = MemoryProbe::new(widths(setup, graph, hardware));
     let mut frame = Frame::new(setup.width, setup.height, false);
     let light = lights(graph, setup, Shading::Lambert)?;
     let view = GraphView {
@@ -102,14 +100,13 @@ pub fn count(
     };
     let organisation = hardware.organisation;
     let records = RecordProbe::new(bits_by_kind(setup, graph.len(), organisation));
-    let probes = ((Counter::new(), ShiftProbe::new()), (memory, records));
+    let probes = ((Counter::new(), ShiftProbe::new()), records);
     let mut machine = machine(overflow, organisation);
-    let (stats, ((counter, shifts), (memory, records))) =
+    let (stats, ((counter, shifts), records)) =
         machine.render_probed(&view, setup, &mut frame, probes)?;
     Ok(Counted {
         frame,
         counter,
-        memory,
         shifts,
         records,
         stats,

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use hwmodel::cost::Technology;
-use hwmodel::count::{Counter, OpCount};
+use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::Hardware;
-use hwmodel::memory::RecordKind;
+use hwmodel::memory::{RecordKind, Widths};
 use hwmodel::shifts::ShiftSite;
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
@@ -118,7 +118,7 @@ impl Report {
             operations: counter.cells().collect(),
             operations_by_stage: operations_by_stage(counter),
             shifts: counted.shifts.sites(),
-            memories: Memory::ALL.map(|memory| traffic(counted, memory)).into(),
+            memories: memories(counted, &frame::widths(setup, graph, &hardware)),
             stack_bits: cost::stack_bits(&hardware, counted.record_bits()),
             fill_vector_bits: fill_bits::fill_store_bits(setup, &hardware),
             accumulator_bits: cost::accumulator_bits(setup),
@@ -170,19 +170,23 @@ fn operations_by_stage(counter: &Counter) -> Vec<Value> {
     stages.into_iter().map(row).collect()
 }
 
-fn traffic(counted: &Counted, memory: Memory) -> Value {
-    let probe = &counted.memory;
-    let (read_bits, written_bits) = match memory {
-        // Records differ in their bits.
-        Memory::Stack => (counted.records.read_bits(), counted.records.written_bits()),
-        _ => (probe.read_bits(memory), probe.written_bits(memory)),
+/// Accesses of the memories that a frame uses.
+fn memories(counted: &Counted, widths: &Widths) -> Vec<Value> {
+    let accesses = counted.counter.accesses_by(|cell| cell.memory);
+    let row = |(memory, of): (Memory, Accesses)| {
+        let bits = u64::from(widths.of(memory));
+        let (read_bits, written_bits) = match memory {
+            // Records differ in their bits.
+            Memory::Stack => (counted.records.read_bits(), counted.records.written_bits()),
+            _ => (of.reads * bits, of.writes * bits),
+        };
+        json!({
+            "memory": memory.name(),
+            "reads": of.reads,
+            "writes": of.writes,
+            "read_bits": read_bits,
+            "written_bits": written_bits,
+        })
     };
-    json!({
-        "memory": memory.name(),
-        "reads": probe.reads(memory),
-        "writes": probe.writes(memory),
-        "read_bits": read_bits,
-        "written_bits": written_bits,
-        "distinct": probe.distinct(memory),
-    })
+    accesses.into_iter().map(row).collect()
 }

@@ -38,7 +38,7 @@ pub const SHORT: [TableSpec; 5] = [
         title: "Memories",
         rows: "memories",
         columns: "memory reads writes read_kilobytes=read_bits:1.220703125e-4:1 \
-                  written_kilobytes=written_bits:1.220703125e-4:1 !distinct_addresses=distinct",
+                  written_kilobytes=written_bits:1.220703125e-4:1",
     },
     TableSpec {
         title: "Bounds: the cycles that each resource needs at least",
