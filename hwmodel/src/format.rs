@@ -10,27 +10,11 @@ pub const MAX_BITS: u32 = 64;
 /// A two's complement word format: `bits` bits, `frac` of them fraction.
 ///
 /// Values run from `-2^(bits-1)` to `2^(bits-1) - 1` units of `2^-frac`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(try_from = "Fields")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Format {
     bits: u32,
     frac: u32,
-    #[serde(skip)]
     wide_bits: u32,
-}
-
-#[derive(Deserialize)]
-struct Fields {
-    bits: u32,
-    frac: u32,
-}
-
-impl TryFrom<Fields> for Format {
-    type Error = FormatError;
-
-    fn try_from(fields: Fields) -> Result<Self, FormatError> {
-        Self::new(fields.bits, fields.frac)
-    }
 }
 
 /// Why a pair of numbers is no word format.

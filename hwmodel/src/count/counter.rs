@@ -74,7 +74,7 @@ impl Counter {
         Self::default()
     }
 
-    pub(super) fn table(&mut self, bits: u32) -> &mut Table {
+    fn table(&mut self, bits: u32) -> &mut Table {
         let empty = || vec![Default::default(); LEVELS];
         self.tables.entry(bits).or_insert_with(empty)
     }

@@ -181,25 +181,6 @@ impl Counter {
         }
         sum
     }
-
-    /// Adds the counts of another counter to this one's.
-    pub fn merge(&mut self, other: &Self) {
-        for cell in other.cells() {
-            self.stages[cell.stage.number()] = cell.stage;
-            let counts = &mut self.table(cell.bits)[cell.level as usize];
-            counts[cell.stage.number()][cell.class as usize] += cell.times;
-        }
-        for cell in other.accesses() {
-            self.stages[cell.stage.number()] = cell.stage;
-            let rows = &mut self.settled[cell.level as usize];
-            let (stage, memory) = (cell.stage.number(), cell.memory as usize);
-            rows[READS + stage][memory] += cell.accesses.reads;
-            rows[WRITES + stage][memory] += cell.accesses.writes;
-        }
-        for (sum, records) in self.records.iter_mut().zip(other.records) {
-            *sum += records;
-        }
-    }
 }
 
 fn add(sums: &mut CountRow, row: &CountRow) {
@@ -207,13 +188,3 @@ fn add(sums: &mut CountRow, row: &CountRow) {
         *sum += count;
     }
 }
-
-impl PartialEq for Counter {
-    fn eq(&self, other: &Self) -> bool {
-        self.records == other.records
-            && self.cells().eq(other.cells())
-            && self.accesses().eq(other.accesses())
-    }
-}
-
-impl Eq for Counter {}

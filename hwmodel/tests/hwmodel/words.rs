@@ -251,14 +251,11 @@ fn formats_have_16_to_64_bits_with_a_bit_beside_sign_and_fraction() {
     let numbers = || (0..70).chain([u32::MAX]);
     for (bits, frac) in numbers().flat_map(|bits| numbers().map(move |frac| (bits, frac))) {
         let found = Format::new(bits, frac);
-        let read =
-            serde_json::from_value::<Format>(serde_json::json!({"bits": bits, "frac": frac}));
         if !(16..=64).contains(&bits) {
             assert_eq!(found, Err(FormatError::Bits(bits)));
         } else if frac > bits - 2 {
             assert_eq!(found, Err(FormatError::Frac { bits, frac }));
         }
-        assert_eq!(read.ok(), found.ok());
         let Ok(format) = found else { continue };
         let wide = format.wide();
         let found = (format.bits(), format.frac(), wide.bits(), wide.frac());
