@@ -188,3 +188,13 @@ fn add(sums: &mut CountRow, row: &CountRow) {
         *sum += count;
     }
 }
+
+impl PartialEq for Counter {
+    fn eq(&self, other: &Self) -> bool {
+        self.records == other.records
+            && self.cells().eq(other.cells())
+            && self.accesses().eq(other.accesses())
+    }
+}
+
+impl Eq for Counter {}
