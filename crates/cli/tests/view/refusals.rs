@@ -34,7 +34,7 @@ const REQUESTS: &str = "\
 403 GET / | Host: HERE
 403 GET /?token= | Host: HERE
 403 GET /?token=SHORT | Host: HERE
-403 GET /?token=SHORT0 | Host: HERE
+403 GET /?token=OTHER | Host: HERE
 403 GET /?xtoken=TOKEN | Host: HERE
 403 GET /?token=/etc/passwd&token=TOKEN | Host: HERE
 404 GET /page.html?token=TOKEN | Host: HERE
@@ -63,17 +63,20 @@ const REQUESTS: &str = "\
 403 GET /file | Host: HERE | Origin: http://HERE | UPGRADE
 101 GET /file?token=TOKEN | Host: HERE | Origin: http://HERE | UPGRADE
 403 GET /socket | Host: HERE | Origin: http://HERE | UPGRADE
-403 GET /socket?token=SHORT0 | Host: HERE | Origin: http://HERE | UPGRADE";
+403 GET /socket?token=OTHER | Host: HERE | Origin: http://HERE | UPGRADE";
 const UPGRADE: &str = "Connection: Upgrade | Upgrade: websocket | Sec-WebSocket-Version: 13 | \
                        Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==";
 
 #[test]
 fn a_page_is_for_who_knows_the_token_and_asks_by_address() {
     let program = scene();
+    let short = &program.token[..31];
+    let other = if program.token.ends_with('0') { 1 } else { 0 };
     let requests = REQUESTS
         .replace("PAGE", "/?token=TOKEN")
         .replace("SOCKET", "/socket?token=TOKEN")
-        .replace("SHORT", &program.token[..31])
+        .replace("OTHER", &format!("{short}{other}"))
+        .replace("SHORT", short)
         .replace("TOKEN", &program.token)
         .replace("HERE", &program.host)
         .replace("UPGRADE", UPGRADE);
