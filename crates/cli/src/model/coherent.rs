@@ -29,7 +29,7 @@ enum Path {
 pub(super) struct CoherentArgs {
     /// Draw films in which each frame begins with the voxels that the last one showed
     #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',',
-          conflicts_with_all = ["explore", "rival", "vectors"])]
+          conflicts_with_all = ["explore", "rival", "vectors", "export_ramulator", "export_accelergy", "export_ert"])]
     coherent: Vec<Path>,
     /// Frames of a film after its first
     #[arg(long, value_name = "N", requires = "coherent", default_value_t = 8,
