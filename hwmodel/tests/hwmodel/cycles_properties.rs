@@ -235,11 +235,18 @@ proptest! {
         let hardware = hardware(hw, independence);
         let (mut workload, mut visits) = (Listed::new(&nodes, &hardware), Vec::<VisitSpan>::new());
         simulate(&hardware, &mut workload, &mut visits).unwrap();
+        visits.sort_by_key(|visit| (visit.lane, visit.context, visit.arrives, visit.ends));
+        for pair in visits.windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            prop_assert!(a.arrives <= a.begins && a.begins <= a.ends);
+            let are_of_one = (a.lane, a.context) == (b.lane, b.context);
+            prop_assert!(!are_of_one || a.ends <= b.arrives, "a context is in two blocks at once");
+        }
         let mut times: BTreeMap<u32, (u64, u64)> = BTreeMap::new();
         for visit in &visits {
             if let Some(&item) = workload.turns.get(visit.record as usize) {
                 let time = times.entry(item).or_insert((visit.arrives, visit.ends));
-                time.1 = time.1.max(visit.ends);
+                *time = (time.0.min(visit.arrives), time.1.max(visit.ends));
             }
         }
         // First and last cycle of each record and all below it: children come later in the list.

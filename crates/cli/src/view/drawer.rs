@@ -112,7 +112,7 @@ impl Shared {
         let opened = listed.chosen(&args, settings.crop.as_ref())?;
         let mut of_part;
         let drawable: &mut (dyn Drawable + '_) = match &opened {
-            // Another part is drawn anew: the last one is gone.
+            // A drawing of a part is not kept from one request to the next.
             Chosen::Part(part) => {
                 part.check(&listed.name, &args)?;
                 of_part = part.drawable(&args, stop)?;

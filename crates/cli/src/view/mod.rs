@@ -133,7 +133,7 @@ impl Listed {
         }
     }
 
-    /// What a request draws.
+    /// The whole scene, or the part that a request draws.
     fn chosen(&'static self, args: &DrawArgs<'_>, crop: Option<&Crop>) -> Result<Chosen, CliError> {
         let whole = self.for_flags(args)?;
         let Some(crop) = crop else {
