@@ -23,16 +23,22 @@ const ALL_COLUMNS: u8 = 0b1111;
 const REACH: u32 = 3;
 /// Points of a node that is opaque with its column: with fewer, walls would grow by a voxel.
 const LEAST_POINTS: u32 = 16;
+/// A pane seen at an angle of cosine `c` is crossed in about `1/c` voxels, each of which blends `c^2` of its opacity
+/// from the front: `c` in all, not 1. A third of that opacity from the other sides adds `(1 - c^2)/3c`.
+const SHEET: u32 = 3;
 
 #[derive(Clone, Copy)]
 struct Inside {
     masks: Masks,
     large_from: u8,
+    /// Whether all its triangles let light through.
+    is_clear: bool,
 }
 
 const NOTHING: Inside = Inside {
     masks: [0; 3],
     large_from: u8::MAX,
+    is_clear: true,
 };
 
 /// The opacities of a graph's nodes, one each, the same on any number of threads.
@@ -75,6 +81,7 @@ pub fn opacities<S: Surface + ?Sized>(
                     Some(clear) => mix.add(clear, prepared, corner, voxel, voxel_size),
                     None => is_shown = true,
                 }
+                leaf.is_clear &= clear.is_some();
                 let clear = clear.map(|clear| (clear, voxel_size));
                 cover(prepared, clear, corner, voxel, &mut leaf.masks);
             }
@@ -163,6 +170,7 @@ impl Columns<'_> {
                 inside.masks = joined(&children.map(|child| child.masks));
                 let large_from = children.iter().map(|child| child.large_from);
                 inside.large_from = large_from.fold(u8::MAX, u8::min);
+                inside.is_clear = children.iter().all(|child| child.is_clear);
             });
     }
 
@@ -188,7 +196,15 @@ impl Columns<'_> {
 
     fn settle(&self, node: u32, level: u32) -> Opacity {
         let is_large = self.is_large(node, level);
-        let dither = dither(&self.inside[node as usize].masks);
+        let Inside {
+            masks, is_clear, ..
+        } = self.inside[node as usize];
+        let dither = dither(&masks);
+        let covered = masks.map(u64::count_ones);
+        let least = match is_clear {
+            true => covered.into_iter().fold(0, u32::max) / SHEET,
+            false => 0,
+        };
         Opacity([0, 1, 2].map(|axis| {
             let own = self.column(node, axis);
             let sides = [0, 1].map(|side| match is_large {
@@ -202,7 +218,8 @@ impl Columns<'_> {
                     && (all.covered == ALL || all.closed == ALL_COLUMNS);
             let [low, high] = sides.map(|before| {
                 let open = own.covered & !before.covered;
-                opacity_of(if is_whole { 64 } else { open.count_ones() }, dither)
+                let points = open.count_ones().max(least);
+                opacity_of(if is_whole { 64 } else { points }, dither)
             });
             low | high << 4
         }))

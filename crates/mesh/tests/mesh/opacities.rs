@@ -28,8 +28,8 @@ fn opacities_are_as_recorded() {
         xxh3_64(&bytes)
     });
     let expected = [
-        0x89f8_467a_5912_4539,
-        0x0a97_7d6e_0bc7_1dee,
+        0x1469_782e_90a8_32fe,
+        0x5ce5_731c_5815_533f,
         0x3472_e6aa_92d8_deae,
     ];
     assert_eq!(recorded, expected, "{recorded:#x?}");

@@ -165,3 +165,22 @@ fn voxels_have_holes() {
         assert!((0.9..1.1).contains(&share), "{level}: {share}");
     }
 }
+
+/// The sum over a pane of the weights that `SPEC.md`, R11, blends.
+#[test]
+fn a_pane_stops_as_much_at_an_angle() {
+    let grey = RgbaImage::from_pixel(4, 4, Rgba([102, 0, 0, 255]));
+    let (graph, _) = graph_of(&card(&grey, 1, 0.0, "Kd 0 1 0\nmap_d a.png"), 6);
+    let area = graph.placement.voxel_size.powi(2);
+    let finest = &graph.opacity[graph.level_start[6] as usize..];
+    for cosine in [1.0, 0.7, 0.5, 0.35] {
+        let rest = (1.0 - cosine * cosine) / 2.0;
+        let squares = [rest, rest, cosine * cosine];
+        let stopped = finest.iter().map(|opacity| {
+            let of = |k: usize| squares[k] * f64::from(sixteenths(opacity.from_side(k, true)));
+            (0..3).map(of).sum::<f64>() / 16.0 * area
+        });
+        let share = stopped.sum::<f64>() / (0.4 * cosine);
+        assert!((0.85..1.25).contains(&share), "{cosine}: {share}");
+    }
+}
