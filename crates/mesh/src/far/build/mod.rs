@@ -48,6 +48,7 @@ use shot::Target;
 use split::{Branch, split};
 use spool::{Done, Spool};
 use surface::{MOST_TRIANGLES, Surfaces};
+use touch::Touches;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
@@ -243,21 +244,20 @@ fn fill<F: Read + Write + Seek + Send>(
         }
         let grid = has_voxels[number].then(|| grid(number, branch))?;
         let may_be_left = !options.hybrid && number > coarser;
-        let is_of_use =
-            options.rays.is_some() || may_be_left && levels::is_dense(grid.len(), branch.count);
+        let is_of_use = options.rays.is_some() || may_be_left;
         is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
     };
     let numbered = || branches.par_iter().enumerate();
-    let touched: Vec<Option<u32>> = numbered().map(touched).collect();
+    let touched: Vec<Option<Touches>> = numbered().map(touched).collect();
     if !options.hybrid {
-        levels::leave_out_dense(&mut has_voxels, &branches, &touched, coarser);
+        levels::leave_out(&mut has_voxels, &branches, &touched, coarser);
     }
     progress.end();
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
         Some(rays) => {
             let touched = touched.iter().zip(&has_voxels);
-            let touched = touched.map(|(n, has_voxels)| n.filter(|_| *has_voxels).unwrap_or(0));
+            let touched = touched.map(|(n, has)| n.filter(|_| *has).map_or(0, |n| n.voxels));
             share_rays(&touched.collect::<Vec<u32>>(), rays)
         }
     };

@@ -53,20 +53,28 @@ pub(super) fn touched(
     all
 }
 
-pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) -> u32 {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touches {
+    pub(super) voxels: u32,
+    /// The area of all triangles, in faces of a voxel.
+    pub(super) faces: f64,
+}
+
+pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) -> Touches {
     let mut is_touched = vec![false; grid.len()];
-    let mut count = 0;
+    let (mut voxels, mut faces) = (0, 0.0);
     for corners in triangles {
         let corners = corners.map(|p| grid.local(p));
+        faces += area(corners);
         parts(grid, &corners, |number, cut| {
             let mark = &mut is_touched[number as usize];
             if !*mark && cut().area() >= LEAST_AREA {
                 *mark = true;
-                count += 1;
+                voxels += 1;
             }
         });
     }
-    count
+    Touches { voxels, faces }
 }
 
 /// Calls `visit` with each voxel that a triangle may touch, and with what cuts the triangle to it.
