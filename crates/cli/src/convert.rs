@@ -59,6 +59,9 @@ pub(super) struct ConvertArgs {
     /// Build a .far of so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) instances: Option<u32>,
+    /// Keep the finished nodes of a .far in OUT.unfinished, and go on from those of a run that was stopped
+    #[arg(long)]
+    pub(super) resume: bool,
     /// Keep parts of a .far wider than a voxel as a decimated surface, and thinner parts as voxels
     #[arg(long)]
     hybrid: bool,
@@ -85,6 +88,7 @@ impl ConvertArgs {
             || self.instances.is_some()
             || self.far_opacity.is_some()
             || self.hybrid
+            || self.resume
     }
 
     pub(super) fn report(&self, mut described: Value, build_ms: f64, console: &Console) {
@@ -129,7 +133,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
                 "a .tvx takes --grid, --texels and --element; --memory is for .vxg and .far files, \
-                 --rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for \
+                 --rays, --leaf-triangles, --instances, --far-opacity, --resume and --hybrid are for \
                  .far files",
             ));
         }
@@ -144,7 +148,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for .far files, \
+            "--rays, --leaf-triangles, --instances, --far-opacity, --resume and --hybrid are for .far files, \
              --grid for .far and .tvx files",
         ));
     }

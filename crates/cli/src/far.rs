@@ -1,6 +1,7 @@
 //! `.far` files on the command line: `convert` and `info`.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -30,12 +31,18 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     check_room(triangles, args.memory).map_err(|e| e.at(input))?;
     let beside = whole::folder_of(output);
     whole::make_folder(beside)?;
+    let unfinished = args.resume.then(|| {
+        let mut name = output.as_os_str().to_owned();
+        name.push(".unfinished");
+        PathBuf::from(name)
+    });
     let outside = Outside {
         memory: args.memory.map(|memory| {
             let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
             (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
         }),
         folder: args.temp.as_deref().unwrap_or(beside),
+        unfinished: unfinished.as_deref(),
     };
     let built = match args.instances {
         None => build_outside(&mesh, options, &outside, console.progress()),
@@ -63,9 +70,21 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
             None => error,
         }
     })?;
+    if built.taken() > 0 {
+        let all = built.data.nodes.len();
+        console.note(format!(
+            "{}: {} of {all} nodes were built before",
+            output.display(),
+            built.taken()
+        ));
+    }
     built.data.settings.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
     whole::write_with(output, args.force, |file| built.write_to(file))?;
+    if let Some(unfinished) = &unfinished {
+        // Left, it would do no harm.
+        let _ = fs::remove_file(unfinished);
+    }
     let file = FarFile::open(output)?;
     let described = describe(&file, input);
     let n = |key: &str| report::figure(&described[key]);

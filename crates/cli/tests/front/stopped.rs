@@ -87,6 +87,41 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert_eq!(folder.names(), ["sheet.far", "sheet.stl"]);
 }
 
+#[test]
+fn a_stopped_build_goes_on_to_the_same_bytes() {
+    const BUILD: &str = "convert sheet.stl sheet.far --leaf-triangles 100 --grid 32 --rays 1500000";
+    let folder = folder();
+    folder.run(BUILD, 0);
+    let expected = folder.get("sheet.far");
+    fs::remove_file(folder.at("sheet.far")).unwrap();
+    let line = format!("{BUILD} --resume");
+    let unfinished = folder.at("sheet.far.unfinished");
+    let length = || fs::metadata(&unfinished).map_or(0, |there| there.len());
+    // Stopped after a third and after two, the last node cut short each time.
+    for (thirds, signal) in [(1, Signal::TERM), (2, Signal::KILL)] {
+        let enough = expected.len() as u64 * thirds / 3;
+        let mut child = start(&folder, &line);
+        while length() < enough && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        kill_process(Pid::from_child(&child), signal).unwrap();
+        assert_eq!(child.wait().unwrap().signal(), Some(signal.as_raw()));
+        assert!(length() >= enough && !folder.at("sheet.far").exists());
+        let kept = fs::File::options().write(true).open(&unfinished).unwrap();
+        kept.set_len(length() - 5).unwrap();
+    }
+    let [_, told] = folder.run(&format!("{line} --far-opacity none"), 1);
+    assert!(
+        told.contains("sheet.far.unfinished") && told.contains("other options"),
+        "{told}"
+    );
+    assert!(length() > expected.len() as u64 / 2);
+    let [_, told] = folder.run(&line, 0);
+    assert!(told.contains("nodes were built before"), "{told}");
+    assert!(folder.get("sheet.far") == expected);
+    assert_eq!(folder.names(), ["sheet.far", "sheet.stl"]);
+}
+
 /// The most memory that a process had, bytes, until it has ended.
 fn most_memory(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;

@@ -28,6 +28,7 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::DVec3;
 use rayon::prelude::*;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
@@ -46,7 +47,7 @@ use shader_fit::ShaderFit;
 use shiftvox::graph::{PackedNormal, Progress, place};
 use shot::Target;
 use split::{Branch, split};
-use spool::{Done, Spool};
+use spool::{Done, Made, Spool};
 use surface::{MOST_TRIANGLES, Surfaces};
 use touch::Touches;
 
@@ -119,7 +120,7 @@ pub enum BuildError {
         "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
     )]
     Memory { needed: u64, given: u64 },
-    /// A temporary file, or its folder.
+    /// A temporary or unfinished file, or its folder.
     #[error("{}: {problem}", file.display())]
     File { file: PathBuf, problem: String },
 }
@@ -131,6 +132,8 @@ pub struct Outside<'o> {
     pub memory: Option<u64>,
     /// Folder of temporary files.
     pub folder: &'o Path,
+    /// File that keeps finished nodes, also of a build that is stopped; or none.
+    pub unfinished: Option<&'o Path>,
 }
 
 /// Far voxels whose data is in a file.
@@ -142,9 +145,14 @@ pub struct Spooled {
 }
 
 impl Spooled {
+    /// Nodes of an earlier build that was stopped.
+    pub fn taken(&self) -> usize {
+        self.spool.taken()
+    }
+
     /// Writes a `.far` file.
     pub fn write_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
-        let bytes = self.spool.bytes;
+        let bytes = self.spool.bytes();
         write_parts(&self.data, bytes, out, |out| self.spool.copy_to(out))
     }
 }
@@ -156,7 +164,7 @@ pub fn build(
 ) -> Result<FarData, BuildError> {
     let memory = Cursor::new(Vec::new());
     let (mut data, mut spool) = fill(surface, options, None, memory, progress)?;
-    data.packed.reserve_exact(spool.bytes as usize);
+    data.packed.reserve_exact(spool.bytes() as usize);
     let copied = spool.copy_to(&mut data.packed);
     copied.map_err(|e| failed(Path::new("memory"), &e))?;
     Ok(data)
@@ -169,13 +177,43 @@ pub fn build_outside(
     outside: &Outside<'_>,
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
-    let file = temporary_file(outside.folder)?;
+    let file = match outside.unfinished {
+        Some(unfinished) => unfinished_file(unfinished)?,
+        None => temporary_file(outside.folder)?,
+    };
     let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
     Ok(Spooled { data, spool })
 }
 
 fn temporary_file(folder: &Path) -> Result<File, BuildError> {
     tempfile::tempfile_in(folder).map_err(|e| failed(folder, &e))
+}
+
+fn unfinished_file(path: &Path) -> Result<File, BuildError> {
+    let mut open = File::options();
+    let open = open.read(true).write(true).create(true).truncate(false);
+    let file = open.open(path).map_err(|e| failed(path, &e))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(e) => Err(failed(path, &e.into())),
+    }
+}
+
+/// A hash of what the nodes of a build follow from.
+fn key_of(surface: &dyn Surface, options: &BuildOptions) -> u64 {
+    let mut hash = Xxh3::new();
+    let program = env!("CARGO_PKG_VERSION");
+    hash.update(format!("{program} {options:?}").as_bytes());
+    for number in 0..surface.len() {
+        let triangle = surface.triangle(number);
+        let (color, opacity) = triangle.at([1.0 / 3.0; 3], 0.0);
+        let corners = [triangle.corners, triangle.normals, triangle.colors];
+        for point in corners.as_flattened().iter().chain([&color]) {
+            hash.update(bytemuck::bytes_of(&point.to_array()));
+        }
+        hash.update(&opacity.to_le_bytes());
+    }
+    hash.digest()
 }
 
 fn failed(file: &Path, problem: &io::Error) -> BuildError {
@@ -261,6 +299,14 @@ fn fill<F: Read + Write + Seek + Send>(
             share_rays(&touched.collect::<Vec<u32>>(), rays)
         }
     };
+    let unfinished = outside.and_then(|outside| outside.unfinished);
+    let key = unfinished.map_or(0, |_| key_of(surface, options));
+    let kept_in = unfinished.unwrap_or(folder);
+    let spool = Spool::open(file, key, branches.len()).map_err(|e| failed(kept_in, &e))?;
+    let spool = spool.ok_or_else(|| BuildError::File {
+        file: kept_in.to_owned(),
+        problem: "it was begun of another mesh, or with other options: remove it".to_owned(),
+    })?;
     progress.begin("shoot rays", order.len() as u64);
     let room = Room::new(shares.nodes);
     let make = |number: usize, branch: &Branch| {
@@ -275,10 +321,10 @@ fn fill<F: Read + Write + Seek + Send>(
                     pack(&Default::default(), &bytes)
                 }
             };
-            return Ok((node, data));
+            return Ok(made(node, data));
         }
         if !has_voxels[number] {
-            return Ok((node, pack(&Default::default(), &[])));
+            return Ok(made(node, pack(&Default::default(), &[])));
         }
         let grid = grid(number, branch);
         set_grid(&mut node, &grid, scale);
@@ -303,16 +349,19 @@ fn fill<F: Read + Write + Seek + Send>(
             }
             _ => {
                 let lists = voxels(&mut node, None)?;
-                Ok((node, pack(&lists, &[])))
+                Ok(made(node, pack(&lists, &[])))
             }
         }
     };
-    let spool = Mutex::new(Spool::new(file, branches.len()));
+    let is_done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
+    let spool = Mutex::new(spool);
     numbered().try_for_each(|(number, branch)| {
-        let (node, data) = make(number, branch)?;
-        let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
-        let added = spool.add(number, node, &data);
-        added.map_err(|e| failed(folder, &e))?;
+        if !is_done[number] {
+            let made = make(number, branch)?;
+            let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+            let added = spool.add(number, &made);
+            added.map_err(|e| failed(kept_in, &e))?;
+        }
         if branch.children.is_none() {
             progress.advance(branch.count as u64);
         }
@@ -321,9 +370,17 @@ fn fill<F: Read + Write + Seek + Send>(
     progress.end();
     let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
     let mut data = assemble(&spool, centre, options)?;
-    data.undecimated = surfaces.map_or(0, |surfaces| surfaces.undecimated.into_inner());
+    data.undecimated = spool.nodes().filter(|done| done.is_undecimated).count() as u32;
     data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
     Ok((data, spool))
+}
+
+fn made(node: Node, data: Vec<u8>) -> Made {
+    Made {
+        node,
+        data,
+        is_undecimated: false,
+    }
 }
 
 fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {

@@ -1,49 +1,149 @@
-//! Data of finished nodes in a file, in any order.
+//! Finished nodes in a file, in any order. From one that a stopped build left, the next one goes on.
+//!
+//! After a key of mesh and options follow the nodes: number, record and data, with checksums.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::record::Node;
+
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Head {
+    number: u32,
+    is_undecimated: u32,
+    bytes: u64,
+    node: Node,
+    /// Of all before.
+    checksum: u64,
+}
+
+const HEAD: u64 = size_of::<Head>() as u64;
+
+impl Head {
+    fn check(&self) -> u64 {
+        let bytes = bytemuck::bytes_of(self);
+        xxh3_64(&bytes[..bytes.len() - size_of::<u64>()])
+    }
+}
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Done {
     pub(super) node: Node,
     pub(super) bytes: u64,
+    pub(super) is_undecimated: bool,
     at: u64,
+}
+
+/// A finished node.
+pub(super) struct Made {
+    pub(super) node: Node,
+    pub(super) data: Vec<u8>,
+    /// Its triangles could not be decimated.
+    pub(super) is_undecimated: bool,
 }
 
 #[derive(Debug)]
 pub(super) struct Spool<F> {
     file: F,
-    pub(super) bytes: u64,
+    end: u64,
     done: Vec<Option<Done>>,
+    /// The number of nodes that were added to those in the file.
+    added: usize,
 }
 
 impl<F: Read + Write + Seek> Spool<F> {
-    pub(super) fn new(file: F, nodes: usize) -> Self {
-        Self {
-            file,
-            bytes: 0,
-            done: vec![None; nodes],
+    /// Takes the nodes that are whole in a file, and writes on behind them. `None`: the file has another key.
+    pub(super) fn open(mut file: F, key: u64, nodes: usize) -> io::Result<Option<Self>> {
+        let mut first = [0; 8];
+        let length = file.seek(SeekFrom::End(0))?;
+        file.rewind()?;
+        if length < first.len() as u64 {
+            file.write_all(&key.to_le_bytes())?;
+        } else {
+            file.read_exact(&mut first)?;
+            if first != key.to_le_bytes() {
+                return Ok(None);
+            }
         }
+        let mut spool = Self {
+            file,
+            end: first.len() as u64,
+            done: vec![None; nodes],
+            added: 0,
+        };
+        while let Some(head) = spool.next(length)? {
+            spool.note(&head);
+        }
+        Ok(Some(spool))
     }
 
-    pub(super) fn add(&mut self, number: usize, mut node: Node, data: &[u8]) -> io::Result<()> {
-        node.checksum = xxh3_64(data);
-        self.file.write_all(data)?;
-        let bytes = data.len() as u64;
-        self.done[number] = Some(Done {
-            node,
-            bytes,
-            at: self.bytes,
+    /// The node at the end of what is known, if it is whole.
+    fn next(&mut self, length: u64) -> io::Result<Option<Head>> {
+        let left = length.saturating_sub(self.end);
+        if left < HEAD {
+            return Ok(None);
+        }
+        let mut bytes = [0; HEAD as usize];
+        self.file.seek(SeekFrom::Start(self.end))?;
+        self.file.read_exact(&mut bytes)?;
+        let head: Head = bytemuck::pod_read_unaligned(&bytes);
+        let is_sound = head.checksum == head.check() && (head.number as usize) < self.done.len();
+        if !is_sound || head.bytes > left - HEAD {
+            return Ok(None);
+        }
+        let mut data = vec![0; head.bytes as usize];
+        self.file.read_exact(&mut data)?;
+        Ok((xxh3_64(&data) == head.node.checksum).then_some(head))
+    }
+
+    fn note(&mut self, head: &Head) {
+        let at = self.end + HEAD;
+        self.done[head.number as usize] = Some(Done {
+            node: head.node,
+            bytes: head.bytes,
+            is_undecimated: head.is_undecimated != 0,
+            at,
         });
-        self.bytes += bytes;
+        self.end = at + head.bytes;
+    }
+
+    pub(super) fn is_done(&self, number: usize) -> bool {
+        self.done[number].is_some()
+    }
+
+    pub(super) fn add(&mut self, number: usize, made: &Made) -> io::Result<()> {
+        let mut head = Head {
+            number: number as u32,
+            is_undecimated: made.is_undecimated.into(),
+            bytes: made.data.len() as u64,
+            node: made.node,
+            checksum: 0,
+        };
+        head.node.checksum = xxh3_64(&made.data);
+        head.checksum = head.check();
+        self.file.seek(SeekFrom::Start(self.end))?;
+        self.file.write_all(bytemuck::bytes_of(&head))?;
+        self.file.write_all(&made.data)?;
+        self.note(&head);
+        self.added += 1;
         Ok(())
     }
 
     pub(super) fn nodes(&self) -> impl Iterator<Item = Done> {
         self.done.iter().flatten().copied()
+    }
+
+    /// The number of nodes that were in the file.
+    pub(super) fn taken(&self) -> usize {
+        self.nodes().count() - self.added
+    }
+
+    /// Bytes of all data.
+    pub(super) fn bytes(&self) -> u64 {
+        self.nodes().map(|done| done.bytes).sum()
     }
 
     pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<()> {

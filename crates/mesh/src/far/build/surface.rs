@@ -1,13 +1,13 @@
 //! The candidates for an inner node of a hybrid (`spec/far.md`), of which `compare.rs` chooses.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec3;
 
 use super::compare::{Candidate, Comparison, Judged};
 use super::parts::Parts;
 use super::split::Branch;
+use super::spool::Made;
 use super::{BuildError, BuildOptions, leaf_triangles};
 use crate::decimate::{DecimateError, Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
@@ -40,8 +40,6 @@ pub(super) struct Surfaces<'s> {
     centre: DVec3,
     options: &'s BuildOptions,
     parts: Parts,
-    /// Nodes that have voxels because their triangles could not be decimated.
-    pub(super) undecimated: AtomicU32,
 }
 
 impl<'s> Surfaces<'s> {
@@ -65,7 +63,6 @@ impl<'s> Surfaces<'s> {
             centre,
             options,
             parts: Parts::of(&leaves, corners, normals),
-            undecimated: AtomicU32::new(0),
         }
     }
 
@@ -81,13 +78,14 @@ impl<'s> Surfaces<'s> {
         node: &Node,
         own: Range<usize>,
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
-    ) -> Result<(Node, Vec<u8>), BuildError> {
+    ) -> Result<Made, BuildError> {
         let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
         let comparison = Comparison::of(node, &all, self.options)?;
         let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
         let mut thin: Vec<bool> = own.clone().map(thin).collect();
-        let (surfaces, mut wide) = self.decimations(node, &own, &thin).unwrap_or_else(|_| {
-            self.undecimated.fetch_add(1, Ordering::Relaxed);
+        let decimated = self.decimations(node, &own, &thin);
+        let is_undecimated = decimated.is_err();
+        let (surfaces, mut wide) = decimated.unwrap_or_else(|_| {
             thin.fill(true);
             (Vec::new(), Some(Vec::new()))
         });
@@ -119,7 +117,11 @@ impl<'s> Surfaces<'s> {
         let mut node = chosen.node;
         let is_shared = |p| self.parts.shared(&own, p).is_some();
         let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);
-        Ok((node, pack(&chosen.lists, &bytes)))
+        Ok(Made {
+            node,
+            data: pack(&chosen.lists, &bytes),
+            is_undecimated,
+        })
     }
 
     /// Candidates without voxels; and, where some part is thin, the wide ones.
