@@ -199,7 +199,7 @@ fn unfinished_file(path: &Path) -> Result<File, BuildError> {
     }
 }
 
-/// A hash of what the nodes of a build follow from.
+/// A hash of triangles, options and version, from which all nodes follow.
 fn key_of(surface: &dyn Surface, options: &BuildOptions) -> u64 {
     let mut hash = Xxh3::new();
     let program = env!("CARGO_PKG_VERSION");

@@ -1,4 +1,4 @@
-//! Finished nodes in a file, in any order. From one that a stopped build left, the next one goes on.
+//! Finished nodes in a file, in any order. The next build continues with the file of a stopped one.
 //!
 //! After a key of mesh and options follow the nodes: number, record and data, with checksums.
 
@@ -80,7 +80,7 @@ impl<F: Read + Write + Seek> Spool<F> {
         Ok(Some(spool))
     }
 
-    /// The node at the end of what is known, if it is whole.
+    /// The next node of the file, if it is whole.
     fn next(&mut self, length: u64) -> io::Result<Option<Head>> {
         let left = length.saturating_sub(self.end);
         if left < HEAD {
