@@ -59,7 +59,7 @@ pub(super) struct ConvertArgs {
     /// Build a .far of so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) instances: Option<u32>,
-    /// Keep the finished nodes of a .far in OUT.unfinished, and go on from those of a run that was stopped
+    /// Keep the finished nodes of a .far in OUT.unfinished, from which a run after a stopped one continues
     #[arg(long)]
     pub(super) resume: bool,
     /// Keep parts of a .far wider than a voxel as a decimated surface, and thinner parts as voxels
