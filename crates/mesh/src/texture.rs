@@ -6,6 +6,7 @@
 
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::material::{linear_to_srgb, srgb_to_linear};
 
@@ -76,6 +77,15 @@ impl Texture {
             is_opaque,
             is_mask: matches!(mode, AlphaMode::Mask(_)),
         }
+    }
+
+    /// A hash of all that pictures show of it.
+    pub(crate) fn hash(&self) -> u64 {
+        let finest = &self.levels[0];
+        let mut hash = Xxh3::new();
+        hash.update(format!("{:?} {} {:?}", self.wrap, self.is_mask, finest.size).as_bytes());
+        hash.update(finest.texels.as_flattened());
+        hash.digest()
     }
 
     pub(crate) fn is_opaque(&self) -> bool {

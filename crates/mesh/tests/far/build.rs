@@ -1,14 +1,17 @@
-//! Splits, ray budgets, refused options.
+//! Splits, ray budgets, refused options, unfinished builds.
+
+use std::fs;
 
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
+use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
-use shiftvox_mesh::far::{BuildError, BuildOptions, build};
+use shiftvox_mesh::far::{BuildError, BuildOptions, build, build_outside};
 use shiftvox_mesh::generate::{Kind, generate};
 
 use super::city::{city, far, file_of, options, view};
-use super::shared::mesh_of;
+use super::shared::{card, disc, mesh_of};
 
 #[test]
 fn equal_triangles_are_split_by_number() {
@@ -38,6 +41,28 @@ fn solids_have_no_voxels_that_outnumber_their_triangles() {
     };
     let [scan, grass] = [Kind::Scan, Kind::Grass].map(most_per_triangle);
     assert!(scan < 3.5 && grass > 6.0, "{scan} {grass}");
+}
+
+/// Another texture on the same triangles is another mesh.
+#[test]
+fn an_unfinished_build_continues_with_its_own_mesh_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let outside = Outside {
+        memory: None,
+        folder: folder.path(),
+        unfinished: Some(&folder.path().join("a.unfinished")),
+    };
+    let [one, other] = [0, 102].map(|around| card(&disc(around), 8, 0.0, "map_Kd a.png"));
+    let taken = |mesh| {
+        let built = build_outside(mesh, &options(), &outside, &Silent);
+        built.map(|built| (built.taken(), built.data.nodes.len()))
+    };
+    let (before, nodes) = taken(&one).unwrap();
+    assert!(before == 0 && nodes > 1);
+    assert!(matches!(taken(&other), Err(BuildError::File { .. })));
+    assert_eq!(taken(&one), Ok((nodes, nodes)));
+    fs::write(folder.path().join("a.unfinished"), "a note").unwrap();
+    assert!(matches!(taken(&one), Err(BuildError::File { .. })));
 }
 
 #[test]

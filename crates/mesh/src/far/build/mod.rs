@@ -20,7 +20,8 @@ mod spool;
 mod surface;
 mod touch;
 
-use std::fs::File;
+use std::collections::HashMap;
+use std::fs::{File, TryLockError};
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -35,7 +36,7 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::{Surface, linear_to_srgb, mesh_box};
+use crate::{Sampler, Surface, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
 use count::Seen;
 use grid::Grid;
@@ -163,7 +164,7 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
     let memory = Cursor::new(Vec::new());
-    let (mut data, mut spool) = fill(surface, options, None, memory, progress)?;
+    let (mut data, mut spool) = fill(surface, options, None, || Ok(memory), progress)?;
     data.packed.reserve_exact(spool.bytes() as usize);
     let copied = spool.copy_to(&mut data.packed);
     copied.map_err(|e| failed(Path::new("memory"), &e))?;
@@ -177,9 +178,9 @@ pub fn build_outside(
     outside: &Outside<'_>,
     progress: &dyn Progress,
 ) -> Result<Spooled, BuildError> {
-    let file = match outside.unfinished {
-        Some(unfinished) => unfinished_file(unfinished)?,
-        None => temporary_file(outside.folder)?,
+    let file = || match outside.unfinished {
+        Some(unfinished) => unfinished_file(unfinished),
+        None => temporary_file(outside.folder),
     };
     let (data, spool) = fill(surface, options, Some(outside), file, progress)?;
     Ok(Spooled { data, spool })
@@ -195,23 +196,32 @@ fn unfinished_file(path: &Path) -> Result<File, BuildError> {
     let file = open.open(path).map_err(|e| failed(path, &e))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(e) => Err(failed(path, &e.into())),
+        Err(TryLockError::WouldBlock) => Err(BuildError::File {
+            file: path.to_owned(),
+            problem: "another build is using it".to_owned(),
+        }),
+        Err(TryLockError::Error(e)) => Err(failed(path, &e)),
     }
 }
 
-/// A hash of triangles, options and version, from which all nodes follow.
+/// A hash of triangles, textures, options and version, from which all nodes follow.
 fn key_of(surface: &dyn Surface, options: &BuildOptions) -> u64 {
     let mut hash = Xxh3::new();
     let program = env!("CARGO_PKG_VERSION");
     hash.update(format!("{program} {options:?}").as_bytes());
+    let mut textures = HashMap::new();
     for number in 0..surface.len() {
         let triangle = surface.triangle(number);
-        let (color, opacity) = triangle.at([1.0 / 3.0; 3], 0.0);
         let corners = [triangle.corners, triangle.normals, triangle.colors];
-        for point in corners.as_flattened().iter().chain([&color]) {
+        for point in corners.as_flattened() {
             hash.update(bytemuck::bytes_of(&point.to_array()));
         }
-        hash.update(&opacity.to_le_bytes());
+        hash.update(&triangle.alpha.to_le_bytes());
+        if let Some(Sampler { texture, places }) = triangle.sampler {
+            let of = textures.entry(std::ptr::from_ref(texture));
+            hash.update(&of.or_insert_with(|| texture.hash()).to_le_bytes());
+            hash.update(bytemuck::cast_slice(places.as_flattened()));
+        }
     }
     hash.digest()
 }
@@ -227,7 +237,7 @@ fn fill<F: Read + Write + Seek + Send>(
     surface: &dyn Surface,
     options: &BuildOptions,
     outside: Option<&Outside<'_>>,
-    file: F,
+    file: impl FnOnce() -> Result<F, BuildError>,
     progress: &dyn Progress,
 ) -> Result<(FarData, Spool<F>), BuildError> {
     check(surface, options)?;
@@ -302,7 +312,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let unfinished = outside.and_then(|outside| outside.unfinished);
     let key = unfinished.map_or(0, |_| key_of(surface, options));
     let kept_in = unfinished.unwrap_or(folder);
-    let spool = Spool::open(file, key, branches.len()).map_err(|e| failed(kept_in, &e))?;
+    let spool = Spool::open(file()?, key, branches.len()).map_err(|e| failed(kept_in, &e))?;
     let spool = spool.ok_or_else(|| BuildError::File {
         file: kept_in.to_owned(),
         problem: "it was begun of another mesh, or with other options: remove it".to_owned(),

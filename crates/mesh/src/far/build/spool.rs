@@ -60,11 +60,11 @@ impl<F: Read + Write + Seek> Spool<F> {
         let mut first = [0; 8];
         let length = file.seek(SeekFrom::End(0))?;
         file.rewind()?;
-        if length < first.len() as u64 {
+        if length == 0 {
             file.write_all(&key.to_le_bytes())?;
         } else {
-            file.read_exact(&mut first)?;
-            if first != key.to_le_bytes() {
+            let read = file.read(&mut first)?;
+            if read < first.len() || first != key.to_le_bytes() {
                 return Ok(None);
             }
         }
@@ -146,10 +146,18 @@ impl<F: Read + Write + Seek> Spool<F> {
         self.nodes().map(|done| done.bytes).sum()
     }
 
+    /// Fails where the file is no longer as it was written.
     pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        let mut data = Vec::new();
         for done in self.done.iter().flatten() {
+            data.resize(done.bytes as usize, 0);
             self.file.seek(SeekFrom::Start(done.at))?;
-            io::copy(&mut (&mut self.file).take(done.bytes), out)?;
+            self.file.read_exact(&mut data)?;
+            if xxh3_64(&data) != done.node.checksum {
+                let told = "the file of unfinished nodes has changed";
+                return Err(io::Error::new(io::ErrorKind::InvalidData, told));
+            }
+            out.write_all(&data)?;
         }
         Ok(())
     }
