@@ -129,7 +129,6 @@ pub fn far(
         ("transparent_voxels", &["transparent_voxels"]),
         ("triangles", &["triangles"]),
         ("nodes_visited", &["nodes_visited"]),
-        ("nodes_hidden", &["nodes_hidden"]),
         ("bytes", &["bytes"]),
     ];
     let solid = &["opaque_voxels", "transparent_voxels"];

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::mesh_view::light_of;
 use super::{Drawn, Method, MethodDrawing, MethodError};
 use crate::far::FarFile;
-use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
+use crate::far::view::{self, FarCounts, Opacity, ViewOptions};
 use crate::raster::RasterCamera;
 use shiftvox::drawing::Figures;
 use shiftvox::graph::MeshBox;
@@ -35,11 +35,10 @@ impl FarStyle {
     }
 }
 
-/// A file of far voxels, and the nodes that were visible in the last frame.
+/// A file of far voxels, and how it is drawn.
 #[derive(Clone)]
 pub struct FarMethod<'f> {
     file: &'f FarFile,
-    viewer: FarViewer<'f>,
     style: FarStyle,
 }
 
@@ -47,11 +46,7 @@ pub type FarDrawing<'f> = MethodDrawing<FarMethod<'f>>;
 
 impl<'f> FarDrawing<'f> {
     pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
-        Self::of(FarMethod {
-            file,
-            viewer: FarViewer::new(file),
-            style,
-        })
+        Self::of(FarMethod { file, style })
     }
 }
 
@@ -66,7 +61,7 @@ impl Method for FarMethod<'_> {
 
     fn draw(&mut self, view: &RasterCamera) -> Result<Drawn, MethodError> {
         let options = self.style.options(view);
-        let (drawn, counts) = self.viewer.draw(view, &options)?;
+        let (drawn, counts) = view::draw(self.file, view, &options)?;
         let (size, nodes) = ((drawn.width, drawn.height), drawn.node);
         let (coverage, counters) = (drawn.coverage, counters(&counts));
         Ok(Drawn::new(
@@ -103,12 +98,9 @@ fn counters(counts: &FarCounts) -> Figures {
         ("nodes_outside", counts.outside),
         ("voxel_nodes", counts.voxel_nodes),
         ("leaves", counts.leaves),
-        ("nodes_hidden", counts.hidden),
-        ("queries", counts.queries),
         ("opaque_voxels", counts.opaque_voxels),
         ("transparent_voxels", counts.transparent_voxels),
         ("triangles", counts.triangles),
-        ("drawn_twice", counts.drawn_twice),
         ("bytes", counts.bytes),
     ];
     counters.map(|(name, count)| (name, count.into())).to_vec()

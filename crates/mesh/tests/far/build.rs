@@ -6,7 +6,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::Node;
-use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
+use shiftvox_mesh::far::view::{self, ViewOptions};
 use shiftvox_mesh::far::{BuildError, BuildOptions, build, build_outside};
 use shiftvox_mesh::generate::{Kind, generate};
 
@@ -133,7 +133,6 @@ fn invalid_options_are_refused() {
             samples_across,
             ..ViewOptions::default()
         };
-        let drawn = FarViewer::new(&file).draw(&view, &options);
-        assert!(drawn.is_err(), "{options:?}");
+        assert!(view::draw(&file, &view, &options).is_err(), "{options:?}");
     }
 }

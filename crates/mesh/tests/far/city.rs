@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::{FarCounts, FarPicture, FarViewer, ViewOptions};
+use shiftvox_mesh::far::view::{self, FarCounts, FarPicture, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
 use shiftvox_mesh::raster::{Light, RasterCamera};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
@@ -88,5 +88,5 @@ pub(crate) fn draw(
     view: &RasterCamera,
     options: &ViewOptions,
 ) -> (FarPicture, FarCounts) {
-    FarViewer::new(file).draw(view, options).unwrap()
+    view::draw(file, view, options).unwrap()
 }

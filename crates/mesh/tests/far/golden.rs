@@ -23,12 +23,12 @@ const FILES: [Build; 4] = [
 
 /// Distance, height, voxel size, samples across, opacities, hash.
 const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
-    (60.0, 0.02, 1.0, 1, Opacity::Six, 0x30e0_1ffd),
-    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0xc9a3_57c1),
-    (110.0, 0.6, 2.0, 1, Opacity::Six, 0x8dd1_770f),
-    (110.0, 0.6, 2.0, 3, Opacity::None, 0x5bdd_1e06),
-    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x7e74_de1b),
-    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0xe5cf_8f07),
+    (60.0, 0.02, 1.0, 1, Opacity::Six, 0xb29d_8b57),
+    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x42cf_c088),
+    (110.0, 0.6, 2.0, 1, Opacity::Six, 0x54c8_4aac),
+    (110.0, 0.6, 2.0, 3, Opacity::None, 0x27e9_e125),
+    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x1ee5_5d7a),
+    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0x4bde_87b8),
 ];
 
 #[test]

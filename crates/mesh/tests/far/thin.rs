@@ -16,7 +16,6 @@ const OPTIONS: ViewOptions = ViewOptions {
     opacity: Opacity::Six,
     light: None,
     background: None,
-    culling: true,
 };
 
 /// A hybrid is at most half a decibel behind far voxels of the same mesh.

@@ -7,7 +7,7 @@ use super::{BuildError, BuildOptions};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::{encode, surface};
-use crate::far::view::{FarViewer, ViewOptions};
+use crate::far::view::{self, ViewOptions};
 use crate::far::{FarData, FarFile};
 use crate::geometry::point;
 use crate::raster::{Light, RasterCamera};
@@ -218,8 +218,7 @@ fn draw(
         background: Some([0; 3]),
         ..ViewOptions::default()
     };
-    let drawn = FarViewer::new(file).draw(view, &options);
-    let (picture, _) = drawn.map_err(failed)?;
+    let (picture, _) = view::draw(file, view, &options).map_err(failed)?;
     let pixels = picture.rgba.iter().zip(&picture.coverage);
     let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {
         let [r, g, b] = [r, g, b].map(|byte| f64::from(srgb_to_linear(byte)));

@@ -1,22 +1,18 @@
-//! Far voxels to a picture: `cut` chooses nodes, `visible` and `fill` cull hidden ones, `opaque` draws into a depth buffer,
-//! `transparent` over it. `samples` averages several samples per pixel.
+//! Far voxels to a picture: `cut` chooses nodes, `opaque` draws into a depth buffer, `transparent` over it. `samples`
+//! averages several samples per pixel.
 
 mod cut;
-mod fill;
 mod opaque;
 mod samples;
 mod splat;
 mod transparent;
-mod visible;
 
 pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
 use crate::raster::{Light, RasterCamera, RasterError};
 use crate::{linear_to_srgb, srgb_to_linear};
-use cut::{Chosen, Cut};
-use fill::Fill;
+use cut::Cut;
 use opaque::Opaque;
-use visible::VisibilityHistory;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewOptions {
@@ -29,8 +25,6 @@ pub struct ViewOptions {
     pub light: Option<Light>,
     /// sRGB, or `None` for transparent.
     pub background: Option<[u8; 3]>,
-    /// Whether hidden nodes are left out. Never changes the picture.
-    pub culling: bool,
 }
 
 impl Default for ViewOptions {
@@ -41,7 +35,6 @@ impl Default for ViewOptions {
             opacity: Opacity::Six,
             light: None,
             background: None,
-            culling: true,
         }
     }
 }
@@ -85,98 +78,57 @@ pub struct FarCounts {
     pub voxel_nodes: u64,
     /// Leaves drawn.
     pub leaves: u64,
-    /// Nodes and branches.
-    pub hidden: u64,
-    /// Queries whether a node or branch is hidden.
-    pub queries: u64,
     pub opaque_voxels: u64,
     pub transparent_voxels: u64,
     /// Given to the rasteriser.
     pub triangles: u64,
-    /// Frames drawn again in one batch, because triangles of different batches were equally deep.
-    pub drawn_twice: u64,
     /// Bytes of the drawn nodes' data, unpacked.
     pub bytes: u64,
 }
 
-/// Draws one file, frame after frame, and remembers what was visible.
-#[derive(Debug, Clone)]
-pub struct FarViewer<'f> {
-    file: &'f FarFile,
-    memory: VisibilityHistory,
-}
-
-impl<'f> FarViewer<'f> {
-    pub fn new(file: &'f FarFile) -> Self {
-        Self {
-            file,
-            memory: VisibilityHistory::new(file.nodes().len()),
-        }
+pub fn draw(
+    file: &FarFile,
+    view: &RasterCamera,
+    options: &ViewOptions,
+) -> Result<(FarPicture, FarCounts), ViewError> {
+    if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
+        return Err(ViewError::VoxelSize(options.voxel_px));
     }
-
-    pub fn draw(
-        &mut self,
-        view: &RasterCamera,
-        options: &ViewOptions,
-    ) -> Result<(FarPicture, FarCounts), ViewError> {
-        if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
-            return Err(ViewError::VoxelSize(options.voxel_px));
-        }
-        let across = options.samples_across;
-        if !(1..=MOST_SAMPLES_ACROSS).contains(&across) {
-            return Err(ViewError::Samples(across));
-        }
-        let (pixels, view) = (view, &samples::finer(view, across));
-        let mut counts = FarCounts::default();
-        let cut = Cut {
-            file: self.file,
-            view: *view,
-            // From here on a pixel is a sample.
-            voxel_px: options.voxel_px * f64::from(across),
-        };
-        let mut opaque = Opaque::new(self.file, view, options)?;
-        let memory = options.culling.then_some(&self.memory);
-        let walked = visible::walk(&cut, memory, &mut opaque, &mut counts)?;
-        if opaque.has_tie {
-            // Rasterised in one go, whose rule for equal depths has more digits.
-            counts.drawn_twice = 1;
-            counts.opaque_voxels = 0;
-            counts.triangles = 0;
-            opaque = Opaque::new(self.file, view, options)?;
-            opaque.draw(&walked.drawn, &mut counts)?;
-        }
-        for node in &walked.drawn {
-            let node = &self.file.nodes()[node.number];
-            counts.leaves += u64::from(node.is_leaf());
-            counts.bytes += node.drawn_bytes();
-        }
-        counts.voxel_nodes = walked.drawn.len() as u64 - counts.leaves;
-        let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
-        if options.culling {
-            let fill = Fill::of(&opaque.depths(), view);
-            transparent.retain(|node| !fill.hides(view, &node.outline));
-            let visible = transparent.iter().map(|node| node.number);
-            self.memory.end_frame(visible, &walked.branches, &cut);
-        }
-        let mut drawn = opaque.resolve();
-        if options.opacity != Opacity::None {
-            let splats = transparent::draw(self.file, view, options, &transparent, &mut drawn)?;
-            counts.transparent_voxels = splats;
-        }
-        let size = [pixels.width, pixels.height].map(|side| side as usize);
-        let drawn = samples::averaged(drawn, size, across as usize);
-        Ok((
-            FarPicture {
-                width: pixels.width,
-                height: pixels.height,
-                rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
-                coverage: drawn.iter().map(|p| p.coverage).collect(),
-                node: samples::middles(&opaque.nodes(), size, across as usize),
-                depth: samples::middles(&opaque.depths(), size, across as usize),
-            },
-            counts,
-        ))
+    let across = options.samples_across;
+    if !(1..=MOST_SAMPLES_ACROSS).contains(&across) {
+        return Err(ViewError::Samples(across));
     }
+    let (pixels, view) = (view, &samples::finer(view, across));
+    let mut counts = FarCounts::default();
+    let cut = Cut {
+        file,
+        view: *view,
+        // From here on a pixel is a sample.
+        voxel_px: options.voxel_px * f64::from(across),
+    };
+    let nodes = cut.nodes(&mut counts);
+    let opaque = Opaque::draw(file, view, options, &nodes, &mut counts)?;
+    for node in &nodes {
+        let node = &file.nodes()[node.number];
+        counts.leaves += u64::from(node.is_leaf());
+        counts.bytes += node.drawn_bytes();
+    }
+    counts.voxel_nodes = nodes.len() as u64 - counts.leaves;
+    let mut drawn = opaque.resolve();
+    if options.opacity != Opacity::None {
+        counts.transparent_voxels = transparent::draw(file, view, options, nodes, &mut drawn)?;
+    }
+    let size = [pixels.width, pixels.height].map(|side| side as usize);
+    let drawn = samples::averaged(drawn, size, across as usize);
+    let picture = FarPicture {
+        width: pixels.width,
+        height: pixels.height,
+        rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
+        coverage: drawn.iter().map(|p| p.coverage).collect(),
+        node: samples::middles(&opaque.nodes(), size, across as usize),
+        depth: samples::middles(&opaque.depths(), size, across as usize),
+    };
+    Ok((picture, counts))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

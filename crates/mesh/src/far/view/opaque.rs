@@ -29,47 +29,39 @@ pub(super) struct Opaque<'f> {
     view: RasterCamera,
     options: ViewOptions,
     words: Vec<AtomicU64>,
-    /// Colours and numbers of triangles, of each batch.
-    pictures: Vec<(Vec<[u8; 4]>, Vec<u32>)>,
-    /// Triangles of different batches were equally deep.
-    pub(super) has_tie: bool,
+    /// Of the triangles.
+    colors: Vec<[u8; 4]>,
 }
 
 impl<'f> Opaque<'f> {
-    pub(super) fn new(
+    /// Draws what is opaque of some nodes, in any order.
+    pub(super) fn draw(
         file: &'f FarFile,
         view: &RasterCamera,
         options: &ViewOptions,
+        nodes: &[Chosen],
+        counts: &mut FarCounts,
     ) -> Result<Self, ViewError> {
         view.check()?;
         let pixels = view.width as usize * view.height as usize;
-        Ok(Self {
+        let mut picture = Self {
             file,
             view: *view,
             options: *options,
             words: (0..pixels).map(|_| AtomicU64::new(EMPTY)).collect(),
-            pictures: Vec::new(),
-            has_tie: false,
-        })
-    }
-
-    /// Draws what is opaque of some nodes, in any order and batches, unless there is a tie.
-    pub(super) fn draw(
-        &mut self,
-        nodes: &[Chosen],
-        counts: &mut FarCounts,
-    ) -> Result<(), ViewError> {
-        let drawn = nodes.par_iter().map(|node| self.voxels(node.number));
+            colors: Vec::new(),
+        };
+        let drawn = nodes.par_iter().map(|node| picture.voxels(node.number));
         let drawn = drawn.collect::<Result<Vec<u64>, ViewError>>()?;
-        counts.opaque_voxels += drawn.iter().sum::<u64>();
+        counts.opaque_voxels = drawn.iter().sum();
         let with_surface = nodes.iter().map(|node| node.number);
-        let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
+        let has_surface = |&number: &usize| file.nodes()[number].surface > 0;
         let mut with_surface: Vec<usize> = with_surface.filter(has_surface).collect();
         with_surface.sort_unstable();
         if !with_surface.is_empty() {
-            counts.triangles += self.surfaces(&with_surface)?;
+            counts.triangles = picture.surfaces(&with_surface)?;
         }
-        Ok(())
+        Ok(picture)
     }
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
@@ -128,21 +120,15 @@ impl<'f> Opaque<'f> {
             light: self.options.light,
             background: None,
         };
-        let mut picture = raster::draw(&surface, &self.view, &options, &Silent)?;
-        let voxels = self.file.voxels();
-        for (pixel, at) in picture.triangle.iter_mut().enumerate() {
-            if *at == NO_TRIANGLE {
-                continue;
+        let drawn = raster::draw(&surface, &self.view, &options, &Silent)?;
+        for (pixel, &at) in drawn.triangle.iter().enumerate() {
+            if at != NO_TRIANGLE {
+                let id = self.file.voxels() + surface.places[at as usize].2;
+                let depth = drawn.depth[pixel].to_bits();
+                self.put(pixel, u64::from(depth) << 32 | u64::from(id));
             }
-            *at = surface.places[*at as usize].2;
-            let (id, depth) = (voxels + *at, picture.depth[pixel]);
-            let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
-            let there = self.words[pixel].load(Ordering::Relaxed);
-            let is_triangle = there as u32 >= voxels && there != EMPTY;
-            self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
-            self.put(pixel, word);
         }
-        self.pictures.push((picture.rgba, picture.triangle));
+        self.colors = drawn.rgba;
         Ok(surface.places.len() as u64)
     }
 
@@ -186,7 +172,10 @@ impl<'f> Opaque<'f> {
         Pixel {
             light: match id < voxels {
                 true => self.voxel_light(id, last),
-                false => self.triangle_light(pixel, id - voxels),
+                false => {
+                    let [r, g, b, _] = self.colors[pixel];
+                    [r, g, b].map(srgb_to_linear)
+                }
             },
             coverage: 1.0,
             depth: f32::from_bits((word >> 32) as u32),
@@ -214,15 +203,6 @@ impl<'f> Opaque<'f> {
             rest -= count;
         }
         [0.0; 3]
-    }
-
-    fn triangle_light(&self, pixel: usize, number: u32) -> [f32; 3] {
-        let is_there = |(_, numbers): &&(_, Vec<u32>)| numbers[pixel] == number;
-        let found = self.pictures.iter().find(is_there);
-        found.map_or([0.0; 3], |(colors, _)| {
-            let [r, g, b, _] = colors[pixel];
-            [r, g, b].map(srgb_to_linear)
-        })
     }
 }
 

@@ -33,10 +33,9 @@ pub(super) fn draw(
     file: &FarFile,
     view: &RasterCamera,
     options: &ViewOptions,
-    nodes: &[&Chosen],
+    mut nodes: Vec<Chosen>,
     pixels: &mut [Pixel],
 ) -> Result<u64, ViewError> {
-    let mut nodes: Vec<&Chosen> = nodes.to_vec();
     nodes.sort_by(|a, b| a.middle.total_cmp(&b.middle).then(b.number.cmp(&a.number)));
     let splats = nodes
         .par_iter()
