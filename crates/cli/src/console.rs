@@ -14,7 +14,7 @@ use shiftvox::graph::{Progress, Silent};
 
 pub(super) struct Console {
     quiet: bool,
-    verbose: u8,
+    pub(super) verbose: u8,
     pub(super) json: bool,
     progress: Box<dyn Progress>,
     /// The document that is printed at the end of the run, with the error if the run fails.

@@ -28,7 +28,7 @@ pub(super) struct ReproduceArgs {
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: u32,
-    /// Folder of results.json, results.csv, report.md and figures.svg
+    /// Folder of results.json, results.csv and figures.svg
     #[arg(long, value_name = "DIR")]
     outdir: Option<PathBuf>,
     #[command(flatten)]
@@ -59,7 +59,6 @@ impl ReproduceArgs {
             };
             place(&mut export.export_json, "results.json");
             place(&mut export.export_csv, "results.csv");
-            place(&mut export.export_markdown, "report.md");
             place(&mut export.export_svg, "figures.svg");
         }
         export
@@ -102,13 +101,12 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         .iter()
         .map(|rows| reproduce::table(&title(rows), rows));
     let printed = printed.collect();
-    let preface = context.markdown(schedule);
     let panels = tables
         .iter()
         .filter_map(|rows| reproduce::panel(&title(rows), rows));
     let results = Results {
         panels: panels.collect(),
-        ..Results::of_rows("reproduce", fields, preface, &rows, printed)
+        ..Results::of_rows("reproduce", fields, &rows, printed)
     };
     export::write(&results, &export, console)
 }

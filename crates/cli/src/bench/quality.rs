@@ -176,8 +176,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     let tables = rows
         .chunk_by(by_picture)
         .map(|rows| table(&title(rows), rows));
-    let preface = context.markdown(plan.schedule);
-    let results = Results::of_rows("bench quality", fields, preface, &rows, tables.collect());
+    let results = Results::of_rows("bench quality", fields, &rows, tables.collect());
     let plots_of = |name: String| {
         let of_scene = rows.iter().filter(|row| row.text("scene") == name);
         let of_scene: Vec<Row> = of_scene.cloned().collect();

@@ -131,8 +131,8 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
         .iter()
         .map(|(name, rows)| table(name, rows))
         .collect();
-    let (fields, preface) = (context.json(schedule, &options), context.markdown(schedule));
-    let results = Results::of_rows("bench time", fields, preface, &all, tables);
+    let fields = context.json(schedule, &options);
+    let results = Results::of_rows("bench time", fields, &all, tables);
     let plots = groups.into_iter().map(|(name, rows)| (name, panels(&rows)));
     export::write_with_plots(results, plots.collect(), &args.export, console)
 }

@@ -25,9 +25,6 @@ pub(crate) struct ExportArgs {
     /// All columns, a row per measurement
     #[arg(long, value_name = "FILE")]
     pub(crate) export_csv: Option<PathBuf>,
-    /// The tables, with computer and command
-    #[arg(long, value_name = "FILE")]
-    pub(crate) export_markdown: Option<PathBuf>,
     /// The plots; of bench, `{scene}` in the name makes a file per scene
     #[arg(long, value_name = "FILE")]
     pub(crate) export_svg: Option<PathBuf>,
@@ -41,8 +38,6 @@ pub(crate) struct Results {
     /// One row per measurement, for CSV.
     pub(crate) rows: Table,
     pub(crate) tables: Vec<Table>,
-    pub(crate) more_tables: Vec<Table>,
-    pub(crate) preface: String,
     pub(crate) panels: Vec<Panel>,
 }
 
@@ -51,7 +46,6 @@ impl Results {
     pub(crate) fn of_rows(
         command: &str,
         mut fields: Value,
-        preface: String,
         rows: &[Row],
         tables: Vec<Table>,
     ) -> Self {
@@ -60,8 +54,6 @@ impl Results {
             document: document(command, fields),
             rows: Table::collect(command, rows),
             tables,
-            more_tables: Vec::new(),
-            preface,
             panels: Vec::new(),
         }
     }
@@ -75,11 +67,10 @@ pub(crate) fn check<'p>(
     let ExportArgs {
         export_json,
         export_csv,
-        export_markdown,
         export_svg,
         force,
     } = args;
-    let own = [export_json, export_csv, export_markdown, export_svg];
+    let own = [export_json, export_csv, export_svg];
     let paths: Vec<&PathBuf> = own.into_iter().flatten().chain(others).collect();
     for (place, path) in paths.iter().enumerate() {
         whole::check_free(path, *force)?;
@@ -158,11 +149,6 @@ pub(crate) fn write_files(
     };
     write(&args.export_json, &|| format!("{:#}\n", results.document))?;
     write(&args.export_csv, &|| results.rows.csv())?;
-    write(&args.export_markdown, &|| {
-        let tables = results.tables.iter().chain(&results.more_tables);
-        let tables: Vec<String> = tables.map(Table::markdown).collect();
-        format!("{}\n{}", results.preface, tables.join("\n"))
-    })?;
     write(&args.export_svg, &|| plot::svg(&results.panels))
 }
 

@@ -6,7 +6,6 @@ use serde_json::json;
 use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use shiftvox::project::{Camera, FrameSetup, SetupError};
@@ -84,9 +83,8 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
         size.0, size.1, hardware.name, args.coherent.frames
     );
     let fields = json!({ "scene": name, "hardware": hardware });
-    let preface = Context::now().command + "\n";
     let table = Table::collect(title, &rows);
-    let results = Results::of_rows("model", fields, preface, &rows, vec![table]);
+    let results = Results::of_rows("model", fields, &rows, vec![table]);
     export::write(&results, &args.export, console)
 }
 

@@ -8,7 +8,6 @@ use super::Found;
 use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::{document, report};
 use shiftvox::whole;
@@ -52,13 +51,12 @@ fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result
 pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     write_accelergy(found, args, console)?;
     let document = describe(found);
-    let long = tables::LONG.iter().map(|spec| spec.of(&document));
-    let short = tables::SHORT.iter().map(|spec| spec.of(&document));
+    let long = tables::LONG.iter().filter(|_| console.verbose > 0);
+    let tables = tables::SHORT.iter().chain(long);
+    let tables = tables.map(|spec| spec.of(&document));
     let results = Results {
         rows: tables::figures(&document),
-        tables: std::iter::once(summary(found)).chain(short).collect(),
-        more_tables: long.collect(),
-        preface: Context::now().command + "\n",
+        tables: std::iter::once(summary(found)).chain(tables).collect(),
         panels: plots::panels(&found.report),
         document,
     };

@@ -6,7 +6,6 @@ use super::Explorations;
 use crate::console::Console;
 use crate::document;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::model::args::ModelArgs;
 use shiftvox_lab::model::explore::front::FrontPoint;
@@ -67,8 +66,6 @@ pub(super) fn write(
         document: document::document("explore", json!({ "scenes": fronts })),
         rows: ROWS.of(&json!({ "points": rows })),
         tables,
-        more_tables: Vec::new(),
-        preface: format!("`{}`\n", Context::now().command),
         panels: found
             .iter()
             .map(|of| shares(of).unwrap_or_else(|| panel(of)))
