@@ -104,9 +104,6 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
     let panels = tables
         .iter()
         .filter_map(|rows| reproduce::panel(&title(rows), rows));
-    let results = Results {
-        panels: panels.collect(),
-        ..Results::of_rows("reproduce", fields, &rows, printed)
-    };
+    let results = Results::of_rows("reproduce", fields, &rows, printed, panels.collect());
     export::write(&results, &export, console)
 }

@@ -127,7 +127,7 @@ impl QualityArgs {
 
 pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, &SCENES);
-    export::check_plots(&args.export, &names)?;
+    export::check(&args.export, [])?;
     args.camera.check().map_err(CliError::usage)?;
     let side = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
     let size = args.size.unwrap_or(Size::square(side));
@@ -173,18 +173,9 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
         same("scene") && same("size")
     };
     let title = |rows: &[Row]| format!("{}, {}", rows[0].text("scene"), rows[0].text("size"));
-    let tables = rows
-        .chunk_by(by_picture)
-        .map(|rows| table(&title(rows), rows));
-    let results = Results::of_rows("bench quality", fields, &rows, tables.collect());
-    let plots_of = |name: String| {
-        let of_scene = rows.iter().filter(|row| row.text("scene") == name);
-        let of_scene: Vec<Row> = of_scene.cloned().collect();
-        (
-            name,
-            of_scene.chunk_by(by_picture).flat_map(panels).collect(),
-        )
-    };
-    let plots = names.into_iter().map(plots_of).collect();
-    export::write_with_plots(results, plots, &args.export, console)
+    let pictures = || rows.chunk_by(by_picture);
+    let tables = pictures().map(|rows| table(&title(rows), rows)).collect();
+    let panels = pictures().flat_map(panels).collect();
+    let results = Results::of_rows("bench quality", fields, &rows, tables, panels);
+    export::write(&results, &args.export, console)
 }

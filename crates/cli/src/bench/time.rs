@@ -132,7 +132,7 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
         .map(|(name, rows)| table(name, rows))
         .collect();
     let fields = context.json(schedule, &options);
-    let results = Results::of_rows("bench time", fields, &all, tables);
-    let plots = groups.into_iter().map(|(name, rows)| (name, panels(&rows)));
-    export::write_with_plots(results, plots.collect(), &args.export, console)
+    let panels = groups.iter().flat_map(|(_, rows)| panels(rows)).collect();
+    let results = Results::of_rows("bench time", fields, &all, tables, panels);
+    export::write(&results, &args.export, console)
 }

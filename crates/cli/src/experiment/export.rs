@@ -5,16 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
-use super::subjects::file_stem;
 use crate::console::Console;
 use crate::document::document;
 use crate::error::CliError;
-use crate::outputs;
 use shiftvox::whole;
 use shiftvox_lab::report::plot::{self, Panel};
 use shiftvox_lab::report::{Row, Table};
-
-const SCENE_FIELD: &str = "{scene}";
 
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Output")]
@@ -25,7 +21,7 @@ pub(crate) struct ExportArgs {
     /// All columns, a row per measurement
     #[arg(long, value_name = "FILE")]
     pub(crate) export_csv: Option<PathBuf>,
-    /// The plots; of bench, `{scene}` in the name makes a file per scene
+    /// The plots
     #[arg(long, value_name = "FILE")]
     pub(crate) export_svg: Option<PathBuf>,
     /// Replace existing files
@@ -48,13 +44,14 @@ impl Results {
         mut fields: Value,
         rows: &[Row],
         tables: Vec<Table>,
+        panels: Vec<Panel>,
     ) -> Self {
         fields["rows"] = rows.iter().map(Row::json).collect();
         Self {
             document: document(command, fields),
             rows: Table::collect(command, rows),
             tables,
-            panels: Vec::new(),
+            panels,
         }
     }
 }
@@ -80,43 +77,6 @@ pub(crate) fn check<'p>(
         }
     }
     Ok(())
-}
-
-pub(crate) fn check_plots(args: &ExportArgs, scenes: &[String]) -> Result<(), CliError> {
-    check(args, [])?;
-    if let Some(path) = &args.export_svg {
-        outputs::check_text(path)?;
-    }
-    for path in scenes.iter().filter_map(|scene| plot_path(args, scene)) {
-        whole::check_free(&path, args.force)?;
-    }
-    Ok(())
-}
-
-fn plot_path(args: &ExportArgs, scene: &str) -> Option<PathBuf> {
-    let text = args.export_svg.as_ref()?.to_str()?;
-    let has_field = text.contains(SCENE_FIELD);
-    has_field.then(|| text.replace(SCENE_FIELD, &file_stem(scene)).into())
-}
-
-/// [`write`], with plots by scene: in one file, or in a file each if the name has [`SCENE_FIELD`].
-pub(crate) fn write_with_plots(
-    mut results: Results,
-    scenes: Vec<(String, Vec<Panel>)>,
-    args: &ExportArgs,
-    console: &Console,
-) -> Result<(), CliError> {
-    let mut args = args.clone();
-    for (scene, panels) in scenes {
-        match plot_path(&args, &scene) {
-            Some(path) => file(&path, &plot::svg(&panels), &args, console)?,
-            None => results.panels.extend(panels),
-        }
-    }
-    args.export_svg = args
-        .export_svg
-        .filter(|path| !path.to_string_lossy().contains(SCENE_FIELD));
-    write(&results, &args, console)
 }
 
 fn file(path: &Path, text: &str, args: &ExportArgs, console: &Console) -> Result<(), CliError> {

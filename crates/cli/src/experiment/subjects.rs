@@ -26,14 +26,6 @@ pub(crate) fn names_or(given: &[String], default: &[&str]) -> Vec<String> {
     }
 }
 
-/// A scene's name as part of a file's: letters, digits, and hyphens between them.
-pub(crate) fn file_stem(name: &str) -> String {
-    let name = name.strip_prefix("gen:").unwrap_or(name);
-    let letters = |c: char| !c.is_ascii_alphanumeric();
-    let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
-    words.join("-")
-}
-
 /// Opens a scene. Without camera flags, terrain, sponge and the bundled tree have their standard cameras. All others are
 /// fitted into `size`.
 pub(crate) fn open(

@@ -84,7 +84,7 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
     );
     let fields = json!({ "scene": name, "hardware": hardware });
     let table = Table::collect(title, &rows);
-    let results = Results::of_rows("model", fields, &rows, vec![table]);
+    let results = Results::of_rows("model", fields, &rows, vec![table], Vec::new());
     export::write(&results, &args.export, console)
 }
 
