@@ -116,12 +116,8 @@ impl QualityArgs {
             return Err(CliError::usage(message));
         }
         let subject = subjects::open(name, &self.camera, &self.scene, size, console)?;
-        let camera = Camera {
-            width: size.0,
-            height: size.1,
-            ..subject.camera
-        };
-        Ok((Made::of_graph(Some(subject.graph)), choices, camera))
+        let made = Made::of_graph(Some(subject.graph));
+        Ok((made, choices, subject.camera))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::console::Console;
 use crate::error::CliError;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
-use shiftvox::project::{Camera, FrameSetup, SetupError};
+use shiftvox::project::{FrameSetup, SetupError};
 use shiftvox_lab::model::coherent::{Film, Sums, WAYS, film};
 use shiftvox_lab::quality::Motion;
 use shiftvox_lab::report::{Cell, Row, Table};
@@ -50,11 +50,6 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
     let scene = args.rules.scene_args(&args.scene);
     let subject = subjects::open(name, &args.camera, &scene, size, console)?;
     let graph = &subject.graph;
-    let camera = Camera {
-        width: size.0,
-        height: size.1,
-        ..subject.camera
-    };
     let films = &args.coherent.coherent;
     let mut rows = Vec::new();
     console.progress().begin("films", films.len() as u64);
@@ -65,7 +60,9 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
             Path::Walk => ("walk", Motion::ALL[1]),
         };
         let setup = |frame| -> Result<FrameSetup, CliError> {
-            let camera = motion.after(&camera, frame).map_err(SetupError::from)?;
+            let camera = motion
+                .after(&subject.camera, frame)
+                .map_err(SetupError::from)?;
             let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
             Ok(setup)
         };

@@ -20,7 +20,6 @@ use crate::error::{CliError, Kind};
 use crate::experiment::subjects;
 use crate::report;
 use results::ResultsFile;
-use shiftvox::project::Camera;
 use shiftvox::whole;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
@@ -229,15 +228,10 @@ fn measure(
             subject.name
         ));
     }
-    let camera = Camera {
-        width: args.size.width,
-        height: args.size.height,
-        ..subject.camera
-    };
     let options = args.setup_options();
     let explored = Explored {
         graph: &subject.graph,
-        camera: &camera,
+        camera: &subject.camera,
         options: &options,
         overflow: args.rules.overflow(),
         rival,
