@@ -2,9 +2,9 @@
 
 use clap::{Args, ValueEnum};
 
+use super::check_sizes;
 use super::made::Made;
 use super::methods::{self, Choice, Choices};
-use super::{ScheduleArgs, check_sizes};
 use crate::args::{CameraArgs, SceneArgs, Size};
 use crate::console::Console;
 use crate::error::CliError;
@@ -13,6 +13,7 @@ use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
 use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
+use shiftvox_lab::bench::Schedule;
 use shiftvox_lab::quality::{
     Motion, PixelStyle, QualityPlan, Scene, at_distance, measure, panels, table,
 };
@@ -70,7 +71,7 @@ pub(super) struct QualityArgs {
           value_parser = clap::value_parser!(u32).range(2..=1000))]
     frames: u32,
     #[command(flatten)]
-    schedule: ScheduleArgs,
+    schedule: Schedule,
     /// Exact rays of the reference per pixel and axis
     #[arg(long, value_name = "N", default_value = "16",
           value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
@@ -132,7 +133,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     context.warn(console);
     let samples: u32 = args.reference_samples.parse().unwrap_or(16);
     let plan = QualityPlan {
-        schedule: args.schedule.schedule(),
+        schedule: args.schedule,
         motions: args.motions(),
         frames: args.frames,
         strata_log2: samples.ilog2(),

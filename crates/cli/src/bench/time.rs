@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{ScheduleArgs, check_sizes};
+use super::check_sizes;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::console::Console;
 use crate::error::CliError;
@@ -10,7 +10,7 @@ use crate::experiment::context::Context;
 use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
 use crate::{engines, scenes};
-use shiftvox_lab::bench::{Harness, Scan, TimePlan, measure, panels, table};
+use shiftvox_lab::bench::{Harness, Scan, Schedule, TimePlan, measure, panels, table};
 use shiftvox_lab::report::Row;
 
 const DEFAULT_SIDE: u32 = 512;
@@ -36,7 +36,7 @@ pub(super) struct TimeArgs {
     #[arg(long, value_name = "NAME=A..B*F", value_parser = size_or_depth)]
     scan: Option<Scan>,
     #[command(flatten)]
-    schedule: ScheduleArgs,
+    schedule: Schedule,
     #[command(flatten)]
     rules: RuleArgs,
     #[command(flatten)]
@@ -102,7 +102,7 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
     let (sizes, depths) = args.sizes_and_depths()?;
     let sizes: Vec<(u32, u32)> = sizes.into_iter().map(Size::pair).collect();
     let families = engines::families(&args.engines, &args.variants)?;
-    let (schedule, options) = (args.schedule.schedule(), args.rules.options(0));
+    let (schedule, options) = (args.schedule, args.rules.options(0));
     let context = Context::now();
     context.warn(console);
     let plan = TimePlan {
