@@ -1,6 +1,6 @@
 //! Results to stdout and to files.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::Value;
@@ -79,12 +79,6 @@ pub(crate) fn check<'p>(
     Ok(())
 }
 
-fn file(path: &Path, text: &str, args: &ExportArgs, console: &Console) -> Result<(), CliError> {
-    whole::write(path, text.as_bytes(), args.force)?;
-    console.written(path);
-    Ok(())
-}
-
 pub(crate) fn write(
     results: &Results,
     args: &ExportArgs,
@@ -104,7 +98,7 @@ pub(crate) fn write_files(
     console: &Console,
 ) -> Result<(), CliError> {
     let write = |path: &Option<PathBuf>, text: &dyn Fn() -> String| match path {
-        Some(path) => file(path, &text(), args, console),
+        Some(path) => console.write(path, text(), args.force),
         None => Ok(()),
     };
     write(&args.export_json, &|| format!("{:#}\n", results.document))?;

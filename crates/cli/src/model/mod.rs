@@ -20,7 +20,6 @@ use super::experiment::subjects;
 use shiftvox::frame::Frame;
 use shiftvox::machine::Simulated;
 use shiftvox::project::FrameSetup;
-use shiftvox::whole;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::model::frame::{self, Counted};
@@ -126,8 +125,7 @@ fn simulate(
     if let Some(path) = trace {
         let mut text = Vec::new();
         watched.0.write_ramulator(&mut text)?;
-        whole::write(path, &text, args.export.force)?;
-        console.written(path);
+        console.write(path, text, args.export.force)?;
     }
     Ok(drawn)
 }

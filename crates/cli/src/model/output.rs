@@ -1,7 +1,5 @@
 //! The report, to stdout and to files.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
 
 use super::Found;
@@ -10,7 +8,6 @@ use crate::console::Console;
 use crate::error::CliError;
 use crate::experiment::export::{self, Results};
 use crate::{document, report};
-use shiftvox::whole;
 use shiftvox_lab::model::design::LIGHT;
 use shiftvox_lab::model::ray_caster::RAY_CASTER;
 use shiftvox_lab::model::{accelergy, plots, tables};
@@ -26,24 +23,16 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     export::check(&args.export, others.into_iter().flatten())
 }
 
-fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(), CliError> {
-    whole::write(path, bytes, force)?;
-    console.written(path);
-    Ok(())
-}
-
 /// Files for Accelergy.
 fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     let of = &found.report;
     let designs = [(LIGHT, &of.cost), (RAY_CASTER, &of.ray_caster.cost)];
     let force = args.export.force;
     if let Some(path) = &args.files.export_accelergy {
-        let text = accelergy::counts(&designs, of.technology);
-        file(path, text.as_bytes(), force, console)?;
+        console.write(path, accelergy::counts(&designs, of.technology), force)?;
     }
     if let Some(path) = &args.files.export_ert {
-        let text = accelergy::energies(&designs);
-        file(path, text.as_bytes(), force, console)?;
+        console.write(path, accelergy::energies(&designs), force)?;
     }
     Ok(())
 }
