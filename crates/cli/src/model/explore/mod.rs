@@ -136,11 +136,11 @@ fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, C
 
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     match &args.points {
-        Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
+        Some(points) if *points.end() >= all => Err(CliError::usage(format!(
             "--points: the space has points 0 to {}",
             all - 1
         ))),
-        Some(points) => Ok(*points.0.start()..points.0.end() + 1),
+        Some(points) => Ok(*points.start()..points.end() + 1),
         None => Ok(0..all),
     }
 }
@@ -208,16 +208,9 @@ fn measure(
     mut known: BTreeMap<usize, PointLine>,
     file: &mut Option<ResultsFile>,
 ) -> Result<Vec<PointLine>, CliError> {
-    let Asked {
-        args,
-        space,
-        picked,
-        prices,
-        rival,
-        console,
-    } = asked;
+    let (picked, console) = (&asked.picked, asked.console);
     let wanted = picked.clone().filter(|number| !known.contains_key(number));
-    let points = wanted.map(|number| space.point(number));
+    let points = wanted.map(|number| asked.space.point(number));
     let points = points
         .collect::<Result<Vec<Point>, _>>()
         .map_err(CliError::input)?;
@@ -228,14 +221,14 @@ fn measure(
             subject.name
         ));
     }
-    let options = args.setup_options();
+    let options = asked.args.setup_options();
     let explored = Explored {
         graph: &subject.graph,
         camera: &subject.camera,
         options: &options,
-        overflow: args.rules.overflow(),
-        rival,
-        prices,
+        overflow: asked.args.rules.overflow(),
+        rival: asked.rival,
+        prices: asked.prices,
     };
     let mut next = picked.start;
     let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {
