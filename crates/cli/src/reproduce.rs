@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::args::{CameraArgs, SceneArgs};
 use super::console::Console;
+use super::document::read_settings;
 use super::engines;
 use super::error::CliError;
 use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::experiment::subjects;
-use shiftvox::bounded;
 use shiftvox::project::SetupOptions;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{OpenError, Source};
@@ -39,14 +39,7 @@ impl ReproduceArgs {
     fn list(&self) -> Result<List, CliError> {
         let (place, text) = match &self.list {
             None => ("the paper's list".to_owned(), List::PAPER.to_owned()),
-            Some(path) => {
-                let place = path.display().to_string();
-                let text = bounded::read_settings(path);
-                let text = text.map_err(|e| {
-                    CliError::input(format!("cannot read the file: {e}")).at(&place)
-                })?;
-                (place, text)
-            }
+            Some(path) => (path.display().to_string(), read_settings(path)?),
         };
         toml::from_str(&text).map_err(|e| CliError::input(e).at(place))
     }

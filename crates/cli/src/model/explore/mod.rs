@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use args::ExploreArgs;
 
-use super::args::{ModelArgs, hardware_named, read};
+use super::args::{ModelArgs, hardware_named};
 use crate::console::Console;
 use crate::document;
 use crate::error::{CliError, Kind};
@@ -121,7 +121,7 @@ fn text_of(name: &str) -> Result<String, CliError> {
     if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());
     }
-    read(Path::new(name))
+    document::read_settings(Path::new(name))
 }
 
 fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, CliError> {
