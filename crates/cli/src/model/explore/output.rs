@@ -175,14 +175,8 @@ fn shares(of: &Explorations) -> Option<Panel> {
             ..line.clone()
         };
         let name = values(&others, &of.points);
-        let point = Point::from((size, figures.verdict.median));
-        match curves.iter_mut().find(|curve| curve.name == name) {
-            Some(curve) => curve.points.push(point),
-            None => curves.push(Series {
-                line: true,
-                ..Series::dots(name, vec![point])
-            }),
-        }
+        let curve = Series::of_name(&mut curves, &name, true);
+        curve.points.push((size, figures.verdict.median).into());
     }
     let axis = |label: &str, scale| Axis {
         label: label.to_owned(),
@@ -219,11 +213,8 @@ fn panel(of: &Explorations) -> Panel {
             label: label.then(|| line.point.to_string()),
         };
         let name = line.values.get("hardware").and_then(Value::as_str);
-        let name = name.unwrap_or_default();
-        match series.iter_mut().find(|series| series.name == name) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series::dots(name, vec![point])),
-        }
+        let of_name = Series::of_name(&mut series, name.unwrap_or_default(), false);
+        of_name.points.push(point);
         let rival = &figures.ray_caster;
         let share = rival.cycles as f64 / figures.cycles.max(1) as f64;
         rays.push(Point::from((
