@@ -178,17 +178,11 @@ fn shares(of: &Explorations) -> Option<Panel> {
         let curve = Series::of_name(&mut curves, &name, true);
         curve.points.push((size, figures.verdict.median).into());
     }
-    let axis = |label: &str, scale| Axis {
-        label: label.to_owned(),
-        scale,
-    };
     curves.first().filter(|curve| curve.points.len() > 1)?;
+    let title = format!("{}: energy of the frame, light over ray caster", of.scene);
     Some(Panel::Chart(Chart {
-        title: format!("{}: energy of the frame, light over ray caster", of.scene),
-        x: axis("side of the picture, pixels", Scale::Log),
-        y: axis("ratio", Scale::Log),
-        series: curves,
         level: Some((1.0, "equal".to_owned())),
+        ..Chart::growth(&title, "side of the picture, pixels", "ratio", curves)
     }))
 }
 
