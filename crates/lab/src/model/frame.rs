@@ -41,12 +41,6 @@ impl Counted {
         record_bits(&self.fields)
     }
 
-    /// A counter of the machine by its name; 0 if it has none of that name.
-    pub fn stat(&self, name: &str) -> u64 {
-        let found = self.stats.iter().find(|(n, _)| *n == name);
-        found.map_or(0, |&(_, count)| count)
-    }
-
     pub fn differing(&self, other: &Frame) -> u64 {
         let pairs = self.frame.voxel.iter().zip(&other.voxel);
         pairs.filter(|(a, b)| a != b).count() as u64

@@ -30,7 +30,7 @@ use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
+use shiftvox::project::{Camera, FrameSetup, SetupOptions, stat};
 use space::Point;
 
 #[derive(Debug, Clone, Copy)]
@@ -336,7 +336,7 @@ impl<'a> Shared<'a> {
                 operations: counter.ops() - counter.ops_of(OpClass::Shift),
                 divide_steps: counter.ops_of(OpClass::DivideStep),
                 record_bits: counted.record_bits(),
-                deepest_stack: counted.stat("deepest_stack"),
+                deepest_stack: stat(&counted.stats, "deepest_stack"),
                 node_reads: of(Memory::Node).reads,
                 node_misses: cycles.node_cache.misses,
                 fill_accesses: fill.reads + fill.writes,
