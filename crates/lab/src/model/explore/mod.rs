@@ -26,6 +26,7 @@ use super::fill_bits;
 use super::frame::{self, Counted};
 use super::ray_caster;
 use super::verdict::{self, Verdict};
+use crate::measure::CoverageError;
 use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
@@ -316,7 +317,7 @@ impl<'a> Shared<'a> {
         let cast = &self.rays[&self.ray_key(point)];
         let beside = self.of.rival.beside(hardware);
         let rays = ray_caster::price(cast, (self.of.rival, &beside), prices, exact)?;
-        let error = frame::error(&counted.frame, exact);
+        let error = CoverageError::between(&counted.frame.voxel, &exact.voxel);
         let accesses = counted.counter.accesses_by(|cell| cell.memory);
         let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
         let fill = of(Memory::FillVector);
