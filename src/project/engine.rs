@@ -39,6 +39,13 @@ pub fn most_records(setup: &FrameSetup) -> u64 {
 /// An engine's counts of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
+/// A count by its name; 0 if there is none of that name.
+#[must_use]
+pub fn stat(stats: &[(&'static str, u64)], name: &str) -> u64 {
+    let found = stats.iter().find(|(of, _)| *of == name);
+    found.map_or(0, |(_, count)| *count)
+}
+
 /// Draws a frame. The picture depends only on the frame set-up and the graph.
 pub trait Engine {
     /// Draws like [`Engine::render`], without work that only counters need. Errors: as [`Engine::render`].

@@ -6,8 +6,8 @@
 //! cargo run --release --example evidence -- --write [NAME...]  # remakes these, or all
 //! ```
 //!
-//! A table is between `<!-- evidence: NAME -->` and `<!-- end: NAME -->` in its page. Each of its rows runs commands of
-//! `shiftvox` with `--json`, and each column selects one value of their output.
+//! A table is between `<!-- evidence: NAME -->` and `<!-- end: NAME -->` in its page. Each of its rows runs `shiftvox`
+//! with `--json`, and each column selects one value of the output.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -17,6 +17,7 @@ use std::process::{Command, ExitCode};
 
 use serde::Deserialize;
 use serde_json::Value;
+use shiftvox_lab::report::grouped;
 
 /// `docs/evidence.toml`.
 #[derive(Deserialize)]
@@ -36,9 +37,9 @@ struct Registry {
 #[serde(deny_unknown_fields)]
 struct Table {
     page: PathBuf,
-    /// Commands without `shiftvox` and `--json`. With several, paths begin with the number of one.
-    run: Vec<String>,
-    /// Whether CI runs them.
+    /// A command without `shiftvox` and `--json`.
+    run: String,
+    /// Whether CI runs it.
     #[serde(default)]
     quick: bool,
     /// Head, cell and pattern of each column.
@@ -53,9 +54,6 @@ struct Plot {
     /// A command that writes `{out}`.
     run: String,
     file: PathBuf,
-    /// Whether CI compares the bytes.
-    #[serde(default)]
-    quick: bool,
 }
 
 type Row = Vec<String>;
@@ -149,7 +147,7 @@ impl Tool {
                 faults.extend(differences(name, table, &rows, block));
             }
         }
-        for (name, plot) in plots.iter().filter(|(name, plot)| wanted(name, plot.quick)) {
+        for (name, plot) in plots.iter().filter(|(name, _)| wanted(name, false)) {
             eprintln!("{name}");
             let file = self.root.join(&plot.file);
             let made = tempfile::Builder::new().suffix(".svg").tempfile()?;
@@ -169,26 +167,19 @@ impl Tool {
     fn rows(&mut self, table: &Table) -> Outcome<Vec<Row>> {
         let mut rows = Vec::new();
         for vars in &table.rows {
-            let runs: Vec<String> = table.run.iter().map(|run| self.filled(run, vars)).collect();
-            for run in &runs {
-                if !self.outputs.contains_key(run) {
-                    let output = self.run(&format!("{run} --json"))?;
-                    self.outputs
-                        .insert(run.clone(), serde_json::from_slice(&output)?);
-                }
+            let run = self.filled(&table.run, vars);
+            if !self.outputs.contains_key(&run) {
+                let output = self.run(&format!("{run} --json"))?;
+                let output = serde_json::from_slice(&output)?;
+                self.outputs.insert(run.clone(), output);
             }
             let cell = |(_, cell, pattern): &(String, String, String)| -> Outcome<String> {
                 let cell = self.filled(cell, vars);
-                // A path begins with the number of its run, or with a dot for the only one.
-                let is_run = |run: &str| run.is_empty() || run.parse::<usize>().is_ok();
-                let Some((run, path)) = cell.split_once('.').filter(|(run, _)| is_run(run)) else {
+                let Some(path) = cell.strip_prefix('.') else {
                     return Ok(cell);
                 };
-                let run = runs.get(run.parse().unwrap_or(0)).ok_or("no such run")?;
-                show(
-                    select(&self.outputs[run], path)?,
-                    pattern.trim_start_matches('~'),
-                )
+                let value = select(&self.outputs[&run], path)?;
+                show(value, pattern.trim_start_matches('~'))
             };
             rows.push(table.columns.iter().map(cell).collect::<Outcome<Row>>()?);
         }
@@ -217,7 +208,7 @@ impl Tool {
         }
     }
 
-    /// A table with its foot: commands, and for times the computer.
+    /// A table with its foot: the command, and for times the computer.
     fn markdown(&self, table: &Table, rows: &[Row]) -> Outcome<String> {
         let line = |cells: Vec<&str>| format!("| {} |\n", cells.join(" | "));
         let columns = || table.columns.iter();
@@ -227,9 +218,7 @@ impl Tool {
         for row in rows {
             text += &line(row.iter().map(String::as_str).collect());
         }
-        let no_vars = BTreeMap::new();
-        let command = |run: &String| format!("`shiftvox {}`", self.filled(run, &no_vars));
-        let commands: Vec<String> = table.run.iter().map(command).collect();
+        let command = self.filled(&table.run, &BTreeMap::new());
         let said = |program: &str, arguments: &[&str]| -> Outcome<String> {
             let mut command = Command::new(program);
             let output = command.args(arguments).current_dir(&self.root).output()?;
@@ -245,8 +234,7 @@ impl Tool {
             Some(cpu) => format!(", {cpu}, {}", said("rustc", &["-V"])?),
             None => String::new(),
         };
-        let commands = commands.join(", ");
-        let foot = format!("<sub>{commands}; commit {commit}{computer}.</sub>");
+        let foot = format!("<sub>`shiftvox {command}`; commit {commit}{computer}.</sub>");
         // Markdown is wrapped at 120 columns.
         let mut column = 120;
         for word in foot.split(' ') {
@@ -294,38 +282,26 @@ fn differences(name: &str, table: &Table, rows: &[Row], block: &str) -> Vec<Stri
     faults
 }
 
-/// The value at a path such as `rows[engine=fast][size=512].extra` or `rows[0].cycles`. Filters must fit one element.
+/// The value at a path such as `cost.total` or `rows[engine=fast][size=512].extra`. Filters must fit one element.
 fn select<'v>(mut value: &'v Value, path: &str) -> Outcome<&'v Value> {
-    for step in path.split('.').filter(|step| !step.is_empty()) {
+    for step in path.split('.') {
         let mut parts = step.split('[');
         let name = parts.next().unwrap_or_default();
-        if !name.is_empty() {
-            value = value
-                .get(name)
-                .ok_or_else(|| format!("`{path}`: no `{name}`"))?;
+        let found = value.get(name);
+        value = found.ok_or_else(|| format!("`{path}`: no `{name}`"))?;
+        let filters = parts.filter_map(|part| part.trim_end_matches(']').split_once('='));
+        let filters: Vec<(&str, &str)> = filters.collect();
+        if filters.is_empty() {
+            continue;
         }
-        let mut found = vec![value];
-        for (number, filter) in parts.map(|part| part.trim_end_matches(']')).enumerate() {
-            if number == 0 {
-                let array = value
-                    .as_array()
-                    .ok_or_else(|| format!("`{path}`: no array"))?;
-                found = array.iter().collect();
-            }
-            match filter.split_once('=') {
-                None => {
-                    found = found
-                        .get(filter.parse::<usize>()?)
-                        .copied()
-                        .into_iter()
-                        .collect()
-                }
-                Some((key, wanted)) => found.retain(|element| match &element[key] {
-                    Value::String(text) => text == wanted,
-                    other => *other == wanted,
-                }),
-            }
-        }
+        let text = |of: &Value| of.as_str().map_or_else(|| of.to_string(), str::to_owned);
+        let fits = |element: &&Value| {
+            let mut filters = filters.iter();
+            filters.all(|(key, wanted)| text(&element[key]) == *wanted)
+        };
+        let array = value.as_array();
+        let array = array.ok_or_else(|| format!("`{path}`: no array"))?;
+        let found: Vec<&Value> = array.iter().filter(fits).collect();
         let [one] = found[..] else {
             return Err(format!("`{path}`: {} elements fit", found.len()).into());
         };
@@ -334,7 +310,7 @@ fn select<'v>(mut value: &'v Value, path: &str) -> Outcome<&'v Value> {
     Ok(value)
 }
 
-/// Prints a value by a pattern: `.2` decimals, `s3` significant digits, `/1e6` divides before.
+/// Prints a value by a pattern: `.2` decimals, `/1e6` divides before.
 fn show(value: &Value, pattern: &str) -> Outcome<String> {
     let number = match value {
         Value::Null => return Ok("-".into()),
@@ -342,28 +318,11 @@ fn show(value: &Value, pattern: &str) -> Outcome<String> {
         Value::String(text) => return Ok(text.clone()),
         value => value.as_f64().ok_or(format!("{value} is no figure"))?,
     };
-    let (format, divisor) = pattern.split_once('/').unwrap_or((pattern, "1"));
+    let (decimals, divisor) = pattern.split_once('/').unwrap_or((pattern, "1"));
     let number = number / divisor.parse::<f64>()?;
-    let decimals = match (format.strip_prefix('s'), format.strip_prefix('.')) {
-        (Some(digits), _) => {
-            let magnitude = match number {
-                0.0 => 0,
-                number => number.abs().log10().floor() as i32,
-            };
-            (digits.parse::<i32>()? - 1 - magnitude).max(0) as usize
-        }
-        (_, Some(digits)) => digits.parse()?,
-        _ => 0,
-    };
-    let text = format!("{number:.decimals$}");
-    let whole = text.find('.').unwrap_or(text.len());
-    let mut grouped = String::new();
-    for (at, digit) in text.chars().enumerate() {
-        let is_thousand = at < whole && at > 0 && (whole - at) % 3 == 0 && !grouped.ends_with('-');
-        if is_thousand {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    Ok(grouped)
+    let decimals: usize = decimals.trim_start_matches('.').parse()?;
+    let text = format!("{:.decimals$}", number.abs());
+    let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
+    let sign = if number.is_sign_negative() { "-" } else { "" };
+    Ok(format!("{sign}{}{rest}", grouped(whole.parse::<u128>()?)))
 }

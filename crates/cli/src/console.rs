@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -11,10 +12,11 @@ use serde_json::Value;
 use super::document;
 use super::error::{CliError, Kind};
 use shiftvox::graph::{Progress, Silent};
+use shiftvox::whole;
 
 pub(super) struct Console {
     quiet: bool,
-    verbose: u8,
+    pub(super) verbose: u8,
     pub(super) json: bool,
     progress: Box<dyn Progress>,
     /// The document that is printed at the end of the run, with the error if the run fails.
@@ -123,8 +125,16 @@ impl Console {
         }
     }
 
-    pub(super) fn written(&self, path: &std::path::Path) {
+    /// Writes a file, and says so.
+    pub(super) fn write(
+        &self,
+        path: &Path,
+        bytes: impl AsRef<[u8]>,
+        force: bool,
+    ) -> Result<(), CliError> {
+        whole::write(path, bytes.as_ref(), force)?;
         self.note(format!("{}: written", path.display()));
+        Ok(())
     }
 
     pub(super) fn detail(&self, text: impl AsRef<str>) {

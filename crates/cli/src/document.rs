@@ -1,8 +1,11 @@
-//! JSON documents.
+//! JSON documents, and files of settings.
+
+use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::error::CliError;
+use shiftvox::bounded;
 
 /// Version of every JSON document: raised when a field changes its meaning or goes.
 const SCHEMA_VERSION: u32 = 1;
@@ -26,4 +29,8 @@ pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
     document["advice"] = json!(error.advice);
     document["exit_code"] = json!(error.kind.code());
     document
+}
+
+pub(super) fn read_settings(path: &Path) -> Result<String, CliError> {
+    bounded::read_settings(path).map_err(|error| CliError::input(error).at(path.display()))
 }

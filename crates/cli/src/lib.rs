@@ -137,7 +137,7 @@ enum Command {
     /// Model the light hardware: operations, cycles, memory, area, energy
     ///
     /// Draws one frame on the machine, counts its operations, simulates its cycles on hardware
-    /// described in TOML, and prices both by tables with sources.
+    /// described in TOML, and prices both by tables with sources. -v prints more tables.
     Model(Box<model::ModelArgs>),
     /// Run an experiment
     Bench(bench::BenchArgs),

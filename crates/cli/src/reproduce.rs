@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::args::{CameraArgs, SceneArgs};
 use super::console::Console;
+use super::document::read_settings;
 use super::engines;
 use super::error::CliError;
 use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::experiment::subjects;
-use shiftvox::bounded;
 use shiftvox::project::SetupOptions;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{OpenError, Source};
@@ -28,7 +28,7 @@ pub(super) struct ReproduceArgs {
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: u32,
-    /// Folder of results.json, results.csv, report.md and figures.svg
+    /// Folder of results.json, results.csv and figures.svg
     #[arg(long, value_name = "DIR")]
     outdir: Option<PathBuf>,
     #[command(flatten)]
@@ -39,14 +39,7 @@ impl ReproduceArgs {
     fn list(&self) -> Result<List, CliError> {
         let (place, text) = match &self.list {
             None => ("the paper's list".to_owned(), List::PAPER.to_owned()),
-            Some(path) => {
-                let place = path.display().to_string();
-                let text = bounded::read_settings(path);
-                let text = text.map_err(|e| {
-                    CliError::input(format!("cannot read the file: {e}")).at(&place)
-                })?;
-                (place, text)
-            }
+            Some(path) => (path.display().to_string(), read_settings(path)?),
         };
         toml::from_str(&text).map_err(|e| CliError::input(e).at(place))
     }
@@ -59,7 +52,6 @@ impl ReproduceArgs {
             };
             place(&mut export.export_json, "results.json");
             place(&mut export.export_csv, "results.csv");
-            place(&mut export.export_markdown, "report.md");
             place(&mut export.export_svg, "figures.svg");
         }
         export
@@ -102,13 +94,9 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         .iter()
         .map(|rows| reproduce::table(&title(rows), rows));
     let printed = printed.collect();
-    let preface = context.markdown(schedule);
     let panels = tables
         .iter()
         .filter_map(|rows| reproduce::panel(&title(rows), rows));
-    let results = Results {
-        panels: panels.collect(),
-        ..Results::of_rows("reproduce", fields, preface, &rows, printed)
-    };
+    let results = Results::of_rows("reproduce", fields, &rows, printed, panels.collect());
     export::write(&results, &export, console)
 }

@@ -66,8 +66,7 @@ pub(super) fn run(args: &StressArgs, console: &Console) -> Result<(), CliError> 
     fields["command"] = json!(Context::now().command);
     let document = document::document("stress", fields);
     if let Some(path) = &args.export_json {
-        whole::write(path, format!("{document:#}\n").as_bytes(), args.force)?;
-        console.written(path);
+        console.write(path, format!("{document:#}\n"), args.force)?;
     }
     match console.json {
         true => console.hold(document),

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{Breakdown, Cost, CostError, CostTable, Goal, Line};
+use super::{Breakdown, Cost, CostError, CostTable, Line};
 
 /// Name and size of a component.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -13,8 +13,6 @@ pub struct Attributes {
     pub width: u32,
     /// Of a memory on the chip.
     pub bytes: Option<u64>,
-    /// Of the synthesis.
-    pub goal: Goal,
 }
 
 /// Prices components by their kind: an operation of the cost tables such as `add`, `sram` or `dram`.
@@ -30,9 +28,6 @@ pub struct Attributes {
 pub trait Estimator: Debug + Send + Sync {
     /// Energy of one action, in picojoules: `read` and `write` of memories, `compute` of units.
     fn energy(&self, component: &str, action: &str, of: &Attributes) -> Result<Cost, CostError>;
-
-    /// Area, in NAND2 equivalents.
-    fn area(&self, component: &str, of: &Attributes) -> Result<Cost, CostError>;
 }
 
 impl Estimator for CostTable {
@@ -41,16 +36,6 @@ impl Estimator for CostTable {
             ("sram", Some(bytes)) => self.memory_energy(&format!("sram_{action}"), bytes, of.width),
             ("sram" | "dram", _) => self.energy(&format!("{component}_{action}"), of.width),
             _ => self.energy(component, of.width),
-        }
-    }
-
-    fn area(&self, component: &str, of: &Attributes) -> Result<Cost, CostError> {
-        match (component, of.bytes) {
-            ("sram", Some(bytes)) => {
-                let bit = self.area("sram_bit", 1, of.goal)?;
-                Ok(bit.times(8.0 * bytes as f64))
-            }
-            _ => self.area(component, of.width, of.goal),
         }
     }
 }
@@ -72,7 +57,6 @@ impl Line {
             name: format!("{design}.{name}_{width}"),
             width,
             bytes: self.bytes,
-            goal: Goal::default(),
         };
         Some((component, action, attributes))
     }

@@ -57,28 +57,6 @@ fn thread_counts(given: &[u16]) -> Vec<usize> {
     if counts.is_empty() { vec![1] } else { counts }
 }
 
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Measurement")]
-struct ScheduleArgs {
-    /// Frames per contender before those that count
-    #[arg(long, value_name = "N", default_value_t = 1,
-          value_parser = clap::value_parser!(u32).range(0..=1000))]
-    warmup: u32,
-    /// Frames per contender that count; runs are interleaved
-    #[arg(long, value_name = "N", default_value_t = 5,
-          value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    runs: u32,
-}
-
-impl ScheduleArgs {
-    fn schedule(&self) -> shiftvox_lab::bench::Schedule {
-        shiftvox_lab::bench::Schedule {
-            warmup: self.warmup,
-            runs: self.runs,
-        }
-    }
-}
-
 const MAX_PIXELS: u64 = 1 << 26;
 const PIXEL_BYTES: u64 = 40;
 

@@ -2,9 +2,9 @@
 
 use clap::{Args, ValueEnum};
 
+use super::check_sizes;
 use super::made::Made;
 use super::methods::{self, Choice, Choices};
-use super::{ScheduleArgs, check_sizes};
 use crate::args::{CameraArgs, SceneArgs, Size};
 use crate::console::Console;
 use crate::error::CliError;
@@ -13,6 +13,7 @@ use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
 use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
+use shiftvox_lab::bench::Schedule;
 use shiftvox_lab::quality::{
     Motion, PixelStyle, QualityPlan, Scene, at_distance, measure, panels, table,
 };
@@ -70,7 +71,7 @@ pub(super) struct QualityArgs {
           value_parser = clap::value_parser!(u32).range(2..=1000))]
     frames: u32,
     #[command(flatten)]
-    schedule: ScheduleArgs,
+    schedule: Schedule,
     /// Exact rays of the reference per pixel and axis
     #[arg(long, value_name = "N", default_value = "16",
           value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
@@ -116,18 +117,14 @@ impl QualityArgs {
             return Err(CliError::usage(message));
         }
         let subject = subjects::open(name, &self.camera, &self.scene, size, console)?;
-        let camera = Camera {
-            width: size.0,
-            height: size.1,
-            ..subject.camera
-        };
-        Ok((Made::of_graph(Some(subject.graph)), choices, camera))
+        let made = Made::of_graph(Some(subject.graph));
+        Ok((made, choices, subject.camera))
     }
 }
 
 pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, &SCENES);
-    export::check_plots(&args.export, &names)?;
+    export::check(&args.export, [])?;
     args.camera.check().map_err(CliError::usage)?;
     let side = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
     let size = args.size.unwrap_or(Size::square(side));
@@ -136,7 +133,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     context.warn(console);
     let samples: u32 = args.reference_samples.parse().unwrap_or(16);
     let plan = QualityPlan {
-        schedule: args.schedule.schedule(),
+        schedule: args.schedule,
         motions: args.motions(),
         frames: args.frames,
         strata_log2: samples.ilog2(),
@@ -173,19 +170,9 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
         same("scene") && same("size")
     };
     let title = |rows: &[Row]| format!("{}, {}", rows[0].text("scene"), rows[0].text("size"));
-    let tables = rows
-        .chunk_by(by_picture)
-        .map(|rows| table(&title(rows), rows));
-    let preface = context.markdown(plan.schedule);
-    let results = Results::of_rows("bench quality", fields, preface, &rows, tables.collect());
-    let plots_of = |name: String| {
-        let of_scene = rows.iter().filter(|row| row.text("scene") == name);
-        let of_scene: Vec<Row> = of_scene.cloned().collect();
-        (
-            name,
-            of_scene.chunk_by(by_picture).flat_map(panels).collect(),
-        )
-    };
-    let plots = names.into_iter().map(plots_of).collect();
-    export::write_with_plots(results, plots, &args.export, console)
+    let pictures = || rows.chunk_by(by_picture);
+    let tables = pictures().map(|rows| table(&title(rows), rows)).collect();
+    let panels = pictures().flat_map(panels).collect();
+    let results = Results::of_rows("bench quality", fields, &rows, tables, panels);
+    export::write(&results, &args.export, console)
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{ScheduleArgs, check_sizes};
+use super::check_sizes;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::console::Console;
 use crate::error::CliError;
@@ -10,7 +10,7 @@ use crate::experiment::context::Context;
 use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
 use crate::{engines, scenes};
-use shiftvox_lab::bench::{Harness, Scan, TimePlan, measure, panels, table};
+use shiftvox_lab::bench::{Harness, Scan, Schedule, TimePlan, measure, panels, table};
 use shiftvox_lab::report::Row;
 
 const DEFAULT_SIDE: u32 = 512;
@@ -36,7 +36,7 @@ pub(super) struct TimeArgs {
     #[arg(long, value_name = "NAME=A..B*F", value_parser = size_or_depth)]
     scan: Option<Scan>,
     #[command(flatten)]
-    schedule: ScheduleArgs,
+    schedule: Schedule,
     #[command(flatten)]
     rules: RuleArgs,
     #[command(flatten)]
@@ -102,7 +102,7 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
     let (sizes, depths) = args.sizes_and_depths()?;
     let sizes: Vec<(u32, u32)> = sizes.into_iter().map(Size::pair).collect();
     let families = engines::families(&args.engines, &args.variants)?;
-    let (schedule, options) = (args.schedule.schedule(), args.rules.options(0));
+    let (schedule, options) = (args.schedule, args.rules.options(0));
     let context = Context::now();
     context.warn(console);
     let plan = TimePlan {
@@ -131,8 +131,8 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
         .iter()
         .map(|(name, rows)| table(name, rows))
         .collect();
-    let (fields, preface) = (context.json(schedule, &options), context.markdown(schedule));
-    let results = Results::of_rows("bench time", fields, preface, &all, tables);
-    let plots = groups.into_iter().map(|(name, rows)| (name, panels(&rows)));
-    export::write_with_plots(results, plots.collect(), &args.export, console)
+    let fields = context.json(schedule, &options);
+    let panels = groups.iter().flat_map(|(_, rows)| panels(rows)).collect();
+    let results = Results::of_rows("bench time", fields, &all, tables, panels);
+    export::write(&results, &args.export, console)
 }

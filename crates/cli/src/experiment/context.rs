@@ -59,25 +59,6 @@ impl Context {
             "options": options,
         })
     }
-
-    pub(crate) fn markdown(&self, schedule: Schedule) -> String {
-        let processor = self.processor.as_deref();
-        let processor = processor.unwrap_or("a processor without a name");
-        let load = self.load.map(|load| format!(", load {load} before"));
-        let load = load.unwrap_or_default();
-        format!(
-            "`{}`\n\nshiftvox {}, {processor}, {} hardware threads, {} {}{load}. Warm-up {}, runs \
-             {}, interleaved; times in ms: median, least, median absolute deviation; processor \
-             time of the drawing thread where there is one thread.\n",
-            self.command,
-            env!("CARGO_PKG_VERSION"),
-            self.threads,
-            std::env::consts::OS,
-            std::env::consts::ARCH,
-            schedule.warmup,
-            schedule.runs,
-        )
-    }
 }
 
 fn processor_name(cpuinfo: &str) -> Option<String> {

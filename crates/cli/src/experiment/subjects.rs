@@ -26,14 +26,6 @@ pub(crate) fn names_or(given: &[String], default: &[&str]) -> Vec<String> {
     }
 }
 
-/// A scene's name as part of a file's: letters, digits, and hyphens between them.
-pub(crate) fn file_stem(name: &str) -> String {
-    let name = name.strip_prefix("gen:").unwrap_or(name);
-    let letters = |c: char| !c.is_ascii_alphanumeric();
-    let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
-    words.join("-")
-}
-
 /// Opens a scene. Without camera flags, terrain, sponge and the bundled tree have their standard cameras. All others are
 /// fitted into `size`.
 pub(crate) fn open(
@@ -48,7 +40,7 @@ pub(crate) fn open(
         BUNDLED => scenes::demo(console.progress())?,
         name => scenes::open(name, scene_args, console)?,
     };
-    let standard = standard_camera(name, &scene).filter(|_| *camera == CameraArgs::default());
+    let standard = standard_camera(name, &scene, size).filter(|_| *camera == CameraArgs::default());
     let camera = standard.unwrap_or_else(|| {
         let bounds = Bounds::of(&scene.graph);
         camera.camera(&bounds, scene.up, size, 0.0)
@@ -60,7 +52,7 @@ pub(crate) fn open(
     })
 }
 
-fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
+fn standard_camera(name: &str, scene: &Scene, (width, height): (u32, u32)) -> Option<Camera> {
     let placement = &scene.graph.placement;
     let side = (1u64 << scene.graph.depth) as f64 * placement.voxel_size;
     let mut low = DVec3::from_array(placement.world_origin);
@@ -82,7 +74,7 @@ fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
         up: DVec3::Z,
         fov_degrees: 60.0,
         ortho: None,
-        width: 1,
-        height: 1,
+        width,
+        height,
     })
 }

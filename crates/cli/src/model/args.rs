@@ -10,9 +10,9 @@ use hwmodel::cycles::{Hardware, PRESETS};
 use super::coherent::CoherentArgs;
 use super::explore::args::ExploreArgs;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
+use crate::document::read_settings;
 use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
-use shiftvox::bounded;
 use shiftvox::machine::check_hardware;
 use shiftvox::project::SetupOptions;
 use shiftvox_lab::model::accelergy::EnergyTable;
@@ -93,10 +93,6 @@ pub(super) struct FileArgs {
     pub(super) vector_records: u64,
 }
 
-pub(super) fn read(path: &Path) -> Result<String, CliError> {
-    bounded::read_settings(path).map_err(|error| CliError::input(error).at(path.display()))
-}
-
 /// The description with a name: a shipped one, or a file relative to a folder.
 fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
     if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
@@ -110,7 +106,7 @@ fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
         let message = format!("no hardware and no file is called {name}");
         return Err(CliError::input(message).advise(advice));
     }
-    read(&path)
+    read_settings(&path)
 }
 
 pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
@@ -158,7 +154,7 @@ impl HardwareArgs {
     /// The ray caster's description as TOML: the shipped one with its comments, or the user's.
     pub(super) fn rival_text(&self) -> Result<String, CliError> {
         match &self.rival {
-            Some(path) => read(path),
+            Some(path) => read_settings(path),
             None => Ok(Rival::SHIPPED.to_owned()),
         }
     }
@@ -177,7 +173,7 @@ impl HardwareArgs {
         let Some(path) = &self.ert else {
             return Ok(None);
         };
-        let table = EnergyTable::parse(&path.display().to_string(), &read(path)?);
+        let table = EnergyTable::parse(&path.display().to_string(), &read_settings(path)?);
         Ok(Some(Arc::new(table.map_err(CliError::input)?)))
     }
 
@@ -185,7 +181,7 @@ impl HardwareArgs {
         let mut table = CostTable::load_shipped().map_err(CliError::input)?;
         if let Some(path) = &self.costs {
             let name = path.display().to_string();
-            let text = read(path)?;
+            let text = read_settings(path)?;
             let own = CostTable::default()
                 .with_overrides(&name, &text)
                 .map_err(CliError::input)?;

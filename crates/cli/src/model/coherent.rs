@@ -6,10 +6,9 @@ use serde_json::json;
 use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
-use shiftvox::project::{Camera, FrameSetup, SetupError};
+use shiftvox::project::{FrameSetup, SetupError};
 use shiftvox_lab::model::coherent::{Film, Sums, WAYS, film};
 use shiftvox_lab::quality::Motion;
 use shiftvox_lab::report::{Cell, Row, Table};
@@ -51,11 +50,6 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
     let scene = args.rules.scene_args(&args.scene);
     let subject = subjects::open(name, &args.camera, &scene, size, console)?;
     let graph = &subject.graph;
-    let camera = Camera {
-        width: size.0,
-        height: size.1,
-        ..subject.camera
-    };
     let films = &args.coherent.coherent;
     let mut rows = Vec::new();
     console.progress().begin("films", films.len() as u64);
@@ -66,7 +60,9 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
             Path::Walk => ("walk", Motion::ALL[1]),
         };
         let setup = |frame| -> Result<FrameSetup, CliError> {
-            let camera = motion.after(&camera, frame).map_err(SetupError::from)?;
+            let camera = motion
+                .after(&subject.camera, frame)
+                .map_err(SetupError::from)?;
             let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
             Ok(setup)
         };
@@ -84,9 +80,8 @@ pub(super) fn run(name: &str, args: &ModelArgs, console: &Console) -> Result<(),
         size.0, size.1, hardware.name, args.coherent.frames
     );
     let fields = json!({ "scene": name, "hardware": hardware });
-    let preface = Context::now().command + "\n";
     let table = Table::collect(title, &rows);
-    let results = Results::of_rows("model", fields, preface, &rows, vec![table]);
+    let results = Results::of_rows("model", fields, &rows, vec![table], Vec::new());
     export::write(&results, &args.export, console)
 }
 

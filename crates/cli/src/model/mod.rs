@@ -19,8 +19,7 @@ use super::error::CliError;
 use super::experiment::subjects;
 use shiftvox::frame::Frame;
 use shiftvox::machine::Simulated;
-use shiftvox::project::{Camera, FrameSetup};
-use shiftvox::whole;
+use shiftvox::project::FrameSetup;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::model::frame::{self, Counted};
@@ -84,12 +83,7 @@ fn find(
     progress.begin("cycles", counted.counter.records());
     let (picture, simulated) = simulate(args, &subject, &setup, &hardware, console)?;
     progress.begin("the exact picture and the ray caster", 0);
-    let camera = Camera {
-        width: size.0,
-        height: size.1,
-        ..subject.camera
-    };
-    let true_setup = frame::true_setup(graph, &camera, &options)?;
+    let true_setup = frame::true_setup(graph, &subject.camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
     let designs = (&args.hardware.rival()?, &hardware);
     let ray_caster = ray_caster::measure(graph, &setup, designs, prices, &exact)?;
@@ -131,8 +125,7 @@ fn simulate(
     if let Some(path) = trace {
         let mut text = Vec::new();
         watched.0.write_ramulator(&mut text)?;
-        whole::write(path, &text, args.export.force)?;
-        console.written(path);
+        console.write(path, text, args.export.force)?;
     }
     Ok(drawn)
 }

@@ -1,17 +1,13 @@
 //! The report, to stdout and to files.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
 
 use super::Found;
 use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::{document, report};
-use shiftvox::whole;
 use shiftvox_lab::model::design::LIGHT;
 use shiftvox_lab::model::ray_caster::RAY_CASTER;
 use shiftvox_lab::model::{accelergy, plots, tables};
@@ -27,24 +23,16 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     export::check(&args.export, others.into_iter().flatten())
 }
 
-fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(), CliError> {
-    whole::write(path, bytes, force)?;
-    console.written(path);
-    Ok(())
-}
-
 /// Files for Accelergy.
 fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     let of = &found.report;
     let designs = [(LIGHT, &of.cost), (RAY_CASTER, &of.ray_caster.cost)];
     let force = args.export.force;
     if let Some(path) = &args.files.export_accelergy {
-        let text = accelergy::counts(&designs, of.technology);
-        file(path, text.as_bytes(), force, console)?;
+        console.write(path, accelergy::counts(&designs, of.technology), force)?;
     }
     if let Some(path) = &args.files.export_ert {
-        let text = accelergy::energies(&designs);
-        file(path, text.as_bytes(), force, console)?;
+        console.write(path, accelergy::energies(&designs), force)?;
     }
     Ok(())
 }
@@ -52,13 +40,12 @@ fn write_accelergy(found: &Found, args: &ModelArgs, console: &Console) -> Result
 pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     write_accelergy(found, args, console)?;
     let document = describe(found);
-    let long = tables::LONG.iter().map(|spec| spec.of(&document));
-    let short = tables::SHORT.iter().map(|spec| spec.of(&document));
+    let long = tables::LONG.iter().filter(|_| console.verbose > 0);
+    let tables = tables::SHORT.iter().chain(long);
+    let tables = tables.map(|spec| spec.of(&document));
     let results = Results {
         rows: tables::figures(&document),
-        tables: std::iter::once(summary(found)).chain(short).collect(),
-        more_tables: long.collect(),
-        preface: Context::now().command + "\n",
+        tables: std::iter::once(summary(found)).chain(tables).collect(),
         panels: plots::panels(&found.report),
         document,
     };

@@ -58,12 +58,12 @@ fn reproduced_results_are_the_same_in_every_run() {
     let hashes = one.iter().filter(|row| row[4].is_string());
     assert_eq!(hashes.count(), 2 * (2 + 5 + 1 + 4));
     assert!(folder.at("two/figures.svg").exists());
-    let page = folder.text("one/report.md");
+    let csv = folder.text("one/results.csv");
     let parts = [
         "Table I",
         "occlusion order",
         "Objects of all kinds",
         "exponent",
     ];
-    assert!(parts.iter().all(|part| page.contains(part)), "{page}");
+    assert!(parts.iter().all(|part| csv.contains(part)), "{csv}");
 }

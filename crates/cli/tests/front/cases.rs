@@ -97,7 +97,7 @@ impl Case {
         is_so
     }
 
-    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries), `rises`, `falls`.
+    /// `/pointer`, `! /pointer`, or `/pointer = value`, with `!=`, `<`, `>`, `~` (contains), `#` (entries), `rises`.
     fn json(&self, line: &str) -> bool {
         let documents = serde_json::Deserializer::from_str(&self.stdout).into_iter();
         let mut documents: Vec<Value> = documents.map_while(Result::ok).collect();
@@ -130,7 +130,6 @@ impl Case {
             "<" => !numbers.is_empty() && numbers.iter().all(|of| *of < limit()),
             ">" => !numbers.is_empty() && numbers.iter().all(|of| *of > limit()),
             "rises" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a < b),
-            "falls" => numbers.len() > 1 && numbers.is_sorted_by(|a, b| a >= b),
             _ => !found.is_null(),
         }
     }

@@ -18,9 +18,19 @@ use shiftvox::picture::ResolveError;
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "clap",
+    derive(clap::Args),
+    command(next_help_heading = "Measurement")
+)]
 pub struct Schedule {
+    /// Frames per contender before those that count
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 1,
+               value_parser = clap::value_parser!(u32).range(0..=1000)))]
     pub warmup: u32,
-    /// Frames that count, 1 or more.
+    /// Frames per contender that count, 1 or more; runs are interleaved
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = 5,
+               value_parser = clap::value_parser!(u32).range(1..=10_000)))]
     pub runs: u32,
 }
 

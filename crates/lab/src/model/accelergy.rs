@@ -225,13 +225,6 @@ impl Estimator for EnergyTable {
             source: "an energy reference table of Accelergy".to_owned(),
         })
     }
-
-    fn area(&self, component: &str, _: &Attributes) -> Result<Cost, CostError> {
-        let file = &self.file;
-        Err(CostError::new(format!(
-            "{file}: an ERT has no area of `{component}`"
-        )))
-    }
 }
 
 #[cfg(test)]

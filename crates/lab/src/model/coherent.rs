@@ -202,7 +202,7 @@ mod tests {
     use shiftvox::frame::NO_NODE;
     use shiftvox::graph::Silent;
     use shiftvox::machine::Machine;
-    use shiftvox::project::{Camera, Engine, SetupOptions};
+    use shiftvox::project::{Camera, Engine, SetupOptions, stat};
     use shiftvox::split_mix::SplitMix;
     use shiftvox_mesh::open::{OpenOptions, open};
 
@@ -291,7 +291,8 @@ mod tests {
                         assert_eq!(differing, 0, "{spec}, {motion:?}, {name}, {design}");
                         assert_eq!(counted.frame.node, serial.node);
                         let covered = serial.node.iter().filter(|&&node| node != NO_NODE);
-                        taken_over += counted.stat("samples_drawn") - covered.count() as u64;
+                        let drawn = stat(&counted.stats, "samples_drawn");
+                        taken_over += drawn - covered.count() as u64;
                     }
                 }
                 last = Listed::of(&serial, graph.depth);

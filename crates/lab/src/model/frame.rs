@@ -10,7 +10,7 @@ use hwmodel::shifts::ShiftProbe;
 
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
 use super::{ModelError, fill_bits};
-use crate::measure::CoverageError;
+use crate::measure::count_differing;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{Machine, MachineOptions, Simulated, narrowed};
@@ -41,15 +41,8 @@ impl Counted {
         record_bits(&self.fields)
     }
 
-    /// A counter of the machine by its name; 0 if it has none of that name.
-    pub fn stat(&self, name: &str) -> u64 {
-        let found = self.stats.iter().find(|(n, _)| *n == name);
-        found.map_or(0, |&(_, count)| count)
-    }
-
     pub fn differing(&self, other: &Frame) -> u64 {
-        let pairs = self.frame.voxel.iter().zip(&other.voxel);
-        pairs.filter(|(a, b)| a != b).count() as u64
+        count_differing(&self.frame.voxel, &other.voxel)
     }
 
     pub fn operations_per_record(&self) -> f64 {
@@ -204,8 +197,4 @@ pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, Eng
     let mut frame = Frame::new(setup.width, setup.height, false);
     Rays::default().render(graph, &setup.without_detail(), &mut frame)?;
     Ok(frame)
-}
-
-pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
-    CoverageError::between(&frame.voxel, &exact.voxel)
 }

@@ -10,7 +10,6 @@ use serde::Serialize;
 use super::ModelError;
 use super::area::{self, DesignArea};
 use super::cost::{FrameCost, OuterTraffic, Prices, operations_energy, outer_energy};
-use super::frame;
 use crate::measure::CoverageError;
 use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
@@ -86,7 +85,7 @@ pub fn price(
         )?,
         cycles: cycles.clone(),
         area,
-        error: frame::error(&cast.frame, exact),
+        error: CoverageError::between(&cast.frame.voxel, &exact.voxel),
     })
 }
 

@@ -124,7 +124,7 @@ impl Report {
             accumulator_bits: cost::accumulator_bits(setup),
             same_picture: differing_samples == 0,
             differing_samples,
-            coverage_error: frame::error(&counted.frame, exact),
+            coverage_error: CoverageError::between(&counted.frame.voxel, &exact.voxel),
             clock_says: clock.sentence(),
             hardware,
             simulated,

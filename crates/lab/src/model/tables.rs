@@ -52,7 +52,7 @@ pub const SHORT: [TableSpec; 5] = [
     },
 ];
 
-/// Further tables, for files.
+/// Further tables, with `-v`.
 pub const LONG: [TableSpec; 9] = [
     TableSpec {
         title: "By octree level",

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::area::DesignArea;
 use super::cost::{FrameCost, Prices};
+use shiftvox::split_mix::SplitMix;
 
 /// Number of draws.
 pub const DRAWS: usize = 4000;
@@ -239,12 +240,12 @@ fn verdict(bills: &[Vec<&Breakdown>; 2], priced: Priced<'_>, table: &CostTable) 
     });
     let deviations = &factors.deviations;
     let ratio_at = |drawn: &[f64]| sum(&terms[0], drawn) / sum(&terms[1], drawn);
-    let mut normal = Normal(SEED);
+    let mut dice = SplitMix::new(SEED);
     let mut drawn = vec![1.0; deviations.len()];
     let mut ratios: Vec<f64> = (0..DRAWS)
         .map(|_| {
             for (factor, deviation) in drawn.iter_mut().zip(deviations) {
-                *factor = libm::exp(deviation * normal.next());
+                *factor = libm::exp(deviation * normal(&mut dice));
             }
             ratio_at(&drawn)
         })
@@ -296,23 +297,9 @@ fn verdict(bills: &[Vec<&Breakdown>; 2], priced: Priced<'_>, table: &CostTable) 
 
 const SEED: u64 = 1;
 
-/// Standard normal numbers: the sum of twelve uniform ones, less 6 (at most 6 in magnitude).
-struct Normal(u64);
-
-impl Normal {
-    fn next(&mut self) -> f64 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            // SplitMix64 (Steele, Lea, Flood 2014).
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = self.0;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^= z >> 31;
-            sum += (z >> 11) as f64 / (1u64 << 53) as f64;
-        }
-        sum
-    }
+/// A standard normal number: the sum of twelve uniform ones, less 6 (at most 6 in magnitude).
+fn normal(dice: &mut SplitMix) -> f64 {
+    (0..12).fold(-6.0, |sum, _| sum + dice.unit())
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Buffer, Shading};
-use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up, stat};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PixelStyle {
@@ -122,7 +122,6 @@ fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
     let mut frame = Frame::nodes_only(setup.width, setup.height);
     let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Counter::new());
     let (stats, counter) = drawn.map_err(Refused::because)?;
-    let records = stats.iter().find(|(name, _)| *name == "records");
     let record = u64::from(
         record_bits(&record_fields(setup, graph.len(), Organisation::default())).div_ceil(8),
     );
@@ -139,7 +138,7 @@ fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
         .map(|&(memory, size)| size * (counter.reads(memory) + counter.writes(memory)));
     Ok(vec![
         ("operations", counter.ops()),
-        ("records", records.map_or(0, |of| of.1)),
+        ("records", stat(&stats, "records")),
         ("bytes_touched", touched.sum()),
     ])
 }

@@ -1,4 +1,4 @@
-//! Results as named cells in rows, written as text, Markdown, CSV and JSON.
+//! Results as named cells in rows, written as text, CSV and JSON.
 
 use std::fmt::Write;
 
@@ -252,20 +252,6 @@ impl Table {
         }
         text
     }
-
-    pub fn markdown(&self) -> String {
-        let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
-        for column in 0..self.columns.len() {
-            text += ["--:|", "---|"][usize::from(self.is_of_words(column))];
-        }
-        text.push('\n');
-        for row in &self.rows {
-            let cells = row.iter().map(|cell| cell.for_people().replace('|', "\\|"));
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "| {} |", cells.collect::<Vec<_>>().join(" | "));
-        }
-        text
-    }
 }
 
 struct Column {
@@ -365,12 +351,6 @@ mod tests {
             table.csv(),
             "scene,frame_ms,size,records\r\n\"gen:menger,depth=2\",12.345,64,1234567\r\n\
              \"a \"\"b\"\" | c\",0.5,64,\r\n"
-        );
-        let less = Table::select("Two", &rows, "scene frame_ms records");
-        assert_eq!(
-            less.markdown(),
-            "**Two**\n\n| scene | frame_ms | records |\n|---|--:|--:|\n\
-             | gen:menger,depth=2 | 12.3 | 1,234,567 |\n| a \"b\" \\| c | 0.500 | - |\n"
         );
         assert_eq!(
             table.condensed().text(),

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 /// An order of a picture's rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum RayOrder {
     /// Row by row, from the left.
     Rows,
@@ -18,18 +17,6 @@ pub enum RayOrder {
 const TILE: u32 = 8;
 
 impl RayOrder {
-    /// All orders.
-    pub const ALL: [Self; 3] = [Self::Rows, Self::Tiles, Self::Morton];
-
-    /// The order in words.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rows => "rows",
-            Self::Tiles => "tiles of 8 x 8",
-            Self::Morton => "Morton",
-        }
-    }
-
     /// Calls `visit` with column and row of every sample of a picture, once each.
     pub fn for_each(self, width: u32, height: u32, mut visit: impl FnMut(u32, u32)) {
         match self {

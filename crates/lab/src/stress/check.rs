@@ -10,7 +10,7 @@ use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
-use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
+use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError, stat};
 use shiftvox::rays::Rays;
 
 /// Largest tolerance, samples, at which a hole is a failure.
@@ -97,15 +97,14 @@ pub(super) fn check(
             return outcome;
         }
     };
-    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
-    let mut outcome = Outcome::new(End::Drawn, stat("records"));
+    let mut outcome = Outcome::new(End::Drawn, stat(&stats, "records"));
     let right = oracle.picture(graph, &setup);
     outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
     let seen = CheckedFrame {
         setup: &setup,
         frame: &frame,
         right: &right,
-        is_at_bound: stat("at_level_bound") > 0,
+        is_at_bound: stat(&stats, "at_level_bound") > 0,
     };
     if seen.is_exact() {
         let defined = setup.lod_limit.is_some().then(|| cast(graph, &setup));

@@ -2,7 +2,6 @@
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::Args;
 
@@ -18,25 +17,18 @@ pub(in crate::model) struct ExploreArgs {
     #[arg(long, requires = "explore")]
     pub(super) print_space: bool,
     /// Points by number, such as 7, or 7..12 with both ends
-    #[arg(long, value_name = "FROM..TO", requires = "explore")]
-    pub(super) points: Option<Points>,
+    #[arg(long, value_name = "FROM..TO", requires = "explore", value_parser = points)]
+    pub(super) points: Option<RangeInclusive<usize>>,
     /// File to which results are appended, one line per point. Points in the file are not measured again; several
     /// such files can be concatenated
     #[arg(long, value_name = "FILE", requires = "explore")]
     pub(super) results: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Points(pub(super) RangeInclusive<usize>);
-
-impl FromStr for Points {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (from, to) = text.split_once("..").unwrap_or((text, text));
-        match (from.parse(), to.parse()) {
-            (Ok(from), Ok(to)) if from <= to => Ok(Self(from..=to)),
-            _ => Err("expected the number of a point, or FROM..TO, such as 7..12".to_owned()),
-        }
+fn points(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let (from, to) = text.split_once("..").unwrap_or((text, text));
+    match (from.parse(), to.parse()) {
+        (Ok(from), Ok(to)) if from <= to => Ok(from..=to),
+        _ => Err("expected the number of a point, or FROM..TO, such as 7..12".to_owned()),
     }
 }

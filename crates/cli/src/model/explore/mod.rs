@@ -13,14 +13,13 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use args::ExploreArgs;
 
-use super::args::{ModelArgs, hardware_named, read};
+use super::args::{ModelArgs, hardware_named};
 use crate::console::Console;
 use crate::document;
 use crate::error::{CliError, Kind};
 use crate::experiment::subjects;
 use crate::report;
 use results::ResultsFile;
-use shiftvox::project::Camera;
 use shiftvox::whole;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
@@ -122,7 +121,7 @@ fn text_of(name: &str) -> Result<String, CliError> {
     if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());
     }
-    read(Path::new(name))
+    document::read_settings(Path::new(name))
 }
 
 fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, CliError> {
@@ -137,11 +136,11 @@ fn open_space(name: &str, text: &str, hardware: Option<&str>) -> Result<Space, C
 
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
     match &args.points {
-        Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
+        Some(points) if *points.end() >= all => Err(CliError::usage(format!(
             "--points: the space has points 0 to {}",
             all - 1
         ))),
-        Some(points) => Ok(*points.0.start()..points.0.end() + 1),
+        Some(points) => Ok(*points.start()..points.end() + 1),
         None => Ok(0..all),
     }
 }
@@ -209,16 +208,9 @@ fn measure(
     mut known: BTreeMap<usize, PointLine>,
     file: &mut Option<ResultsFile>,
 ) -> Result<Vec<PointLine>, CliError> {
-    let Asked {
-        args,
-        space,
-        picked,
-        prices,
-        rival,
-        console,
-    } = asked;
+    let (picked, console) = (&asked.picked, asked.console);
     let wanted = picked.clone().filter(|number| !known.contains_key(number));
-    let points = wanted.map(|number| space.point(number));
+    let points = wanted.map(|number| asked.space.point(number));
     let points = points
         .collect::<Result<Vec<Point>, _>>()
         .map_err(CliError::input)?;
@@ -229,19 +221,14 @@ fn measure(
             subject.name
         ));
     }
-    let camera = Camera {
-        width: args.size.width,
-        height: args.size.height,
-        ..subject.camera
-    };
-    let options = args.setup_options();
+    let options = asked.args.setup_options();
     let explored = Explored {
         graph: &subject.graph,
-        camera: &camera,
+        camera: &subject.camera,
         options: &options,
-        overflow: args.rules.overflow(),
-        rival,
-        prices,
+        overflow: asked.args.rules.overflow(),
+        rival: asked.rival,
+        prices: asked.prices,
     };
     let mut next = picked.start;
     let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {

@@ -6,7 +6,6 @@ use super::Explorations;
 use crate::console::Console;
 use crate::document;
 use crate::error::CliError;
-use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::model::args::ModelArgs;
 use shiftvox_lab::model::explore::front::FrontPoint;
@@ -67,8 +66,6 @@ pub(super) fn write(
         document: document::document("explore", json!({ "scenes": fronts })),
         rows: ROWS.of(&json!({ "points": rows })),
         tables,
-        more_tables: Vec::new(),
-        preface: format!("`{}`\n", Context::now().command),
         panels: found
             .iter()
             .map(|of| shares(of).unwrap_or_else(|| panel(of)))
@@ -178,26 +175,14 @@ fn shares(of: &Explorations) -> Option<Panel> {
             ..line.clone()
         };
         let name = values(&others, &of.points);
-        let point = Point::from((size, figures.verdict.median));
-        match curves.iter_mut().find(|curve| curve.name == name) {
-            Some(curve) => curve.points.push(point),
-            None => curves.push(Series {
-                line: true,
-                ..Series::dots(name, vec![point])
-            }),
-        }
+        let curve = Series::of_name(&mut curves, &name, true);
+        curve.points.push((size, figures.verdict.median).into());
     }
-    let axis = |label: &str, scale| Axis {
-        label: label.to_owned(),
-        scale,
-    };
     curves.first().filter(|curve| curve.points.len() > 1)?;
+    let title = format!("{}: energy of the frame, light over ray caster", of.scene);
     Some(Panel::Chart(Chart {
-        title: format!("{}: energy of the frame, light over ray caster", of.scene),
-        x: axis("side of the picture, pixels", Scale::Log),
-        y: axis("ratio", Scale::Log),
-        series: curves,
         level: Some((1.0, "equal".to_owned())),
+        ..Chart::growth(&title, "side of the picture, pixels", "ratio", curves)
     }))
 }
 
@@ -222,11 +207,8 @@ fn panel(of: &Explorations) -> Panel {
             label: label.then(|| line.point.to_string()),
         };
         let name = line.values.get("hardware").and_then(Value::as_str);
-        let name = name.unwrap_or_default();
-        match series.iter_mut().find(|series| series.name == name) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series::dots(name, vec![point])),
-        }
+        let of_name = Series::of_name(&mut series, name.unwrap_or_default(), false);
+        of_name.points.push(point);
         let rival = &figures.ray_caster;
         let share = rival.cycles as f64 / figures.cycles.max(1) as f64;
         rays.push(Point::from((

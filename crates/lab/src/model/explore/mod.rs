@@ -26,11 +26,12 @@ use super::fill_bits;
 use super::frame::{self, Counted};
 use super::ray_caster;
 use super::verdict::{self, Verdict};
+use crate::measure::CoverageError;
 use crate::rival::{self, Cast, Rival};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
+use shiftvox::project::{Camera, FrameSetup, SetupOptions, stat};
 use space::Point;
 
 #[derive(Debug, Clone, Copy)]
@@ -316,7 +317,7 @@ impl<'a> Shared<'a> {
         let cast = &self.rays[&self.ray_key(point)];
         let beside = self.of.rival.beside(hardware);
         let rays = ray_caster::price(cast, (self.of.rival, &beside), prices, exact)?;
-        let error = frame::error(&counted.frame, exact);
+        let error = CoverageError::between(&counted.frame.voxel, &exact.voxel);
         let accesses = counted.counter.accesses_by(|cell| cell.memory);
         let of = |memory: Memory| accesses.get(&memory).copied().unwrap_or_default();
         let fill = of(Memory::FillVector);
@@ -336,7 +337,7 @@ impl<'a> Shared<'a> {
                 operations: counter.ops() - counter.ops_of(OpClass::Shift),
                 divide_steps: counter.ops_of(OpClass::DivideStep),
                 record_bits: counted.record_bits(),
-                deepest_stack: counted.stat("deepest_stack"),
+                deepest_stack: stat(&counted.stats, "deepest_stack"),
                 node_reads: of(Memory::Node).reads,
                 node_misses: cycles.node_cache.misses,
                 fill_accesses: fill.reads + fill.writes,

@@ -6,7 +6,7 @@ use super::blocks::{Descriptions, absence};
 use super::recorder::{Recording, TURNS, Turns, file_name};
 use super::{Request, SCHEMA};
 use shiftvox::machine::{ProvenWidths, proven_widths};
-use shiftvox::project::{FrameSetup, Stats};
+use shiftvox::project::{FrameSetup, Stats, stat};
 
 /// The manifest of a folder of vectors. `nodes` is the size of the graph.
 pub(super) fn document(
@@ -16,12 +16,6 @@ pub(super) fn document(
     stats: &Stats,
     (recordings, turns): (&[Recording], Option<&Turns>),
 ) -> Value {
-    let stat = |name: &str| {
-        stats
-            .iter()
-            .find(|(of, _)| *of == name)
-            .map_or(0, |of| of.1)
-    };
     let options = &setup.options;
     let tolerance = match options.tolerance_px.is_finite() {
         true => json!(options.tolerance_px),
@@ -38,7 +32,7 @@ pub(super) fn document(
         "scene": request.scene,
         "width": setup.width,
         "height": setup.height,
-        "records": request.records.min(stat("records")),
+        "records": request.records.min(stat(stats, "records")),
         "word": {
             "bits": setup.format.bits(),
             "wide_bits": setup.format.wide().bits(),
@@ -47,7 +41,7 @@ pub(super) fn document(
         },
         "overflow": request.overflow,
         // Of the whole frame. If there are any, functions hold modulo the policy.
-        "overflows": stat("overflows"),
+        "overflows": stat(stats, "overflows"),
         "cage": options.cage,
         "coverage": options.coverage,
         "tolerance": tolerance,

@@ -63,6 +63,17 @@ impl Series {
             deviations: Vec::new(),
         }
     }
+
+    /// The series of a name, which may be new.
+    pub fn of_name<'s>(all: &'s mut Vec<Self>, name: &str, line: bool) -> &'s mut Self {
+        let found = all.iter().position(|series| series.name == name);
+        let at = found.unwrap_or_else(|| {
+            let dots = Self::dots(name, Vec::new());
+            all.push(Self { line, ..dots });
+            all.len() - 1
+        });
+        &mut all[at]
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -46,19 +46,11 @@ impl RowPlot<'_> {
                 continue;
             }
             front.push((x, y));
-            let name = row.text(self.series);
-            let found = all.iter().position(|series| series.name == name);
-            let at = found.unwrap_or_else(|| {
-                all.push(Series {
-                    line: self.front.is_none(),
-                    ..Series::dots(name, Vec::new())
-                });
-                all.len() - 1
-            });
+            let series = Series::of_name(&mut all, &row.text(self.series), self.front.is_none());
             let label = self.front.map(|name| row.text(name));
-            all[at].points.push(Point { x, y, label });
+            series.points.push(Point { x, y, label });
             let deviation = self.deviation.map(|name| row.number(name));
-            all[at].deviations.extend(deviation);
+            series.deviations.extend(deviation);
         }
         if self.front.is_some() {
             front.sort_by(|a, b| a.0.total_cmp(&b.0));
