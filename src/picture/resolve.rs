@@ -107,11 +107,8 @@ impl<'f> Resolver<'f> {
     ) -> Result<(), ResolveError> {
         let Shader { sight, light, .. } = &self.shader;
         let is_lit = light.is_directed() && self.frame.blend.is_none();
-        if is_lit && self.shares.get().is_none() {
-            // Another thread may have been faster.
-            let _ = self.shares.set(Shares::new(sight, *light)?);
-        }
-        let painter = Painter::new(self.frame, &self.shader, self.shares.get(), self.aa);
+        let shares = is_lit.then(|| self.shares.get_or_init(|| Shares::new(sight, *light)));
+        let painter = Painter::new(self.frame, &self.shader, shares, self.aa);
         self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 

@@ -12,7 +12,6 @@ use glam::{DVec3, Vec3};
 use super::color::Light;
 use super::shade::AWAY;
 use super::sight::Sight;
-use crate::budget::{self, Shortage};
 use crate::graph::PackedNormal;
 
 pub(super) const TOGETHER: usize = 16;
@@ -67,7 +66,7 @@ pub(super) struct Run {
 }
 
 impl Shares {
-    pub(super) fn new(sight: &Sight, light: Light) -> Result<Self, Shortage> {
+    pub(super) fn new(sight: &Sight, light: Light) -> Self {
         let m = sight.to_object;
         let columns = [m.x_axis, m.y_axis, m.z_axis];
         // Lengths around 1, so that no square leaves the range of `f32`.
@@ -75,16 +74,15 @@ impl Shares {
         let columns = columns.map(|column| column / longest);
         let columns_f32 = columns.map(|column| column.as_vec3());
         let lengths: f64 = columns.iter().map(|column| column.length()).sum();
-        let mut entries = budget::room("shares of light", NORMALS)?;
-        entries.extend((0..NORMALS).map(|_| Default::default()));
-        Ok(Self {
+        Self {
             light,
             columns,
             columns_f32,
             step: (1.0 / sight.root_doubled) as f32,
             margin: MARGIN * lengths as f32,
-            entries,
-        })
+            // Memory that the system has zeroed: a small picture touches little of it.
+            entries: bytemuck::zeroed_vec(NORMALS),
+        }
     }
 
     pub(super) fn down(&self, y: u32) -> f32 {
@@ -199,7 +197,7 @@ mod tests {
             let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
             let sight = Sight::new(&setup);
             let light = Light::new(Shading::Lambert, sight.axes());
-            let shares = Shares::new(&sight, light).expect("memory");
+            let shares = Shares::new(&sight, light);
             for bits in 0..=u16::MAX {
                 let packed = PackedNormal(bits);
                 let (x, y) = (u32::from(bits) % side, u32::from(bits) / side % side);

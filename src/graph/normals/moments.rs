@@ -135,21 +135,37 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
     let xy = second[3] - mean.x * mean.y;
     let xz = second[4] - mean.x * mean.z;
     let yz = second[5] - mean.y * mean.z;
-    let a = DVec3::new(xx, xy, xz);
-    let b = DVec3::new(xy, yy, yz);
-    let c = DVec3::new(xz, yz, zz);
-    let mut columns = [b.cross(c), c.cross(a), a.cross(b)];
+    // By rows above the diagonal: xx, xy, xz, yy, yz, zz.
+    let mut m = [
+        yy * zz - yz * yz,
+        yz * xz - xy * zz,
+        xy * yz - yy * xz,
+        zz * xx - xz * xz,
+        xz * xy - yz * xx,
+        xx * yy - xy * xy,
+    ];
     for squaring in 0..6 {
-        let trace = columns[0].x + columns[1].y + columns[2].z;
         // Variances are above the floor, so the trace is positive.
-        let scale = 1.0 / trace;
-        columns = columns.map(|column| column * scale);
+        let scale = 1.0 / (m[0] + m[3] + m[5]);
+        m = m.map(|number| number * scale);
         if squaring < 5 {
-            let [u, v, w] = columns;
-            columns = columns.map(|column| u * column.x + v * column.y + w * column.z);
+            let [xx, xy, xz, yy, yz, zz] = m;
+            m = [
+                xx * xx + xy * xy + xz * xz,
+                xx * xy + xy * yy + xz * yz,
+                xx * xz + xy * yz + xz * zz,
+                xy * xy + yy * yy + yz * yz,
+                xy * xz + yy * yz + yz * zz,
+                xz * xz + yz * yz + zz * zz,
+            ];
         }
     }
-    columns
+    let [xx, xy, xz, yy, yz, zz] = m;
+    [
+        DVec3::new(xx, xy, xz),
+        DVec3::new(xy, yy, yz),
+        DVec3::new(xz, yz, zz),
+    ]
 }
 
 #[cfg(test)]
