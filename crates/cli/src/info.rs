@@ -1,7 +1,6 @@
 //! `info`: the contents of a scene.
 
 use std::collections::HashMap;
-use std::time::Instant;
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -59,14 +58,11 @@ pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<(), CliError> {
 }
 
 fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliError> {
-    let started = Instant::now();
-    let source = Source::find(name)?;
-    match source.kind() {
+    match Source::find(name)?.kind() {
         Some(FileKind::Far) => far::info(name),
         Some(FileKind::Tvx) => textured::info(name),
         _ => {
-            let verify = scenes::Verify::All;
-            let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
+            let scene = scenes::open(name, &args.scene, console)?;
             Ok(describe(&scene, console))
         }
     }

@@ -14,7 +14,7 @@ use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_
 use shiftvox::graph::Crop;
 use shiftvox::picture::Buffer;
 use shiftvox::project::{Camera, Stop};
-use shiftvox::scene::{FileKind, Source};
+use shiftvox::scene::{FileKind, OpenOptions, Source};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
@@ -99,8 +99,9 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
             );
         }
         let scene_args = args.engine.rules.scene_args(args.scene);
-        let verify = scenes::Verify::IfSmall;
-        let scene = scenes::open_source(source?, name, &scene_args, verify, started, console)?;
+        let verify_up_to = OpenOptions::default().verify_up_to;
+        let scene =
+            scenes::open_source(source?, name, &scene_args, verify_up_to, started, console)?;
         return Ok(Opened {
             engine: asked.unwrap_or_default(),
             load_ms: scene.load_ms,

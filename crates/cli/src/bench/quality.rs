@@ -104,7 +104,7 @@ impl QualityArgs {
             choices = methods::default(is_mesh);
         }
         if is_mesh {
-            let (mesh, up) = scenes::read_mesh(name, &self.scene, console.progress())?;
+            let (mesh, up) = scenes::open_mesh(name, &self.scene, console)?;
             let bounds = Bounds::of_mesh(&mesh_box(&mesh, up == Up::Y));
             let camera = self.camera.camera(&bounds, up, size, 0.0);
             let made = Made::of_mesh(name, mesh, &choices, &self.scene, self.far_rays, console)?;
