@@ -10,14 +10,14 @@ use shiftvox::scene::{FORMATS, Source};
 use shiftvox::whole;
 
 /// A scene, and the picture to write, if any.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Job {
     pub(super) scene: String,
     pub(super) picture: Option<PathBuf>,
 }
 
 /// Every `of`-th picture, beginning with number `first` (from 0).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     first: usize,
     of: usize,
@@ -138,28 +138,5 @@ fn files(folder: &str) -> Result<Vec<String>, CliError> {
             CliError::input(format!("{folder}: no file here has the ending of a format"))
                 .advise("`shiftvox --help` lists the formats"),
         ),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_are_the_whole() {
-        let names: Vec<String> = (1..=7)
-            .map(|depth| format!("gen:menger,depth={depth}"))
-            .collect();
-        let mut drawn = Vec::new();
-        for text in ["1/3", "2/3", "3/3"] {
-            let part = part(text).unwrap();
-            drawn.extend(jobs(&names, None, true, Some(part)).unwrap());
-        }
-        drawn.sort_by(|a, b| a.scene.cmp(&b.scene));
-        assert_eq!(drawn, jobs(&names, None, true, None).unwrap());
-        assert_eq!(drawn[6].picture, Some(PathBuf::from("menger-depth-7.png")));
-        for wrong in ["0/3", "4/3", "1/0", "1", "a/b", "-1/2"] {
-            assert!(part(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -102,21 +102,3 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
         )),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn numbers_of_bytes_have_units() {
-        for (text, expected) in [
-            ("1G", 1 << 30),
-            ("512MiB", 512 << 20),
-            ("1.5g", 3 << 29),
-            ("2T", 2 << 40),
-            ("65536k", 64 << 20),
-            ("67108864B", 64 << 20),
-            ("0", 0),
-        ] {
-            assert_eq!(super::bytes(text), Ok(expected), "{text}");
-        }
-    }
-}

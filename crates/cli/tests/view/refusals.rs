@@ -137,6 +137,7 @@ const QUESTIONS: &str = r#"{"scene":7} -> no scene
 {"flags":{"aov":"depth"}} -> may not set
 {"flags":{"coverage":"a b"}} -> no such value
 {"flags":{"coverage":"/etc/passwd"}} -> no such value
+{"flags":{"lod":"1 --outdir=x"}} -> no such value
 {"flags":{"lod":"1111111111111111111111111111111111111111111111111111111111111111111111111111111111"}} -> no such value
 {"flags":{"lod":"-1"}} -> 
 {"flags":{"bits":"99"}} -> 
