@@ -102,6 +102,20 @@ impl Camera {
             focal_px,
         })
     }
+
+    /// This camera as flags of the program, in the shortest decimals that are read as the same numbers.
+    pub fn flags(&self) -> String {
+        // Adding zero turns -0 into 0.
+        let [eye, target, up] = [self.eye, self.target, self.up].map(|point| {
+            let p = point + DVec3::ZERO;
+            format!("{},{},{}", p.x, p.y, p.z)
+        });
+        let lens = match self.ortho {
+            Some(height) => format!("--ortho={height}"),
+            None => format!("--fov {}", self.fov_degrees),
+        };
+        format!("--eye {eye} --target {target} --up {up} {lens}")
+    }
 }
 
 fn length(vector: DVec3) -> f64 {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, SceneArgs, camera_line};
+use super::args::{CameraArgs, SceneArgs};
 use super::console::{self, Console};
 use super::error::CliError;
 use super::scenes::{self, Scene};
@@ -115,7 +115,7 @@ fn describe(scene: &Scene, console: &Console) -> Value {
         "dag_gain_by_shape": gain(1),
         "palette_entries": scene.palette,
         "colors": distinct_leaf_colors(graph),
-        "camera": camera_line(&camera),
+        "camera": camera.flags(),
         "mesh": scene.mesh.as_ref().map(|mesh| json!({
             "triangles": mesh.triangles,
             "positions": mesh.positions,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes, camera_line};
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes};
 use super::batch::{self, Job, Part};
 use super::console::{self, Console};
 use super::error::{CliError, Kind};
@@ -149,7 +149,7 @@ fn render_one(
     let up = args.scene.up_or(drawable.up());
     let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
-        console.data(camera_line(&camera))?;
+        console.data(camera.flags())?;
     }
     let shown = methods::frame(&mut *drawable, &camera, args.repeat).map_err(|e| e.at(name))?;
     let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));

@@ -9,7 +9,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::args::{CameraArgs, SceneArgs, Size, camera_line};
+use super::args::{CameraArgs, SceneArgs, Size};
 use super::console::Console;
 use super::error::CliError;
 use super::{methods, outputs, report, scenes};
@@ -104,7 +104,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         "output": args.output.display().to_string(),
         "triangles": mesh.triangles().len(),
         "samples": style.samples.per_pixel(),
-        "camera": camera_line(&camera),
+        "camera": camera.flags(),
         "load_ms": load_ms,
         "draw_ms": draw_ms,
         "warnings": mesh.warnings(),

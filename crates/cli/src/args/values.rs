@@ -23,13 +23,6 @@ pub(super) fn point(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Shortest decimals that [`point`] reads as the same point.
-pub(super) fn point_text(point: DVec3) -> String {
-    // Adding zero turns -0 into 0.
-    let p = point + DVec3::ZERO;
-    format!("{},{},{}", p.x, p.y, p.z)
-}
-
 /// Size of a picture in pixels: `512`, or `640x360`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {

@@ -1,20 +1,18 @@
 //! Draws what a page asks for, with the engines and files of the command line.
 
 use std::sync::PoisonError;
-use std::time::Instant;
 
 use clap::ValueEnum;
 use serde_json::{Value, json};
-use shiftvox::drawing::{Drawable, Shown, milliseconds_since};
+use shiftvox::drawing::{Drawable, Shown};
 use shiftvox::graph::{Graph, Placement};
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{self, Buffer, Pixels, Rows};
 use shiftvox::project::{Camera, Stop};
-use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, picked, quoted};
+use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, command, picked};
 
 use super::flags::{self, MODEL_FLAGS};
 use super::{Chosen, Listed, MOST_DROPPED, Shared, overlay};
-use crate::args::camera_line;
 use crate::error::{CliError, Kind};
 use crate::methods::{self, DrawArgs};
 use crate::{model, report};
@@ -92,7 +90,6 @@ impl Shared {
         kept: &mut Kept<'s>,
         stop: &Stop,
     ) -> Result<Answer, CliError> {
-        let started = Instant::now();
         let settings = flags::settings(request)?;
         let listed = self.scene(request.scene)?;
         // All buffers are kept for the hash, and one of them has the picked voxel.
@@ -176,7 +173,6 @@ impl Shared {
             "pixels_drawn": shown.pixels_drawn,
             "legend": legend,
             "draw_ms": shown.times_ms.last(),
-            "all_ms": milliseconds_since(started),
         });
         Ok((head, picture))
     }
@@ -210,11 +206,9 @@ impl Shared {
         words: impl Iterator<Item = String>,
         camera: &Camera,
     ) -> String {
-        let mut all = vec![format!("shiftvox {verb}"), quoted(scene)];
-        all.extend(self.scene_words.iter().cloned().chain(words));
-        all.push(format!("--size={}x{}", camera.width, camera.height));
-        all.push(camera_line(camera));
-        all.join(" ")
+        let words = self.scene_words.iter().cloned().chain(words);
+        let size = [camera.width, camera.height];
+        command(verb, scene, words, size, &camera.flags())
     }
 }
 
