@@ -148,14 +148,14 @@ impl Shared {
         let (colors, legend) = overlay.unzip();
         let made = colors.map(|colors| Pixels::new(width, height, colors));
         let pixels = made.as_ref().unwrap_or(&*shown.pixels);
-        let mut picture = Vec::new();
-        if request.png {
+        let picture = if request.png {
+            let mut file = Vec::new();
             let failed = |error| CliError::new(Kind::Run, format!("no PNG: {error}"));
-            pixels.write(&mut picture).map_err(failed)?;
+            pixels.write(&mut file).map_err(failed)?;
+            file
         } else {
-            picture.reserve_exact(4 * width as usize * height as usize);
-            pixels.append_rgba(&mut picture);
-        }
+            pixels.rgba().into_flattened()
+        };
         let aa = (request.aa != 1).then(|| format!("--aa={}", request.aa));
         let words = request.words(FLAGS).chain(aa);
         let engine = opened.engine.to_possible_value();
