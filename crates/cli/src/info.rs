@@ -80,9 +80,7 @@ fn text(mut described: Value, with_levels: bool) -> String {
 
 fn describe(scene: &Scene, console: &Console) -> Value {
     let graph = &scene.graph;
-    let bounds = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
-    let origin = graph.placement.origin_index;
-    let [low, high] = [bounds.0, bounds.1].map(|corner| [0, 1, 2].map(|k| corner[k] + origin[k]));
+    let [low, high] = Bounds::in_file(graph).unwrap_or_default();
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
     let gains = merge_gains(graph);

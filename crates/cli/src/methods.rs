@@ -241,7 +241,7 @@ impl Opened {
             Content::Graph(scene) => Box::new(of_graph(scene, args, stop)?),
             Content::Far(file) => {
                 let style = FarStyle {
-                    voxel_px: args.engine.rules.mesh_lod(),
+                    voxel_px: args.engine.rules.lod.unwrap_or(1.0),
                     aa_log2,
                     opacity: args.engine.far_opacity.unwrap_or_default(),
                     shading,
@@ -298,7 +298,7 @@ fn erosion(args: &EngineArgs) -> Result<Erosion, CliError> {
             "--erosion-grid needs --erosion K; auto chooses the grid too",
         )),
         (_, None) => Ok(Erosion::Auto {
-            texel_px: args.rules.mesh_lod(),
+            texel_px: args.rules.lod.unwrap_or(1.0),
         }),
     }
 }
