@@ -1,10 +1,13 @@
-//! The pictures of one call of `render`: files of folders, and parts of a batch for several computers.
+//! The scenes of one call: files of folders, parts of a batch for several computers, failures that stop no others.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::error::CliError;
+use serde_json::{Value, json};
+
+use super::console::{self, Console};
+use super::error::{CliError, Kind};
 use super::{outputs, scenes};
 use shiftvox::scene::{FORMATS, Source};
 use shiftvox::whole;
@@ -101,6 +104,46 @@ pub(super) fn jobs(
         jobs.push(Job { scene, picture });
     }
     Ok(taken(part, jobs))
+}
+
+/// Reports what is made of each scene, as `command`. A scene that fails is reported and does not stop the others.
+pub(super) fn each<S>(
+    command: &str,
+    scenes: &[S],
+    name: fn(&S) -> &str,
+    console: &Console,
+    of_one: impl Fn(&S) -> Result<Value, CliError>,
+) -> Result<(), CliError> {
+    let mut results = Vec::new();
+    let mut failures = Vec::new();
+    for scene in scenes {
+        match of_one(scene) {
+            Ok(result) => results.push(result),
+            Err(error) if scenes.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+            Err(error) => {
+                console::report_error(&error);
+                failures.push(error.kind);
+                results.push(json!({ "scene": name(scene), "error": error.message }));
+            }
+        }
+    }
+    let is_left_out = |result: &&Value| result["is_left_out"] == true;
+    let left_out = results.iter().filter(is_left_out).count();
+    if left_out > 0 {
+        let drawn = scenes.len() - left_out - failures.len();
+        console.note(format!(
+            "{drawn} drawn, {left_out} left out because their pictures exist"
+        ));
+    }
+    console.report(command, json!({ "scenes": results }));
+    match failures.first() {
+        None => Ok(()),
+        Some(&first) => {
+            let (failed, all) = (failures.len(), scenes.len());
+            let message = format!("{failed} of {all} scenes failed; see above");
+            Err(CliError::new(first, message))
+        }
+    }
 }
 
 fn taken(part: Option<Part>, jobs: Vec<Job>) -> Vec<Job> {

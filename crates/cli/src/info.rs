@@ -6,10 +6,10 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{CameraArgs, SceneArgs};
-use super::console::{self, Console};
+use super::console::Console;
 use super::error::CliError;
 use super::scenes::{self, Scene};
-use super::{far, report, textured};
+use super::{batch, far, report, textured};
 use shiftvox::budget::{self, Shortage};
 use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
 use shiftvox::project::Bounds;
@@ -28,33 +28,15 @@ pub(super) struct InfoArgs {
 }
 
 pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<(), CliError> {
-    let mut results = Vec::new();
-    let mut first_failure = None;
-    for name in &args.scenes {
-        match of_one(name, args, console) {
-            Ok(described) => {
-                if !console.json {
-                    let gap = if args.scenes.len() > 1 { "\n" } else { "" };
-                    console.data(text(described.clone(), args.levels) + gap)?;
-                }
-                results.push(described);
-            }
-            Err(error) if args.scenes.len() == 1 => return Err(error),
-            Err(error) => {
-                console::report_error(&error);
-                results.push(json!({ "scene": name, "error": error.message }));
-                first_failure.get_or_insert(error.kind);
-            }
+    let show = |name: &String| {
+        let described = of_one(name, args, console)?;
+        if !console.json {
+            let gap = if args.scenes.len() > 1 { "\n" } else { "" };
+            console.data(text(described.clone(), args.levels) + gap)?;
         }
-    }
-    console.report("info", json!({ "scenes": results }));
-    match first_failure {
-        None => Ok(()),
-        Some(kind) => Err(CliError::new(
-            kind,
-            "not all scenes could be read; see above",
-        )),
-    }
+        Ok(described)
+    };
+    batch::each("info", &args.scenes, String::as_str, console, show)
 }
 
 fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliError> {
