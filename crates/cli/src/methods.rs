@@ -10,7 +10,6 @@ use super::error::{CliError, Kind};
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
-#[cfg(feature = "view")]
 use shiftvox::graph::Crop;
 use shiftvox::picture::Buffer;
 use shiftvox::project::{Camera, Stop};
@@ -68,7 +67,6 @@ const METHODS: [FileMethod; 2] = [
 ];
 
 pub(super) struct Opened {
-    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "shown by the page"))]
     pub(super) engine: EngineName,
     pub(super) load_ms: f64,
     content: Content,
@@ -118,7 +116,6 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
 }
 
 /// Opens the voxels of a file in memory.
-#[cfg(feature = "view")]
 pub(super) fn open_bytes(
     name: &str,
     bytes: &[u8],
@@ -182,7 +179,6 @@ impl FileMethod {
 }
 
 impl Opened {
-    #[cfg(feature = "view")]
     pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
         match &self.content {
             Content::Graph(scene) => Some(&scene.graph),
@@ -191,7 +187,6 @@ impl Opened {
     }
 
     /// The part of a scene of voxels within a box.
-    #[cfg(feature = "view")]
     pub(super) fn cropped(&self, crop: &Crop) -> Result<Self, CliError> {
         let Content::Graph(scene) = &self.content else {
             return Err(CliError::usage(
@@ -207,7 +202,6 @@ impl Opened {
     }
 
     /// Rejects flags that the scene's method does not follow, as [`open`] does.
-    #[cfg(feature = "view")]
     pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
         let of_file = match &self.content {
             Content::Graph(_) => None,

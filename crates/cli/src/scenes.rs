@@ -16,7 +16,6 @@ use shiftvox_mesh::open::{MeshOptions, OpenOptions, read_mesh};
 use shiftvox_mesh::{LoadOptions, Material, Mesh};
 
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
-#[cfg(feature = "view")]
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
 
 #[derive(Debug)]
@@ -89,7 +88,6 @@ pub(super) fn open_source(
 
 impl Scene {
     /// The same scene with another graph.
-    #[cfg(feature = "view")]
     pub(super) fn with(&self, graph: Graph) -> Self {
         let (source, format) = (self.source.clone(), self.format.clone());
         let (mesh, warnings) = (self.mesh.clone(), self.warnings.clone());
@@ -119,7 +117,6 @@ impl Scene {
 }
 
 /// As [`open_source`], of voxels in memory.
-#[cfg(feature = "view")]
 pub(super) fn open_bytes(name: &str, bytes: &[u8], args: &SceneArgs) -> Result<Scene, CliError> {
     let started = Instant::now();
     let (mut options, silent) = (options(args).voxels, shiftvox::graph::Silent);
