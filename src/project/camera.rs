@@ -62,6 +62,24 @@ pub struct Axes {
 }
 
 impl Camera {
+    /// With +Z up, and no parallel rays.
+    pub const fn looking(
+        eye: DVec3,
+        target: DVec3,
+        fov_degrees: f64,
+        (width, height): (u32, u32),
+    ) -> Self {
+        Self {
+            eye,
+            target,
+            up: DVec3::Z,
+            fov_degrees,
+            ortho: None,
+            width,
+            height,
+        }
+    }
+
     pub fn axes(&self) -> Result<Axes, CameraError> {
         let focal_px = match self.ortho {
             Some(height) if height > 0.0 && height.is_finite() => f64::from(self.height) / height,

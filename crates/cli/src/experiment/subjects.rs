@@ -76,13 +76,5 @@ fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
         _ => return None,
     };
     let [eye, target] = standpoint.map(|at| low + DVec3::from_array(at) * side);
-    Some(Camera {
-        eye,
-        target,
-        up: DVec3::Z,
-        fov_degrees: 60.0,
-        ortho: None,
-        width: 1,
-        height: 1,
-    })
+    Some(Camera::looking(eye, target, 60.0, (1, 1)))
 }
