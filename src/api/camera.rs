@@ -104,11 +104,7 @@ pub trait View: private::Sealed {
 
 impl View for Camera {
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error> {
-        Ok(project::Camera {
-            width,
-            height,
-            ..self.0
-        })
+        Ok(self.0.of_size(width, height))
     }
 }
 

@@ -80,6 +80,15 @@ impl Camera {
         }
     }
 
+    #[must_use]
+    pub const fn of_size(self, width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            ..self
+        }
+    }
+
     pub fn axes(&self) -> Result<Axes, CameraError> {
         let focal_px = match self.ortho {
             Some(height) if height > 0.0 && height.is_finite() => f64::from(self.height) / height,

@@ -116,11 +116,7 @@ impl QualityArgs {
             return Err(CliError::usage(message));
         }
         let subject = subjects::open(name, &self.camera, &self.scene, size, console)?;
-        let camera = Camera {
-            width: size.0,
-            height: size.1,
-            ..subject.camera
-        };
+        let camera = subject.camera.of_size(size.0, size.1);
         Ok((Made::of_graph(Some(subject.graph)), choices, camera))
     }
 }

@@ -236,9 +236,5 @@ fn pick(shown: &Shown<'_>, graph: &Graph, [x, y]: [u32; 2]) -> Result<Answer, Cl
 fn of_model_size(camera: Camera) -> Camera {
     let longer = camera.width.max(camera.height).max(MODEL_SIDE);
     let side = |side: u32| (u64::from(side) * u64::from(MODEL_SIDE) / u64::from(longer)).max(1);
-    Camera {
-        width: side(camera.width) as u32,
-        height: side(camera.height) as u32,
-        ..camera
-    }
+    camera.of_size(side(camera.width) as u32, side(camera.height) as u32)
 }
