@@ -42,15 +42,7 @@ const SUBJECTS: [(&str, [[f64; 3]; 2]); 4] = [
 fn set_up(graph: &Graph, places: [[f64; 3]; 2], size: u32, options: &SetupOptions) -> FrameSetup {
     let side = f64::from(1u32 << graph.depth);
     let [eye, target] = places.map(|place| DVec3::from_array(place) * side);
-    let camera = Camera {
-        eye,
-        target,
-        up: DVec3::Z,
-        fov_degrees: 60.0,
-        ortho: None,
-        width: size,
-        height: size,
-    };
+    let camera = Camera::looking(eye, target, 60.0, (size, size));
     FrameSetup::new(&camera, &graph.placement, graph.depth, options).expect("a frame")
 }
 

@@ -8,6 +8,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
+use glam::DVec3;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::Graph;
@@ -55,17 +56,10 @@ fn measure(work: impl FnOnce()) -> (usize, usize) {
     )
 }
 
-fn set_up(graph: &Graph, (width, height): (u32, u32), (lod_px, aa_log2): (f64, u32)) -> FrameSetup {
+fn set_up(graph: &Graph, size: (u32, u32), (lod_px, aa_log2): (f64, u32)) -> FrameSetup {
     let side = f64::from(1u32 << graph.depth);
-    let camera = Camera {
-        eye: glam::DVec3::new(1.6, -0.7, 1.25) * side,
-        target: glam::DVec3::splat(0.4) * side,
-        up: glam::DVec3::Z,
-        fov_degrees: 60.0,
-        ortho: None,
-        width,
-        height,
-    };
+    let [eye, target] = [DVec3::new(1.6, -0.7, 1.25), DVec3::splat(0.4)];
+    let camera = Camera::looking(eye * side, target * side, 60.0, size);
     let options = SetupOptions {
         lod_px,
         aa_log2,

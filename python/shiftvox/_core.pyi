@@ -78,7 +78,6 @@ class Camera:
     def look_at(
         eye: Sequence[float],
         target: Sequence[float],
-        *,
         up: Sequence[float] | None = None,
         fov: float | None = None,
         ortho: float | None = None,

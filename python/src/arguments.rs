@@ -58,29 +58,9 @@ pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
     Ok([byte(red)?, byte(green)?, byte(blue)?])
 }
 
-pub(crate) trait Entry: Element + Copy {
-    /// Lowest and highest whole number. `None`: any number, also of floating-point types.
-    const RANGE: Option<[i128; 2]>;
-}
-
-impl Entry for f64 {
-    const RANGE: Option<[i128; 2]> = None;
-}
-
-impl Entry for i64 {
-    const RANGE: Option<[i128; 2]> = Some([i64::MIN as i128, i64::MAX as i128]);
-}
-
-impl Entry for i32 {
-    const RANGE: Option<[i128; 2]> = Some([i32::MIN as i128, i32::MAX as i128]);
-}
-
-impl Entry for u8 {
-    const RANGE: Option<[i128; 2]> = Some([0, 255]);
-}
-
-/// Rows of an array of three columns, or of a value that NumPy converts to one.
-pub(crate) fn rows_of_three<T: Entry>(
+/// Rows of an array of three columns, or of a value that NumPy converts to one. Floating-point types take any number,
+/// others whole numbers in their range.
+pub(crate) fn rows_of_three<T: Element + Copy>(
     what: &str,
     array: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<[T; 3]>> {
@@ -96,11 +76,16 @@ pub(crate) fn rows_of_three<T: Entry>(
         return Ok(Vec::new());
     }
     let [from, to] = [array.getattr("dtype")?, T::get_dtype(array.py()).into_any()];
-    let kinds = T::RANGE.map_or("fiu", |_| "iu");
-    if !kinds.contains(&from.getattr("kind")?.extract::<String>()?) {
+    let kind = |of: &Bound<'_, PyAny>| of.getattr("kind")?.extract::<String>();
+    let is_whole = kind(&to)? != "f";
+    let kinds = if is_whole { "iu" } else { "fiu" };
+    if !kinds.contains(&kind(&from)?) {
         return Err(refuse(format!("{from} is not converted to {to}")));
     }
-    if let Some([lowest, highest]) = T::RANGE {
+    if is_whole {
+        let range = numpy.call_method1("iinfo", (&to,))?;
+        let lowest: i128 = range.getattr("min")?.extract()?;
+        let highest: i128 = range.getattr("max")?.extract()?;
         let least: i128 = array.call_method0("min")?.extract()?;
         let most: i128 = array.call_method0("max")?.extract()?;
         if least < lowest || most > highest {

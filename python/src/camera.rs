@@ -61,7 +61,7 @@ impl Camera {
     ///
     /// `render` raises `Error` if eye and target coincide, or up is parallel to the view.
     #[staticmethod]
-    #[pyo3(signature = (eye, target, *, up=None, fov=None, ortho=None))]
+    #[pyo3(signature = (eye, target, up=None, fov=None, ortho=None))]
     fn look_at(
         eye: [f64; 3],
         target: [f64; 3],
@@ -136,20 +136,9 @@ impl Camera {
         Py<PyAny>,
         ([f64; 3], [f64; 3], [f64; 3], Option<f64>, Option<f64>),
     )> {
-        let unpickle = py.get_type::<Self>().getattr("_unpickle")?.unbind();
+        let look_at = py.get_type::<Self>().getattr("look_at")?.unbind();
         let [eye, target, up] = [self.eye()?, self.target()?, self.up()?];
-        Ok((unpickle, (eye, target, up, self.fov()?, self.ortho()?)))
-    }
-
-    #[staticmethod]
-    fn _unpickle(
-        eye: [f64; 3],
-        target: [f64; 3],
-        up: [f64; 3],
-        fov: Option<f64>,
-        ortho: Option<f64>,
-    ) -> Self {
-        Self::look_at(eye, target, Some(up), fov, ortho)
+        Ok((look_at, (eye, target, up, self.fov()?, self.ortho()?)))
     }
 
     fn __repr__(&self) -> String {

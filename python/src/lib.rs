@@ -2,11 +2,12 @@
 
 mod arguments;
 mod camera;
-mod commands;
 mod picture;
 mod ply;
 mod pool;
 mod scene;
+
+use std::ffi::OsString;
 
 use numpy::PyArrayDyn;
 use numpy::ndarray::IxDyn;
@@ -26,6 +27,19 @@ fn refused(error: impl std::fmt::Display) -> PyErr {
     Error::new_err(error.to_string())
 }
 
+/// The program's output for a command line with --json. An `Error` has the program's `exit_code`.
+#[pyfunction]
+fn documents(py: Python<'_>, words: Vec<OsString>) -> PyResult<String> {
+    let printed = pool::on_all_threads(py, |_| shiftvox_cli::documents(words))?;
+    printed.map_err(|error| {
+        let told = refused(&error);
+        match told.value(py).setattr("exit_code", error.kind.code()) {
+            Ok(()) => told,
+            Err(other) => other,
+        }
+    })
+}
+
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -36,6 +50,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<camera::Camera>()?;
     module.add_class::<picture::Picture>()?;
     module.add_function(wrap_pyfunction!(picture::render, module)?)?;
-    module.add_function(wrap_pyfunction!(commands::documents, module)?)?;
+    module.add_function(wrap_pyfunction!(documents, module)?)?;
     Ok(())
 }

@@ -12,17 +12,9 @@ pub(crate) fn ply(
     if triangles.is_empty() {
         return Err(Error::new_err("triangles: there are none"));
     }
-    let properties = [
-        "double x",
-        "double y",
-        "double z",
-        "uchar red",
-        "uchar green",
-        "uchar blue",
-    ];
-    let properties: String = properties.map(|p| format!("property {p}\n")).concat();
     let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{properties}element face {}\n\
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n\
+         property double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face {}\n\
          property list uchar uint vertex_indices\nend_header\n",
         positions.len(),
         triangles.len()

@@ -235,11 +235,7 @@ impl Scene {
 
     #[staticmethod]
     fn _unpickle(py: Python<'_>, bytes: Vec<u8>, is_y_up: bool) -> PyResult<Self> {
-        let up = if is_y_up {
-            shiftvox::Up::Y
-        } else {
-            shiftvox::Up::Z
-        };
+        let up = shiftvox::project::Up::y_or_z(is_y_up);
         made(py, move || {
             Ok(shiftvox::Scene::from_bytes(&bytes, "the pickle")?.with_up(up))
         })

@@ -1,7 +1,5 @@
 //! Cameras of the public API.
 
-use glam::DVec3;
-
 use super::{Error, Scene};
 use crate::project;
 use crate::project::{Bounds, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
@@ -22,15 +20,8 @@ impl Camera {
     /// A camera at `eye` with `target` in its middle, world units. Z is up, the vertical field of view is 40 degrees.
     #[must_use]
     pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
-        Self(project::Camera {
-            eye: eye.into(),
-            target: target.into(),
-            up: DVec3::Z,
-            fov_degrees: DEFAULT_FOV,
-            ortho: None,
-            width: 0,
-            height: 0,
-        })
+        let (eye, target) = (eye.into(), target.into());
+        Self(project::Camera::looking(eye, target, DEFAULT_FOV, (0, 0)))
     }
 
     /// A camera that sees all of a scene at any size of picture: azimuth 45, elevation 35.264, vertical field of view 40
@@ -113,11 +104,7 @@ pub trait View: private::Sealed {
 
 impl View for Camera {
     fn of_size(&self, width: u32, height: u32) -> Result<project::Camera, Error> {
-        Ok(project::Camera {
-            width,
-            height,
-            ..self.0
-        })
+        Ok(self.0.of_size(width, height))
     }
 }
 

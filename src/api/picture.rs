@@ -19,11 +19,11 @@ use crate::whole;
 /// normal, voxel and node are those of one sample: the pixel's only one, or the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
-    width: u32,
-    height: u32,
-    buffers: Buffers,
-    counters: Stats,
-    operations: Option<Counter>,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) buffers: Buffers,
+    pub(super) counters: Stats,
+    pub(super) operations: Option<Counter>,
 }
 
 #[derive(Debug)]
@@ -34,21 +34,6 @@ pub(super) struct Buffers {
 }
 
 impl Picture {
-    pub(super) fn new(
-        (width, height): (u32, u32),
-        buffers: Buffers,
-        counters: Stats,
-        operations: Option<Counter>,
-    ) -> Self {
-        Self {
-            width,
-            height,
-            buffers,
-            counters,
-            operations,
-        }
-    }
-
     /// Pixels across.
     #[must_use]
     pub fn width(&self) -> u32 {

@@ -222,10 +222,14 @@ impl Renderer {
             })
         };
         let (drawn, buffers) = self.draw(scene, &camera, bytes, operations.as_ref(), finish)?;
-        let counters = drawn.stats;
         let counted = |operations: Arc<Mutex<Counter>>| std::mem::take(&mut *lock(&operations));
-        let operations = operations.map(counted);
-        Ok(Picture::new((width, height), buffers, counters, operations))
+        Ok(Picture {
+            width,
+            height,
+            buffers,
+            counters: drawn.stats,
+            operations: operations.map(counted),
+        })
     }
 
     /// Draws a picture into the caller's pixels, row by row from the top left: red, green, blue (sRGB) and alpha, as in

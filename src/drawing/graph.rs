@@ -31,7 +31,7 @@ pub struct GraphDrawing<'g> {
     up: Up,
     style: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
-    viewer: Viewer<'g, Box<dyn Engine + Send>>,
+    viewer: Viewer<'g>,
     contents: Contents,
     pixel_bytes: u64,
     last: Option<Drawn>,
@@ -166,7 +166,7 @@ impl<'g> GraphDrawing<'g> {
     fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<(Stats, f64), DrawError> {
         let started = now();
         let light = lights(self.graph, setup, self.style.shading)?;
-        let stats = self.viewer.render_lit(setup, &light)?;
+        let stats = self.viewer.render(setup, &light)?;
         Ok((stats, started.map_or(0.0, milliseconds_since)))
     }
 

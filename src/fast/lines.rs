@@ -322,15 +322,8 @@ pub(super) mod tests {
             let mut point =
                 |size: f64| DVec3::from([(); 3].map(|()| dice.unit() - 0.5)) * size + 32.0;
             let (eye, target) = (point(300.0), point(80.0));
-            let camera = Camera {
-                eye,
-                target,
-                up: DVec3::Z,
-                fov_degrees: 0.5 + 150.0 * dice.unit() * dice.unit(),
-                ortho: None,
-                width: 400,
-                height: 300,
-            };
+            let fov_degrees = 0.5 + 150.0 * dice.unit() * dice.unit();
+            let camera = Camera::looking(eye, target, fov_degrees, (400, 300));
             let placement = Placement::default();
             let setup = FrameSetup::new(&camera, &placement, 6, &SetupOptions::default()).ok()?;
             let constants = Constants::new(&setup).ok()?;

@@ -1,6 +1,5 @@
 //! Colours: shading, the background, linear light and the box filter.
 
-use std::fmt;
 use std::str::FromStr;
 
 use glam::DVec3;
@@ -55,15 +54,6 @@ impl FromStr for Background {
             .collect::<Result<_, _>>()
             .map_err(|_| wrong())?;
         parts.try_into().map(Self::Color).map_err(|_| wrong())
-    }
-}
-
-impl fmt::Display for Background {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::None => f.write_str("none"),
-            Self::Color([r, g, b]) => write!(f, "{r},{g},{b}"),
-        }
     }
 }
 

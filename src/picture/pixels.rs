@@ -47,19 +47,6 @@ impl Pixels {
         }
     }
 
-    pub fn append_rgba(&self, to: &mut Vec<u8>) {
-        if self.has_alpha {
-            return to.extend_from_slice(&self.bytes);
-        }
-        let (opaque, _) = self.bytes.as_chunks::<3>();
-        let from = to.len();
-        to.resize(from + 4 * opaque.len(), u8::MAX);
-        let (pixels, _) = to[from..].as_chunks_mut::<4>();
-        for (pixel, color) in pixels.iter_mut().zip(opaque) {
-            pixel[..3].copy_from_slice(color);
-        }
-    }
-
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }

@@ -1,6 +1,6 @@
 //! PNG in and out: 8 bits per channel, sRGB.
 
-use std::io::{BufRead, Cursor, Seek, Write};
+use std::io::{Cursor, Write};
 
 use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
 
@@ -51,11 +51,8 @@ pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 
 /// Reads a PNG file's bytes. Fails if they are not a PNG, or have more than 32768 pixels per side.
 pub fn decode(bytes: &[u8]) -> Result<Image, DecodingError> {
-    decode_from(Cursor::new(bytes))
-}
-
-fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
-    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: 512 << 20 });
+    let limits = Limits { bytes: 512 << 20 };
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
     // Palettes and fewer than 8 bits become 8 bits per channel; 16 bits stay.
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;

@@ -49,7 +49,10 @@ impl<'g> Shader<'g> {
 
     /// Linear light, 0..=65535 per channel, of sample `(x, y)` that shows a node's voxel, given as in a frame.
     pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
-        self.light_of(node, &self.surface(x, y, node, voxel))
+        let color = self.graph.color.get(node as usize).copied();
+        let share = self.light.on(self.surface(x, y, node, voxel).normal);
+        let light = self.linear.decode(color.unwrap_or_default());
+        light.map(|channel| (channel * share) >> 8)
     }
 
     pub fn background(&self) -> Option<[u32; 3]> {
@@ -67,13 +70,6 @@ impl<'g> Shader<'g> {
             .and_then(PackedNormal::decode)
             .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
         Surface { meeting, normal }
-    }
-
-    pub(super) fn light_of(&self, node: u32, surface: &Surface) -> [u32; 3] {
-        let color = self.graph.color.get(node as usize).copied();
-        let share = self.light.on(surface.normal);
-        let light = self.linear.decode(color.unwrap_or_default());
-        light.map(|channel| (channel * share) >> 8)
     }
 }
 

@@ -184,15 +184,8 @@ mod tests {
             (0.01, DVec3::new(-5.0, 2.0, 9.0)),
             (170.0, DVec3::new(3.0, -7.0, 1.0)),
         ] {
-            let camera = Camera {
-                eye: DVec3::new(40.0, -30.0, 25.0),
-                target,
-                up: DVec3::Z,
-                fov_degrees,
-                ortho: None,
-                width: side,
-                height: side,
-            };
+            let eye = DVec3::new(40.0, -30.0, 25.0);
+            let camera = Camera::looking(eye, target, fov_degrees, (side, side));
             let options = SetupOptions::default();
             let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
             let sight = Sight::new(&setup);

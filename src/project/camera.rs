@@ -62,6 +62,33 @@ pub struct Axes {
 }
 
 impl Camera {
+    /// With +Z up, and no parallel rays.
+    pub const fn looking(
+        eye: DVec3,
+        target: DVec3,
+        fov_degrees: f64,
+        (width, height): (u32, u32),
+    ) -> Self {
+        Self {
+            eye,
+            target,
+            up: DVec3::Z,
+            fov_degrees,
+            ortho: None,
+            width,
+            height,
+        }
+    }
+
+    #[must_use]
+    pub const fn of_size(self, width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            ..self
+        }
+    }
+
     pub fn axes(&self) -> Result<Axes, CameraError> {
         let focal_px = match self.ortho {
             Some(height) if height > 0.0 && height.is_finite() => f64::from(self.height) / height,
@@ -101,6 +128,20 @@ impl Camera {
             forward,
             focal_px,
         })
+    }
+
+    /// This camera as flags of the program, in the shortest decimals that are read as the same numbers.
+    pub fn flags(&self) -> String {
+        // Adding zero turns -0 into 0.
+        let [eye, target, up] = [self.eye, self.target, self.up].map(|point| {
+            let p = point + DVec3::ZERO;
+            format!("{},{},{}", p.x, p.y, p.z)
+        });
+        let lens = match self.ortho {
+            Some(height) => format!("--ortho={height}"),
+            None => format!("--fov {}", self.fov_degrees),
+        };
+        format!("--eye {eye} --target {target} --up {up} {lens}")
     }
 }
 

@@ -82,33 +82,3 @@ pub trait Engine {
         frame: &mut Frame,
     ) -> Result<Stats, EngineError>;
 }
-
-impl<E: Engine + ?Sized> Engine for Box<E> {
-    fn draw(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<(), EngineError> {
-        (**self).draw(graph, setup, frame)
-    }
-
-    fn draw_colors(
-        &mut self,
-        graph: &GraphView<'_>,
-        of_node: &[[u8; 3]],
-        setup: &FrameSetup,
-        colors: &mut Colors,
-    ) -> Result<(), EngineError> {
-        (**self).draw_colors(graph, of_node, setup, colors)
-    }
-
-    fn render(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> Result<Stats, EngineError> {
-        (**self).render(graph, setup, frame)
-    }
-}

@@ -264,13 +264,12 @@ pub fn fit_camera(
     let camera_right = camera_up.cross(towards_eye);
 
     let centre = (bounds.low + bounds.high) / 2.0;
-    let fov_degrees = match lens {
-        Lens::Degrees(degrees) => degrees,
-        Lens::Ortho => DEFAULT_FOV,
-    };
-    let slope_up = match lens {
-        Lens::Degrees(_) => libm::tan(fov_degrees * (std::f64::consts::PI / 360.0)) * FILL,
-        Lens::Ortho => 0.5 * FILL,
+    let (fov_degrees, slope_up) = match lens {
+        Lens::Degrees(degrees) => {
+            let half_angle = degrees * (std::f64::consts::PI / 360.0);
+            (degrees, libm::tan(half_angle) * FILL)
+        }
+        Lens::Ortho => (DEFAULT_FOV, 0.5 * FILL),
     };
     let slope_right = slope_up * f64::from(width) / f64::from(height);
     let farthest = |of: &dyn Fn(DVec3) -> f64| {

@@ -132,7 +132,8 @@ impl FrameSetup {
         if depth > MAX_DEPTH {
             return Err(SetupError::Depth(depth));
         }
-        let root_px_log2 = root_log2(camera.width, camera.height);
+        let longer = camera.width.max(camera.height);
+        let root_px_log2 = longer.next_power_of_two().trailing_zeros();
         let levels = root_px_log2 + options.aa_log2;
         let format = {
             let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
@@ -244,11 +245,6 @@ impl FrameSetup {
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }
-}
-
-/// `ceil(log2)` of the longer side of a picture.
-pub fn root_log2(width: u32, height: u32) -> u32 {
-    width.max(height).next_power_of_two().trailing_zeros()
 }
 
 fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {

@@ -17,23 +17,28 @@ pub enum Contents {
 pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
 
 /// An engine, its input, and its last frame, equal to that of a new engine with the same set-up.
-pub struct Viewer<'g, E> {
+pub struct Viewer<'g> {
     graph: GraphView<'g>,
-    engine: E,
+    engine: Box<dyn Engine + Send>,
     contents: Contents,
     frame: Frame,
     shown: Option<FrameSetup>,
     stats: Option<Stats>,
 }
 
-impl<'g, E: Engine> Viewer<'g, E> {
+impl<'g> Viewer<'g> {
     /// A viewer of a graph that shows nothing. The engine's result must depend only on graph and set-up.
-    pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
+    pub fn new(graph: GraphView<'g>, engine: Box<dyn Engine + Send>, contents: Contents) -> Self {
         Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
     }
 
     /// [`Viewer::new`] with the memory of another viewer's frame, from [`Viewer::into_parts`].
-    pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
+    pub fn reusing(
+        graph: GraphView<'g>,
+        engine: Box<dyn Engine + Send>,
+        frame: Frame,
+        contents: Contents,
+    ) -> Self {
         Self {
             graph,
             engine,
@@ -44,7 +49,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
         }
     }
 
-    pub fn into_parts(self) -> (E, Frame) {
+    pub fn into_parts(self) -> (Box<dyn Engine + Send>, Frame) {
         (self.engine, self.frame)
     }
 
@@ -54,30 +59,10 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.forget();
     }
 
-    /// Makes the frame that of a set-up. Returns whether it was drawn, and not only kept. After an error nothing is shown.
-    pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
-        if self.shows(setup) {
-            return Ok(false);
-        }
-        self.make_room();
-        self.engine.draw(&self.graph, setup, &mut self.frame)?;
-        self.shown = Some(setup.clone());
-        Ok(true)
-    }
-
-    /// [`Viewer::draw`] with counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept, it is 1 and all others are
-    /// 0. After an error nothing is shown.
-    pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
-        self.render_lit(setup, &[])
-    }
-
-    /// [`Viewer::render`] with the light of the nodes, for rules that blend: the same for the same set-up. After an
-    /// error nothing is shown.
-    pub fn render_lit(
-        &mut self,
-        setup: &FrameSetup,
-        light: &[[u16; 3]],
-    ) -> Result<Stats, EngineError> {
+    /// Makes the frame that of a set-up, and returns the counters: [`FRAMES_UNCHANGED`] is last. If the frame was kept,
+    /// it is 1 and all others are 0. `light` of the nodes is for rules that blend: the same for the same set-up. After
+    /// an error nothing is shown.
+    pub fn render(&mut self, setup: &FrameSetup, light: &[[u16; 3]]) -> Result<Stats, EngineError> {
         if self.shows(setup) {
             let last = self.stats.iter().flatten();
             let mut stats: Stats = last.map(|&(name, _)| (name, 0)).collect();

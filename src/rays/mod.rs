@@ -164,15 +164,7 @@ mod tests {
             frame
         };
         for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]].map(glam::DVec3::from) {
-            let camera = Camera {
-                eye,
-                target: eye + glam::DVec3::Y,
-                up: glam::DVec3::Z,
-                fov_degrees: 90.0,
-                ortho: None,
-                width: 32,
-                height: 32,
-            };
+            let camera = Camera::looking(eye, eye + glam::DVec3::Y, 90.0, (32, 32));
             let setup = FrameSetup::new(&camera, &Default::default(), 4, &SetupOptions::default());
             // Without `lod_depth`, which is not scaled.
             let mut setup = setup.expect("a frame").without_detail();

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use crate::scenes::{CameraPlace, Dice, camera_at};
+use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::{Colors, Frame};
@@ -40,11 +41,11 @@ proptest! {
         let size = (first.width, first.height);
         let inside = camera_at(CameraPlace::Inside, &graph, size, &mut Dice::new(seed));
         // These differ little.
-        let moved = Camera { eye: first.eye + glam::DVec3::X * 1e-6, ..first };
+        let moved = Camera { eye: first.eye + DVec3::X * 1e-6, ..first };
         let wider = Camera { width: first.width + 1, ..first };
         let cameras = [first, inside, moved, wider];
         let contents = if with_records { Contents::Records } else { Contents::Voxels };
-        let mut viewer = Viewer::new(graph.view(), Machine::default(), contents);
+        let mut viewer = Viewer::new(graph.view(), Box::new(Machine::default()), contents);
         let mut last: Option<FrameSetup> = None;
         for (camera, options, step) in steps {
             if step == 0 {
@@ -60,18 +61,15 @@ proptest! {
             let is_new = last.as_ref() != Some(&setup);
             let mut right = Frame::new(setup.width, setup.height, with_records);
             let drawn = Machine::default().render(&graph.view(), &setup, &mut right);
-            let shown = match step {
-                1..5 => viewer.draw(&setup),
-                _ => viewer.render(&setup).map(|mut stats| {
-                    let (name, unchanged) = stats.pop().expect("a counter");
-                    assert_eq!(name, FRAMES_UNCHANGED);
-                    match unchanged {
-                        0 => assert_eq!(Some(&stats), drawn.as_ref().ok()),
-                        _ => assert!(stats.iter().all(|&(_, count)| count == 0)),
-                    }
-                    unchanged == 0
-                }),
-            };
+            let shown = viewer.render(&setup, &[]).map(|mut stats| {
+                let (name, unchanged) = stats.pop().expect("a counter");
+                assert_eq!(name, FRAMES_UNCHANGED);
+                match unchanged {
+                    0 => assert_eq!(Some(&stats), drawn.as_ref().ok()),
+                    _ => assert!(stats.iter().all(|&(_, count)| count == 0)),
+                }
+                unchanged == 0
+            });
             prop_assert_eq!(shown, drawn.as_ref().map(|_| is_new).map_err(|&error| error));
             let is_drawn = drawn.is_ok();
             prop_assert!(viewer.frame() == is_drawn.then_some(&right), "a stale picture");
@@ -104,7 +102,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
         let mut used = new();
         let mut frames = [false, true].map(|with_records| Frame::new(7, 3, with_records));
         let mut colors = Colors::new(2, 200);
-        for (coverage, (width, height), with_records) in [
+        for (coverage, size, with_records) in [
             (Coverage::Exact, (40, 30), false),
             (Coverage::Any, (40, 30), false),
             (Coverage::Exact, (65, 9), false),
@@ -114,22 +112,15 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
             (Coverage::Any, (1, 1), false),
             (Coverage::Alpha, (40, 30), false),
         ] {
-            let camera = Camera {
-                eye: glam::DVec3::new(51.0, -22.0, 40.0),
-                target: glam::DVec3::splat(13.0),
-                up: glam::DVec3::Z,
-                fov_degrees: 50.0,
-                ortho: None,
-                width,
-                height,
-            };
+            let (eye, target) = (DVec3::new(51.0, -22.0, 40.0), DVec3::splat(13.0));
+            let camera = Camera::looking(eye, target, 50.0, size);
             let options = SetupOptions {
                 coverage,
                 ..SetupOptions::default()
             };
             let setup = setup(&graph, &camera, &options);
-            let what = format!("{kind}, {coverage:?}, {width} x {height}");
-            let mut right = Frame::new(width, height, with_records);
+            let what = format!("{kind}, {coverage:?}, {size:?}");
+            let mut right = Frame::new(size.0, size.1, with_records);
             let counts = new().render(&view, &setup, &mut right).expect("a frame");
             let frame = &mut frames[usize::from(with_records)];
             assert_eq!(
@@ -146,7 +137,7 @@ fn used_engines_and_frames_of_other_sizes_draw_as_new_ones() {
             *frame = Frame::new(3, 5, with_records);
             assert_eq!(used.draw(&view, &setup, frame), Ok(()), "{what}");
             assert!(*frame == right, "{what}");
-            let mut right = Colors::new(width, height);
+            let mut right = Colors::new(size.0, size.1);
             let drawn = new().draw_colors(&view, &graph.color, &setup, &mut right);
             let again = used.draw_colors(&view, &graph.color, &setup, &mut colors);
             assert!(

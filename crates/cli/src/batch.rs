@@ -1,23 +1,26 @@
-//! The pictures of one call of `render`: files of folders, and parts of a batch for several computers.
+//! The scenes of one call: files of folders, parts of a batch for several computers, failures that stop no others.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::error::CliError;
+use serde_json::{Value, json};
+
+use super::console::{self, Console};
+use super::error::{CliError, Kind};
 use super::{outputs, scenes};
 use shiftvox::scene::{FORMATS, Source};
 use shiftvox::whole;
 
 /// A scene, and the picture to write, if any.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Job {
     pub(super) scene: String,
     pub(super) picture: Option<PathBuf>,
 }
 
 /// Every `of`-th picture, beginning with number `first` (from 0).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     first: usize,
     of: usize,
@@ -103,6 +106,46 @@ pub(super) fn jobs(
     Ok(taken(part, jobs))
 }
 
+/// Reports what is made of each scene, as `command`. A scene that fails is reported and does not stop the others.
+pub(super) fn each<S>(
+    command: &str,
+    scenes: &[S],
+    name: fn(&S) -> &str,
+    console: &Console,
+    of_one: impl Fn(&S) -> Result<Value, CliError>,
+) -> Result<(), CliError> {
+    let mut results = Vec::new();
+    let mut failures = Vec::new();
+    for scene in scenes {
+        match of_one(scene) {
+            Ok(result) => results.push(result),
+            Err(error) if scenes.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+            Err(error) => {
+                console::report_error(&error);
+                failures.push(error.kind);
+                results.push(json!({ "scene": name(scene), "error": error.message }));
+            }
+        }
+    }
+    let is_left_out = |result: &&Value| result["is_left_out"] == true;
+    let left_out = results.iter().filter(is_left_out).count();
+    if left_out > 0 {
+        let drawn = scenes.len() - left_out - failures.len();
+        console.note(format!(
+            "{drawn} drawn, {left_out} left out because their pictures exist"
+        ));
+    }
+    console.report(command, json!({ "scenes": results }));
+    match failures.first() {
+        None => Ok(()),
+        Some(&first) => {
+            let (failed, all) = (failures.len(), scenes.len());
+            let message = format!("{failed} of {all} scenes failed; see above");
+            Err(CliError::new(first, message))
+        }
+    }
+}
+
 fn taken(part: Option<Part>, jobs: Vec<Job>) -> Vec<Job> {
     let Part { first, of } = part.unwrap_or(Part { first: 0, of: 1 });
     jobs.into_iter().skip(first).step_by(of).collect()
@@ -138,28 +181,5 @@ fn files(folder: &str) -> Result<Vec<String>, CliError> {
             CliError::input(format!("{folder}: no file here has the ending of a format"))
                 .advise("`shiftvox --help` lists the formats"),
         ),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_are_the_whole() {
-        let names: Vec<String> = (1..=7)
-            .map(|depth| format!("gen:menger,depth={depth}"))
-            .collect();
-        let mut drawn = Vec::new();
-        for text in ["1/3", "2/3", "3/3"] {
-            let part = part(text).unwrap();
-            drawn.extend(jobs(&names, None, true, Some(part)).unwrap());
-        }
-        drawn.sort_by(|a, b| a.scene.cmp(&b.scene));
-        assert_eq!(drawn, jobs(&names, None, true, None).unwrap());
-        assert_eq!(drawn[6].picture, Some(PathBuf::from("menger-depth-7.png")));
-        for wrong in ["0/3", "4/3", "1/0", "1", "a/b", "-1/2"] {
-            assert!(part(wrong).is_err(), "{wrong}");
-        }
     }
 }

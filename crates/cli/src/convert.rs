@@ -1,7 +1,6 @@
 //! `convert`: a scene in another format.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -9,9 +8,10 @@ use serde_json::{Value, json};
 use super::args::{SceneArgs, bytes};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::{far, report, scene_files, scenes, textured};
+use super::scene_files::{self, Written};
+use super::{far, report, scenes, textured};
 use shiftvox::graph::{BuildOptions, ExternalOptions};
-use shiftvox::scene::Source;
+use shiftvox::scene::{self, Source};
 use shiftvox::whole;
 use shiftvox_mesh::far::view::Opacity;
 use shiftvox_mesh::textured::Element;
@@ -163,18 +163,9 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return build_outside_memory(args, memory, console);
     }
-    let source = Source::find(&args.input)?;
-    let started = Instant::now();
-    let verify = scenes::Verify::All;
-    let scene = scenes::open_source(source, &args.input, &args.scene, verify, started, console)?;
+    let scene = scenes::open(&args.input, &args.scene, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written(
-        "convert",
-        &args.input,
-        &args.output,
-        ("voxels", &written),
-        console,
-    );
+    written.report("convert", &args.input, &args.output, console);
     Ok(())
 }
 
@@ -213,15 +204,17 @@ fn build_outside_memory(
         memory,
         temporary: args.temp.as_deref().unwrap_or(beside).to_owned(),
     };
-    let (written, report) = scene_files::build_file(
-        &args.input,
-        &args.scene,
+    let options = scenes::options(&args.scene);
+    let built = scene::build_file(
+        Source::find(&args.input)?,
+        &options.voxels,
+        &options.mesh,
         external,
         &args.output,
         args.force,
         console.progress(),
     )?;
-    if let Some(report) = report {
+    if let Some(report) = built.report {
         console.note(format!(
             "{}: sorted in {} runs; temporary files took {} bytes at most, {} were written to them",
             args.output.display(),
@@ -230,12 +223,12 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    scene_files::report_written(
-        "convert",
-        &args.input,
-        &args.output,
-        ("voxels", &written),
-        console,
-    );
+    let written = Written {
+        what: "voxels",
+        count: built.voxels,
+        bytes: built.bytes,
+        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+    };
+    written.report("convert", &args.input, &args.output, console);
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size, camera_line};
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size};
 use super::console::Console;
 use super::error::CliError;
 use super::methods::{self, DrawArgs};
@@ -63,6 +63,6 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         shown.times_ms[0],
         grouped(counter.ops()),
         counter.widest(),
-        camera_line(&camera),
+        camera.flags(),
     ))
 }

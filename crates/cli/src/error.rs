@@ -84,7 +84,6 @@ impl CliError {
         }
     }
 
-    #[cfg(feature = "view")]
     pub(super) fn of_words(error: clap::Error) -> Self {
         let message = error.render().to_string();
         let first = message.lines().next().unwrap_or_default();

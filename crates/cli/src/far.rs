@@ -236,7 +236,7 @@ fn describe(file: &FarFile, name: &str) -> Value {
         "scalar_share": opacity(OpacityKind::Scalar),
         "six_share": opacity(OpacityKind::Six),
         "complex_share": share(&|shader, _| shader == ShaderKind::Complex),
-        "bytes": file.len(),
+        "bytes": file.file_bytes(),
         "voxel_bytes": sum(&Node::voxel_bytes),
         "opacity_bytes": (0..LISTS.len()).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
         "surface_triangles": sum(&surface),

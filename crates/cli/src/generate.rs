@@ -41,13 +41,7 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
     };
     let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::report_written(
-        "generate",
-        &spec,
-        &args.output,
-        ("voxels", &written),
-        console,
-    );
+    written.report("generate", &spec, &args.output, console);
     Ok(())
 }
 
@@ -63,16 +57,11 @@ fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
     let bytes = generate::ply(&mesh);
     whole::write(output, &bytes, args.force)?;
     let written = Written {
+        what: "triangles",
         count: mesh.triangles().len() as u64,
         bytes: bytes.len() as u64,
         warnings: Vec::new(),
     };
-    scene_files::report_written(
-        "generate",
-        &args.spec,
-        output,
-        ("triangles", &written),
-        console,
-    );
+    written.report("generate", &args.spec, output, console);
     Ok(())
 }

@@ -1,16 +1,15 @@
 //! `info`: the contents of a scene.
 
 use std::collections::HashMap;
-use std::time::Instant;
 
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, SceneArgs, camera_line};
-use super::console::{self, Console};
+use super::args::{CameraArgs, SceneArgs};
+use super::console::Console;
 use super::error::CliError;
 use super::scenes::{self, Scene};
-use super::{far, report, textured};
+use super::{batch, far, report, textured};
 use shiftvox::budget::{self, Shortage};
 use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
 use shiftvox::project::Bounds;
@@ -29,44 +28,23 @@ pub(super) struct InfoArgs {
 }
 
 pub(super) fn run(args: &InfoArgs, console: &Console) -> Result<(), CliError> {
-    let mut results = Vec::new();
-    let mut first_failure = None;
-    for name in &args.scenes {
-        match of_one(name, args, console) {
-            Ok(described) => {
-                if !console.json {
-                    let gap = if args.scenes.len() > 1 { "\n" } else { "" };
-                    console.data(text(described.clone(), args.levels) + gap)?;
-                }
-                results.push(described);
-            }
-            Err(error) if args.scenes.len() == 1 => return Err(error),
-            Err(error) => {
-                console::report_error(&error);
-                results.push(json!({ "scene": name, "error": error.message }));
-                first_failure.get_or_insert(error.kind);
-            }
+    let show = |name: &String| {
+        let described = of_one(name, args, console)?;
+        if !console.json {
+            let gap = if args.scenes.len() > 1 { "\n" } else { "" };
+            console.data(text(described.clone(), args.levels) + gap)?;
         }
-    }
-    console.report("info", json!({ "scenes": results }));
-    match first_failure {
-        None => Ok(()),
-        Some(kind) => Err(CliError::new(
-            kind,
-            "not all scenes could be read; see above",
-        )),
-    }
+        Ok(described)
+    };
+    batch::each("info", &args.scenes, String::as_str, console, show)
 }
 
 fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliError> {
-    let started = Instant::now();
-    let source = Source::find(name)?;
-    match source.kind() {
+    match Source::find(name)?.kind() {
         Some(FileKind::Far) => far::info(name),
         Some(FileKind::Tvx) => textured::info(name),
         _ => {
-            let verify = scenes::Verify::All;
-            let scene = scenes::open_source(source, name, &args.scene, verify, started, console)?;
+            let scene = scenes::open(name, &args.scene, console)?;
             Ok(describe(&scene, console))
         }
     }
@@ -84,9 +62,7 @@ fn text(mut described: Value, with_levels: bool) -> String {
 
 fn describe(scene: &Scene, console: &Console) -> Value {
     let graph = &scene.graph;
-    let bounds = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
-    let origin = graph.placement.origin_index;
-    let [low, high] = [bounds.0, bounds.1].map(|corner| [0, 1, 2].map(|k| corner[k] + origin[k]));
+    let [low, high] = Bounds::in_file(graph).unwrap_or_default();
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
     let gains = merge_gains(graph);
@@ -119,7 +95,7 @@ fn describe(scene: &Scene, console: &Console) -> Value {
         "dag_gain_by_shape": gain(1),
         "palette_entries": scene.palette,
         "colors": distinct_leaf_colors(graph),
-        "camera": camera_line(&camera),
+        "camera": camera.flags(),
         "mesh": scene.mesh.as_ref().map(|mesh| json!({
             "triangles": mesh.triangles,
             "positions": mesh.positions,

@@ -1,4 +1,5 @@
 //! The command line: one file per command. stdout is data, stderr everything else.
+#![cfg_attr(not(feature = "view"), allow(dead_code, unused_variables))]
 
 mod args;
 mod batch;
@@ -271,7 +272,6 @@ fn no_threads(error: rayon::ThreadPoolBuildError) -> CliError {
 }
 
 fn run_command(cli: Cli, matches: &ArgMatches, console: &Console) -> Result<(), CliError> {
-    let _ = matches;
     match cli.command {
         None => demo::run(console),
         Some(Command::Render(args)) => render::run(&args, console),

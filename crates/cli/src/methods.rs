@@ -10,11 +10,10 @@ use super::error::{CliError, Kind};
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, Shown, milliseconds_since};
-#[cfg(feature = "view")]
 use shiftvox::graph::Crop;
 use shiftvox::picture::Buffer;
 use shiftvox::project::{Camera, Stop};
-use shiftvox::scene::{FileKind, Source};
+use shiftvox::scene::{FileKind, OpenOptions, Source};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
@@ -68,7 +67,6 @@ const METHODS: [FileMethod; 2] = [
 ];
 
 pub(super) struct Opened {
-    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "shown by the page"))]
     pub(super) engine: EngineName,
     pub(super) load_ms: f64,
     content: Content,
@@ -99,8 +97,9 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
             );
         }
         let scene_args = args.engine.rules.scene_args(args.scene);
-        let verify = scenes::Verify::IfSmall;
-        let scene = scenes::open_source(source?, name, &scene_args, verify, started, console)?;
+        let verify_up_to = OpenOptions::default().verify_up_to;
+        let scene =
+            scenes::open_source(source?, name, &scene_args, verify_up_to, started, console)?;
         return Ok(Opened {
             engine: asked.unwrap_or_default(),
             load_ms: scene.load_ms,
@@ -117,7 +116,6 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
 }
 
 /// Opens the voxels of a file in memory.
-#[cfg(feature = "view")]
 pub(super) fn open_bytes(
     name: &str,
     bytes: &[u8],
@@ -181,7 +179,6 @@ impl FileMethod {
 }
 
 impl Opened {
-    #[cfg(feature = "view")]
     pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
         match &self.content {
             Content::Graph(scene) => Some(&scene.graph),
@@ -190,7 +187,6 @@ impl Opened {
     }
 
     /// The part of a scene of voxels within a box.
-    #[cfg(feature = "view")]
     pub(super) fn cropped(&self, crop: &Crop) -> Result<Self, CliError> {
         let Content::Graph(scene) = &self.content else {
             return Err(CliError::usage(
@@ -206,7 +202,6 @@ impl Opened {
     }
 
     /// Rejects flags that the scene's method does not follow, as [`open`] does.
-    #[cfg(feature = "view")]
     pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
         let of_file = match &self.content {
             Content::Graph(_) => None,
@@ -240,7 +235,7 @@ impl Opened {
             Content::Graph(scene) => Box::new(of_graph(scene, args, stop)?),
             Content::Far(file) => {
                 let style = FarStyle {
-                    voxel_px: args.engine.rules.mesh_lod(),
+                    voxel_px: args.engine.rules.lod.unwrap_or(1.0),
                     aa_log2,
                     opacity: args.engine.far_opacity.unwrap_or_default(),
                     shading,
@@ -297,7 +292,7 @@ fn erosion(args: &EngineArgs) -> Result<Erosion, CliError> {
             "--erosion-grid needs --erosion K; auto chooses the grid too",
         )),
         (_, None) => Ok(Erosion::Auto {
-            texel_px: args.rules.mesh_lod(),
+            texel_px: args.rules.lod.unwrap_or(1.0),
         }),
     }
 }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes, camera_line};
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, bytes};
 use super::batch::{self, Job, Part};
-use super::console::{self, Console};
+use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
 use super::{outputs, report};
@@ -62,45 +62,14 @@ pub(super) struct RenderArgs {
     scene: SceneArgs,
 }
 
-/// Draws all scenes. A scene that fails is reported and does not stop the others.
 pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> {
     check(args)?;
     let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
     let is_needed = !answers || !args.picture.aov.is_empty() || args.resume;
     let jobs = batch::jobs(&args.scenes, args.output.as_deref(), is_needed, args.part)?;
-    let mut results = Vec::new();
-    let mut failures: Vec<Kind> = Vec::new();
     let is_batch = jobs.len() > 1 || args.part.is_some();
-    let mut left_out = 0;
-    for job in &jobs {
-        match render_one(args, job, is_batch, console) {
-            Ok(result) => {
-                left_out += usize::from(result["is_left_out"] == true);
-                results.push(result);
-            }
-            Err(error) if jobs.len() == 1 || error.kind == Kind::Pipe => return Err(error),
-            Err(error) => {
-                console::report_error(&error);
-                failures.push(error.kind);
-                results.push(json!({ "scene": job.scene, "error": error.message }));
-            }
-        }
-    }
-    if left_out > 0 {
-        let drawn = jobs.len() - left_out - failures.len();
-        console.note(format!(
-            "{drawn} drawn, {left_out} left out because their pictures exist"
-        ));
-    }
-    console.report("render", json!({ "scenes": results }));
-    match failures.first() {
-        None => Ok(()),
-        Some(&first) => {
-            let (failed, all) = (failures.len(), jobs.len());
-            let message = format!("{failed} of {all} scenes failed; see above");
-            Err(CliError::new(first, message))
-        }
-    }
+    let draw = |job: &Job| render_one(args, job, is_batch, console);
+    batch::each("render", &jobs, |job| &job.scene, console, draw)
 }
 
 fn check(args: &RenderArgs) -> Result<(), CliError> {
@@ -149,7 +118,7 @@ fn render_one(
     let up = args.scene.up_or(drawable.up());
     let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
-        console.data(camera_line(&camera))?;
+        console.data(camera.flags())?;
     }
     let shown = methods::frame(&mut *drawable, &camera, args.repeat).map_err(|e| e.at(name))?;
     let hash = is_hashed.then(|| picture::hash_rows(&shown.buffers));

@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 
-use super::args::camera_line;
 use shiftvox::drawing::{Figures, Shown};
 use shiftvox::project::Camera;
 use shiftvox_lab::bench::Summary;
@@ -15,7 +14,7 @@ pub(super) fn camera(camera: &Camera) -> Value {
         "up": camera.up.to_array(),
         "fov_degrees": camera.fov_degrees,
         "ortho": camera.ortho,
-        "flags": camera_line(camera),
+        "flags": camera.flags(),
     })
 }
 

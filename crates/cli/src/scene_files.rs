@@ -4,14 +4,13 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::SceneArgs;
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::report;
-use super::scenes::{self, Scene};
+use super::scenes::Scene;
 use shiftvox::budget;
-use shiftvox::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
-use shiftvox::scene::{self, Source};
+use shiftvox::graph::{Graph, Progress, Voxel, vxg};
+use shiftvox::scene;
 use shiftvox::whole;
 
 /// Least bytes of a node in a `.vxg`, of a voxel in a `.ply` and in a `.vox`.
@@ -19,12 +18,36 @@ const NODE_BYTES: u64 = 5;
 const PLY_BYTES: u64 = 27;
 const VOX_BYTES: u64 = 4;
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Written {
-    /// Voxels, or the triangles of a mesh.
+    /// Voxels or triangles.
+    pub(super) what: &'static str,
     pub(super) count: u64,
     pub(super) bytes: u64,
     pub(super) warnings: Vec<String>,
+}
+
+impl Written {
+    pub(super) fn report(&self, command: &str, input: &str, output: &Path, console: &Console) {
+        for warning in &self.warnings {
+            console.note(format!("{}: {warning}", output.display()));
+        }
+        console.note(format!(
+            "{}: {} {}, {} bytes",
+            output.display(),
+            report::grouped(self.count),
+            self.what,
+            report::grouped(self.bytes)
+        ));
+        let fields = json!({
+            "input": input,
+            "output": output.display().to_string(),
+            self.what: self.count,
+            "bytes": self.bytes,
+            "warnings": self.warnings,
+        });
+        console.report(command, fields);
+    }
 }
 
 pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
@@ -91,38 +114,11 @@ pub(super) fn write(
     progress.end();
     let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
     Ok(Written {
+        what: "voxels",
         count: graph.voxels,
         bytes,
         warnings,
     })
-}
-
-pub(super) fn build_file(
-    source: &str,
-    args: &SceneArgs,
-    external: ExternalOptions,
-    output: &Path,
-    force: bool,
-    progress: &dyn Progress,
-) -> Result<(Written, Option<ExternalReport>), CliError> {
-    let found = Source::find(source)?;
-    let mut options = scenes::options(args);
-    options.voxels.verify_up_to = u64::MAX;
-    let built = scene::build_file(
-        found,
-        &options.voxels,
-        &options.mesh,
-        external,
-        output,
-        force,
-        progress,
-    )?;
-    let written = Written {
-        count: built.voxels,
-        bytes: built.bytes,
-        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
-    };
-    Ok((written, built.report))
 }
 
 /// The finest voxels of a graph at their file indices; a large leaf is many.
@@ -132,31 +128,4 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
         let error = CliError::new(Kind::Limit, error.to_string());
         error.advise("write a .vxg, or convert a scene of fewer levels")
     })
-}
-
-/// `what`: voxels or triangles.
-pub(super) fn report_written(
-    command: &str,
-    input: &str,
-    output: &Path,
-    (what, written): (&str, &Written),
-    console: &Console,
-) {
-    for warning in &written.warnings {
-        console.note(format!("{}: {warning}", output.display()));
-    }
-    console.note(format!(
-        "{}: {} {what}, {} bytes",
-        output.display(),
-        report::grouped(written.count),
-        report::grouped(written.bytes)
-    ));
-    let fields = json!({
-        "input": input,
-        "output": output.display().to_string(),
-        what: written.count,
-        "bytes": written.bytes,
-        "warnings": written.warnings,
-    });
-    console.report(command, fields);
 }

@@ -12,11 +12,10 @@ use shiftvox::graph::{BuildError, Crop, Graph, Progress};
 use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
-use shiftvox_mesh::open::{MeshOptions, OpenOptions};
+use shiftvox_mesh::open::{MeshOptions, OpenOptions, read_mesh};
 use shiftvox_mesh::{LoadOptions, Material, Mesh};
 
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
-#[cfg(feature = "view")]
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
 
 #[derive(Debug)]
@@ -35,31 +34,22 @@ pub(super) struct Scene {
 /// A scene of an experiment or a model: all of it is verified.
 pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
     let (started, source) = (Instant::now(), Source::find(name)?);
-    open_source(source, name, args, Verify::All, started, console)
+    open_source(source, name, args, u64::MAX, started, console)
 }
 
-/// The part of a graph file that is verified before use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verify {
-    /// All of a small one, the header of a large one.
-    IfSmall,
-    All,
-}
-
-/// As [`open`], for a source that was found at `started`. Commands that read all of a scene verify all of it.
+/// As [`open`], for a source that was found at `started`. Only the header of a graph file of more than `verify_up_to`
+/// bytes is verified.
 pub(super) fn open_source(
     source: Source,
     name: &str,
     args: &SceneArgs,
-    verify: Verify,
+    verify_up_to: u64,
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
     fatal_signals::reads(name);
     let mut options = options(args);
-    if verify == Verify::All {
-        options.voxels.verify_up_to = u64::MAX;
-    }
+    options.voxels.verify_up_to = verify_up_to;
     let opened = scene::open_source(source, &options.voxels, &options.mesh, console.progress())?;
     let mut scene = ready(opened, name, args.mesh_up, started);
     if let Some(crop) = &args.crop {
@@ -98,7 +88,6 @@ pub(super) fn open_source(
 
 impl Scene {
     /// The same scene with another graph.
-    #[cfg(feature = "view")]
     pub(super) fn with(&self, graph: Graph) -> Self {
         let (source, format) = (self.source.clone(), self.format.clone());
         let (mesh, warnings) = (self.mesh.clone(), self.warnings.clone());
@@ -128,7 +117,6 @@ impl Scene {
 }
 
 /// As [`open_source`], of voxels in memory.
-#[cfg(feature = "view")]
 pub(super) fn open_bytes(name: &str, bytes: &[u8], args: &SceneArgs) -> Result<Scene, CliError> {
     let started = Instant::now();
     let (mut options, silent) = (options(args).voxels, shiftvox::graph::Silent);
@@ -147,10 +135,10 @@ pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
     Ok(Source::find(name)?.kind().is_some_and(FileKind::is_mesh))
 }
 
-pub(super) fn read_mesh(
+pub(super) fn open_mesh(
     source: &str,
     args: &SceneArgs,
-    progress: &dyn Progress,
+    console: &Console,
 ) -> Result<(Mesh, Up), CliError> {
     if source.starts_with("gen:") {
         return Err(CliError::input(format!(
@@ -163,8 +151,11 @@ pub(super) fn read_mesh(
         ));
     }
     fatal_signals::reads(source);
-    let (mesh, y_up) =
-        shiftvox_mesh::open::read_mesh(Path::new(source), &load_options(args), progress)?;
+    let load = options(args).mesh.load;
+    let (mesh, y_up) = read_mesh(Path::new(source), &load, console.progress())?;
+    for warning in mesh.warnings() {
+        console.note(format!("{source}: {warning}"));
+    }
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
@@ -176,18 +167,6 @@ pub(super) fn tell_losses(name: &str, mesh: &Mesh, console: &Console) {
             "warning: {name}: textures and opacities are kept by voxels, but not by the triangles of a .far or .tvx file"
         ));
     }
-}
-
-pub(super) fn open_mesh(
-    source: &str,
-    args: &SceneArgs,
-    console: &Console,
-) -> Result<(Mesh, Up), CliError> {
-    let (mesh, up) = read_mesh(source, args, console.progress())?;
-    for warning in mesh.warnings() {
-        console.note(format!("{source}: {warning}"));
-    }
-    Ok((mesh, up))
 }
 
 /// The bundled scene: a tree, see `assets/ATTRIBUTION.md`.
@@ -210,16 +189,13 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
         },
         mesh: MeshOptions {
             depth: args.mesh_depth(),
-            load: load_options(args),
+            load: LoadOptions {
+                mtl_colors: args.mesh_colors,
+            },
             opacities: args.opacities,
             y_up: args.mesh_up.map(|up| up == Up::Y),
         },
     }
-}
-
-fn load_options(args: &SceneArgs) -> LoadOptions {
-    let mtl_colors = args.mesh_colors;
-    LoadOptions { mtl_colors }
 }
 
 fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {

@@ -35,7 +35,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         output.display(),
         grouped(mesh.triangles().len() as u64),
         grouped(voxels),
-        grouped(file.len()),
+        grouped(file.file_bytes()),
         build_ms / 1e3
     ));
     args.report(describe(&file, input), build_ms, console);
@@ -60,7 +60,7 @@ fn describe(file: &TexturedFile, name: &str) -> Value {
         "high": high.to_array(),
         "triangles": file.primitives().len(),
         "grids": grids,
-        "bytes": file.len(),
+        "bytes": file.file_bytes(),
     })
 }
 

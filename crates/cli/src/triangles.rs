@@ -9,7 +9,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::args::{CameraArgs, SceneArgs, Size, camera_line};
+use super::args::{CameraArgs, SceneArgs, Size};
 use super::console::Console;
 use super::error::CliError;
 use super::{methods, outputs, report, scenes};
@@ -43,9 +43,9 @@ pub(super) struct TrianglesArgs {
     /// Pixels, such as 512 (square) or 640x360 [default: 512]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
-    /// Colours as the file has them, without light
-    #[arg(long)]
-    flat: bool,
+    /// Shading
+    #[arg(long, value_enum, default_value_t)]
+    shade: Shading,
     /// Background in sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
     #[arg(long, value_name = "R,G,B|none")]
     background: Option<Background>,
@@ -104,7 +104,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         "output": args.output.display().to_string(),
         "triangles": mesh.triangles().len(),
         "samples": style.samples.per_pixel(),
-        "camera": camera_line(&camera),
+        "camera": camera.flags(),
         "load_ms": load_ms,
         "draw_ms": draw_ms,
         "warnings": mesh.warnings(),
@@ -118,10 +118,7 @@ impl TrianglesArgs {
         let samples = self.samples.parse().unwrap_or(16);
         Ok(TrianglesStyle {
             samples: Samples::new(samples, Pattern::Regular).map_err(CliError::usage)?,
-            shading: match self.flat {
-                true => Shading::Flat,
-                false => Shading::Lambert,
-            },
+            shading: self.shade,
             background: self.background.unwrap_or_default(),
         })
     }

@@ -14,7 +14,7 @@ mod socket;
 
 use serde_json::Value;
 
-pub use message::{answer, hello, message, picked, quoted};
+pub use message::{answer, command, hello, message, picked};
 pub use request::{Ask, Camera, FLAGS, Flags, Request, check_size};
 #[cfg(feature = "server")]
 pub use server::Server;

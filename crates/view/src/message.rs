@@ -70,9 +70,22 @@ pub fn picked(voxel: [i32; 4], color: [u8; 3], levels: u32, origin: [f64; 3], si
     (json!({ "voxel": head }), Vec::new())
 }
 
-/// A scene's name, quoted for bash and zsh.
+/// The command line of a page's picture or figures. `camera` has flags.
 #[must_use]
-pub fn quoted(name: &str) -> String {
+pub fn command(
+    verb: &str,
+    scene: &str,
+    words: impl Iterator<Item = String>,
+    [width, height]: [u32; 2],
+    camera: &str,
+) -> String {
+    let words: String = words.map(|word| word + " ").collect();
+    let scene = quoted(scene);
+    format!("shiftvox {verb} {scene} {words}--size={width}x{height} {camera}")
+}
+
+/// A scene's name, quoted for bash and zsh.
+fn quoted(name: &str) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:,=".contains(letter);
     if !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain) {
         return name.to_owned();

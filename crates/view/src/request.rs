@@ -124,23 +124,3 @@ impl Request {
         flags.map(|(name, value)| format!("--{name}={value}"))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flags_name_no_files() {
-        for (flags, is_allowed) in [
-            (r#"{"coverage":"any","lod":"2"}"#, true),
-            (r#"{"output":"a.png"}"#, false),
-            (r#"{"coverage":"/etc/passwd"}"#, false),
-            (r#"{"lod":"1 --outdir=x"}"#, false),
-        ] {
-            let fields = r#""seq":1,"ask":"picture","scene":0,"size":[64,32],"aa":2"#;
-            let request = format!(r#"{{{fields},"flags":{flags}}}"#);
-            let request: Request = serde_json::from_str(&request).unwrap();
-            assert_eq!(request.check().is_ok(), is_allowed, "{flags}");
-        }
-    }
-}

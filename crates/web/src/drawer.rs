@@ -9,7 +9,7 @@ use shiftvox::project::{Bounds, Camera as Placed};
 use shiftvox::{
     Buffer, CageKind, Camera, Coverage, EngineKind, Picture, Renderer, Scene, Shading, View,
 };
-use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, picked, quoted};
+use shiftvox_view::{Answer, Ask, FLAGS, Program, Request, command, picked};
 
 #[derive(Debug)]
 pub(super) struct Opened {
@@ -74,38 +74,18 @@ impl Opened {
             .hash
             .then(|| picture.hash().map(str::to_owned))
             .transpose();
-        let point = |point: DVec3| format!("{},{},{}", point.x, point.y, point.z);
-        let mut command = vec!["shiftvox render".to_owned(), quoted(&self.name)];
-        command.extend(request.words(FLAGS));
-        command.extend((request.aa != 1).then(|| format!("--aa={}", request.aa)));
-        command.push(format!("--size={width}x{height}"));
-        for (name, of) in [
-            ("eye", camera.eye),
-            ("target", camera.target),
-            ("up", camera.up),
-        ] {
-            command.push(format!("--{name} {}", point(of)));
-        }
-        command.push(match camera.ortho {
-            Some(height) => format!("--ortho={height}"),
-            None => format!("--fov {}", camera.fov_degrees),
-        });
-        command.push("-o picture.png --force".to_owned());
+        let aa = (request.aa != 1).then(|| format!("--aa={}", request.aa));
+        let words = request.words(FLAGS).chain(aa);
+        let command = command("render", &self.name, words, request.size, &camera.flags());
         let head = json!({
             "width": width,
             "height": height,
             "png": false,
-            "camera": {
-                "eye": camera.eye.to_array(),
-                "target": camera.target.to_array(),
-                "up": camera.up.to_array(),
-                "fov_degrees": camera.fov_degrees,
-                "ortho": camera.ortho,
-            },
+            "camera": camera,
             "axis": self.scene.up().axis().to_array(),
             "extent": self.extent,
             "engine": request.flags.get("engine").map_or("fast", String::as_str),
-            "command": command.join(" "),
+            "command": command + " -o picture.png --force",
             "hash": hash.map_err(|error| error.to_string())?,
             "counters": picture.counters(),
             "pixels_drawn": nodes.iter().filter(|&&node| node >= 0).count(),

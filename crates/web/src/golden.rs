@@ -162,15 +162,7 @@ fn draw(row: &str, used: &mut Machine) -> (Frame, Option<Counter>) {
     let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
     let [eye, target] = [2, 3].map(|cell| low + DVec3::from_slice(&numbers(cell)) * side);
     let size = numbers(5);
-    let camera = Camera {
-        eye,
-        target,
-        up: DVec3::Z,
-        fov_degrees: numbers(4)[0],
-        ortho: None,
-        width: size[0] as u32,
-        height: size[1] as u32,
-    };
+    let camera = Camera::looking(eye, target, numbers(4)[0], (size[0] as u32, size[1] as u32));
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect(row);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut again = frame.clone();

@@ -108,17 +108,13 @@ pub fn any_view(
 /// A square camera of 60 degrees.
 pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
     let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
+    let up = match eye.truncate() == target.truncate() {
+        true => DVec3::Y,
+        false => DVec3::Z,
+    };
     Camera {
-        eye,
-        target,
-        up: match eye.truncate() == target.truncate() {
-            true => DVec3::Y,
-            false => DVec3::Z,
-        },
-        fov_degrees: 60.0,
-        ortho: None,
-        width: size,
-        height: size,
+        up,
+        ..Camera::looking(eye, target, 60.0, (size, size))
     }
 }
 

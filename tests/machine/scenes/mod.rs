@@ -150,13 +150,8 @@ pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut
             target = eye + DVec3::AXES[along] * way[along];
         }
         let camera = Camera {
-            eye,
-            target,
             up: up_of(target - eye),
-            fov_degrees: dice.between(5.0, 150.0),
-            ortho: None,
-            width: size.0,
-            height: size.1,
+            ..Camera::looking(eye, target, dice.between(5.0, 150.0), size)
         };
         if camera.axes().is_ok() {
             return camera;
@@ -170,14 +165,10 @@ fn camera_of_ties(side: f64, dice: &mut Dice) -> Camera {
     let eye = dice.point(-4.0, 2.0 * side + 5.0).floor() / 2.0;
     let axis = dice.below(3) as usize;
     let size = dice.of(&[7, 8, 16]);
+    let target = eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]);
     Camera {
-        eye,
-        target: eye + DVec3::AXES[axis] * dice.of(&[1.0, -1.0]),
         up: DVec3::AXES[(axis + 1 + dice.below(2) as usize) % 3] * dice.of(&[1.0, -1.0]),
-        fov_degrees: 90.0,
-        ortho: None,
-        width: size,
-        height: size,
+        ..Camera::looking(eye, target, 90.0, (size, size))
     }
 }
 

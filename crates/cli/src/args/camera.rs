@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
-use super::values::{point, point_text};
+use super::values::point;
 use shiftvox::project::{Bounds, Camera, DEFAULT_FOV, Direction, Lens, Up, fit_camera};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -141,13 +141,4 @@ impl CameraArgs {
         }
         Ok(())
     }
-}
-
-pub(crate) fn camera_line(camera: &Camera) -> String {
-    let [eye, target, up] = [camera.eye, camera.target, camera.up].map(point_text);
-    let lens = match camera.ortho {
-        Some(height) => format!("--ortho={height}"),
-        None => format!("--fov {}", camera.fov_degrees),
-    };
-    format!("--eye {eye} --target {target} --up {up} {lens}")
 }

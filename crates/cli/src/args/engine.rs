@@ -117,11 +117,6 @@ impl RuleArgs {
         }
     }
 
-    /// Pixels of the largest voxel of a .far file, or of the largest texel of a .tvx file.
-    pub(crate) fn mesh_lod(&self) -> f64 {
-        self.lod.unwrap_or(1.0)
-    }
-
     /// The scene's flags, with opacities of meshes for the rule that blends.
     pub(crate) fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
         let blends = self.coverage.is_some_and(Coverage::blends);

@@ -4,7 +4,7 @@ mod picture;
 mod scene;
 mod values;
 
-pub(crate) use camera::{CameraArgs, camera_line};
+pub(crate) use camera::CameraArgs;
 pub(crate) use engine::{EngineArgs, EngineName, RuleArgs};
 pub(crate) use picture::PictureArgs;
 pub(crate) use scene::SceneArgs;

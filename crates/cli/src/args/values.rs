@@ -23,13 +23,6 @@ pub(super) fn point(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Shortest decimals that [`point`] reads as the same point.
-pub(super) fn point_text(point: DVec3) -> String {
-    // Adding zero turns -0 into 0.
-    let p = point + DVec3::ZERO;
-    format!("{},{},{}", p.x, p.y, p.z)
-}
-
 /// Size of a picture in pixels: `512`, or `640x360`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Size {
@@ -100,23 +93,5 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
         None => Err(format!(
             "expected an amount of memory such as 512M or 2G, not `{text}`"
         )),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn numbers_of_bytes_have_units() {
-        for (text, expected) in [
-            ("1G", 1 << 30),
-            ("512MiB", 512 << 20),
-            ("1.5g", 3 << 29),
-            ("2T", 2 << 40),
-            ("65536k", 64 << 20),
-            ("67108864B", 64 << 20),
-            ("0", 0),
-        ] {
-            assert_eq!(super::bytes(text), Ok(expected), "{text}");
-        }
     }
 }

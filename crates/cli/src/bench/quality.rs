@@ -105,7 +105,7 @@ impl QualityArgs {
             choices = methods::default(is_mesh);
         }
         if is_mesh {
-            let (mesh, up) = scenes::read_mesh(name, &self.scene, console.progress())?;
+            let (mesh, up) = scenes::open_mesh(name, &self.scene, console)?;
             let bounds = Bounds::of_mesh(&mesh_box(&mesh, up == Up::Y));
             let camera = self.camera.camera(&bounds, up, size, 0.0);
             let made = Made::of_mesh(name, mesh, &choices, &self.scene, self.far_rays, console)?;
@@ -117,8 +117,7 @@ impl QualityArgs {
             return Err(CliError::usage(message));
         }
         let subject = subjects::open(name, &self.camera, &self.scene, size, console)?;
-        let made = Made::of_graph(Some(subject.graph));
-        Ok((made, choices, subject.camera))
+        Ok((Made::of_graph(Some(subject.graph)), choices, subject.camera))
     }
 }
 

@@ -68,13 +68,5 @@ fn standard_camera(name: &str, scene: &Scene, (width, height): (u32, u32)) -> Op
         _ => return None,
     };
     let [eye, target] = standpoint.map(|at| low + DVec3::from_array(at) * side);
-    Some(Camera {
-        eye,
-        target,
-        up: DVec3::Z,
-        fov_degrees: 60.0,
-        ortho: None,
-        width,
-        height,
-    })
+    Some(Camera::looking(eye, target, 60.0, (width, height)))
 }

@@ -1,20 +1,18 @@
 //! Draws what a page asks for, with the engines and files of the command line.
 
 use std::sync::PoisonError;
-use std::time::Instant;
 
 use clap::ValueEnum;
 use serde_json::{Value, json};
-use shiftvox::drawing::{Drawable, Shown, milliseconds_since};
+use shiftvox::drawing::{Drawable, Shown};
 use shiftvox::graph::{Graph, Placement};
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{self, Buffer, Pixels, Rows};
 use shiftvox::project::{Camera, Stop};
-use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, picked, quoted};
+use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request, command, picked};
 
 use super::flags::{self, MODEL_FLAGS};
 use super::{Chosen, Listed, MOST_DROPPED, Shared, overlay};
-use crate::args::camera_line;
 use crate::error::{CliError, Kind};
 use crate::methods::{self, DrawArgs};
 use crate::{model, report};
@@ -92,7 +90,6 @@ impl Shared {
         kept: &mut Kept<'s>,
         stop: &Stop,
     ) -> Result<Answer, CliError> {
-        let started = Instant::now();
         let settings = flags::settings(request)?;
         let listed = self.scene(request.scene)?;
         // All buffers are kept for the hash, and one of them has the picked voxel.
@@ -151,14 +148,14 @@ impl Shared {
         let (colors, legend) = overlay.unzip();
         let made = colors.map(|colors| Pixels::new(width, height, colors));
         let pixels = made.as_ref().unwrap_or(&*shown.pixels);
-        let mut picture = Vec::new();
-        if request.png {
+        let picture = if request.png {
+            let mut file = Vec::new();
             let failed = |error| CliError::new(Kind::Run, format!("no PNG: {error}"));
-            pixels.write(&mut picture).map_err(failed)?;
+            pixels.write(&mut file).map_err(failed)?;
+            file
         } else {
-            picture.reserve_exact(4 * width as usize * height as usize);
-            pixels.append_rgba(&mut picture);
-        }
+            pixels.rgba().into_flattened()
+        };
         let aa = (request.aa != 1).then(|| format!("--aa={}", request.aa));
         let words = request.words(FLAGS).chain(aa);
         let engine = opened.engine.to_possible_value();
@@ -176,7 +173,6 @@ impl Shared {
             "pixels_drawn": shown.pixels_drawn,
             "legend": legend,
             "draw_ms": shown.times_ms.last(),
-            "all_ms": milliseconds_since(started),
         });
         Ok((head, picture))
     }
@@ -210,11 +206,9 @@ impl Shared {
         words: impl Iterator<Item = String>,
         camera: &Camera,
     ) -> String {
-        let mut all = vec![format!("shiftvox {verb}"), quoted(scene)];
-        all.extend(self.scene_words.iter().cloned().chain(words));
-        all.push(format!("--size={}x{}", camera.width, camera.height));
-        all.push(camera_line(camera));
-        all.join(" ")
+        let words = self.scene_words.iter().cloned().chain(words);
+        let size = [camera.width, camera.height];
+        command(verb, scene, words, size, &camera.flags())
     }
 }
 
@@ -242,9 +236,5 @@ fn pick(shown: &Shown<'_>, graph: &Graph, [x, y]: [u32; 2]) -> Result<Answer, Cl
 fn of_model_size(camera: Camera) -> Camera {
     let longer = camera.width.max(camera.height).max(MODEL_SIDE);
     let side = |side: u32| (u64::from(side) * u64::from(MODEL_SIDE) / u64::from(longer)).max(1);
-    Camera {
-        width: side(camera.width) as u32,
-        height: side(camera.height) as u32,
-        ..camera
-    }
+    camera.of_size(side(camera.width) as u32, side(camera.height) as u32)
 }

@@ -56,18 +56,10 @@ fn setup(
     depth: u32,
     [eye, target]: [DVec3; 2],
     fov_degrees: f64,
-    (width, height): (u32, u32),
+    size: (u32, u32),
     [aa_log2, lod_px]: [u32; 2],
 ) -> FrameSetup {
-    let camera = Camera {
-        eye,
-        target,
-        up: DVec3::Z,
-        fov_degrees,
-        ortho: None,
-        width,
-        height,
-    };
+    let camera = Camera::looking(eye, target, fov_degrees, size);
     let mut options = SetupOptions::default();
     (options.aa_log2, options.lod_px) = (aa_log2, f64::from(lod_px));
     FrameSetup::new(&camera, placement, depth, &options).unwrap()

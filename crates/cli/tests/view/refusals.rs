@@ -1,7 +1,7 @@
 //! Rejected requests, which disturb no other page.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Stdio};
@@ -137,6 +137,7 @@ const QUESTIONS: &str = r#"{"scene":7} -> no scene
 {"flags":{"aov":"depth"}} -> may not set
 {"flags":{"coverage":"a b"}} -> no such value
 {"flags":{"coverage":"/etc/passwd"}} -> no such value
+{"flags":{"lod":"1 --outdir=x"}} -> no such value
 {"flags":{"lod":"1111111111111111111111111111111111111111111111111111111111111111111111111111111111"}} -> no such value
 {"flags":{"lod":"-1"}} -> 
 {"flags":{"bits":"99"}} -> 
@@ -390,6 +391,27 @@ fn a_page_that_leaves_or_does_not_read_loses_its_place() {
     pages[0].send(question(json!({ "size": [2048, 2048] })));
     page_in_time(&program, 25);
     assert_serves(&mut pages[7]);
+}
+
+#[test]
+fn half_open_connections_keep_no_browser_waiting() {
+    let program = scene();
+    let half_open = |_| {
+        let mut stream = program.stream();
+        let _ = stream.write_all(b"GET / HTTP/1.1\r\nHost: ");
+        stream
+    };
+    let mut others: Vec<TcpStream> = (0..300).map(half_open).collect();
+    let asked = Instant::now();
+    let Program { host, token, .. } = &program;
+    let page = program.request(&format!("GET /?token={token} | Host: {host}"));
+    assert!(page.starts_with("HTTP/1.1 200 "), "{page}");
+    assert!(asked.elapsed() < Duration::from_secs(5));
+    // The server ends the latest of the others, too.
+    let mut answer = String::new();
+    others[299].read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 408 "), "{answer}");
+    assert!(asked.elapsed() < Duration::from_secs(8));
 }
 
 #[test]

@@ -46,7 +46,7 @@ pub(super) struct Contender<'c> {
 
 pub(super) enum Drawer<'c> {
     Engine(Box<dyn Engine + Send>),
-    Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
+    Viewer(Box<Viewer<'c>>),
 }
 
 impl Contender<'_> {
@@ -211,9 +211,9 @@ impl<'p> Harness<'p> {
         let stats = self.in_pool(contender.threads, || match drawer {
             Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
             Drawer::Viewer(viewer) => {
-                viewer.render(setup)?;
+                viewer.render(setup, &[])?;
                 // Later frames are timed, so their counters are those of a second one.
-                let stats = viewer.render(setup)?;
+                let stats = viewer.render(setup, &[])?;
                 if let Some(shown) = viewer.frame() {
                     frame.clone_from(shown);
                 }
@@ -237,7 +237,7 @@ impl<'p> Harness<'p> {
                 Drawer::Engine(engine) => {
                     engine.draw_colors(&graph.view(), &graph.color, setup, colors_of)
                 }
-                Drawer::Viewer(viewer) => viewer.draw(setup).map(drop),
+                Drawer::Viewer(viewer) => viewer.render(setup, &[]).map(drop),
             };
             if let Drawer::Viewer(viewer) = drawer
                 && let Some(frame) = viewer.frame()

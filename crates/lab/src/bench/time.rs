@@ -27,11 +27,7 @@ impl Subject {
         size: (u32, u32),
         options: &SetupOptions,
     ) -> Result<FrameSetup, BenchError> {
-        let camera = Camera {
-            width: size.0,
-            height: size.1,
-            ..self.camera
-        };
+        let camera = self.camera.of_size(size.0, size.1);
         let graph = &self.graph;
         let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, options)?;
         Ok(setup)

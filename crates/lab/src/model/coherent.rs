@@ -215,15 +215,7 @@ mod tests {
     fn setups(graph: &Graph, [eye, target]: [[f64; 3]; 2], motion: Motion) -> Vec<FrameSetup> {
         let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
         let at = |of: [f64; 3]| low + DVec3::from_array(of) * f64::from(1u32 << graph.depth);
-        let camera = Camera {
-            eye: at(eye),
-            target: at(target),
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            ortho: None,
-            width: 80,
-            height: 56,
-        };
+        let camera = Camera::looking(at(eye), at(target), 60.0, (80, 56));
         let setup = |frame| {
             let camera = motion.after(&camera, frame).unwrap();
             let options = SetupOptions {

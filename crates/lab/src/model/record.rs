@@ -285,15 +285,8 @@ mod tests {
     use shiftvox::project::{Camera, Coverage, SetupOptions};
 
     fn setup(coverage: Coverage, cage: CageKind) -> FrameSetup {
-        let camera = Camera {
-            eye: DVec3::new(40.0, 30.0, 20.0),
-            target: DVec3::splat(8.0),
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            ortho: None,
-            width: 200,
-            height: 100,
-        };
+        let (eye, target) = (DVec3::new(40.0, 30.0, 20.0), DVec3::splat(8.0));
+        let camera = Camera::looking(eye, target, 60.0, (200, 100));
         let options = SetupOptions {
             bits: 32,
             frac: Some(8),

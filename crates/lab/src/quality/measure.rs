@@ -419,15 +419,8 @@ mod tests {
             depth: 99,
             ..graph.clone()
         };
-        let camera = Camera {
-            eye: DVec3::new(20.0, -9.0, 12.0),
-            target: DVec3::splat(4.0),
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            ortho: None,
-            width: 8,
-            height: 8,
-        };
+        let (eye, target) = (DVec3::new(20.0, -9.0, 12.0), DVec3::splat(4.0));
+        let camera = Camera::looking(eye, target, 60.0, (8, 8));
         let plan = QualityPlan {
             schedule: Schedule { warmup: 0, runs: 1 },
             motions: Vec::new(),

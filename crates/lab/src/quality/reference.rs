@@ -168,15 +168,9 @@ mod tests {
         graph.add_node([200, 40, 90], [None; 8]);
         let graph = graph.build().unwrap();
         let (x, z) = ((4.0 - left) / side, 1.0 - (4.0 - left) / side);
-        let camera = Camera {
-            eye: DVec3::new(x, -8.0, z),
-            target: DVec3::new(x, 0.0, z),
-            up: DVec3::Z,
-            fov_degrees: 2.0 * libm::atan(4.0 / (8.0 * side)).to_degrees(),
-            ortho: None,
-            width: 8,
-            height: 8,
-        };
+        let [eye, target] = [-8.0, 0.0].map(|y| DVec3::new(x, y, z));
+        let fov_degrees = 2.0 * libm::atan(4.0 / (8.0 * side)).to_degrees();
+        let camera = Camera::looking(eye, target, fov_degrees, (8, 8));
         let setup = FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default());
         (graph, setup.unwrap())
     }

@@ -18,15 +18,7 @@ fn view(spec: &str, eye: [f64; 3], target: [f64; 3], side: u32) -> (Graph, Frame
     let graph = open(&spec, &OpenOptions::default(), &Silent).unwrap().graph;
     let low = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
     let in_world = |at: [f64; 3]| low + DVec3::from_array(at) * f64::from(1u32 << graph.depth);
-    let camera = Camera {
-        eye: in_world(eye),
-        target: in_world(target),
-        up: DVec3::Z,
-        fov_degrees: 60.0,
-        ortho: None,
-        width: side,
-        height: side,
-    };
+    let camera = Camera::looking(in_world(eye), in_world(target), 60.0, (side, side));
     let options = SetupOptions::default();
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
     (graph, setup)

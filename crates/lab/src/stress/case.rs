@@ -54,15 +54,7 @@ impl FromStr for Case {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut scene = None;
-        let mut camera = Camera {
-            eye: DVec3::ZERO,
-            target: DVec3::Y,
-            up: DVec3::Z,
-            fov_degrees: 60.0,
-            ortho: None,
-            width: 48,
-            height: 48,
-        };
+        let mut camera = Camera::looking(DVec3::ZERO, DVec3::Y, 60.0, (48, 48));
         let mut shift = 0;
         let mut options = SetupOptions::default();
         for part in text.split(';').filter(|part| !part.is_empty()) {

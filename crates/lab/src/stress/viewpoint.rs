@@ -67,13 +67,8 @@ pub(super) fn viewpoints(
         let is_vertical = forward.x.abs() + forward.y.abs() < 1e-3 * forward.length();
         Viewpoint {
             camera: Camera {
-                eye,
-                target,
                 up: if is_vertical { DVec3::Y } else { DVec3::Z },
-                fov_degrees,
-                ortho: None,
-                width: pixels,
-                height: pixels,
+                ..Camera::looking(eye, target, fov_degrees, (pixels, pixels))
             },
             shift,
         }

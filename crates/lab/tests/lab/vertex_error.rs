@@ -16,15 +16,8 @@ const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
 /// along its width and at half its height, and has 60 degrees.
 fn views() -> [Camera; 4] {
     let centre = DVec3::splat(0.5);
-    let camera = |eye: DVec3, fov_degrees: f64| Camera {
-        eye,
-        target: centre,
-        up: DVec3::Z,
-        fov_degrees,
-        ortho: None,
-        width: 1024,
-        height: 1024,
-    };
+    let camera =
+        |eye: DVec3, fov_degrees: f64| Camera::looking(eye, centre, fov_degrees, (1024, 1024));
     let direction = DVec3::new(1.0, 0.9, 0.6).normalize();
     let away = |away: f64| {
         let fov = 2.0 * (HALF_DIAGONAL / away).atan();

@@ -56,13 +56,8 @@ fn pictures(file: &TexturedFile) -> Vec<u8> {
         let erosions = levels.into_iter().chain(auto);
         for (erosion, fov_degrees) in erosions.zip([1.0, 60.0, 170.0].into_iter().cycle()) {
             let camera = Camera {
-                eye,
-                target,
                 up: DVec3::Y,
-                fov_degrees,
-                ortho: None,
-                width: 64,
-                height: 60,
+                ..Camera::looking(eye, target, fov_degrees, (64, 60))
             };
             let view = view_of(&camera, (low, high)).unwrap();
             let mut raster = plain(4);

@@ -42,7 +42,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         return console.data(text.trim_end());
     }
     let space = open_space(space, &text, args.hardware.hw.as_deref())?;
-    let picked = picked(&args.explore, space.len())?;
+    let picked = picked(&args.explore, space.points())?;
     if args.hardware.print_hw {
         return print_hardware(&space, picked, console);
     }
@@ -73,7 +73,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         Some(path) => {
             let (file, recorded) = ResultsFile::open(path, &headers)?;
             let mut numbers = recorded.points.keys().map(|(_, number)| number);
-            if let Some(stranger) = numbers.find(|&&number| number >= space.len()) {
+            if let Some(stranger) = numbers.find(|&&number| number >= space.points()) {
                 let told = format!("there is no point {stranger}");
                 return Err(CliError::input(told).at(path.display()));
             }
@@ -109,7 +109,7 @@ pub(super) fn run(space: &str, args: &ModelArgs, console: &Console) -> Result<()
         let points = points.map_err(|error| error.at(name))?;
         found.push(Explorations {
             scene: name.clone(),
-            all: space.len(),
+            all: space.points(),
             front: front::front(&points),
             points,
         });
@@ -175,7 +175,7 @@ fn header(
         "explore",
         json!({
             "space": digest(format!("{space:?}").as_bytes()),
-            "space_points": space.len(),
+            "space_points": space.points(),
             "prices": digest(format!("{prices:?}").as_bytes()),
             "scene": {
                 "name": subject.name,

@@ -158,13 +158,9 @@ impl Space {
         Ok(space)
     }
 
-    pub fn len(&self) -> usize {
+    pub fn points(&self) -> usize {
         let sizes = self.axes.iter().map(|axis| axis.values.len());
         sizes.fold(1, usize::saturating_mul)
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// A point.
@@ -251,12 +247,12 @@ impl Space {
                 }
             }
         }
-        if self.len() > MAX_POINTS {
+        if self.points() > MAX_POINTS {
             return Err(SpaceError(format!(
                 "it has more than {MAX_POINTS} points; take values out of its ranges"
             )));
         }
-        (0..self.len()).try_for_each(|number| self.point(number).map(|_| ()))
+        (0..self.points()).try_for_each(|number| self.point(number).map(|_| ()))
     }
 }
 

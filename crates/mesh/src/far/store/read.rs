@@ -127,14 +127,8 @@ impl FarFile {
         &self.nodes
     }
 
-    /// Bytes of the file.
-    pub fn len(&self) -> u64 {
+    pub fn file_bytes(&self) -> u64 {
         self.section[1]
-    }
-
-    /// Never: a file has a header.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     /// Lowest and highest corner of all triangles, world units.
@@ -208,7 +202,7 @@ impl FarFile {
         let unpacked = unpacked.and_then(|(records, own)| NodeData::of(node, records, own));
         if let (Some(_), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
             let begin = place[0] / BROUGHT_IN * BROUGHT_IN;
-            let end = place[1].next_multiple_of(BROUGHT_IN).min(self.len());
+            let end = place[1].next_multiple_of(BROUGHT_IN).min(self.file_bytes());
             let _ = release(map, begin as usize, (end - begin) as usize);
         }
         let expected = "voxels within the grid and triangles within the box of node";

@@ -140,13 +140,8 @@ impl TexturedFile {
         self.section(self.layout.primitives)
     }
 
-    pub fn len(&self) -> u64 {
+    pub fn file_bytes(&self) -> u64 {
         self.layout.end()
-    }
-
-    /// Never: a file has a header.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     pub fn grids(&self) -> usize {
