@@ -179,7 +179,7 @@ impl Tool {
                     return Ok(cell);
                 };
                 let value = select(&self.outputs[&run], path)?;
-                show(value, pattern.trim_start_matches('~'))
+                show(value, pattern)
             };
             rows.push(table.columns.iter().map(cell).collect::<Outcome<Row>>()?);
         }
@@ -208,7 +208,7 @@ impl Tool {
         }
     }
 
-    /// A table with its foot: the command, and for times the computer.
+    /// A table with its foot: the command and the commit.
     fn markdown(&self, table: &Table, rows: &[Row]) -> Outcome<String> {
         let line = |cells: Vec<&str>| format!("| {} |\n", cells.join(" | "));
         let columns = || table.columns.iter();
@@ -219,22 +219,12 @@ impl Tool {
             text += &line(row.iter().map(String::as_str).collect());
         }
         let command = self.filled(&table.run, &BTreeMap::new());
-        let said = |program: &str, arguments: &[&str]| -> Outcome<String> {
-            let mut command = Command::new(program);
-            let output = command.args(arguments).current_dir(&self.root).output()?;
-            Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-        };
-        let commit = said("git", &["log", "-1", "--format=%h, %cs"])?;
-        let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let mut cpu = cpu
-            .lines()
-            .filter_map(|line| line.strip_prefix("model name\t: "));
-        let is_timed = columns().any(|(.., pattern)| pattern.starts_with('~'));
-        let computer = match cpu.next().filter(|_| is_timed) {
-            Some(cpu) => format!(", {cpu}, {}", said("rustc", &["-V"])?),
-            None => String::new(),
-        };
-        let foot = format!("<sub>`shiftvox {command}`; commit {commit}{computer}.</sub>");
+        let mut log = Command::new("git");
+        log.args(["log", "-1", "--format=%h, %cs"]);
+        let log = log.current_dir(&self.root).output()?;
+        let commit = String::from_utf8_lossy(&log.stdout);
+        let commit = commit.trim();
+        let foot = format!("<sub>`shiftvox {command}`; commit {commit}.</sub>");
         // Markdown is wrapped at 120 columns.
         let mut column = 120;
         for word in foot.split(' ') {
@@ -247,7 +237,7 @@ impl Tool {
     }
 }
 
-/// Cells that are not those of the page. Times (`~`) are not compared.
+/// Cells that are not those of the page.
 fn differences(name: &str, table: &Table, rows: &[Row], block: &str) -> Vec<String> {
     let heads: Row = table
         .columns
@@ -266,9 +256,8 @@ fn differences(name: &str, table: &Table, rows: &[Row], block: &str) -> Vec<Stri
     for (n, row) in std::iter::once(&heads).chain(rows).enumerate() {
         let there: Row = lines.next().map(cells).unwrap_or_default();
         for (k, cell) in row.iter().enumerate() {
-            let is_time = n > 0 && table.columns[k].2.starts_with('~');
             let found = there.get(k).map_or("nothing", String::as_str);
-            if !is_time && found != cell {
+            if found != cell {
                 let head = &heads[k];
                 faults.push(format!(
                     "{name}, row {n}, {head}: the page has {found}, now {cell}"

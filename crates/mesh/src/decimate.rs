@@ -13,7 +13,8 @@ use meshoptimizer_rs::{
 };
 
 use super::geometry::{plane_normal, point};
-use super::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
+use super::material::{to_light, to_srgb};
+use super::{Mesh, Surface};
 use shiftvox::graph::PackedNormal;
 
 /// How far a mesh is decimated.
@@ -136,10 +137,7 @@ impl Vertices {
                 let color = mesh.vertex_colors.get(corner as usize);
                 let mut color = color.copied().unwrap_or([255; 3]);
                 if let Some(tint) = tints.get(&(place, material)) {
-                    let linear = color.map(|byte| f64::from(srgb_to_linear(byte)));
-                    color = (DVec3::from_array(linear) * *tint)
-                        .to_array()
-                        .map(linear_to_srgb);
+                    color = to_srgb(to_light(color) * *tint);
                 }
                 let key = (place, material, color);
                 let vertex = *numbers.entry(key).or_insert_with(|| {

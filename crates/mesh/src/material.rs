@@ -2,10 +2,12 @@
 
 use std::sync::{Arc, LazyLock};
 
+use glam::DVec3;
 use shiftvox::scene::DEFAULT_COLOR;
 use shiftvox::srgb::to_linear;
 
 use crate::Texture;
+use crate::geometry::point;
 
 /// How the numbers of a colour in a file are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -102,6 +104,14 @@ pub fn linear_to_srgb(light: f64) -> u8 {
             above as u8 - u8::from(to_above > to_below)
         }
     }
+}
+
+pub(crate) fn to_light(bytes: [u8; 3]) -> DVec3 {
+    point(bytes.map(srgb_to_linear))
+}
+
+pub(crate) fn to_srgb(light: DVec3) -> [u8; 3] {
+    light.to_array().map(linear_to_srgb)
 }
 
 #[cfg(test)]

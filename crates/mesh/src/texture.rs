@@ -8,7 +8,7 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::material::{linear_to_srgb, srgb_to_linear};
+use crate::material::{to_light, to_srgb};
 
 /// The meaning of the opacity of texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -188,9 +188,7 @@ impl Level {
                     }
                 }
                 let opacity = (255.0 * sum.w / count + 0.5) as u8;
-                let [r, g, b] = (sum.truncate() / sum.w.max(f64::MIN_POSITIVE))
-                    .to_array()
-                    .map(linear_to_srgb);
+                let [r, g, b] = to_srgb(sum.truncate() / sum.w.max(f64::MIN_POSITIVE));
                 [r, g, b, opacity]
             };
             (0..size[0]).map(texel)
@@ -204,9 +202,8 @@ impl Level {
 }
 
 fn weighted([r, g, b, alpha]: [u8; 4]) -> DVec4 {
-    let color = DVec3::from_array([r, g, b].map(|byte| f64::from(srgb_to_linear(byte))));
     let opacity = f64::from(alpha) / 255.0;
-    (color * opacity).extend(opacity)
+    (to_light([r, g, b]) * opacity).extend(opacity)
 }
 
 /// A texture on a triangle: places of its corners in the picture.

@@ -5,7 +5,8 @@ use glam::DVec3;
 
 use super::blend::{DIRECTIONS, by_cosines, by_squares};
 use crate::geometry::point;
-use crate::{linear_to_srgb, srgb_to_linear};
+use crate::material::to_srgb;
+use crate::srgb_to_linear;
 use shiftvox::graph::PackedNormal;
 use shiftvox::graph::file::Stored;
 
@@ -167,10 +168,6 @@ pub struct Voxel {
     pub opacity_kind: OpacityKind,
 }
 
-fn color_bytes(color: DVec3) -> [u8; 3] {
-    color.to_array().map(linear_to_srgb)
-}
-
 fn color_of(bytes: &[u8]) -> DVec3 {
     point([0, 1, 2].map(|c| srgb_to_linear(bytes[c])))
 }
@@ -211,7 +208,7 @@ impl Voxel {
             Shader::Complex { normals, colors } => (&normals[..], &colors[..]),
         };
         out.extend(normals.iter().flat_map(|&n| normal_bytes(n)));
-        out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
+        out.extend(colors.iter().flat_map(|&c| to_srgb(c)));
         if self.opacity_kind != OpacityKind::Opaque {
             out.extend(self.sides.map(SideOpacity::byte));
         }

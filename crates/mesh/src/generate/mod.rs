@@ -6,7 +6,8 @@ mod kinds;
 pub(crate) mod maker;
 mod thin;
 
-use super::{Mesh, Surface, linear_to_srgb};
+use super::material::to_srgb;
+use super::{Mesh, Surface};
 use maker::Maker;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,7 +100,7 @@ pub fn ply(mesh: &Mesh) -> Vec<u8> {
                 let numbers = vector.as_vec3().to_array();
                 bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
             }
-            bytes.extend(triangle.colors[k].to_array().map(linear_to_srgb));
+            bytes.extend(to_srgb(triangle.colors[k]));
         }
     }
     // Fewer than 2^32 corners: these meshes are small.

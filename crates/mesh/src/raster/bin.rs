@@ -14,7 +14,7 @@ use super::samples::{Places, SUBPIXELS};
 use super::shade::{Nearness, Paint, light_of, point_seen};
 use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
 use crate::geometry::barycentric;
-use crate::material::{linear_to_srgb, srgb_to_linear};
+use crate::material::{to_light, to_srgb};
 use crate::{Surface, Triangle};
 
 #[derive(Debug, Clone, Copy)]
@@ -204,10 +204,7 @@ impl Buffer<'_> {
             known: HashMap::new(),
             last: None,
         };
-        let background = self
-            .options
-            .background
-            .map(|color| DVec3::from_array(color.map(|c| f64::from(srgb_to_linear(c)))));
+        let background = self.options.background.map(to_light);
         let per_pixel = self.options.samples.per_pixel();
         let middle = self.options.samples.middle();
         let pixels = (0..(self.columns * self.rows) as usize).map(|i| {
@@ -292,6 +289,6 @@ fn mixed(sum: DVec3, seen: f64, samples: f64, background: Option<DVec3>) -> [u8;
         None if seen <= 0.0 => return [0; 4],
         None => (sum / seen, (255.0 * seen / samples + 0.5) as u8),
     };
-    let [r, g, b] = mean.to_array().map(linear_to_srgb);
+    let [r, g, b] = to_srgb(mean);
     [r, g, b, alpha]
 }

@@ -3,8 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::Triangle;
 use crate::geometry::{plane_normal, point};
-use crate::{Triangle, linear_to_srgb, srgb_to_linear};
+use crate::material::{to_light, to_srgb};
 use shiftvox::graph::PackedNormal;
 use shiftvox::graph::file::Stored;
 
@@ -29,9 +30,7 @@ impl Primitive {
         Self {
             corners: triangle.corners.map(|p| p.as_vec3().to_array()),
             normals: triangle.normals.map(normal),
-            colors: triangle
-                .corner_colors()
-                .map(|c| c.to_array().map(linear_to_srgb)),
+            colors: triangle.corner_colors().map(to_srgb),
             spare: 0,
         }
     }
@@ -44,11 +43,10 @@ impl Primitive {
         let corners = self.positions();
         let plane = plane_normal(corners);
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(plane);
-        let color = |c: [u8; 3]| point(c.map(srgb_to_linear));
         Triangle {
             corners,
             normals: self.normals.map(normal),
-            colors: self.colors.map(color),
+            colors: self.colors.map(to_light),
             alpha: 1.0,
             sampler: None,
         }

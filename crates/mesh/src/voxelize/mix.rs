@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::touch::Prepared;
 use crate::Triangle;
 use crate::geometry::{Polygon, barycentric, blend};
-use crate::material::linear_to_srgb;
+use crate::material::to_srgb;
 use shiftvox::graph::PackedNormal;
 
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
@@ -67,7 +67,7 @@ impl Mix {
     /// sides, that of the first triangle's side.
     pub(super) fn finish(&self) -> ([u8; 3], Option<PackedNormal>) {
         let light = self.light / self.weight.max(f64::MIN_POSITIVE);
-        let color = light.to_array().map(linear_to_srgb);
+        let color = to_srgb(light);
         let is_clear = self.normal.length() >= CANCELLED * self.weight;
         let normal = if is_clear { self.normal } else { self.turned };
         let packed = PackedNormal::encode(normal);

@@ -10,8 +10,8 @@ use crate::far::store::{encode, surface};
 use crate::far::view::{self, ViewOptions};
 use crate::far::{FarData, FarFile};
 use crate::geometry::point;
+use crate::material::to_light;
 use crate::raster::{Light, RasterCamera};
-use crate::srgb_to_linear;
 
 /// The exponent of the bytes: a candidate with 32 times the bytes must have half of the error.
 const BYTES_WEIGH: f64 = 0.2;
@@ -220,9 +220,7 @@ fn draw(
     };
     let (picture, _) = view::draw(file, view, &options).map_err(failed)?;
     let pixels = picture.rgba.iter().zip(&picture.coverage);
-    let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {
-        let [r, g, b] = [r, g, b].map(|byte| f64::from(srgb_to_linear(byte)));
-        DVec4::new(r, g, b, f64::from(cover))
-    };
+    let pixel =
+        |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| to_light([r, g, b]).extend(f64::from(cover));
     Ok(pixels.map(pixel).collect())
 }

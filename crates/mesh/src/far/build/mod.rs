@@ -36,7 +36,8 @@ use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
-use crate::{Sampler, Surface, linear_to_srgb, mesh_box};
+use crate::material::to_srgb;
+use crate::{Sampler, Surface, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
 use count::Seen;
 use grid::Grid;
@@ -531,9 +532,7 @@ fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<Le
         LeafTriangle {
             corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
             normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-            colors: triangle
-                .corner_colors()
-                .map(|c| c.to_array().map(linear_to_srgb)),
+            colors: triangle.corner_colors().map(to_srgb),
         }
     };
     order.iter().map(leaf).collect()

@@ -262,11 +262,10 @@ impl Surface for Surfaces<'_> {
     fn triangle(&self, number: usize) -> Triangle<'_> {
         let stored = self.triangle_at(number);
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
-        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
         Triangle {
             corners: Surface::corners(self, number),
             normals: stored.normals.map(normal),
-            colors: stored.colors.map(color),
+            colors: stored.colors.map(crate::material::to_light),
             alpha: 1.0,
             sampler: None,
         }

@@ -11,7 +11,7 @@ use super::document::{
 use super::picture::{self, Places};
 use super::{Beside, Buffers, Fault, Place, Problem, broken};
 use crate::load::texture::Textures;
-use crate::material::linear_to_srgb;
+use crate::material::to_srgb;
 use crate::texture::AlphaMode;
 use crate::{ColorSpace, Material, MeshBuilder};
 
@@ -289,7 +289,7 @@ impl<'d> Reader<'d> {
             let world = placed.transform_point3(positions.point(at)).to_array();
             match &colors {
                 Some(colors) => {
-                    let color = colors.point(at).to_array().map(linear_to_srgb);
+                    let color = to_srgb(colors.point(at));
                     builder.colored_position(world, color)
                 }
                 None => builder.position(world),

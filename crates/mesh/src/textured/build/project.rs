@@ -6,11 +6,12 @@
 use glam::DVec3;
 
 use crate::geometry::barycentric;
+use crate::material::to_srgb;
 use crate::raster::Edges;
 use crate::textured::CellGrid;
 use crate::textured::record::Texel;
 use crate::voxelize::{OTHERS, Prepared};
-use crate::{Surface, Triangle, linear_to_srgb};
+use crate::{Surface, Triangle};
 use shiftvox::graph::PackedNormal;
 
 /// With less opacity, a texture has a hole.
@@ -103,7 +104,7 @@ pub(super) fn project<S: Surface + ?Sized>(
                     let outwards = DVec3::AXES[column.axis] * outwards;
                     let (normal, color) = triangle.seen_from(point, outwards, lattice.texel_size());
                     texture[texel] = Texel {
-                        color: color.to_array().map(linear_to_srgb),
+                        color: to_srgb(color),
                         opacity: 255,
                         normal: PackedNormal::encode(normal).0,
                     };

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
+use crate::material::to_light;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
 use crate::textured::store::{Grid, TexturedFile};
 use crate::voxelize::OTHERS;
-use crate::{Surface, Triangle, srgb_to_linear};
+use crate::{Surface, Triangle};
 use shiftvox::graph::PackedNormal;
 
 /// A surfel and its geometry.
@@ -111,8 +112,7 @@ impl Surface for Shown<'_> {
         if texel.is_clear() {
             return None;
         }
-        let color = texel.color.map(|byte| f64::from(srgb_to_linear(byte)));
         let normal = PackedNormal(texel.normal).decode();
-        Some((DVec3::from_array(color), normal.unwrap_or(face.outwards)))
+        Some((to_light(texel.color), normal.unwrap_or(face.outwards)))
     }
 }
