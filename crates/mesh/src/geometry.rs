@@ -71,6 +71,22 @@ impl Polygon {
         self.cut_at(inside, false)
     }
 
+    /// The part in a unit cube.
+    pub(crate) fn within(&self, corner: DVec3) -> Self {
+        let mut part = *self;
+        for axis in 0..3 {
+            let along = part.corners().iter().map(|p| p[axis]);
+            let high = along.clone().fold(f64::NEG_INFINITY, f64::max);
+            if along.fold(f64::INFINITY, f64::min) < corner[axis] {
+                part = part.cut_in_order(|p| p[axis] - corner[axis]);
+            }
+            if high > corner[axis] + 1.0 {
+                part = part.cut_in_order(|p| corner[axis] + 1.0 - p[axis]);
+            }
+        }
+        part
+    }
+
     fn cut_at(&self, inside: impl Fn(DVec3) -> f64, from_inner: bool) -> Self {
         let mut part = Self {
             corners: self.corners,

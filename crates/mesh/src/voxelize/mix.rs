@@ -86,11 +86,7 @@ fn area_of(corners: &[DVec3]) -> f64 {
 /// Area of the part of a triangle in the unit cube, and the mean of its corners; where they only touch, 0 and a point
 /// of the cube nearby.
 fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
-    let mut part = Polygon::of(triangle);
-    for axis in 0..3 {
-        part = part.cut_in_order(|p| p[axis]);
-        part = part.cut_in_order(|p| 1.0 - p[axis]);
-    }
+    let part = Polygon::of(triangle).within(DVec3::ZERO);
     let corners = part.corners();
     if corners.is_empty() {
         let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;

@@ -1,21 +1,10 @@
 //! The contents of files written by hand.
 
-use std::io;
-
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{Beside, ColorSpace, LoadOptions, Mesh, MeshFormat, SameFolder, read};
 
 use super::shapes::{load, squares};
-use super::shared::{has, soup};
-
-/// Files by a function of their name.
-pub(super) struct Files<F>(pub(super) F);
-
-impl<F: Fn(&str) -> Option<Vec<u8>>> Beside for Files<F> {
-    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        self.0(name).ok_or_else(|| io::ErrorKind::NotFound.into())
-    }
-}
+use super::shared::{Files, has, soup};
 
 /// Reads a mesh beside the library `a b.mtl`.
 fn obj(text: &str, mtl: &str, mtl_colors: ColorSpace) -> Mesh {

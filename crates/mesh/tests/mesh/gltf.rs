@@ -6,9 +6,8 @@ use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{LoadOptions, Mesh, MeshFormat, read};
 
-use super::files::Files;
 use super::shapes::{CORNERS, data_uri, gltf_json, load, square_buffer, square_json};
-use super::shared::soup;
+use super::shared::{Files, soup};
 
 /// Parts of the square's document with other values, and the corners of all triangles.
 const SCENES: &str = r#"

@@ -187,7 +187,8 @@ pub fn card(picture: &RgbaImage, cells: u32, inside: f64, mtl: &str) -> Mesh {
     let mut png = Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).unwrap();
     let mtl = format!("newmtl a\n{mtl}\n").into_bytes();
-    let files = Files(HashMap::from([("a.mtl", mtl), ("a.png", png.into_inner())]));
+    let files = HashMap::from([("a.mtl", mtl), ("a.png", png.into_inner())]);
+    let files = Files(|name: &str| files.get(name).cloned());
     let mut obj = "mtllib a.mtl\nusemtl a\n".to_owned();
     for (i, j) in (0..cells * cells).map(|cell| (cell % cells, cell / cells)) {
         for [x, y] in [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]] {
@@ -209,12 +210,12 @@ pub fn card(picture: &RgbaImage, cells: u32, inside: f64, mtl: &str) -> Mesh {
     .unwrap()
 }
 
-struct Files(HashMap<&'static str, Vec<u8>>);
+/// Files by a function of their name.
+pub struct Files<F>(pub F);
 
-impl Beside for Files {
+impl<F: Fn(&str) -> Option<Vec<u8>>> Beside for Files<F> {
     fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        let found = self.0.get(name).cloned();
-        found.ok_or_else(|| io::ErrorKind::NotFound.into())
+        self.0(name).ok_or_else(|| io::ErrorKind::NotFound.into())
     }
 }
 

@@ -106,21 +106,6 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &dyn Fn()
 }
 
 impl Polygon {
-    fn within(&self, corner: DVec3) -> Self {
-        let mut part = *self;
-        for axis in 0..3 {
-            let along = part.corners().iter().map(|p| p[axis]);
-            let high = along.clone().fold(f64::NEG_INFINITY, f64::max);
-            if along.fold(f64::INFINITY, f64::min) < corner[axis] {
-                part = part.cut_in_order(|p| p[axis] - corner[axis]);
-            }
-            if high > corner[axis] + 1.0 {
-                part = part.cut_in_order(|p| corner[axis] + 1.0 - p[axis]);
-            }
-        }
-        part
-    }
-
     fn fan(&self) -> impl Iterator<Item = [DVec3; 3]> {
         let corners = self.corners();
         (1..corners.len().max(1) - 1).map(|i| [corners[0], corners[i], corners[i + 1]])
