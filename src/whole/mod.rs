@@ -106,6 +106,12 @@ pub struct Prepared {
     overwrite: bool,
 }
 
+impl Prepared {
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
 /// Writes a file without naming it yet. Its folder is created if the folder above exists.
 pub fn prepare(
     path: &Path,

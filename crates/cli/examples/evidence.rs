@@ -1,20 +1,20 @@
 //! Makes and checks the tables and plots of the documents, from commands listed in `docs/evidence.toml`.
 //!
 //! ```text
-//! cargo run --release --example evidence -- --check            # exact figures of quick commands, as in CI
-//! cargo run --release --example evidence -- --check NAME...    # these
+//! cargo run --release --example evidence -- --check [NAME...]  # these, or all tables, as in CI
 //! cargo run --release --example evidence -- --write [NAME...]  # remakes these, or all
 //! ```
 //!
 //! A table is between `<!-- evidence: NAME -->` and `<!-- end: NAME -->` in its page. Each of its rows runs `shiftvox`
 //! with `--json`, and each column selects one value of the output.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
 use shiftvox_lab::report::grouped;
@@ -39,9 +39,6 @@ struct Table {
     page: PathBuf,
     /// A command without `shiftvox` and `--json`.
     run: String,
-    /// Whether CI runs it.
-    #[serde(default)]
-    quick: bool,
     /// Head, cell and pattern of each column.
     columns: Vec<(String, String, String)>,
     rows: Vec<BTreeMap<String, String>>,
@@ -112,7 +109,7 @@ impl Tool {
         })
     }
 
-    /// Writes or checks the named tables and plots, or all quick ones. Returns the differences.
+    /// Writes the named tables and plots, or all; checks the named ones, or all tables. Returns the differences.
     fn all(&mut self, writes: bool, names: &[String]) -> Outcome<Vec<String>> {
         let tables = std::mem::take(&mut self.registry.table);
         let plots = std::mem::take(&mut self.registry.plot);
@@ -120,10 +117,7 @@ impl Tool {
         if let Some(unknown) = names.iter().find(|name| !known(name)) {
             return Err(format!("docs/evidence.toml has no `{unknown}`").into());
         }
-        let wanted = |name: &String, quick| match names {
-            [] => writes || quick,
-            names => names.contains(name),
-        };
+        let wanted = |name: &String| names.is_empty() || names.contains(name);
         let mut faults = Vec::new();
         for (name, table) in &tables {
             let path = self.root.join(&table.page);
@@ -135,7 +129,7 @@ impl Tool {
             let Some((head, (block, tail))) = inside else {
                 return Err(format!("{} has no block `{name}`", path.display()).into());
             };
-            if !wanted(name, table.quick) {
+            if !wanted(name) {
                 continue;
             }
             eprintln!("{name}");
@@ -147,7 +141,8 @@ impl Tool {
                 faults.extend(differences(name, table, &rows, block));
             }
         }
-        for (name, plot) in plots.iter().filter(|(name, _)| wanted(name, false)) {
+        let all_plots = writes || !names.is_empty();
+        for (name, plot) in plots.iter().filter(|(name, _)| all_plots && wanted(name)) {
             eprintln!("{name}");
             let file = self.root.join(&plot.file);
             let made = tempfile::Builder::new().suffix(".svg").tempfile()?;
@@ -165,14 +160,18 @@ impl Tool {
 
     /// The cells of all rows.
     fn rows(&mut self, table: &Table) -> Outcome<Vec<Row>> {
+        let runs = table.rows.iter().map(|vars| self.filled(&table.run, vars));
+        let new: BTreeSet<String> = runs.filter(|run| !self.outputs.contains_key(run)).collect();
+        let made = new.into_par_iter().map(|run| {
+            let output = self.run(&format!("{run} --json"))?;
+            let output = serde_json::from_slice(&output).map_err(|error| error.to_string())?;
+            Ok((run, output))
+        });
+        self.outputs
+            .extend(made.collect::<Result<Vec<(String, Value)>, String>>()?);
         let mut rows = Vec::new();
         for vars in &table.rows {
             let run = self.filled(&table.run, vars);
-            if !self.outputs.contains_key(&run) {
-                let output = self.run(&format!("{run} --json"))?;
-                let output = serde_json::from_slice(&output)?;
-                self.outputs.insert(run.clone(), output);
-            }
             let cell = |(_, cell, pattern): &(String, String, String)| -> Outcome<String> {
                 let cell = self.filled(cell, vars);
                 let Some(path) = cell.strip_prefix('.') else {
@@ -195,15 +194,16 @@ impl Tool {
     }
 
     /// Stdout of a command.
-    fn run(&self, command: &str) -> Outcome<Vec<u8>> {
+    fn run(&self, command: &str) -> Result<Vec<u8>, String> {
         let mut process = Command::new(&self.program);
         process.args(command.split_whitespace()).arg("--quiet");
-        let output = process.current_dir(&self.root).output()?;
+        let output = process.current_dir(&self.root).output();
+        let output = output.map_err(|error| error.to_string())?;
         match output.status.success() {
             true => Ok(output.stdout),
             false => {
                 let reason = String::from_utf8_lossy(&output.stderr);
-                Err(format!("shiftvox {command}: {reason}").into())
+                Err(format!("shiftvox {command}: {reason}"))
             }
         }
     }

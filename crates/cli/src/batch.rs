@@ -170,7 +170,9 @@ fn files(folder: &str) -> Result<Vec<String>, CliError> {
         let is_hidden = path
             .file_name()
             .is_some_and(|of| of.to_string_lossy().starts_with('.'));
-        if is_scene(&name.to_lowercase()) && !is_hidden && path.is_file() {
+        // A link to nothing is a scene that fails.
+        let is_file = path.is_file() || fs::metadata(&path).is_err();
+        if is_scene(&name.to_lowercase()) && !is_hidden && is_file {
             found.push(name);
         }
     }

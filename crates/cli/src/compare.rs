@@ -208,7 +208,7 @@ fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Resu
         console.report("compare", fields);
         return Ok(());
     }
-    console.data(report::table(&[comparison.kind, "value"], rows))
+    console.data(report::table(&[comparison.kind, "value"], &rows))
 }
 
 fn judge(thresholds: &[(String, f64)], numbers: &[(&str, f64)]) -> Result<(), CliError> {

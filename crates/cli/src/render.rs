@@ -15,6 +15,7 @@ use shiftvox::drawing::{DrawError, Shown};
 use shiftvox::frame::count_samples;
 use shiftvox::picture;
 use shiftvox::project::Stop;
+use shiftvox::whole;
 use shiftvox_lab::bench::Summary;
 
 #[derive(Debug, Args)]
@@ -26,7 +27,7 @@ pub(super) struct RenderArgs {
     /// none with --hash, --expect-hash, --print-camera or --repeat]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Leave out scenes whose picture exists
+    /// Write only files that do not exist, and leave out scenes that have them all
     #[arg(long, conflicts_with_all = ["force", "hash", "expect_hash"])]
     resume: bool,
     /// Draw part K of N of the scenes, to share a batch among computers
@@ -93,7 +94,9 @@ fn render_one(
     let name = &job.scene;
     let files = job.picture.as_deref();
     let files = files.map_or_else(Vec::new, |path| outputs::paths(path, &args.picture.aov));
-    if args.resume && files.iter().all(|path| path.is_file()) {
+    let mut missing = files.clone();
+    missing.retain(|path| !(args.resume && path.is_file()));
+    if args.resume && missing.is_empty() {
         console.detail(format!("{}: exists, left out", files[0].display()));
         return Ok(json!({ "scene": name, "output": job.picture, "is_left_out": true }));
     }
@@ -108,7 +111,7 @@ fn render_one(
     let size = args.picture.size();
     let output = &job.picture;
     if let Some(path) = output {
-        outputs::check_free(&files, args.force)?;
+        outputs::check_free(&missing, args.force)?;
         outputs::check_room(path, &args.picture.aov, size, 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
@@ -130,7 +133,10 @@ fn render_one(
         })?;
     }
     if let Some(path) = output {
-        outputs::write(&shown, path, &args.picture.aov, args.force)?;
+        let replace = args.force || args.resume;
+        let mut made = outputs::prepare(&shown, path, &args.picture.aov, replace)?;
+        made.retain(|file| !(args.resume && file.path().is_file()));
+        whole::keep(made)?;
     }
     print_times(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
@@ -164,7 +170,8 @@ fn print_times(
             ms("max ms", times.max_ms),
         ];
         rows.extend(counters.clone());
-        console.data(report::table(&[name, "one frame"], rows))?;
+        let table = report::table(&["", "one_frame"], &rows);
+        console.data(format!("{name}\n{table}"))?;
     }
     if let Some(path) = output {
         let (path, ms) = (path.display(), times.median_ms);

@@ -6,6 +6,7 @@ use shiftvox::drawing::{Figures, Shown};
 use shiftvox::project::Camera;
 use shiftvox_lab::bench::Summary;
 pub(super) use shiftvox_lab::report::grouped;
+use shiftvox_lab::report::{TextColumn, in_lines};
 
 pub(super) fn camera(camera: &Camera) -> Value {
     json!({
@@ -67,22 +68,13 @@ pub(super) fn figure(value: &Value) -> String {
     }
 }
 
-/// A table in plain text, first column left, the others right.
-pub(super) fn table(head: &[&str], mut rows: Vec<Vec<String>>) -> String {
-    rows.insert(0, head.iter().map(|&cell| cell.to_owned()).collect());
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+/// A table in lines of at most 100 letters, first column left, the others right. Heads are broken at each `_`.
+pub(super) fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+    let column = |(at, head): (usize, &&str)| {
+        TextColumn::new(at == 0, head, rows.iter().map(move |row| row[at].clone()))
     };
-    let line = |row: &Vec<String>| {
-        let cell = |(column, cell): (usize, &String)| match (column, width(column)) {
-            (0, width) => format!("{cell:<width$}"),
-            (_, width) => format!("  {cell:>width$}"),
-        };
-        let line: String = row.iter().enumerate().map(cell).collect();
-        line.trim_end().to_owned()
-    };
-    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+    let columns: Vec<TextColumn> = head.iter().enumerate().map(column).collect();
+    in_lines("", &columns).trim_start_matches('\n').to_owned()
 }
 
 /// The fields of a JSON object as lines, then its arrays of objects as tables.
@@ -133,10 +125,8 @@ fn tables_of(name: &str, rows: &[Value]) -> Vec<String> {
         .into_iter()
         .filter(|(_, value)| inner(value).is_none());
     let keys: Vec<&str> = keys.map(|(key, _)| key.as_str()).collect();
-    let heads: Vec<String> = keys.iter().map(|key| key.replace('_', " ")).collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let cells = |row: &Value| keys.iter().map(|key| figure(&row[*key])).collect();
-    let mut tables = vec![table(&heads, rows.iter().map(cells).collect())];
+    let mut tables = vec![table(&keys, &rows.iter().map(cells).collect::<Vec<_>>())];
     for (number, row) in rows.iter().enumerate() {
         for (key, rows) in ordered(row)
             .into_iter()

@@ -25,6 +25,7 @@ use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::model::frame::{self, Counted};
 use shiftvox_lab::model::ray_caster;
 use shiftvox_lab::model::report::{Drawn, Report};
+use shiftvox_lab::rival::Rival;
 
 pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     if let Some(space) = &args.explore.explore {
@@ -40,6 +41,7 @@ pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     vectors::check(args)?;
     let hardware = args.hardware()?;
     let prices = args.hardware.prices()?;
+    let rival = args.hardware.rival()?;
     let names = subjects::names_or(&args.scenes, &[subjects::BUNDLED]);
     let [name] = names.as_slice() else {
         return Err(CliError::usage("model looks at one scene at a time"));
@@ -47,7 +49,7 @@ pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     if args.coherent.is_asked() {
         return coherent::run(name, args, console).map_err(|e| e.at(name));
     }
-    let found = find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
+    let found = find(args, name, hardware, (&rival, &prices), console).map_err(|e| e.at(name))?;
     output::write(&found, args, console)
 }
 
@@ -62,7 +64,7 @@ fn find(
     args: &ModelArgs,
     name: &str,
     hardware: Hardware,
-    prices: &Prices,
+    (rival, prices): (&Rival, &Prices),
     console: &Console,
 ) -> Result<Found, CliError> {
     let size = args.size.pair();
@@ -85,7 +87,7 @@ fn find(
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = frame::true_setup(graph, &subject.camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
-    let designs = (&args.hardware.rival()?, &hardware);
+    let designs = (rival, &hardware);
     let ray_caster = ray_caster::measure(graph, &setup, designs, prices, &exact)?;
     progress.end();
     let drawn = Drawn {

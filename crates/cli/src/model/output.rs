@@ -78,9 +78,11 @@ fn summary(found: &Found) -> Table {
         (
             "cycles",
             format!(
-                "{}: {:.1} per record, {:.1} per pixel; {:.1} frames per second at {} MHz",
+                "{}: {:.1} for each of the {} records of {} contexts, {:.1} per pixel; {:.1} frames per second at {} MHz",
                 grouped(cycles.cycles),
                 cycles.cycles_per_record,
+                grouped(cycles.records),
+                cycles.contexts,
                 cycles.cycles_per_pixel,
                 cycles.frames_per_second,
                 cycles.clock_mhz

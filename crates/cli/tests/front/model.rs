@@ -1,5 +1,6 @@
 //! The sums in the report of `model`. Other rules are rows of `cases/models.txt`.
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::program::{Folder, ROOT, number};
@@ -96,7 +97,8 @@ fn wide_views_take_bounded_work() {
     };
     let knots = [1, 2, 4].map(|depth| format!("knot.obj --depth {depth}"));
     let scenes = knots.iter().map(String::as_str);
-    for scene in scenes.chain(["wires.obj --depth 2", "tree.vox"]) {
+    let scenes: Vec<&str> = scenes.chain(["wires.obj --depth 2", "tree.vox"]).collect();
+    scenes.into_par_iter().for_each(|scene| {
         for fov in [150.0, 165.0, 178.0, 179.9, 179.999] {
             for rule in ["exact", "alpha"] {
                 let view = format!("--fov {fov} --coverage {rule} --size 8");
@@ -115,5 +117,5 @@ fn wide_views_take_bounded_work() {
                 }
             }
         }
-    }
+    });
 }

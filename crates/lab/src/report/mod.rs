@@ -3,4 +3,4 @@
 pub mod plot;
 pub mod table;
 
-pub use table::{Cell, Row, Table, grouped};
+pub use table::{Cell, Row, Table, TextColumn, grouped, in_lines};

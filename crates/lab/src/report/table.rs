@@ -207,40 +207,14 @@ impl Table {
         self
     }
 
-    /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
-    /// Columns without room go to a second block, which begins with the first columns of words again.
+    /// The table as text, by [`in_lines`].
     pub fn text(&self) -> String {
         let column = |(column, name): (usize, &&'static str)| {
-            let head = name.split('_').map(str::to_owned).collect();
-            let cells = self.rows.iter().map(|row| &row[column]);
-            let cells = cells.map(|cell| wrapped(&cell.for_people(), CELL_WIDTH));
-            let cells: Vec<Vec<String>> = std::iter::once(head).chain(cells).collect();
-            let widths = cells.iter().flatten().map(|line| line.chars().count());
-            Column {
-                is_of_words: self.is_of_words(column),
-                width: widths.max().unwrap_or(0),
-                cells,
-            }
+            let cells = self.rows.iter().map(|row| row[column].for_people());
+            TextColumn::new(self.is_of_words(column), name, cells)
         };
-        let columns: Vec<Column> = self.columns.iter().enumerate().map(column).collect();
-        let width = |block: &[&Column]| block.iter().map(|of| of.width + 2).sum::<usize>();
-        let mut keys: Vec<&Column> = columns.iter().take(1).collect();
-        let further = columns.iter().skip(1);
-        for key in further.take_while(|column| column.is_of_words) {
-            if width(&keys) + key.width < MOST_KEY_WIDTH {
-                keys.push(key);
-            }
-        }
-        let mut text = wrapped(&self.title, TEXT_WIDTH).join("\n");
-        let mut block: Vec<&Column> = Vec::new();
-        for column in &columns {
-            if width(&block) + column.width > TEXT_WIDTH && block.len() > keys.len() {
-                text += &(of_block(&block) + "\n");
-                block.clone_from(&keys);
-            }
-            block.push(column);
-        }
-        text + &of_block(&block)
+        let columns: Vec<TextColumn> = self.columns.iter().enumerate().map(column).collect();
+        in_lines(&self.title, &columns)
     }
 
     pub fn csv(&self) -> String {
@@ -254,14 +228,51 @@ impl Table {
     }
 }
 
-struct Column {
+pub struct TextColumn {
     is_of_words: bool,
     width: usize,
     /// The name and the cells, each in lines.
     cells: Vec<Vec<String>>,
 }
 
-fn of_block(block: &[&Column]) -> String {
+impl TextColumn {
+    /// The name is broken at each `_`.
+    pub fn new(is_of_words: bool, name: &str, cells: impl Iterator<Item = String>) -> Self {
+        let head = name.split('_').map(str::to_owned).collect();
+        let cells = cells.map(|cell| wrapped(&cell, CELL_WIDTH));
+        let cells: Vec<Vec<String>> = std::iter::once(head).chain(cells).collect();
+        let widths = cells.iter().flatten().map(|line| line.chars().count());
+        Self {
+            is_of_words,
+            width: widths.max().unwrap_or(0),
+            cells,
+        }
+    }
+}
+
+/// A title and columns in lines of at most 100 letters: words to the left, numbers to the right. Columns without room go
+/// to a second block, which begins with the first columns of words again.
+pub fn in_lines(title: &str, columns: &[TextColumn]) -> String {
+    let width = |block: &[&TextColumn]| block.iter().map(|of| of.width + 2).sum::<usize>();
+    let mut keys: Vec<&TextColumn> = columns.iter().take(1).collect();
+    let further = columns.iter().skip(1);
+    for key in further.take_while(|column| column.is_of_words) {
+        if width(&keys) + key.width < MOST_KEY_WIDTH {
+            keys.push(key);
+        }
+    }
+    let mut text = wrapped(title, TEXT_WIDTH).join("\n");
+    let mut block: Vec<&TextColumn> = Vec::new();
+    for column in columns {
+        if width(&block) + column.width > TEXT_WIDTH && block.len() > keys.len() {
+            text += &(of_block(&block) + "\n");
+            block.clone_from(&keys);
+        }
+        block.push(column);
+    }
+    text + &of_block(&block)
+}
+fn of_block(block: &[&TextColumn]) -> String {
     let mut text = String::from("\n");
     for row in 0..block.first().map_or(0, |column| column.cells.len()) {
         let lines = block.iter().map(|column| column.cells[row].len()).max();

@@ -121,6 +121,16 @@ fn text_of(name: &str) -> Result<String, CliError> {
     if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
         return Ok((*text).to_owned());
     }
+    if !Path::new(name).exists() {
+        let names: Vec<&str> = SPACES.iter().map(|(name, _)| *name).collect();
+        let advice = format!(
+            "take one of {}, or write one like those that --print-space prints",
+            names.join(", ")
+        );
+        return Err(
+            CliError::input(format!("no space and no file is called {name}")).advise(advice),
+        );
+    }
     document::read_settings(Path::new(name))
 }
 
