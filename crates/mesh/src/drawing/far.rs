@@ -30,7 +30,6 @@ impl FarStyle {
             opacity: self.opacity,
             light: light_of(view, self.shading),
             background: self.background.color(),
-            ..ViewOptions::default()
         }
     }
 }
