@@ -28,7 +28,7 @@ pub use error::SceneError;
 pub use fault::{Fault, Place, Problem};
 pub use file::{SceneFile, Source};
 pub use formats::{
-    FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, write_ply,
+    FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, is_text_stl, write_ply,
 };
 pub use mesh::{MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
 pub use open::{OpenOptions, Opened, open, open_bytes, open_source};

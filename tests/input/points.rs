@@ -137,6 +137,11 @@ fn clouds_of_the_point_cloud_library() {
         assert!(voxels[0].normal.is_some() && info.has_colors && info.has_normals);
         refused(bytes, "point 0 at byte ");
     }
+    // Also a colour whose bits are no number.
+    let mut bytes = pcd();
+    let first_color = bytes.len() - 2 * 38 + 22;
+    bytes[first_color + 2..][..2].copy_from_slice(&[0x80, 0xff]);
+    check(&bytes, Some(0.5), &[([2, -6, 1], [0x80, 20, 30])]);
     let plain = "VERSION .7\nFIELDS x y z rgba\nSIZE 4 4 4 4\nTYPE I U F U\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2 3 1315860\n";
     assert_eq!(read_plain(plain.as_bytes()), [([1, 2, 3], [20, 20, 20])]);
     refused(

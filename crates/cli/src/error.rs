@@ -166,7 +166,7 @@ exit_codes! {
         far::BuildError::File { .. } => Kind::Run,
     }
     textured::BuildError {
-        textured::BuildError::Empty | textured::BuildError::Range => Kind::Input,
+        textured::BuildError::Empty | textured::BuildError::Range | textured::BuildError::FarAway { .. } => Kind::Input,
         textured::BuildError::TooMany(_) => Kind::Limit,
         textured::BuildError::Grid { .. } | textured::BuildError::Grids => Kind::Usage,
     }

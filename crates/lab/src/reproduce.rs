@@ -111,7 +111,7 @@ pub fn rows(
         if let Some((_, ms)) = found.filter(|_| row.text("growing") == "pixels") {
             row.put("paper_ms", *ms);
             let quotient = ms.parse::<f64>().ok().map(|ms| ms / row.number("ms"));
-            row.put("paper_over_ours", quotient.map(|q| Cell::Number(q, 0)));
+            row.put("paper_over_ours", quotient.map(|q| Cell::Number(q, 2)));
             let exponent = paper_law.map(|law| Cell::ratio(law.exponent));
             row.put("paper_exponent", exponent);
         }

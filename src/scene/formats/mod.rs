@@ -183,7 +183,13 @@ fn no(_: &[u8], _: u64) -> bool {
 }
 
 fn is_stl(beginning: &[u8], length: u64) -> bool {
-    beginning.starts_with(b"solid") || is_binary_stl(beginning, length)
+    is_text_stl(beginning) || is_binary_stl(beginning, length)
+}
+
+/// Begins with `solid` in letters of any case, behind blanks or not.
+pub fn is_text_stl(beginning: &[u8]) -> bool {
+    let word = text(beginning).trim_ascii_start().get(..5);
+    word.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
 /// 84 bytes of header, of which the last four count the triangles, and 50 bytes per triangle.
@@ -245,6 +251,7 @@ mod tests {
             (b"v 0 0 0\n", Some(FileKind::Obj)),
             (b"velvet 1 2 3\n", None),
             (b"solid cube\n facet normal", Some(FileKind::Stl)),
+            (b"\xef\xbb\xbf\n SOLID cube\n", Some(FileKind::Stl)),
             (b"", None),
         ] {
             assert_eq!(detect(begins, 0), kind, "{}", begins.escape_ascii());

@@ -38,7 +38,7 @@ pub(super) fn read(
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
     let mut source = Source::new(&mut input.reader);
-    let header = read_header(&mut source)?;
+    let mut header = read_header(&mut source)?;
     let find = |name: &str| header.fields.iter().position(|f| f.name == name.as_bytes());
     let three = |names: [&str; 3]| {
         let [a, b, c] = names.map(find);
@@ -48,6 +48,12 @@ pub(super) fn read(
     let positions = three(["x", "y", "z"]).ok_or_else(missing)?;
     let normals = three(["normal_x", "normal_y", "normal_z"]);
     let color = find("rgb").or(find("rgba"));
+    if let Some(at) = color.filter(|_| !header.is_text)
+        && header.fields[at].scalar == Scalar::F32
+    {
+        // Bits that are no number would change on their way through one.
+        header.fields[at].scalar = Scalar::U32;
+    }
     let (mut cloud, mut known) = (Cloud::new(options), KnownNormals::default());
     let (mut line, mut values) = (Vec::new(), Vec::new());
     for point in 0..header.points {

@@ -1,5 +1,7 @@
 //! `bench time`: engines and their variants, scenes, sizes and numbers of threads become rows.
 
+use std::collections::HashMap;
+
 use super::candidate::{Candidate, Family, Frames, MakeEngine};
 use super::harness::{BenchError, Contender, Drawer, Harness};
 use super::power_law::PowerLaw;
@@ -107,17 +109,16 @@ pub fn measure(
         row.put("wrong_voxel", error.wrong_voxel);
         row.put("covered", error.covered);
     })?;
-    let mut whole_ms = f64::NAN;
+    let mut whole_ms = HashMap::new();
     for ((row, (times, counters)), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
         times.put(row);
         let ms = times.best().median_ms;
+        let alike = ["scene", "size", "engine", "threads"].map(|name| row.text(name));
         if row.text("variant") == EVERYTHING_ON {
-            whole_ms = ms;
+            whole_ms.insert(alike.clone(), ms.max(f64::MIN_POSITIVE));
         }
-        row.put(
-            "time_ratio",
-            Cell::Number(ms / whole_ms.max(f64::MIN_POSITIVE), 2),
-        );
+        let ratio = whole_ms.get(&alike).map(|whole| ms / whole);
+        row.put("time_ratio", ratio.map(|ratio| Cell::Number(ratio, 2)));
         let work_unit = row.text("work_unit");
         for (name, count) in counters {
             if name == work_unit {

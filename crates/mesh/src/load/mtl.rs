@@ -128,11 +128,12 @@ fn picture(mut rest: &str) -> Option<(String, Place)> {
             _ => (1, true),
         };
         for k in 0..most {
-            let (word, after) = rest.split_once(char::is_whitespace)?;
-            let number = word.parse::<f64>();
-            if !any && number.is_err() {
+            let found = rest.split_once(char::is_whitespace);
+            let number = found.map(|(word, _)| word.parse::<f64>());
+            if !any && !matches!(number, Some(Ok(_))) {
                 break;
             }
+            let ((word, after), number) = (found?, number?);
             match (option, number) {
                 ("-s", Ok(number)) if k < 2 => place.scale[k] = number,
                 ("-o", Ok(number)) if k < 2 => place.offset[k] = number,
@@ -160,5 +161,19 @@ impl Found {
             },
         };
         (material, self.pictures)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn options_take_one_number_or_more() {
+        let scale =
+            |options: &str| super::picture(options).map(|(name, place)| (name, place.scale));
+        let name = || "a.png".to_owned();
+        assert_eq!(scale("-s 2 a.png"), Some((name(), [2.0, 1.0])));
+        assert_eq!(scale("-s 2 3 a.png"), Some((name(), [2.0, 3.0])));
+        assert_eq!(scale("-s 2 3 1 -mm 0 1 a.png"), Some((name(), [2.0, 3.0])));
+        assert_eq!(scale("-clamp on"), None);
     }
 }

@@ -170,6 +170,12 @@ impl File {
         self.libraries += 1;
         let library = match beside.read(name) {
             Ok(bytes) => mtl::read(&bytes, options),
+            Err(_) if name.contains(char::is_whitespace) => {
+                for name in name.split_whitespace() {
+                    self.library(name, beside, options, builder);
+                }
+                return;
+            }
             Err(error) => {
                 return builder.warn(format!(
                     "the material library {name} cannot be read ({error}); its materials got the default colour"

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::str::SplitWhitespace;
 
-use shiftvox::scene::is_binary_stl;
+use shiftvox::scene::{is_binary_stl, is_text_stl};
 
 use super::{Fault, Place, Problem};
 use crate::{Material, MeshBuilder};
@@ -38,11 +38,11 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
         }
         return Ok(());
     }
-    if !bytes.starts_with(b"solid") {
+    if !is_text_stl(bytes) {
         return Err(cut_binary(bytes).into());
     }
     let text = String::from_utf8_lossy(bytes).to_ascii_lowercase();
-    let (_, body) = text.split_once('\n').unwrap_or_default();
+    let (_, body) = text.trim_start().split_once('\n').unwrap_or_default();
     let mut words = body.split_whitespace();
     for number in 1u64.. {
         match facet(&mut words) {

@@ -42,6 +42,9 @@ impl Picture {
             let size = decoder.dimensions().unwrap_or_default();
             (width, height) = (size.0 as u32, size.1 as u32);
             check_size(width, height, most_bytes)?;
+            if let Some(ColorSpace::CMYK | ColorSpace::YCCK) = decoder.input_colorspace() {
+                return Err("its colours are for printing (CMYK); save it as RGB".to_owned());
+            }
             let bytes = decoder.decode().map_err(failed)?;
             if bytes.len() != 4 * size.0 * size.1 {
                 return Err("its colours are not supported".to_owned());

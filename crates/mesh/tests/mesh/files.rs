@@ -100,6 +100,28 @@ fn a_model_is_opaque_if_all_of_it_would_vanish() {
 }
 
 #[test]
+fn one_line_names_several_libraries() {
+    let text = "mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n";
+    let libraries = Files(|name: &str| match name {
+        "a.mtl" => Some(b"newmtl red\n".to_vec()),
+        "b.mtl" => Some(b"newmtl blue\n".to_vec()),
+        _ => None,
+    });
+    let (text, options) = (text.as_bytes(), LoadOptions::default());
+    let mesh = read(
+        text,
+        MeshFormat::Obj,
+        "a file",
+        &libraries,
+        &options,
+        &Silent,
+    )
+    .unwrap();
+    assert_eq!(materials(&mesh), ["red", "blue"]);
+    assert!(mesh.warnings().is_empty());
+}
+
+#[test]
 fn only_the_folder_of_the_mesh_is_searched() {
     let folder = tempfile::tempdir().unwrap();
     let inside = folder.path().join("inside");

@@ -26,7 +26,7 @@ pub const CORNERS: [[f32; 3]; 4] = [
 /// One square in every format and encoding: two triangles in the plane z = 0, from (0, 0) to (1, 1).
 pub fn squares() -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
     let obj = "o square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n";
-    let stl = "solid s\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 1 1 0\n\
+    let stl = "\u{feff} SOLID s\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 1 1 0\n\
         endloop\n endfacet\n FACET NORMAL 0 0 1\n  OUTER LOOP\n   VERTEX 0 0 0\n   VERTEX 1 1 0\n\
         VERTEX 0 1 0\n  ENDLOOP\n ENDFACET\nendsolid s\n";
     let ply = ply_header("ascii", 4, "", "int vertex_indices")

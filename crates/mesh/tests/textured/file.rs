@@ -85,6 +85,9 @@ fn invalid_options_are_refused() {
         let refused = build(&mesh, &options(grids, texels, Element::Cube), &Silent);
         assert_eq!(refused.err(), Some(error));
     }
+    let far = mesh_of(&rectangle(0.0, [1e6; 2], [1e6 + 4.0; 2])).unwrap();
+    let refused = build(&far, &BuildOptions::default(), &Silent);
+    assert!(matches!(refused, Err(BuildError::FarAway { .. })));
     let nothing = Instances::new(mesh, Vec::new());
     let refused = build(&nothing, &BuildOptions::default(), &Silent);
     assert_eq!(refused.err(), Some(BuildError::Empty));
@@ -92,7 +95,7 @@ fn invalid_options_are_refused() {
 
 #[test]
 fn flat_and_distant_meshes_are_built() {
-    for (at, size) in [(0.0, 1.0), (1e6, 4.0), (-1e30, 1e29), (0.0, 1e-30)] {
+    for (at, size) in [(0.0, 1.0), (1e4, 4.0), (-1e30, 1e29), (0.0, 1e-30)] {
         let mesh = mesh_of(&rectangle(at, [at; 2], [at + size; 2])).unwrap();
         let file = file_of(&build(&mesh, &BuildOptions::default(), &Silent).unwrap());
         file.verify().unwrap();

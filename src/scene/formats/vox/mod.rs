@@ -27,6 +27,8 @@ const DAMAGED: &str =
 struct Model<'a> {
     size: [u32; 3],
     voxels: &'a [[u8; 4]],
+    /// Those of a colour other than 0.
+    visible: u64,
     offset: u64,
 }
 
@@ -65,7 +67,7 @@ pub(super) fn read(
         placements.into_iter().map(of).collect()
     };
     // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
-    emitter.expect(placed.iter().map(|(model, _)| model.visible()).sum())?;
+    emitter.expect(placed.iter().map(|(model, _)| model.visible).sum())?;
     for (model, transform) in placed {
         place(model, transform, &contents.palette, emitter)?;
     }
@@ -110,9 +112,11 @@ fn read_contents<'a>(bytes: &'a [u8], info: &mut SceneInfo) -> Result<Contents<'
                 };
                 let mut fields = Fields::new(&chunk);
                 let count = fields.count("voxels", 4)? as usize;
+                let voxels = &fields.rest().as_chunks::<4>().0[..count];
                 contents.models.push(Model {
                     size,
-                    voxels: &fields.rest().as_chunks::<4>().0[..count],
+                    voxels,
+                    visible: voxels.iter().filter(|voxel| voxel[3] != 0).count() as u64,
                     offset: fields.offset(),
                 });
             }
@@ -151,7 +155,7 @@ fn survey(contents: &Contents<'_>, info: &mut SceneInfo) {
     let given = contents.palette.given;
     for model in &contents.models {
         info.stored_voxels += model.voxels.len() as u64;
-        empty += model.voxels.len() as u64 - model.visible();
+        empty += model.voxels.len() as u64 - model.visible;
         for [x, y, z, color] in model.voxels {
             without_color |= given > 0 && usize::from(*color) > given;
             info.outside_size += u64::from(!is_inside([*x, *y, *z], model.size));
@@ -193,12 +197,6 @@ fn place(
         })?;
     }
     Ok(())
-}
-
-impl Model<'_> {
-    fn visible(&self) -> u64 {
-        self.voxels.iter().filter(|voxel| voxel[3] != 0).count() as u64
-    }
 }
 
 fn is_inside(position: [u8; 3], size: [u32; 3]) -> bool {

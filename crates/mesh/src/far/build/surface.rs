@@ -14,7 +14,8 @@ use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
 use crate::geometry::{area, point};
-use crate::{Mesh, Surface, srgb_to_linear};
+use crate::material::to_light;
+use crate::{Mesh, Surface};
 use shiftvox::graph::PackedNormal;
 
 /// Parts narrower than so many voxels of a node are thin.
@@ -214,8 +215,8 @@ fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
             }
         }
         if is_tinted {
-            let color = triangle.colors[0].map(srgb_to_linear);
-            mesh.tints.push(color);
+            let light = triangle.colors.map(to_light).into_iter().sum::<DVec3>() / 3.0;
+            mesh.tints.push(light.as_vec3().to_array());
         }
         mesh.corner_normals.push(triangle.normals.map(|normal| {
             let normal = PackedNormal(normal).decode().unwrap_or(DVec3::Z);

@@ -175,16 +175,17 @@ impl<'d> Reader<'d> {
         shown: &[(usize, DMat4)],
         builder: &mut MeshBuilder,
     ) -> Result<(), Problem> {
-        let mut of_mesh: HashMap<usize, [usize; 2]> = HashMap::new();
-        let mut sum = [0; 2];
+        let mut of_mesh: HashMap<usize, [usize; 3]> = HashMap::new();
+        let mut sum = [0; 3];
         for &(mesh, _) in shown {
             let size = match of_mesh.get(&mesh) {
                 Some(&known) => known,
                 None => *of_mesh.entry(mesh).or_insert(self.size_of(mesh)?),
             };
-            sum = [0, 1].map(|k| size[k].saturating_add(sum[k]));
-            // Positions count as triangles: they take memory too.
-            if sum[0].saturating_add(sum[1]) as u64 > self.most {
+            sum = [0, 1, 2].map(|k| size[k].saturating_add(sum[k]));
+            // Positions count as triangles: they take memory too. Also a primitive without any takes time.
+            let all = sum.into_iter().fold(0, usize::saturating_add);
+            if all as u64 > self.most {
                 return Err(too_many());
             }
         }
@@ -192,9 +193,11 @@ impl<'d> Reader<'d> {
         room.map_err(|short| too_large("memory for all triangles".to_owned(), short.to_string()))
     }
 
-    fn size_of(&self, mesh: usize) -> Result<[usize; 2], Problem> {
-        let mut sum = [0; 2];
-        for primitive in &self.mesh(mesh)?.primitives {
+    /// Positions, triangles and primitives of a mesh.
+    fn size_of(&self, mesh: usize) -> Result<[usize; 3], Problem> {
+        let primitives = &self.mesh(mesh)?.primitives;
+        let mut sum = [0, 0, primitives.len()];
+        for primitive in primitives {
             if let Some(of) = self.sizes(primitive)? {
                 sum[0] = of.positions.count.saturating_add(sum[0]);
                 sum[1] = of.triangles.saturating_add(sum[1]);

@@ -41,7 +41,10 @@ impl Default for BuildOptions {
 
 pub const MOST_GRIDS: usize = 16;
 
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+/// From the origin, in lengths of the mesh: corners are then rounded by at most a 4,096th of it.
+const MOST_DISTANCE: f64 = 4096.0;
+
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
     #[error("there are no triangles to build textured voxels of")]
     Empty,
@@ -57,6 +60,11 @@ pub enum BuildError {
     Grids,
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
+    #[error(
+        "the mesh spans {extent} units {distance} units from the origin: too little for numbers of single precision; \
+         move it to the origin"
+    )]
+    FarAway { extent: f64, distance: f64 },
 }
 
 pub fn build<S: Surface + ?Sized>(
@@ -93,6 +101,10 @@ pub fn build<S: Surface + ?Sized>(
     let extent = (high - low).max_element();
     if !(low.is_finite() && high.is_finite() && extent > 0.0) {
         return Err(BuildError::Range);
+    }
+    let distance = low.abs().max(high.abs()).max_element();
+    if distance > MOST_DISTANCE * extent {
+        return Err(BuildError::FarAway { extent, distance });
     }
     let grids = grids.into_iter().map(|cells| {
         let lattice = CellGrid::around(low, high, cells, texels);
