@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::SceneError;
 use super::geometry::{area, plane_normal, point};
 use super::load::{Fault, Place, Problem};
-use super::{Material, Mesh, Surface, Texture};
+use super::{Material, Mesh, Surface, Texture, Triangle};
 use shiftvox::budget::{self, Shortage};
 
 const MOST: usize = u32::MAX as usize;
@@ -261,6 +262,7 @@ impl MeshBuilder {
             *material = 0;
         }
         if mesh.materials.iter().any(|m| m.texture.is_some()) {
+            leave_out_clear(&mut mesh);
             mesh.tints = (0..mesh.triangles.len())
                 .map(|n| middle(&mesh, n))
                 .collect();
@@ -275,6 +277,40 @@ impl MeshBuilder {
         mesh.corner_normals.shrink_to_fit();
         Ok(mesh)
     }
+}
+
+/// Leaves out triangles whose texture is clear everywhere, unless there are no others.
+fn leave_out_clear(mesh: &mut Mesh) {
+    let numbers = (0..mesh.triangles.len()).into_par_iter();
+    let is_shown: Vec<bool> = numbers.map(|n| !is_clear(&mesh.triangle(n))).collect();
+    if is_shown.contains(&true) && is_shown.contains(&false) {
+        keep(&mut mesh.triangles, &is_shown);
+        keep(&mut mesh.material_of, &is_shown);
+        keep(&mut mesh.corner_normals, &is_shown);
+        keep(&mut mesh.places, &is_shown);
+    }
+}
+
+/// A list for each triangle, or an empty one.
+fn keep<T>(list: &mut Vec<T>, is_kept: &[bool]) {
+    let mut is_kept = is_kept.iter();
+    list.retain(|_| is_kept.next() == Some(&true));
+}
+
+/// Parts along a side, over which a texture is averaged.
+const PARTS: usize = 8;
+
+fn is_clear(triangle: &Triangle<'_>) -> bool {
+    let [a, b, c] = triangle.corners;
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    // Wide enough for parts of any direction.
+    let part = 2.0 * longest / PARTS as f64;
+    let mut places = (0..PARTS * PARTS).map(|at| [at / PARTS, at % PARTS].map(|k| k as f64 + 0.5));
+    triangle.sampler.is_some()
+        && places.all(|[i, j]| {
+            let [u, v] = [i, j].map(|k| k / PARTS as f64);
+            u + v > 1.0 || triangle.at([1.0 - u - v, u, v], part).1 == 0.0
+        })
 }
 
 /// The factor of a triangle's texture, about its mean.

@@ -33,13 +33,17 @@ impl Triangle<'_> {
         (color * factor, self.alpha * opacity)
     }
 
-    /// Colours of the corners with the texture's mean there, for files without textures.
+    /// Colours of the corners with the texture's mean there, or around the middle where it is clear there, for files
+    /// without textures.
     pub(crate) fn corner_colors(&self) -> [DVec3; 3] {
         let side = area(self.corners).sqrt() / 2.0;
         let shares = [[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]];
         match self.sampler {
             None => self.colors,
-            Some(_) => shares.map(|shares| self.at(shares.map(|s| s / 6.0), side).0),
+            Some(_) => shares.map(|shares| match self.at(shares.map(|s| s / 6.0), side) {
+                (_, 0.0) => self.at([1.0 / 3.0; 3], 4.0 * side).0,
+                (color, _) => color,
+            }),
         }
     }
 

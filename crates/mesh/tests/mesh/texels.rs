@@ -184,3 +184,11 @@ fn a_pane_stops_as_much_at_an_angle() {
         assert!((0.85..1.25).contains(&share), "{cosine}: {share}");
     }
 }
+
+#[test]
+fn triangles_whose_texture_is_clear_are_left_out() {
+    let all = card(&disc(1), 8, 0.0, "map_Kd a.png").triangles().len();
+    let shown = card(&disc(0), 8, 0.0, "map_Kd a.png").triangles().len();
+    // The disc takes 44 % of the card.
+    assert!(all == 128 && (56..104).contains(&shown), "{all} {shown}");
+}

@@ -22,9 +22,9 @@ pub enum Panel {
 const WIDTH: f64 = 900.0;
 const TITLE_HEIGHT: f64 = 44.0;
 /// Colours that are distinguishable also to the colour-blind (Okabe and Ito), and two more.
-const COLORS: [Color; 9] = [
+const COLORS: [Color; 10] = [
     0x00_72b2, 0xd5_5e00, 0x00_9e73, 0xcc_79a7, 0xe6_9f00, 0x56_b4e9, 0x00_0000, 0x96_6e3c,
-    0x78_78be,
+    0x78_78be, 0x8b_1a1a,
 ];
 const GREY: Color = 0xa8_a8a8;
 
