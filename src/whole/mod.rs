@@ -107,6 +107,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// The file that it will be.
     pub fn path(&self) -> &Path {
         &self.path
     }

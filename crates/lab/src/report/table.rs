@@ -228,6 +228,7 @@ impl Table {
     }
 }
 
+/// A column of text for [`in_lines`].
 pub struct TextColumn {
     is_of_words: bool,
     width: usize,

@@ -86,6 +86,7 @@ pub struct FarCounts {
     pub bytes: u64,
 }
 
+/// Draws a file. Errors: options or a view out of range, or data that cannot be read or is damaged.
 pub fn draw(
     file: &FarFile,
     view: &RasterCamera,
