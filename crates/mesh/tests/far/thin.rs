@@ -5,9 +5,10 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::far::view::{Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, build};
 use shiftvox_mesh::generate::{Kind, generate};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder, srgb_to_linear};
 
 use super::city::{draw, file_of};
-use super::shared::{area, around, directions, shape, sphere, triangle, triangles};
+use super::shared::{area, around, directions, quad, shape, sheet, sphere, triangle, triangles};
 use super::solid::hybrid;
 
 const OPTIONS: ViewOptions = ViewOptions {
@@ -48,6 +49,54 @@ fn thin_meshes_keep_their_area_and_are_as_good_as_far_voxels() {
             let behind = 10.0 * libm::log10(squares[0] / squares[1]);
             assert!(bias.abs() < 0.12, "{kind:?}, {size} pixels: {bias:+.3}");
             assert!(behind < 0.5, "{kind:?}, {size} pixels: {behind:+.2} dB");
+        }
+    }
+}
+
+/// A white lawn of which red leaves, less than a voxel above it, cover a fifth.
+fn lawn() -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let [white, red] = [[255; 3], [255, 0, 0]].map(|c| builder.material(Material::of_srgb("", c)));
+    let place = |x: u32, z: u32, of: u32| [x, z].map(|c| 2.0 * f64::from(c) / f64::from(of) - 1.0);
+    sheet(&mut builder, [40, 40], white, |x, z| {
+        let [x, z] = place(x, z, 40);
+        DVec3::new(x, 0.0, z)
+    });
+    for leaf in 0..1600 {
+        let [x, z] = place(leaf % 40, leaf / 40, 40).map(|c| c as f32 + 0.01);
+        let y = 0.002 * (1 + leaf * 7 % 10) as f32;
+        let side = 0.022;
+        let corners = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+        quad(&mut builder, corners.map(|[a, b]| [x + a, y, z + b]), red);
+    }
+    builder.finish("lawn").unwrap()
+}
+
+/// Neither a coat of leaves nor a bare lawn.
+#[test]
+fn a_thin_layer_before_a_surface_covers_its_share_of_it() {
+    let mesh = lawn();
+    let red = |rgba: &[[u8; 4]], coverage: &[f32]| {
+        let red = |p: &[u8; 4]| srgb_to_linear(p[0]) - srgb_to_linear(p[1]);
+        let all = rgba.iter().zip(coverage);
+        all.map(|(p, cover)| red(p) * cover).sum::<f32>()
+    };
+    for is_hybrid in [false, true] {
+        let options = BuildOptions {
+            hybrid: is_hybrid,
+            ..BuildOptions::default()
+        };
+        let file = file_of(&build(&mesh, &options, &Silent).unwrap());
+        for size in [60, 20] {
+            for towards in [[0.1, 1.0, 0.2], [0.6, 0.7, 0.1]] {
+                let view = around(&mesh, DVec3::from(towards), 2.0, size);
+                let (drawn, counts) = draw(&file, &view, &OPTIONS);
+                assert_eq!(counts.leaves, 0);
+                let expected = triangles(&mesh, &view, 16, None);
+                let share =
+                    red(&drawn.rgba, &drawn.coverage) / red(&expected.rgba, &expected.coverage);
+                assert!((share - 1.0).abs() < 0.3, "{is_hybrid} {size}: {share}");
+            }
         }
     }
 }

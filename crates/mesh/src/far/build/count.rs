@@ -2,15 +2,14 @@
 
 use glam::DVec3;
 
-use super::grid::Grid;
-use super::shot::Shot;
+use super::shot::{Shot, Target};
 use crate::far::blend::{DIRECTIONS, Fit, Shares, by_cosines};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
-/// Right behind a voxel: within two voxels over the cosine, plus one.
-const RIGHT_BEHIND: [f64; 2] = [2.0, 1.0];
-const LEAST_COSINE: f64 = 0.25;
-pub(super) const FOLLOWED: f64 = RIGHT_BEHIND[0] / LEAST_COSINE + RIGHT_BEHIND[1];
+/// How far probes are followed behind the grid, voxels.
+pub(super) const FOLLOWED: f64 = 9.0;
+/// Voxels between a layer in a voxel and a point behind it that counts as the same surface.
+const LAYER_MARGIN: f64 = 0.25;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfaceSample {
@@ -39,7 +38,7 @@ impl Seen {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) counted: Counted,
-    /// Number, weights of those stopped in it or right behind it, and of the others.
+    /// Number, weights of those that end in the voxel or at its layer, and of the others.
     pub(super) probes: u32,
     pub(super) stopped: f64,
     pub(super) passed: f64,
@@ -115,30 +114,28 @@ impl Counted {
     }
 }
 
-/// A probe's number, and how far behind a voxel it was stopped, in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Crossing(u32);
+/// Where rays ended in a voxel: between two planes.
+pub(super) struct Layer {
+    normal: DVec3,
+    low: f64,
+    high: f64,
+}
 
-const PROBE_BITS: u32 = 22;
-const PARTS: f64 = 64.0;
-
-impl Crossing {
-    /// `past` is the distance behind the voxel at which the probe is stopped, or `None` in the voxel.
-    fn new(probe: usize, past: Option<f64>) -> Self {
-        let most = (1u32 << (32 - PROBE_BITS)) - 1;
-        let parts = past.map_or(0, |past| {
-            (1.0 + past.max(0.0) * PARTS).min(f64::from(most)) as u32
-        });
-        Self(parts << PROBE_BITS | probe as u32)
+impl Layer {
+    /// Of ends, and of the normals of the triangles' planes there.
+    pub(super) fn of(ends: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Self {
+        let normal = main_normal(ends.clone().map(|(_, normal)| normal));
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (end, _) in ends {
+            let at = normal.dot(end);
+            (low, high) = (low.min(at), high.max(at));
+        }
+        Self { normal, low, high }
     }
 
-    fn probe(self) -> usize {
-        (self.0 & ((1 << PROBE_BITS) - 1)) as usize
-    }
-
-    fn past(self) -> Option<f64> {
-        let parts = self.0 >> PROBE_BITS;
-        (parts > 0).then(|| f64::from(parts - 1) / PARTS)
+    fn is_at(&self, point: DVec3) -> bool {
+        let at = self.normal.dot(point);
+        at > self.low - LAYER_MARGIN && at < self.high + LAYER_MARGIN
     }
 }
 
@@ -150,30 +147,36 @@ pub(super) struct Marks<'m> {
 }
 
 pub(super) struct Probes<'p> {
+    target: &'p Target<'p>,
     shots: &'p [Shot],
     weights: Vec<f32>,
-    crossings: Groups<Crossing>,
+    crossings: Groups<u32>,
 }
 
 impl<'p> Probes<'p> {
-    pub(super) fn new(grid: &Grid, shots: &'p [Shot], marks: &Marks<'_>, kept: usize) -> Self {
+    pub(super) fn new(
+        target: &'p Target<'p>,
+        shots: &'p [Shot],
+        marks: &Marks<'_>,
+        kept: usize,
+    ) -> Self {
         let mut weights = Vec::with_capacity(shots.len());
         let mut all = Vec::new();
-        for (probe, shot) in shots.iter().enumerate() {
+        for (probe, shot) in (0u32..).zip(shots) {
             // One way through the grid: also what lies behind the end is aimed at.
             let mut aims = 0u32;
             let mut is_over = false;
             let end = f64::from(shot.end);
             let (from, direction) = (shot.point.as_dvec3(), shot.direction.as_dvec3());
-            grid.along(from, direction, |number, leave| {
+            let is_passed = target.leaves_out(shot.triangle);
+            target.grid.along(from, direction, |number, leave| {
                 let aimed = marks.aimed[number];
                 if aimed > 0 {
                     aims += u32::from(aimed - 1);
                     let touched = marks.slot[number];
                     let is_end = touched == shot.touched;
-                    if !is_over && (is_end || leave <= end) {
-                        let past = (!is_end).then_some(end - leave);
-                        all.push((marks.kept[touched as usize], Crossing::new(probe, past)));
+                    if !is_over && (is_end || is_passed || leave <= end) {
+                        all.push((marks.kept[touched as usize], probe));
                     }
                     is_over |= is_end || leave > end;
                 }
@@ -182,30 +185,38 @@ impl<'p> Probes<'p> {
             weights.push(1.0 / aims.max(1) as f32);
         }
         Self {
+            target,
             shots,
             weights,
             crossings: Groups::new(kept, &all),
         }
     }
 
-    pub(super) fn count(&self, place: usize, shader: &Shader, seen: &mut Seen) {
-        for crossing in self.crossings.of(place) {
-            let probe = crossing.probe();
-            let towards_eye = -self.shots[probe].direction.as_dvec3();
-            let weight = f64::from(self.weights[probe]);
+    /// Of a kept voxel, whose number of touched ones is given.
+    pub(super) fn count(
+        &self,
+        touched: u32,
+        place: usize,
+        shader: &Shader,
+        layer: &Layer,
+        seen: &mut Seen,
+    ) {
+        for &probe in self.crossings.of(place) {
+            let shot = &self.shots[probe as usize];
+            let is_hit = shot.touched == touched;
+            let is_at_layer =
+                !self.target.leaves_out(shot.triangle) && layer.is_at(shot.end_point());
+            let towards_eye = -shot.direction.as_dvec3();
+            let weight = f64::from(self.weights[probe as usize]);
             let signed = shader.cosine(towards_eye);
-            let cosine = signed.abs();
             seen.crossings += 1;
-            let found = &mut seen.found[usize::from(signed < 0.0)][steepness(cosine)];
+            let found = &mut seen.found[usize::from(signed < 0.0)][steepness(signed.abs())];
             found.probes += 1;
-            let reach = RIGHT_BEHIND[0] / cosine.max(LEAST_COSINE) + RIGHT_BEHIND[1];
-            let past = crossing.past();
-            match past.is_none_or(|past| past < reach) {
+            match is_hit || is_at_layer {
                 true => found.stopped += weight,
                 false => found.passed += weight,
             }
-            let shares = by_cosines(towards_eye);
-            found.counted.add(&shares, past.is_none(), weight);
+            found.counted.add(&by_cosines(towards_eye), is_hit, weight);
         }
     }
 }
@@ -240,11 +251,10 @@ impl<T: Copy> Groups<T> {
     }
 }
 
-pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
+pub(super) fn main_normal(normals: impl Iterator<Item = DVec3>) -> DVec3 {
     let mut columns = [DVec3::ZERO; 3];
     let mut sum = DVec3::ZERO;
-    for sample in samples {
-        let n = sample.normal;
+    for n in normals {
         let aligned = if n.dot(sum) < 0.0 { -n } else { n };
         sum += aligned;
         for k in 0..3 {

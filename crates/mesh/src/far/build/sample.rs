@@ -5,7 +5,7 @@ use std::io;
 use glam::DVec3;
 
 use super::Ordered;
-use super::count::{FOLLOWED, Groups, Marks, Probes, Seen, main_normal};
+use super::count::{FOLLOWED, Groups, Layer, Marks, Probes, Seen, main_normal};
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
@@ -126,7 +126,7 @@ impl Target<'_> {
             kept: &kept,
             aimed: &aimed_of_grid,
         };
-        let probes = Probes::new(&self.grid, &shots[visibility_rays..], &marks, count);
+        let probes = Probes::new(self, &shots[visibility_rays..], &marks, count);
         let ends = (0u32..).zip(&shots);
         let ends = ends.filter(|(_, shot)| shot.touched != NOWHERE);
         let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number));
@@ -159,13 +159,18 @@ impl Target<'_> {
                 let towards_eye = -shot.direction.as_dvec3();
                 triangles.sample(shot.triangle as usize, point, towards_eye, width)
             }));
-            let fit = fit_shader(&samples, main_normal(&samples));
+            let normals = samples.iter().map(|sample| sample.normal);
+            let fit = fit_shader(&samples, main_normal(normals));
+            let layer = Layer::of(ends.of(place).iter().map(|&shot| {
+                let shot = &shots[shot as usize];
+                (shot.end_point(), triangles.plane(shot.triangle as usize))
+            }));
             let mut seen = Seen {
                 place: self.grid.place(voxel.number as usize),
                 unseen_opacity: voxel.area.min(1.0),
                 ..Seen::default()
             };
-            probes.count(place, &fit.shader, &mut seen);
+            probes.count(number as u32, place, &fit.shader, &layer, &mut seen);
             keep(&seen, &fit, samples.len());
         }
         Ok(Sampled {

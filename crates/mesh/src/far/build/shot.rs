@@ -62,6 +62,11 @@ impl Target<'_> {
         self.own.contains(&triangle) && self.taken.is_none_or(is_taken)
     }
 
+    /// Whether it is its own, but does not count.
+    pub(super) fn leaves_out(&self, triangle: u32) -> bool {
+        self.own.contains(&(triangle as usize)) && !self.has(triangle as usize)
+    }
+
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
         let number = |at: DVec3| {

@@ -23,6 +23,8 @@ pub(super) struct Square {
     /// Half its side, pixels: its area is that of the cube's outline.
     pub(super) half: f64,
     pub(super) depth: f64,
+    /// Depth of its cube's nearest corner.
+    pub(super) nearest: f64,
     pub(super) towards_eye: DVec3,
 }
 
@@ -55,6 +57,7 @@ impl Places {
             middle: view.place(seen),
             half: side / 2.0,
             depth: seen.z,
+            nearest: seen.z - self.voxel * outline / 2.0,
             towards_eye,
         })
     }

@@ -105,7 +105,7 @@ fn blend(
     pixels: &[Pixel],
     veils: &mut [Option<Box<Veil>>],
 ) {
-    let depth = splat.square.depth as f32;
+    let depth = splat.square.nearest as f32;
     for y in splat.rows.start.max(rows.start)..splat.rows.end.min(rows.end) {
         let down = splat.square.parts(1, y);
         for x in splat.columns.clone() {
