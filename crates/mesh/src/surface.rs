@@ -33,6 +33,18 @@ impl Triangle<'_> {
         (color * factor, self.alpha * opacity)
     }
 
+    /// The texels that a side of a square spans, for [`Triangle::opacity`].
+    pub(crate) fn texels(&self, side: f64) -> f64 {
+        let sampler = self.sampler.as_ref();
+        sampler.map_or(0.0, |sampler| side * sampler.texels_per_unit(&self.corners))
+    }
+
+    /// Opacity at shares of the corners: the mean of a square of so many texels a side.
+    pub(crate) fn opacity(&self, shares: [f64; 3], texels: f64) -> f64 {
+        let sampler = self.sampler.as_ref();
+        self.alpha * sampler.map_or(1.0, |sampler| sampler.opacity(shares, texels))
+    }
+
     /// Colours of the corners with the texture's mean there, or around the middle where it is clear there, for files
     /// without textures.
     pub(crate) fn corner_colors(&self) -> [DVec3; 3] {

@@ -4,6 +4,8 @@
 //! copy with texels of its own size, and costs as much as a sample of one. Colours are averaged in linear light, by
 //! opacity.
 
+use std::ops::{Add, Mul};
+
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
@@ -113,34 +115,52 @@ impl Texture {
     /// Colour, linear light, and opacity around a place: across from the left and down from the top, in sizes of the
     /// picture. They are the mean of a square of so many texels a side.
     pub(crate) fn at(&self, place: [f64; 2], side: f64) -> (DVec3, f64) {
-        let mut read = DVec4::ZERO;
-        if side <= SPREAD {
-            read = self.levels[0].at(place, self.wrap);
-        } else {
-            let coarsest = (self.levels.len() - 1) as f64;
-            let level = libm::log2(side / SPREAD).min(coarsest);
-            let (finer, rest) = (level as usize, level.fract());
-            for (level, share) in [(finer, 1.0 - rest), (finer + 1, rest)] {
-                if share > 0.0 {
-                    read += self.levels[level].at(place, self.wrap) * share;
-                }
-            }
-        }
+        let read = self.read(place, side, weighted);
         if read.w <= 0.0 {
             return (DVec3::ONE, 0.0);
         }
-        let mut opacity = read.w.min(1.0);
-        if self.is_mask && side < 1.0 {
-            // The edge of a hole is half way between texels, and as wide as the sample.
-            opacity = (0.5 + (opacity - 0.5) / side.max(1e-9)).clamp(0.0, 1.0);
+        (read.truncate() / read.w, self.opacity_of(read.w, side))
+    }
+
+    /// The opacity alone, to the same bit.
+    fn opacity(&self, place: [f64; 2], side: f64) -> f64 {
+        let read = self.read(place, side, |texel| f64::from(texel[3]) / 255.0);
+        match read <= 0.0 {
+            true => 0.0,
+            false => self.opacity_of(read, side),
         }
-        (read.truncate() / read.w, opacity)
+    }
+
+    fn opacity_of(&self, read: f64, side: f64) -> f64 {
+        let opacity = read.min(1.0);
+        match self.is_mask && side < 1.0 {
+            // The edge of a hole is half way between texels, and as wide as the sample.
+            true => (0.5 + (opacity - 0.5) / side.max(1e-9)).clamp(0.0, 1.0),
+            false => opacity,
+        }
+    }
+
+    fn read<V: Mean>(&self, place: [f64; 2], side: f64, of: impl Fn([u8; 4]) -> V + Copy) -> V {
+        if side <= SPREAD {
+            return self.levels[0].at(place, self.wrap, of);
+        }
+        let coarsest = (self.levels.len() - 1) as f64;
+        let level = libm::log2(side / SPREAD).min(coarsest);
+        let (finer, rest) = (level as usize, level.fract());
+        let read = self.levels[finer].at(place, self.wrap, of) * (1.0 - rest);
+        match self.levels.get(finer + 1) {
+            Some(coarser) => read + coarser.at(place, self.wrap, of) * rest,
+            None => read,
+        }
     }
 }
 
+trait Mean: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
+impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Mean for T {}
+
 impl Level {
-    /// Colour times opacity, and opacity, between the four nearest texels.
-    fn at(&self, place: [f64; 2], wrap: [Wrap; 2]) -> DVec4 {
+    /// What texels have, between the four nearest.
+    fn at<V: Mean>(&self, place: [f64; 2], wrap: [Wrap; 2], of: impl Fn([u8; 4]) -> V) -> V {
         let near = [0, 1].map(|k| {
             let size = self.size[k];
             let (inside, [before, after]) = match wrap[k] {
@@ -163,11 +183,12 @@ impl Level {
             ([first, if next < size { next } else { after }], at - low)
         });
         let [(columns, right), (rows, down)] = near;
+        let between = |[a, b]: [V; 2], share: f64| a * (1.0 - share) + b * share;
         let row = |y: usize| {
-            let [a, b] = columns.map(|x| weighted(self.texels[y * self.size[0] + x]));
-            a.lerp(b, right)
+            let texels = columns.map(|x| of(self.texels[y * self.size[0] + x]));
+            between(texels, right)
         };
-        row(rows[0]).lerp(row(rows[1]), down)
+        between(rows.map(row), down)
     }
 
     fn halved(&self) -> Self {
@@ -216,14 +237,27 @@ pub struct Sampler<'t> {
 impl Sampler<'_> {
     /// Colour and opacity at shares of the corners, the mean of a square of that side, in the corners' units.
     pub(crate) fn at(&self, corners: &[DVec3; 3], shares: [f64; 3], side: f64) -> (DVec3, f64) {
+        let side = side * self.texels_per_unit(corners);
+        self.texture.at(self.place(shares), side)
+    }
+
+    /// The opacity alone, of a square of so many texels a side.
+    pub(crate) fn opacity(&self, shares: [f64; 3], texels: f64) -> f64 {
+        self.texture.opacity(self.place(shares), texels)
+    }
+
+    fn place(&self, shares: [f64; 3]) -> [f64; 2] {
         let [a, b, c] = self.places.map(|place| place.map(f64::from));
-        let place = [0, 1].map(|k| a[k] * shares[0] + b[k] * shares[1] + c[k] * shares[2]);
+        [0, 1].map(|k| a[k] * shares[0] + b[k] * shares[1] + c[k] * shares[2])
+    }
+
+    pub(crate) fn texels_per_unit(&self, corners: &[DVec3; 3]) -> f64 {
+        let [a, b, c] = self.places.map(|place| place.map(f64::from));
         let size = self.texture.size();
         let [to_b, to_c] = [b, c].map(|p| [0, 1].map(|k| (p[k] - a[k]) * size[k]));
         let texels = (to_b[0] * to_c[1] - to_b[1] * to_c[0]).abs();
         let [a, b, c] = *corners;
         let area = (b - a).cross(c - a).length();
-        let per_unit = (texels / area.max(f64::MIN_POSITIVE)).sqrt();
-        self.texture.at(place, side * per_unit)
+        (texels / area.max(f64::MIN_POSITIVE)).sqrt()
     }
 }

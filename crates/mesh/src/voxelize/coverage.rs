@@ -2,13 +2,10 @@
 //!
 //! Points are stored, not only their number, so two halves of a slanted wall, one before the other, make a whole wall.
 
-use glam::DVec3;
-
 use super::touch::{OTHERS, Prepared};
 use crate::Triangle;
-use crate::geometry::barycentric;
 
-const POINTS: usize = 8;
+pub(super) const POINTS: usize = 8;
 /// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u` and `v` the axes after it.
 pub(super) type Masks = [u64; 3];
 
@@ -45,7 +42,8 @@ fn least_opacity(u: usize, v: usize) -> f64 {
 }
 
 /// Adds the points that a triangle covers: those whose line along the axis it meets within the voxel. A triangle that
-/// lets light through is given with the size of the voxel. It covers a share of the points like its opacity there.
+/// lets light through is given with the texels of an eighth of a side, and covers a share of the points like its opacity
+/// there.
 ///
 /// Corners and points stay below 2^31, so an edge times a distance is below 2^62.
 pub(super) fn cover(
@@ -74,6 +72,7 @@ pub(super) fn cover(
         let [first, ..] = flat;
         let at = i128::from(triangle.corners[0][k] - corner[k]);
         let along = i128::from(normal[k]) * i128::from(turn);
+        let whole = along as f64;
         let (low, high) = (-along * at, along * (i128::from(side) - at));
         for j in cells(1) {
             for i in cells(0) {
@@ -86,29 +85,23 @@ pub(super) fn cover(
                     i * cell + (2 * du + 1) * cell / 16,
                     j * cell + (2 * dv + 1) * cell / 16,
                 ];
-                let inside = (0..3).all(|e| {
+                // Twice the areas between the point and each edge.
+                let areas = [0, 1, 2].map(|e| {
                     let (a, b) = (flat[e], flat[(e + 1) % 3]);
                     let turned =
                         (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
-                    turned * turn >= 0
+                    turned * turn
                 });
-                if !inside {
+                if areas.iter().any(|&area| area < 0) {
                     continue;
                 }
                 let slope = i128::from(normal[u]) * i128::from(point[0] - first[0])
                     + i128::from(normal[v]) * i128::from(point[1] - first[1]);
                 let depth = -slope * i128::from(turn);
                 let is_shown = || {
-                    clear.is_none_or(|(clear, size)| {
-                        let mut here = DVec3::ZERO;
-                        here[u] = point[0] as f64;
-                        here[v] = point[1] as f64;
-                        here[k] = at as f64 + depth as f64 / along as f64;
-                        let corners = triangle.corners.map(|p| {
-                            DVec3::from_array([0, 1, 2].map(|k| (p[k] - corner[k]) as f64))
-                        });
-                        let shares = barycentric(&corners, here);
-                        let (_, opacity) = clear.at(shares, size / POINTS as f64);
+                    clear.is_none_or(|(clear, texels)| {
+                        let [c, a, b] = areas.map(|area| area as f64 / whole);
+                        let opacity = clear.opacity([a, b, c], texels);
                         opacity > least_opacity(i as usize, j as usize)
                     })
                 };

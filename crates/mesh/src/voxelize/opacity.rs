@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::coverage::{Masks, cover, dither, joined, opacity_of};
+use super::coverage::{Masks, POINTS, cover, dither, joined, opacity_of};
 use super::distinct::Distinct;
 use super::mix::Mix;
 use super::touch::OTHERS;
@@ -64,9 +64,13 @@ pub fn opacities<S: Surface + ?Sized>(
     let leaves = |subtree: Subtree<'_>| {
         let clear = |&number: &u32| {
             let is_clear = !surface.is_opaque(number as usize);
-            is_clear.then(|| surface.triangle(number as usize))
+            is_clear.then(|| {
+                let triangle = surface.triangle(number as usize);
+                let texels = triangle.texels(voxel_size / POINTS as f64);
+                (triangle, texels)
+            })
         };
-        let clear: Vec<Option<Triangle<'_>>> = subtree.numbers.iter().map(clear).collect();
+        let clear: Vec<Option<(Triangle<'_>, f64)>> = subtree.numbers.iter().map(clear).collect();
         let mut leaves = Vec::new();
         subtree.leaves(cube, |triangles, corner| {
             let mut leaf = NOTHING;
@@ -78,11 +82,11 @@ pub fn opacities<S: Surface + ?Sized>(
                 let clear = clear[triangle as usize].as_ref();
                 leaf.large_from = leaf.large_from.min(large_from[number as usize]);
                 match clear {
-                    Some(clear) => mix.add(clear, prepared, corner, voxel, voxel_size),
+                    Some((clear, _)) => mix.add(clear, prepared, corner, voxel, voxel_size),
                     None => is_shown = true,
                 }
                 leaf.is_clear &= clear.is_some();
-                let clear = clear.map(|clear| (clear, voxel_size));
+                let clear = clear.map(|(clear, texels)| (clear, *texels));
                 cover(prepared, clear, corner, voxel, &mut leaf.masks);
             }
             if !is_shown && !mix.is_shown() {
