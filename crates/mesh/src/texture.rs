@@ -125,10 +125,7 @@ impl Texture {
     /// The opacity alone, to the same bit.
     fn opacity(&self, place: [f64; 2], side: f64) -> f64 {
         let read = self.read(place, side, |texel| f64::from(texel[3]) / 255.0);
-        match read <= 0.0 {
-            true => 0.0,
-            false => self.opacity_of(read, side),
-        }
+        self.opacity_of(read, side)
     }
 
     fn opacity_of(&self, read: f64, side: f64) -> f64 {
@@ -159,7 +156,7 @@ trait Mean: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
 impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Mean for T {}
 
 impl Level {
-    /// What texels have, between the four nearest.
+    /// The mean of a value of the four nearest texels, by their distances.
     fn at<V: Mean>(&self, place: [f64; 2], wrap: [Wrap; 2], of: impl Fn([u8; 4]) -> V) -> V {
         let near = [0, 1].map(|k| {
             let size = self.size[k];

@@ -69,7 +69,7 @@ pub struct BuildOptions {
 }
 
 /// Rays for each kept voxel, if no number is given.
-const RAYS_PER_VOXEL: u32 = 24;
+const RAYS_PER_VOXEL: u32 = 20;
 const MOST_RAYS: u32 = 1 << 22;
 /// Bytes per ray of a node that is sampled, or less: 40 of its own, and 20 per voxel that it crosses.
 const RAY_BYTES: u64 = 160;
