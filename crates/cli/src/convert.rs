@@ -39,7 +39,7 @@ pub(super) struct ConvertArgs {
     /// triangle of a .far [default: OUT's folder]
     #[arg(long, value_name = "DIR", requires = "memory")]
     pub(super) temp: Option<PathBuf>,
-    /// Rays of a .far [default: up to 24 per voxel, and 24 more per visible voxel]
+    /// Rays of a .far [default: up to 28 per voxel, and 20 more per visible voxel]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_RAYS))]
     rays: Option<u64>,
     /// Triangles below which a node of a .far is a leaf [default: 1000]

@@ -122,7 +122,7 @@ impl Texture {
         (read.truncate() / read.w, self.opacity_of(read.w, side))
     }
 
-    /// The opacity alone, to the same bit.
+    /// The opacity of [`Texture::at`], to the bit.
     fn opacity(&self, place: [f64; 2], side: f64) -> f64 {
         let read = self.read(place, side, |texel| f64::from(texel[3]) / 255.0);
         self.opacity_of(read, side)

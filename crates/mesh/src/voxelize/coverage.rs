@@ -42,8 +42,8 @@ fn least_opacity(u: usize, v: usize) -> f64 {
 }
 
 /// Adds the points that a triangle covers: those whose line along the axis it meets within the voxel. A triangle that
-/// lets light through is given with the texels of an eighth of a side, and covers a share of the points like its opacity
-/// there.
+/// lets light through covers a share of the points like its opacity there. It is given with the number of texels along
+/// an eighth of the voxel's side.
 ///
 /// Corners and points stay below 2^31, so an edge times a distance is below 2^62.
 pub(super) fn cover(
@@ -85,7 +85,7 @@ pub(super) fn cover(
                     i * cell + (2 * du + 1) * cell / 16,
                     j * cell + (2 * dv + 1) * cell / 16,
                 ];
-                // Twice the areas between the point and each edge.
+                // Twice the areas between the point and each edge; `whole` is twice that of the triangle.
                 let areas = [0, 1, 2].map(|e| {
                     let (a, b) = (flat[e], flat[(e + 1) % 3]);
                     let turned =

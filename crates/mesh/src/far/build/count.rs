@@ -8,7 +8,7 @@ use crate::far::record::{STEEPNESSES, Shader, steepness};
 
 /// How far probes are followed behind the grid, voxels.
 pub(super) const FOLLOWED: f64 = 9.0;
-/// Voxels between a layer in a voxel and a point behind it that counts as the same surface.
+/// Voxels between the ends in a voxel and the planes of its layer.
 const LAYER_MARGIN: f64 = 0.25;
 
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,7 @@ impl Seen {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) counted: Counted,
-    /// Number, weights of those that end in the voxel or at its layer, and of the others.
+    /// Number, weights of those that end in the voxel or its layer, and of the others.
     pub(super) probes: u32,
     pub(super) stopped: f64,
     pub(super) passed: f64,
@@ -114,7 +114,7 @@ impl Counted {
     }
 }
 
-/// Where rays ended in a voxel: between two planes.
+/// All places between two planes around the ends of the rays in a voxel. Without ends it is empty.
 pub(super) struct Layer {
     normal: DVec3,
     low: f64,
@@ -122,9 +122,11 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    /// Of ends, and of the normals of the triangles' planes there.
+    /// Of ends, and of the normals there of the triangles' planes, on the side of the rays' origins. Their sum is normal
+    /// to a rough surface, too.
     pub(super) fn of(ends: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Self {
-        let normal = main_normal(ends.clone().map(|(_, normal)| normal));
+        let normal = ends.clone().map(|(_, normal)| normal).sum::<DVec3>();
+        let normal = normal.normalize_or(DVec3::Z);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (end, _) in ends {
             let at = normal.dot(end);
@@ -133,9 +135,13 @@ impl Layer {
         Self { normal, low, high }
     }
 
-    fn is_at(&self, point: DVec3) -> bool {
-        let at = self.normal.dot(point);
-        at > self.low - LAYER_MARGIN && at < self.high + LAYER_MARGIN
+    /// Whether a ray ends before it has left the layer. False of one without an end: such numbers compare as false.
+    fn stops(&self, shot: &Shot) -> bool {
+        let at = self.normal.dot(shot.end_point());
+        match self.normal.dot(shot.direction.as_dvec3()) < 0.0 {
+            true => at > self.low - LAYER_MARGIN,
+            false => at < self.high + LAYER_MARGIN,
+        }
     }
 }
 
@@ -192,7 +198,7 @@ impl<'p> Probes<'p> {
         }
     }
 
-    /// Of a kept voxel, whose number of touched ones is given.
+    /// `touched`: the voxel's number among touched ones.
     pub(super) fn count(
         &self,
         touched: u32,
@@ -204,15 +210,14 @@ impl<'p> Probes<'p> {
         for &probe in self.crossings.of(place) {
             let shot = &self.shots[probe as usize];
             let is_hit = shot.touched == touched;
-            let is_at_layer =
-                !self.target.leaves_out(shot.triangle) && layer.is_at(shot.end_point());
+            let is_in_layer = !self.target.leaves_out(shot.triangle) && layer.stops(shot);
             let towards_eye = -shot.direction.as_dvec3();
             let weight = f64::from(self.weights[probe as usize]);
             let signed = shader.cosine(towards_eye);
             seen.crossings += 1;
             let found = &mut seen.found[usize::from(signed < 0.0)][steepness(signed.abs())];
             found.probes += 1;
-            match is_hit || is_at_layer {
+            match is_hit || is_in_layer {
                 true => found.stopped += weight,
                 false => found.passed += weight,
             }
@@ -251,10 +256,11 @@ impl<T: Copy> Groups<T> {
     }
 }
 
-pub(super) fn main_normal(normals: impl Iterator<Item = DVec3>) -> DVec3 {
+pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
     let mut columns = [DVec3::ZERO; 3];
     let mut sum = DVec3::ZERO;
-    for n in normals {
+    for sample in samples {
+        let n = sample.normal;
         let aligned = if n.dot(sum) < 0.0 { -n } else { n };
         sum += aligned;
         for k in 0..3 {

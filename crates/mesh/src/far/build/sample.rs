@@ -159,11 +159,12 @@ impl Target<'_> {
                 let towards_eye = -shot.direction.as_dvec3();
                 triangles.sample(shot.triangle as usize, point, towards_eye, width)
             }));
-            let normals = samples.iter().map(|sample| sample.normal);
-            let fit = fit_shader(&samples, main_normal(normals));
+            let fit = fit_shader(&samples, main_normal(&samples));
             let layer = Layer::of(ends.of(place).iter().map(|&shot| {
                 let shot = &shots[shot as usize];
-                (shot.end_point(), triangles.plane(shot.triangle as usize))
+                let normal = triangles.plane(shot.triangle as usize);
+                let is_behind = normal.dot(shot.direction.as_dvec3()) > 0.0;
+                (shot.end_point(), if is_behind { -normal } else { normal })
             }));
             let mut seen = Seen {
                 place: self.grid.place(voxel.number as usize),

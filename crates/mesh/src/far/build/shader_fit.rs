@@ -20,9 +20,9 @@ const NOISE: f64 = 5.0;
 /// Added hits and passes, so that a few rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A side is solid if at most this share of its rays passes, and at least so many are stopped.
+/// A side is solid if at most this share of its probes leaves the layer, and if it has at least so many probes.
 const MOST_PASSED: f64 = 0.05;
-const LEAST_STOPPED: u32 = 4;
+const LEAST_PROBES: u32 = 4;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ShaderFit {
@@ -55,7 +55,7 @@ fn solid_from(side: &[Found; STEEPNESSES]) -> usize {
             return solid;
         }
         probes += found.probes;
-        if probes >= LEAST_STOPPED {
+        if probes >= LEAST_PROBES {
             solid = steepness;
         }
     }

@@ -62,7 +62,7 @@ impl Target<'_> {
         self.own.contains(&triangle) && self.taken.is_none_or(is_taken)
     }
 
-    /// Whether it is its own, but does not count.
+    /// Whether a triangle is one of the node's that are not taken.
     pub(super) fn leaves_out(&self, triangle: u32) -> bool {
         self.own.contains(&(triangle as usize)) && !self.has(triangle as usize)
     }

@@ -57,7 +57,7 @@ impl Places {
             middle: view.place(seen),
             half: side / 2.0,
             depth: seen.z,
-            nearest: seen.z - self.voxel * outline / 2.0,
+            nearest: seen.z - self.voxel / 2.0 * view.forward.abs().element_sum(),
             towards_eye,
         })
     }
