@@ -107,7 +107,11 @@ impl<'f> Resolver<'f> {
     ) -> Result<(), ResolveError> {
         let Shader { sight, light, .. } = &self.shader;
         let is_lit = light.is_directed() && self.frame.blend.is_none();
-        let shares = is_lit.then(|| self.shares.get_or_init(|| Shares::new(sight, *light)));
+        if is_lit && self.shares.get().is_none() {
+            // Another thread's are as good.
+            let _ = self.shares.set(Shares::new(sight, *light)?);
+        }
+        let shares = self.shares.get().filter(|_| is_lit);
         let painter = Painter::new(self.frame, &self.shader, shares, self.aa);
         self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }

@@ -12,6 +12,7 @@ use glam::{DVec3, Vec3};
 use super::color::Light;
 use super::shade::AWAY;
 use super::sight::Sight;
+use crate::budget::{self, Shortage};
 use crate::graph::PackedNormal;
 
 pub(super) const TOGETHER: usize = 16;
@@ -66,7 +67,7 @@ pub(super) struct Run {
 }
 
 impl Shares {
-    pub(super) fn new(sight: &Sight, light: Light) -> Self {
+    pub(super) fn new(sight: &Sight, light: Light) -> Result<Self, Shortage> {
         let m = sight.to_object;
         let columns = [m.x_axis, m.y_axis, m.z_axis];
         // Lengths around 1, so that no square leaves the range of `f32`.
@@ -74,15 +75,17 @@ impl Shares {
         let columns = columns.map(|column| column / longest);
         let columns_f32 = columns.map(|column| column.as_vec3());
         let lengths: f64 = columns.iter().map(|column| column.length()).sum();
-        Self {
+        // Memory that the system has zeroed: a small picture touches little of it.
+        let entries = bytemuck::try_zeroed_vec(NORMALS);
+        Ok(Self {
             light,
             columns,
             columns_f32,
             step: (1.0 / sight.root_doubled) as f32,
             margin: MARGIN * lengths as f32,
-            // Memory that the system has zeroed: a small picture touches little of it.
-            entries: bytemuck::zeroed_vec(NORMALS),
-        }
+            entries: entries
+                .map_err(|()| budget::refused::<[AtomicU32; 4]>("the light by normal", NORMALS))?,
+        })
     }
 
     pub(super) fn down(&self, y: u32) -> f32 {
@@ -190,7 +193,7 @@ mod tests {
             let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
             let sight = Sight::new(&setup);
             let light = Light::new(Shading::Lambert, sight.axes());
-            let shares = Shares::new(&sight, light);
+            let shares = Shares::new(&sight, light).unwrap();
             for bits in 0..=u16::MAX {
                 let packed = PackedNormal(bits);
                 let (x, y) = (u32::from(bits) % side, u32::from(bits) / side % side);
