@@ -13,7 +13,7 @@ use crate::decimate::{DecimateError, Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
-use crate::geometry::{area, point};
+use crate::geometry::point;
 use crate::material::to_light;
 use crate::{Mesh, Surface};
 use shiftvox::graph::PackedNormal;
@@ -25,9 +25,6 @@ const ERROR: f64 = 0.3;
 /// Shares of this error to which finer candidates are decimated; thin parts to the last.
 const FINER: f64 = 1.0 / 3.0;
 const FINEST: f64 = 0.1;
-const LEAST_VOXEL_BYTES: f64 = 12.0;
-/// A finer candidate takes at most so many times the least bytes of voxels.
-const MOST_BYTES: f64 = 4.0;
 /// Most error of a node, as a share of that with voxels of thin parts: half a decibel.
 const WORSE: f64 = 1.06;
 /// A node that loses more of its coverage may have voxels of all triangles.
@@ -146,19 +143,10 @@ impl<'s> Surfaces<'s> {
             let taken: Vec<usize> = own.clone().filter(|&place| is_taken(place)).collect();
             self.decimated(own, &taken, error * voxel)
         };
-        let bytes = |candidate: &Candidate| {
-            let mut counted = candidate.node;
-            let _ = surface::lay_out(&mut counted, &candidate.triangles, |_| false);
-            counted.drawn_bytes() as f64
-        };
-        let area: f64 = own.clone().map(|place| self.area(place)).sum();
-        let most_bytes = MOST_BYTES * area / (voxel * voxel) * LEAST_VOXEL_BYTES;
         let mut candidates = Vec::new();
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
-            let all = candidate(decimated(&|place| is_seen(place, error), error)?);
-            if candidates.is_empty() || bytes(&all) <= most_bytes {
-                candidates.push(all);
-            }
+            let all = decimated(&|place| is_seen(place, error), error)?;
+            candidates.push(candidate(all));
         }
         if !thin.contains(&true) {
             return Ok((candidates, None));
@@ -167,10 +155,6 @@ impl<'s> Surfaces<'s> {
         let lines = decimated(&is_thin, ERROR * FINEST)?;
         candidates.push(candidate([&wide[..], &lines].concat()));
         Ok((candidates, Some(wide)))
-    }
-
-    fn area(&self, place: usize) -> f64 {
-        area(self.surface.corners(self.order[place] as usize))
     }
 
     fn decimated(
