@@ -25,7 +25,6 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     let ConvertArgs { input, output, .. } = args;
     let options = &args.far_options();
     let (mesh, up) = scenes::open_mesh(input, &args.scene, console)?;
-    scenes::tell_losses(input, &mesh, console);
     let started = Instant::now();
     let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
     check_room(triangles, args.memory).map_err(|e| e.at(input))?;

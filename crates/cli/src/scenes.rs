@@ -159,12 +159,12 @@ pub(super) fn open_mesh(
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
-/// Of a file that is built of a mesh.
+/// Of a `.tvx` file that is built of a mesh.
 pub(super) fn tell_losses(name: &str, mesh: &Mesh, console: &Console) {
     let is_lost = |of: &Material| of.texture.is_some() || of.alpha < 1.0;
     if mesh.materials().iter().any(is_lost) {
         console.note(format!(
-            "warning: {name}: textures and opacities are kept by voxels, but not by the triangles of a .far or .tvx file"
+            "warning: {name}: textures and opacities are kept by the voxels of a .tvx file, but not by its triangles"
         ));
     }
 }

@@ -1,11 +1,15 @@
 //! Surfaces to draw and to voxelise: one mesh, or several placed copies of it.
 
+use std::collections::HashSet;
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::geometry::{area, barycentric, blend, bounds, plane_normal, point};
 use super::material::srgb_to_linear;
-use super::{Mesh, Sampler};
+use super::{Mesh, Sampler, Texture};
 use shiftvox::graph::MeshBox;
+use shiftvox::split_mix::mix;
 
 /// One triangle, ready to be drawn: attributes of its corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,14 +63,26 @@ impl Triangle<'_> {
         }
     }
 
-    /// The unit normal on the eye's side, and the colour, at a point: the mean of a square of that side.
-    pub(crate) fn seen_from(&self, point: DVec3, towards_eye: DVec3, side: f64) -> (DVec3, DVec3) {
+    /// The unit normal on the eye's side, and colour and opacity at a point: the mean of a square of that side.
+    pub(crate) fn seen_from(
+        &self,
+        point: DVec3,
+        towards_eye: DVec3,
+        side: f64,
+    ) -> (DVec3, (DVec3, f64)) {
         let shares = barycentric(&self.corners, point);
         let facing = |n: DVec3, side: DVec3| if n.dot(side) < 0.0 { -n } else { n };
         let face = facing(plane_normal(self.corners), towards_eye);
         let normal = blend(&self.normals, shares).normalize_or(face);
-        (facing(normal, face), self.at(shares, side).0)
+        (facing(normal, face), self.at(shares, side))
     }
+}
+
+/// Whether something of an opacity stops light at a point, by lot, which the bits of the point draw.
+pub(crate) fn stops(opacity: f64, point: DVec3) -> bool {
+    let bits = point.to_array().map(f64::to_bits);
+    let lot = bits.iter().fold(0, |lot, &bits| mix(lot ^ bits));
+    (lot >> 11) as f64 / (1u64 << 53) as f64 <= opacity && opacity > 0.0
 }
 
 /// Triangles, accessed by a number below [`Surface::len`].
@@ -91,6 +107,11 @@ pub trait Surface: Sync {
     /// The material of a triangle whose colour is the mean of its texture.
     fn tinted_material(&self, _number: usize) -> Option<u32> {
         None
+    }
+
+    /// The textures of its triangles.
+    fn textures(&self) -> Vec<Arc<Texture>> {
+        Vec::new()
     }
 
     /// Whether nothing shows through a triangle.
@@ -166,6 +187,14 @@ impl Surface for Mesh {
         })
     }
 
+    fn textures(&self) -> Vec<Arc<Texture>> {
+        let textures = self.materials.iter();
+        let textures = textures.filter_map(|material| material.texture.as_ref());
+        let mut known = HashSet::new();
+        let textures = textures.filter(|texture| known.insert(Arc::as_ptr(texture)));
+        textures.cloned().collect()
+    }
+
     fn tinted_material(&self, number: usize) -> Option<u32> {
         self.tints.get(number).map(|_| self.material_of[number])
     }
@@ -234,6 +263,10 @@ impl Surface for Instances {
 
     fn is_opaque(&self, number: usize) -> bool {
         Surface::is_opaque(&self.mesh, number % self.mesh.triangles.len())
+    }
+
+    fn textures(&self) -> Vec<Arc<Texture>> {
+        self.mesh.textures()
     }
 
     fn tinted_material(&self, number: usize) -> Option<u32> {

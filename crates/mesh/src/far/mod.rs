@@ -7,8 +7,11 @@ pub mod record;
 pub mod store;
 pub mod view;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use crate::Texture;
 use record::Node;
 
 pub use build::{BuildError, BuildOptions, build, build_outside};
@@ -20,6 +23,8 @@ pub struct FarData {
     pub settings: FarSettings,
     /// The hierarchy, parents before children, a node's first child right after it.
     pub nodes: Vec<Node>,
+    /// Of the triangles, by number.
+    pub textures: Vec<Arc<Texture>>,
     /// The nodes' data, node by node, as it is stored.
     pub packed: Vec<u8>,
     /// Nodes of a hybrid whose triangles could not be decimated, so that they have voxels. No file has this number.

@@ -283,6 +283,30 @@ pub struct LeafTriangle {
     pub normals: [u16; 3],
     /// sRGB.
     pub colors: [[u8; 3]; 3],
+    pub paint: Paint,
+}
+
+/// What a triangle has besides colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paint {
+    /// Its number in the file, or [`NO_TEXTURE`]. Its colours are factors of the triangle's.
+    pub texture: u16,
+    /// 1 to 255: opaque.
+    pub alpha: u8,
+    /// Of the corners in the texture.
+    pub places: [[f32; 2]; 3],
+}
+
+pub const NO_TEXTURE: u16 = u16::MAX;
+pub const PAINT_BYTES: usize = 27;
+
+impl Paint {
+    /// Of opaque triangles without texture.
+    pub const NONE: Self = Self {
+        texture: NO_TEXTURE,
+        alpha: 255,
+        places: [[0.0; 2]; 3],
+    };
 }
 
 /// A node of the hierarchy. Its box holds its triangles. Coordinates are relative to the file's centre.
@@ -331,8 +355,8 @@ pub struct Node {
     pub colors: u16,
     /// Whether normals are those of the triangles' planes, 1 or 0.
     pub is_flat: u8,
-    /// Zero.
-    pub spare: u8,
+    /// Whether its surface has textures or opacities, 1 or 0.
+    pub is_painted: u8,
 }
 
 impl Stored for Node {
@@ -355,11 +379,12 @@ pub const SHARED_BYTES: usize = 12;
 /// Most colours in the table of a surface.
 pub const MOST_COLORS: usize = 256;
 
-/// Bytes per vertex or index.
+/// Bytes per vertex, index or triangle.
 pub(in crate::far) struct SurfaceColumns {
     pub(in crate::far) normal: usize,
     pub(in crate::far) color: usize,
     pub(in crate::far) index: usize,
+    pub(in crate::far) paint: usize,
 }
 
 impl SurfaceColumns {
@@ -374,6 +399,7 @@ impl SurfaceColumns {
             },
             // Twice the number, and which list it is of.
             index: if own.max(shared) < 1 << 15 { 2 } else { 4 },
+            paint: usize::from(node.is_painted) * PAINT_BYTES,
         }
     }
 }
@@ -408,7 +434,7 @@ impl Node {
             + own * OWN_BYTES as u64
             + shared * SHARED_BYTES as u64
             + (own + shared) * vertex
-            + u64::from(self.surface) * 3 * columns.index as u64
+            + u64::from(self.surface) * (3 * columns.index + columns.paint) as u64
     }
 
     pub fn drawn_bytes(&self) -> u64 {

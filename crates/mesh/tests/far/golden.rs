@@ -15,10 +15,10 @@ type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 
 /// Hybrid, rays, grid, leaf triangles; hashes of the city and a village.
 const FILES: [Build; 4] = [
-    (false, Some(60_000), 24, 60, [0x6caf_69ea, 0xae17_b0dd]),
-    (false, None, 16, 300, [0x2890_a5e3, 0x4469_9877]),
-    (true, Some(60_000), 24, 200, [0xf420_3065, 0x559c_bcc0]),
-    (true, None, 16, 300, [0x5d67_0c42, 0xc378_4bf5]),
+    (false, Some(60_000), 24, 60, [0x702d_2520, 0x1703_8bb6]),
+    (false, None, 16, 300, [0x11ef_1605, 0xe9bc_aa9b]),
+    (true, Some(60_000), 24, 200, [0x42f7_b6eb, 0x34af_a808]),
+    (true, None, 16, 300, [0x79e9_7284, 0x30c5_351d]),
 ];
 
 /// Distance, height, voxel size, samples across, opacities, hash.
@@ -27,8 +27,8 @@ const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
     (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x9c99_1478),
     (110.0, 0.6, 2.0, 1, Opacity::Six, 0xe712_8954),
     (110.0, 0.6, 2.0, 3, Opacity::None, 0x73b5_ffe8),
-    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x392f_bac1),
-    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0x123f_0cb8),
+    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x7df8_aaed),
+    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0x7b16_3bbc),
 ];
 
 #[test]

@@ -8,5 +8,6 @@ mod golden;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod solid;
+mod textures;
 mod thin;
 mod view;

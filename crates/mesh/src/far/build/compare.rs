@@ -1,9 +1,12 @@
 //! The choice among several representations of a node's triangles, by error and bytes (`spec/far.md`, Hybrid).
 
+use std::sync::Arc;
+
 use glam::{DVec3, DVec4};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::{BuildError, BuildOptions};
+use crate::Texture;
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::{encode, surface};
@@ -46,6 +49,7 @@ pub(super) struct Judged {
 
 pub(super) struct Comparison<'o> {
     options: &'o BuildOptions,
+    textures: &'o [Arc<Texture>],
     /// Coordinates are relative to it, so that single precision resolves the node's parts.
     middle: DVec3,
     leaf: (Node, Vec<u8>),
@@ -57,6 +61,7 @@ impl<'o> Comparison<'o> {
         node: &Node,
         triangles: &[LeafTriangle],
         options: &'o BuildOptions,
+        textures: &'o [Arc<Texture>],
     ) -> Result<Self, BuildError> {
         let [lowest, highest] = [node.low, node.high].map(point);
         let middle = (lowest + highest) / 2.0;
@@ -74,6 +79,7 @@ impl<'o> Comparison<'o> {
         let bytes = surface::lay_out(&mut leaf, &moved, |_| true);
         let mut of = Self {
             options,
+            textures,
             middle,
             leaf: (leaf, pack(&Default::default(), &bytes)),
             views: Vec::new(),
@@ -159,12 +165,13 @@ impl<'o> Comparison<'o> {
         let data = FarData {
             settings: self.options.settings(DVec3::ZERO),
             nodes: vec![root, leaf],
+            textures: Vec::new(),
             packed,
             undecimated: 0,
         };
         let encoded = encode(&data).map_err(failed)?;
         let file = FarFile::from_bytes(&encoded).map_err(failed)?;
-        Ok((file, drawn))
+        Ok((file.with_textures(self.textures), drawn))
     }
 }
 

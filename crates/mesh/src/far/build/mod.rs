@@ -25,19 +25,19 @@ use std::fs::{File, TryLockError};
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::record::{LeafTriangle, Node, Opacity};
+use super::record::{LeafTriangle, NO_TEXTURE, Node, Opacity, Paint};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
 use crate::material::to_srgb;
-use crate::{Sampler, Surface, mesh_box};
+use crate::{Sampler, Surface, Texture, Triangle, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
 use count::Seen;
 use grid::Grid;
@@ -278,9 +278,11 @@ fn fill<F: Read + Write + Seek + Send>(
     let occluders = Occluders::new(parts, corners, stops, within);
     let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
+    let textures = Textures::of(surface);
+    let leaf = |own: Range<usize>| leaf_triangles(surface, &order[own], centre, Some(&textures));
     let surfaces = options
         .hybrid
-        .then(|| Surfaces::new(surface, &order, centre, options, &branches));
+        .then(|| Surfaces::new(surface, &order, centre, options, &branches, &textures));
     let grid = |number: usize, branch: &Branch| {
         let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
         Grid::around(low, high, levels::grid_of(number, coarser, options.grid))
@@ -327,8 +329,7 @@ fn fill<F: Read + Write + Seek + Send>(
             let data = match &surfaces {
                 Some(surfaces) => surfaces.leaf(&mut node, own),
                 None => {
-                    let triangles = leaf_triangles(surface, &order[own], centre);
-                    let bytes = lay_out(&mut node, &triangles, |_| true);
+                    let bytes = lay_out(&mut node, &leaf(own), |_| true);
                     pack(&Default::default(), &bytes)
                 }
             };
@@ -383,6 +384,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let mut data = assemble(&spool, centre, options)?;
     data.undecimated = spool.nodes().filter(|done| done.is_undecimated).count() as u32;
     data.settings.bevels = mesh_box(surface, data.settings.y_up).bevels;
+    data.textures = textures.list;
     Ok((data, spool))
 }
 
@@ -526,13 +528,57 @@ fn fit(
     Ok(lists)
 }
 
-fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<LeafTriangle> {
+struct Textures {
+    list: Vec<Arc<Texture>>,
+    /// By address.
+    numbers: HashMap<usize, u16>,
+}
+
+impl Textures {
+    fn of(surface: &dyn Surface) -> Self {
+        let mut list = surface.textures();
+        list.truncate(usize::from(NO_TEXTURE));
+        let addresses = list.iter().map(|texture| Arc::as_ptr(texture).addr());
+        let numbers = addresses.zip(0..).collect();
+        Self { list, numbers }
+    }
+
+    fn paint(&self, triangle: &Triangle<'_>) -> Paint {
+        let alpha = ((255.0 * triangle.alpha + 0.5) as u8).max(1);
+        let textured = triangle.sampler.as_ref().and_then(|sampler| {
+            let number = self
+                .numbers
+                .get(&std::ptr::from_ref(sampler.texture).addr());
+            number.map(|&texture| (texture, sampler.places))
+        });
+        let (texture, places) = textured.unwrap_or((NO_TEXTURE, Paint::NONE.places));
+        Paint {
+            texture,
+            alpha,
+            places,
+        }
+    }
+}
+
+/// With `textures`, or else with the textures' colours at the corners.
+fn leaf_triangles(
+    surface: &dyn Surface,
+    order: &[u32],
+    centre: DVec3,
+    textures: Option<&Textures>,
+) -> Vec<LeafTriangle> {
     let leaf = |&number: &u32| {
         let triangle = surface.triangle(number as usize);
+        let paint = textures.map_or(Paint::NONE, |textures| textures.paint(&triangle));
+        let colors = match paint.texture {
+            NO_TEXTURE => triangle.corner_colors(),
+            _ => triangle.colors,
+        };
         LeafTriangle {
             corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
             normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
-            colors: triangle.corner_colors().map(to_srgb),
+            colors: colors.map(to_srgb),
+            paint,
         }
     };
     order.iter().map(leaf).collect()
@@ -552,6 +598,7 @@ fn assemble<F: Read + Write + Seek>(
     let mut data = FarData {
         settings: options.settings(centre),
         nodes: Vec::new(),
+        textures: Vec::new(),
         packed: Vec::new(),
         undecimated: 0,
     };

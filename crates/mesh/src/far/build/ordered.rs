@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::count::SurfaceSample;
 use crate::Surface;
 use crate::geometry::{barycentric, plane_normal};
-use shiftvox::split_mix::mix;
+use crate::surface::stops;
 
 pub(super) struct Ordered<'s> {
     pub(super) surface: &'s dyn Surface,
@@ -37,9 +37,7 @@ impl Ordered<'_> {
         let triangle = self.surface.triangle(number);
         let corners = triangle.corners.map(|p| self.place(p));
         let (_, opacity) = triangle.at(barycentric(&corners, point), 0.0);
-        let bits = point.to_array().map(f64::to_bits);
-        let lot = bits.iter().fold(0, |lot, &bits| mix(lot ^ bits));
-        (lot >> 11) as f64 / (1u64 << 53) as f64 <= opacity && opacity > 0.0
+        stops(opacity, point)
     }
 
     /// Normal and colour at a point. The colour is the mean of a square of that side.
@@ -52,7 +50,7 @@ impl Ordered<'_> {
     ) -> SurfaceSample {
         let mut triangle = self.surface.triangle(self.order[number] as usize);
         triangle.corners = triangle.corners.map(|p| self.place(p));
-        let (normal, color) = triangle.seen_from(point, towards_eye, side);
+        let (normal, (color, _)) = triangle.seen_from(point, towards_eye, side);
         SurfaceSample {
             towards_eye,
             normal,

@@ -8,9 +8,9 @@ use super::compare::{Candidate, Comparison, Judged};
 use super::parts::Parts;
 use super::split::Branch;
 use super::spool::Made;
-use super::{BuildError, BuildOptions, leaf_triangles};
+use super::{BuildError, BuildOptions, Textures, leaf_triangles};
 use crate::decimate::{DecimateError, Decimation, decimate_between};
-use crate::far::record::{LeafTriangle, Node};
+use crate::far::record::{LeafTriangle, Node, Paint};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
 use crate::geometry::point;
@@ -38,6 +38,7 @@ pub(super) struct Surfaces<'s> {
     centre: DVec3,
     options: &'s BuildOptions,
     parts: Parts,
+    textures: &'s Textures,
 }
 
 impl<'s> Surfaces<'s> {
@@ -47,6 +48,7 @@ impl<'s> Surfaces<'s> {
         centre: DVec3,
         options: &'s BuildOptions,
         branches: &[Branch],
+        textures: &'s Textures,
     ) -> Self {
         let corners = |place: usize| {
             let corners = surface.corners(order[place] as usize);
@@ -61,13 +63,20 @@ impl<'s> Surfaces<'s> {
             centre,
             options,
             parts: Parts::of(&leaves, corners, normals),
+            textures,
         }
     }
 
     pub(super) fn leaf(&self, node: &mut Node, own: Range<usize>) -> Vec<u8> {
-        let triangles = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-        let bytes = surface::lay_out(node, &triangles, |p| self.parts.shared(&own, p).is_some());
+        let bytes = surface::lay_out(node, &self.triangles(&own), |p| {
+            self.parts.shared(&own, p).is_some()
+        });
         pack(&Default::default(), &bytes)
+    }
+
+    fn triangles(&self, own: &Range<usize>) -> Vec<LeafTriangle> {
+        let order = &self.order[own.clone()];
+        leaf_triangles(self.surface, order, self.centre, Some(self.textures))
     }
 
     /// An inner node, whose grid is set, and its bytes. `voxels` makes voxels of some triangles.
@@ -77,8 +86,9 @@ impl<'s> Surfaces<'s> {
         own: Range<usize>,
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<Made, BuildError> {
-        let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-        let comparison = Comparison::of(node, &all, self.options)?;
+        let all = self.triangles(&own);
+        let is_painted = all.iter().any(|triangle| triangle.paint != Paint::NONE);
+        let comparison = Comparison::of(node, &all, self.options, &self.textures.list)?;
         let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
         let mut thin: Vec<bool> = own.clone().map(thin).collect();
         let decimated = self.decimations(node, &own, &thin);
@@ -105,10 +115,11 @@ impl<'s> Surfaces<'s> {
             let able = (0..judged.len()).filter(|&n| judged[n].error <= most_error);
             let best = able.min_by(|&a, &b| judged[a].cost.total_cmp(&judged[b].cost));
             let best = best.unwrap_or(0);
-            if judged[best].lost <= MOST_LOST || !thin.contains(&false) {
+            let is_near = judged[best].lost <= MOST_LOST && !is_painted;
+            if is_near || !thin.contains(&false) {
                 break judged.swap_remove(best).candidate;
             }
-            // A lattice is one wide part of thin bars.
+            // A lattice is one wide part of thin bars, and a decimated surface has no textures.
             thin.fill(true);
             wide = Some(Vec::new());
         };
@@ -170,7 +181,10 @@ impl<'s> Surfaces<'s> {
         let tinted = numbers.iter();
         let tinted = tinted.map(|&number| self.surface.tinted_material(number as usize));
         let tinted: Option<Vec<u32>> = tinted.collect();
-        let mesh = mesh_of(&leaf_triangles(self.surface, &numbers, self.centre), tinted);
+        let mesh = mesh_of(
+            &leaf_triangles(self.surface, &numbers, self.centre, None),
+            tinted,
+        );
         let how = Decimation {
             triangles: 0,
             error: Some(error),
@@ -218,6 +232,7 @@ fn triangles_of(mesh: &Mesh) -> Vec<LeafTriangle> {
             corners: corners.map(|vertex| mesh.positions()[vertex].map(|c| c as f32)),
             normals: mesh.corner_normals()[number].map(|n| PackedNormal::encode(point(n)).0),
             colors: corners.map(|vertex| mesh.vertex_colors()[vertex]),
+            paint: Paint::NONE,
         }
     };
     (0..mesh.triangles().len()).map(triangle).collect()

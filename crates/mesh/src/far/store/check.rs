@@ -52,6 +52,7 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     let vertices: u64 = node.vertices.iter().map(|&n| u64::from(n)).sum();
     let is_surface = node.surface <= node.triangles && vertices <= 3 * u64::from(node.surface);
     let has_colors = usize::from(node.colors) <= MOST_COLORS && node.is_flat <= 1;
+    let has_colors = has_colors && node.is_painted <= 1;
     let leaf = node.children == [0; 2] && node.surface == node.triangles;
     let has_no_grid = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
     let without_grid = node.is_leaf() || has_no_grid;
@@ -83,8 +84,8 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
             "no more triangles than it has, of three vertices each",
         ),
         (
-            has_colors && node.spare == 0,
-            "at most 256 colours, and flat triangles or not",
+            has_colors,
+            "at most 256 colours, flat triangles or not, and paint or not",
         ),
         (
             !node.is_leaf() || leaf,

@@ -7,12 +7,13 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use crate::far::FarData;
 use crate::far::record::NODE_BYTES;
+use crate::texture::stored;
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, Stored, section_after};
 
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
     magic: *b"\x89FAR\r\n\x1a\n",
-    versions: &[6],
+    versions: &[7],
     header_bytes: HEADER_BYTES,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
@@ -35,19 +36,21 @@ pub(super) struct Fields {
     pub(super) spare: [u8; 5],
     pub(super) nodes_checksum: u64,
     pub(super) bevels: [u8; 8],
-    pub(super) more_spare: [u8; 8],
+    pub(super) textures_bytes: u64,
 }
 
 impl Stored for Fields {
-    const NUMBERS: &'static [(usize, usize)] = &[(7, 8), (2, 4), (8, 1), (1, 8), (16, 1)];
+    const NUMBERS: &'static [(usize, usize)] = &[(7, 8), (2, 4), (8, 1), (1, 8), (8, 1), (1, 8)];
 }
 
 /// Opacities are blended by cosines, normals and materials by their squares.
 pub(super) const BLENDS: [u8; 2] = [1, 0];
 
-pub(super) fn layout(nodes: u64, data_bytes: u64) -> [[u64; 2]; 2] {
+/// The hierarchy, textures and data.
+pub(super) fn layout(nodes: u64, textures_bytes: u64, data_bytes: u64) -> [[u64; 2]; 3] {
     let nodes = section_after(HEADER_BYTES as u64, nodes, NODE_BYTES);
-    [nodes, section_after(nodes[1], data_bytes, 1)]
+    let textures = section_after(nodes[1], textures_bytes, 1);
+    [nodes, textures, section_after(textures[1], data_bytes, 1)]
 }
 
 /// Writes a file whose data `copy` writes.
@@ -58,11 +61,15 @@ pub(in crate::far) fn write_parts(
     copy: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let nodes = file::to_file(&data.nodes);
-    let [node_place, [begin, end]] = layout(data.nodes.len() as u64, data_bytes);
+    let textures = stored::to_bytes(&data.textures);
+    let textures_bytes = textures.len() as u64;
+    let [node_place, texture_place, [begin, end]] =
+        layout(data.nodes.len() as u64, textures_bytes, data_bytes);
     let settings = &data.settings;
     let fields = Fields {
         nodes: data.nodes.len() as u64,
         data_bytes,
+        textures_bytes,
         triangles: data.triangles(),
         centre: settings.centre.to_array(),
         distance_voxels: settings.distance_voxels,
@@ -78,7 +85,11 @@ pub(in crate::far) fn write_parts(
         put(FIELDS, &file::to_file(&[fields]))
     });
     // The zeros before the data are written before an empty section.
-    let sections = [(node_place, &nodes[..]), ([begin; 2], &[][..])];
+    let sections = [
+        (node_place, &nodes[..]),
+        (texture_place, &textures[..]),
+        ([begin; 2], &[][..]),
+    ];
     file::write(&header, sections.into_iter(), out)?;
     copy(out)
 }

@@ -67,13 +67,14 @@ fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::far::record::Paint;
 
     #[test]
     fn surfaces_come_back() {
-        for (count, colors, in_table, is_flat) in [
-            (1u32, 1u32, 1, false),
-            (400, 7, 7, true),
-            (40_000, 9000, 0, false),
+        for (count, colors, in_table, is_flat, is_painted) in [
+            (1u32, 1u32, 1, false, true),
+            (400, 7, 7, true, false),
+            (40_000, 9000, 0, false, true),
         ] {
             let at = |i: u32| (f64::from(i) * 0.618_033).fract();
             let triangle = |i: u32| {
@@ -91,6 +92,14 @@ mod tests {
                         false => numbers.map(|i| (i % 9000) as u16),
                     },
                     colors: numbers.map(color),
+                    paint: match is_painted {
+                        true => Paint {
+                            texture: i as u16 % 9,
+                            alpha: (i % 255) as u8 + 1,
+                            places: numbers.map(|i| [at(i) as f32 * 4.0, i as f32]),
+                        },
+                        false => Paint::NONE,
+                    },
                 }
             };
             let triangles: Vec<LeafTriangle> = (0..count).map(triangle).collect();
@@ -112,7 +121,7 @@ mod tests {
                     let most = if is_shared(p) { 0.0 } else { 2.0001 / 65535.0 };
                     assert!(off <= most, "{p:?} {q:?}");
                 }
-                assert_eq!(was.colors, is.colors);
+                assert_eq!((was.colors, was.paint), (is.colors, is.paint));
                 let normals = match is_flat {
                     true => [surface::flat_normal(&is.corners); 3],
                     false => was.normals,

@@ -3,7 +3,7 @@
 use std::io;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
@@ -14,9 +14,11 @@ use super::check::check;
 use super::data::{NodeData, Slot};
 use super::format::{BLENDS, FIELDS, FORMAT, Fields, layout};
 use super::pack::unpack;
+use crate::Texture;
 use crate::far::FarSettings;
-use crate::far::record::Node;
+use crate::far::record::{NO_TEXTURE, Node};
 use crate::geometry::point;
+use crate::texture::stored;
 use shiftvox::graph::MeshBox;
 use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, range};
 use shiftvox::graph::map::release;
@@ -32,6 +34,8 @@ pub struct FarFile {
     path: PathBuf,
     bytes: Bytes,
     section: [u64; 2],
+    texture_place: [u64; 2],
+    textures: OnceLock<Vec<Arc<Texture>>>,
     nodes: Vec<Node>,
     first_voxel: Vec<u32>,
     first_triangle: Vec<u32>,
@@ -78,8 +82,8 @@ impl FarFile {
     fn of(bytes: Bytes, path: &Path) -> Result<Self, FarError> {
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
-        let places = layout(header.nodes, header.data_bytes);
-        let [place, section] = places;
+        let places = layout(header.nodes, header.textures_bytes, header.data_bytes);
+        let [place, texture_place, section] = places;
         FORMAT.check_padding(all, places.into_iter(), path)?;
         let damaged =
             |section, offset, expected| FarError::damaged(path, section, offset, expected);
@@ -105,6 +109,8 @@ impl FarFile {
             },
             path: path.to_owned(),
             section,
+            texture_place,
+            textures: OnceLock::new(),
             first_voxel: first_of(&nodes, |node| node.voxels() as u32),
             first_triangle: first_of(&nodes, |node| node.surface),
             data: nodes.iter().map(|_| Slot::default()).collect(),
@@ -178,9 +184,42 @@ impl FarFile {
         Ok(data)
     }
 
-    /// Checks the data of all nodes.
+    /// Those of all triangles. They are unpacked when they are first needed.
+    pub(in crate::far) fn textures(&self) -> Result<&[Arc<Texture>], FarError> {
+        if self.textures.get().is_none() {
+            let place = self.texture_place;
+            let textures = stored::from_bytes(&self.bytes.get()[range(place)]);
+            let expected = "textures as they were written".to_owned();
+            let damaged = || FarError::damaged(&self.path, "textures", place[0], expected);
+            let _ = self.textures.set(textures.ok_or_else(damaged)?);
+        }
+        Ok(self.textures.get().map_or(&[], |textures| textures))
+    }
+
+    /// The same file with these textures in place of its own.
+    pub(in crate::far) fn with_textures(self, textures: &[Arc<Texture>]) -> Self {
+        let textures = OnceLock::from(textures.to_vec());
+        Self { textures, ..self }
+    }
+
+    /// Checks the data of all nodes, and textures.
     pub fn verify(&self) -> Result<(), FarError> {
-        (0..self.nodes.len()).try_for_each(|node| self.data(node).map(drop))
+        let textures = self.textures()?.len();
+        (0..self.nodes.len()).try_for_each(|node| {
+            let data = self.data(node)?;
+            let mut numbers = data
+                .triangles()
+                .iter()
+                .map(|t| usize::from(t.paint.texture));
+            match numbers.all(|number| number < textures || number == usize::from(NO_TEXTURE)) {
+                true => Ok(()),
+                false => {
+                    let expected = format!("at most {textures} textures in node {node}");
+                    let place = self.place_of(node)[0];
+                    Err(FarError::damaged(&self.path, "data", place, expected))
+                }
+            }
+        })
     }
 
     fn place_of(&self, number: usize) -> [u64; 2] {
@@ -227,9 +266,9 @@ fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields,
     let bytes = header.bytes_at::<{ size_of::<Fields>() }>(FIELDS);
     let fields = file::from_file::<Fields>(&bytes)[0];
     let ends = format!("sections that end with the file at byte {file_bytes}");
-    let [_, [_, end]] = layout(fields.nodes, fields.data_bytes);
+    let [.., [_, end]] = layout(fields.nodes, fields.textures_bytes, fields.data_bytes);
     let is_finite = fields.centre.iter().all(|c| c.is_finite());
-    let is_spare = fields.spare == [0; 5] && fields.more_spare == [0; 8];
+    let is_spare = fields.spare == [0; 5];
     for (holds, offset, expected) in [
         (end == file_bytes, offset_of!(Fields, nodes), &ends[..]),
         (is_spare, offset_of!(Fields, spare), "zeros"),

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 
 use crate::far::record::{
-    LeafTriangle, MOST_COLORS, Node, OWN_BYTES, SHARED_BYTES, SurfaceColumns,
+    LeafTriangle, MOST_COLORS, Node, OWN_BYTES, PAINT_BYTES, Paint, SHARED_BYTES, SurfaceColumns,
 };
 use crate::geometry::{plane_normal, point};
 use shiftvox::graph::PackedNormal;
@@ -95,6 +95,7 @@ pub(in crate::far) fn lay_out(
     node.surface = triangles.len() as u32;
     node.colors = colors.len() as u16;
     node.is_flat = u8::from(is_flat);
+    node.is_painted = u8::from(triangles.iter().any(|t| t.paint != Paint::NONE));
     let columns = SurfaceColumns::of(node);
     let mut bytes = colors.concat();
     let [own, shared] = &vertices;
@@ -120,7 +121,36 @@ pub(in crate::far) fn lay_out(
     planes(&mut bytes, &codes, columns.index, |code, byte| {
         code.to_le_bytes()[byte]
     });
+    planes(&mut bytes, triangles, columns.paint, |triangle, byte| {
+        paint_bytes(&triangle.paint)[byte]
+    });
     bytes
+}
+
+fn paint_bytes(paint: &Paint) -> [u8; PAINT_BYTES] {
+    let mut bytes = [0; PAINT_BYTES];
+    bytes[..2].copy_from_slice(&paint.texture.to_le_bytes());
+    bytes[2] = paint.alpha;
+    let places = paint.places.as_flattened().iter();
+    for (to, place) in bytes[3..].chunks_exact_mut(4).zip(places) {
+        to.copy_from_slice(&place.to_le_bytes());
+    }
+    bytes
+}
+
+/// `None` if a place is not finite.
+fn paint_of(bytes: &[u8; PAINT_BYTES]) -> Option<Paint> {
+    let number = |at: usize| {
+        let bytes = [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
+        f32::from_le_bytes(bytes)
+    };
+    let paint = Paint {
+        texture: u16::from_le_bytes([bytes[0], bytes[1]]),
+        alpha: bytes[2],
+        places: [3, 11, 19].map(|at| [number(at), number(at + 4)]),
+    };
+    let places = paint.places.as_flattened();
+    places.iter().all(|c| c.is_finite()).then_some(paint)
 }
 
 fn planes<T>(out: &mut Vec<u8>, items: &[T], bytes: usize, byte_of: impl Fn(&T, usize) -> u8) {
@@ -163,6 +193,7 @@ pub(super) fn read(node: &Node, mut bytes: &[u8]) -> Option<Vec<LeafTriangle>> {
     let normals = take::<2>(&mut bytes, own + shared, columns.normal);
     let tints = take::<3>(&mut bytes, own + shared, columns.color);
     let codes = take::<4>(&mut bytes, node.surface as usize * 3, columns.index);
+    let paints = take::<PAINT_BYTES>(&mut bytes, node.surface as usize, columns.paint);
     let color_of = |vertex: usize| match columns.color {
         0 => colors.first().copied(),
         1 => colors.get(usize::from(tints[vertex][0])).copied(),
@@ -181,11 +212,15 @@ pub(super) fn read(node: &Node, mut bytes: &[u8]) -> Option<Vec<LeafTriangle>> {
         (number < count).then_some(number + list * own)
     };
     let mut triangles = Vec::with_capacity(codes.len() / 3);
-    for codes in codes.as_chunks::<3>().0 {
+    for (codes, paint) in codes.as_chunks::<3>().0.iter().zip(&paints) {
         let mut triangle = LeafTriangle {
             corners: [[0.0; 3]; 3],
             normals: [0; 3],
             colors: [[0; 3]; 3],
+            paint: match columns.paint {
+                0 => Paint::NONE,
+                _ => paint_of(paint)?,
+            },
         };
         for k in 0..3 {
             let vertex = vertex_of(codes[k])?;

@@ -15,7 +15,8 @@ use crate::geometry::point;
 use crate::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
 };
-use crate::{Surface, Triangle, srgb_to_linear};
+use crate::surface::stops;
+use crate::{Sampler, Surface, Texture, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
@@ -114,7 +115,7 @@ impl<'f> Opaque<'f> {
     }
 
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
-        let surface = Surfaces::of(self.file, nodes)?;
+        let surface = Surfaces::of(self.file, &self.view, nodes)?;
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
@@ -220,15 +221,24 @@ pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions)
 
 struct Surfaces<'f> {
     file: &'f FarFile,
+    view: &'f RasterCamera,
+    /// Nothing if no node has textures.
+    textures: &'f [Arc<Texture>],
     data: Vec<Arc<NodeData>>,
     /// Node among these, place in it, number in the file.
     places: Vec<(u32, u32, u32)>,
 }
 
 impl<'f> Surfaces<'f> {
-    fn of(file: &'f FarFile, nodes: &[usize]) -> Result<Self, ViewError> {
+    fn of(file: &'f FarFile, view: &'f RasterCamera, nodes: &[usize]) -> Result<Self, ViewError> {
+        let is_painted = |&node: &usize| file.nodes()[node].is_painted == 1;
         let mut surface = Self {
             file,
+            view,
+            textures: match nodes.iter().any(is_painted) {
+                true => file.textures()?,
+                false => &[],
+            },
             data: Vec::with_capacity(nodes.len()),
             places: Vec::new(),
         };
@@ -261,14 +271,33 @@ impl Surface for Surfaces<'_> {
 
     fn triangle(&self, number: usize) -> Triangle<'_> {
         let stored = self.triangle_at(number);
+        let texture = self.textures.get(usize::from(stored.paint.texture));
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
         Triangle {
             corners: Surface::corners(self, number),
             normals: stored.normals.map(normal),
             colors: stored.colors.map(crate::material::to_light),
-            alpha: 1.0,
-            sampler: None,
+            alpha: f64::from(stored.paint.alpha) / 255.0,
+            sampler: texture.map(|texture| Sampler {
+                texture,
+                places: stored.paint.places,
+            }),
         }
+    }
+
+    /// Those that let light through.
+    fn is_textured(&self, number: usize) -> bool {
+        let paint = &self.triangle_at(number).paint;
+        let texture = self.textures.get(usize::from(paint.texture));
+        paint.alpha < 255 || texture.is_some_and(|texture| !texture.is_opaque())
+    }
+
+    fn texture(&self, number: usize, point: DVec3) -> Option<(DVec3, DVec3)> {
+        let towards_eye = self.view.eye - point;
+        let side = -towards_eye.dot(self.view.forward) / self.view.focal_px;
+        let (normal, (color, opacity)) = self.triangle(number).seen_from(point, towards_eye, side);
+        // By lot, as the rays of a build.
+        stops(opacity, point).then_some((color, normal))
     }
 
     fn bounds(&self) -> (DVec3, DVec3) {

@@ -102,7 +102,8 @@ pub(super) fn project<S: Surface + ?Sized>(
                 if let Some((_, triangle)) = &last {
                     let point = world(column, lattice, texel, along);
                     let outwards = DVec3::AXES[column.axis] * outwards;
-                    let (normal, color) = triangle.seen_from(point, outwards, lattice.texel_size());
+                    let (normal, (color, _)) =
+                        triangle.seen_from(point, outwards, lattice.texel_size());
                     texture[texel] = Texel {
                         color: to_srgb(color),
                         opacity: 255,
