@@ -13,7 +13,7 @@ use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions, read_mesh};
-use shiftvox_mesh::{LoadOptions, Material, Mesh};
+use shiftvox_mesh::{LoadOptions, Mesh};
 
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
@@ -157,16 +157,6 @@ pub(super) fn open_mesh(
         console.note(format!("{source}: {warning}"));
     }
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
-}
-
-/// Of a `.tvx` file that is built of a mesh.
-pub(super) fn tell_losses(name: &str, mesh: &Mesh, console: &Console) {
-    let is_lost = |of: &Material| of.texture.is_some() || of.alpha < 1.0;
-    if mesh.materials().iter().any(is_lost) {
-        console.note(format!(
-            "warning: {name}: textures and opacities are kept by the voxels of a .tvx file, but not by its triangles"
-        ));
-    }
 }
 
 /// The bundled scene: a tree, see `assets/ATTRIBUTION.md`.

@@ -4,6 +4,7 @@
 //! copy with texels of its own size, and costs as much as a sample of one. Colours are averaged in linear light, by
 //! opacity.
 
+pub(crate) mod paint;
 pub(crate) mod stored;
 
 use std::ops::{Add, Mul};

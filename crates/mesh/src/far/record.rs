@@ -7,6 +7,8 @@ use super::blend::{DIRECTIONS, by_cosines, by_squares};
 use crate::geometry::point;
 use crate::material::to_srgb;
 use crate::srgb_to_linear;
+use crate::texture::paint::PAINT_BYTES;
+pub use crate::texture::paint::Paint;
 use shiftvox::graph::PackedNormal;
 use shiftvox::graph::file::Stored;
 
@@ -284,29 +286,6 @@ pub struct LeafTriangle {
     /// sRGB.
     pub colors: [[u8; 3]; 3],
     pub paint: Paint,
-}
-
-/// What a triangle has besides colours.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Paint {
-    /// Its number in the file, or [`NO_TEXTURE`]. Its colours are factors of the triangle's.
-    pub texture: u16,
-    /// 1 to 255: opaque.
-    pub alpha: u8,
-    /// Of the corners in the texture.
-    pub places: [[f32; 2]; 3],
-}
-
-pub const NO_TEXTURE: u16 = u16::MAX;
-pub const PAINT_BYTES: usize = 27;
-
-impl Paint {
-    /// Of opaque triangles without texture.
-    pub const NONE: Self = Self {
-        texture: NO_TEXTURE,
-        alpha: 255,
-        places: [[0.0; 2]; 3],
-    };
 }
 
 /// A node of the hierarchy. Its box holds its triangles. Coordinates are relative to the file's centre.

@@ -11,11 +11,32 @@ use super::{AlphaMode, Texture, Wrap};
 const EFFORT: u8 = 6;
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
-/// Checksum of the rest, length of the inflated rest, the rest; or nothing without textures.
-pub(crate) fn to_bytes(textures: &[Arc<Texture>]) -> Vec<u8> {
-    if textures.is_empty() {
+/// Deflated bytes, after a checksum and the number of bytes; nothing of none.
+pub(crate) fn sealed(bytes: &[u8]) -> Vec<u8> {
+    if bytes.is_empty() {
         return Vec::new();
     }
+    let length = (bytes.len() as u64).to_le_bytes();
+    let rest = [&length[..], &compress_to_vec(bytes, EFFORT)].concat();
+    [&xxh3_64(&rest).to_le_bytes()[..], &rest].concat()
+}
+
+/// `None` for bytes that [`sealed`] does not make.
+pub(crate) fn opened(bytes: &[u8]) -> Option<Vec<u8>> {
+    if bytes.is_empty() {
+        return Some(Vec::new());
+    }
+    let (checksum, rest) = bytes.split_first_chunk()?;
+    let (length, deflated) = rest.split_first_chunk()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    if xxh3_64(rest) != u64::from_le_bytes(*checksum) {
+        return None;
+    }
+    let all = decompress_to_vec_with_limit(deflated, length).ok()?;
+    (all.len() == length && length > 0).then_some(all)
+}
+
+pub(crate) fn to_bytes(textures: &[Arc<Texture>]) -> Vec<u8> {
     let mut all = Vec::new();
     for texture in textures {
         let finest = &texture.levels[0];
@@ -34,26 +55,12 @@ pub(crate) fn to_bytes(textures: &[Arc<Texture>]) -> Vec<u8> {
             }));
         }
     }
-    let length = (all.len() as u64).to_le_bytes();
-    let rest = [&length[..], &compress_to_vec(&all, EFFORT)].concat();
-    [&xxh3_64(&rest).to_le_bytes()[..], &rest].concat()
+    sealed(&all)
 }
 
 /// `None` for bytes that [`to_bytes`] does not write.
 pub(crate) fn from_bytes(bytes: &[u8]) -> Option<Vec<Arc<Texture>>> {
-    if bytes.is_empty() {
-        return Some(Vec::new());
-    }
-    let (checksum, rest) = bytes.split_first_chunk()?;
-    let (length, deflated) = rest.split_first_chunk()?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-    if xxh3_64(rest) != u64::from_le_bytes(*checksum) {
-        return None;
-    }
-    let all = decompress_to_vec_with_limit(deflated, length).ok()?;
-    if all.len() != length {
-        return None;
-    }
+    let all = opened(bytes)?;
     let mut left = &all[..];
     let mut textures = Vec::new();
     while !left.is_empty() {

@@ -15,8 +15,12 @@ pub use build::{BuildError, BuildOptions, build};
 pub use cell_grid::CellGrid;
 pub use store::{TexturedError, TexturedFile};
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use crate::Texture;
+use crate::texture::paint::Paint;
 use record::{Primitive, Texel, VoxelRecord};
 
 /// The voxels that an erosion removes.
@@ -40,6 +44,9 @@ pub struct TexturedData {
     pub y_up: bool,
     pub bevels: [u8; 8],
     pub primitives: Vec<Primitive>,
+    /// Of the primitives; none if none has a texture or lets light through.
+    pub paints: Vec<Paint>,
+    pub textures: Vec<Arc<Texture>>,
     /// The grids, coarse before fine, each of another number of cells.
     pub grids: Vec<GridData>,
 }

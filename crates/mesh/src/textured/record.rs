@@ -20,7 +20,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    pub fn of(triangle: &Triangle<'_>) -> Self {
+    pub fn of(triangle: &Triangle<'_>, colors: [DVec3; 3]) -> Self {
         let plane = plane_normal(triangle.corners);
         // Normals of a file are in single precision.
         let normal = |n: DVec3| match n.distance_squared(plane) < 1e-12 {
@@ -30,7 +30,7 @@ impl Primitive {
         Self {
             corners: triangle.corners.map(|p| p.as_vec3().to_array()),
             normals: triangle.normals.map(normal),
-            colors: triangle.corner_colors().map(to_srgb),
+            colors: colors.map(to_srgb),
             spare: 0,
         }
     }

@@ -2,6 +2,7 @@
 
 use shiftvox::graph::Silent;
 use shiftvox_mesh::Instances;
+use shiftvox_mesh::far::record::Paint;
 use shiftvox_mesh::textured::record::{CLEAR, NEVER};
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{
@@ -37,7 +38,7 @@ fn face(data: &mut TexturedData, below: u32) -> &mut u32 {
 #[test]
 fn inconsistent_contents_are_refused() {
     type Harm = fn(&mut TexturedData);
-    let harms: [Harm; 18] = [
+    let harms: [Harm; 20] = [
         // Primitives: missing, falling, in no list, no number, and a larger box.
         |d| d.grids[0].lists[0] = 99,
         |d| d.grids[1].lists.reverse(),
@@ -58,6 +59,18 @@ fn inconsistent_contents_are_refused() {
         |d| {
             let mut texels = d.grids[0].textures.iter_mut();
             texels.find(|t| t.opacity == 255).unwrap().normal = 0;
+        },
+        // A paint too few, and one with a texture that is missing.
+        |d| d.paints = vec![Paint::NONE; 2],
+        |d| {
+            let texture = 0;
+            d.paints = vec![
+                Paint {
+                    texture,
+                    ..Paint::NONE
+                };
+                3
+            ];
         },
         // Grids: odd, from fine to coarse, none.
         |d| d.grids[1].cells = 5,

@@ -22,19 +22,19 @@ const ROWS: [Row; 3] = [
         &[4, 10, 16],
         5,
         Element::Cube,
-        [[0x7304_546c, 0x66af_fd7f], [0xd8ee_7b75, 0x56a5_fe56]],
+        [[0x7801_07f2, 0x66af_fd7f], [0xbbbe_9a19, 0x56a5_fe56]],
     ),
     (
         &[16],
         4,
         Element::Sides,
-        [[0x68a7_0b6e, 0x36bf_52e5], [0xec8e_e673, 0x186b_4f44]],
+        [[0xba7c_4cf3, 0x36bf_52e5], [0x7434_9171, 0x186b_4f44]],
     ),
     (
         &[2, 6],
         9,
         Element::Sides,
-        [[0x959a_0b8f, 0x31f6_244a], [0xb2ee_1177, 0x0281_f113]],
+        [[0x1dc6_2ba3, 0x31f6_244a], [0xd7c5_4eb2, 0x0281_f113]],
     ),
 ];
 

@@ -171,3 +171,20 @@ fn texels_have_holes() {
     // The grid is as large as the mesh.
     assert!((0.97..1.03).contains(&share), "{share}");
 }
+
+#[test]
+fn triangles_of_files_have_textures_holes_and_opacities() {
+    for around in [0, 100, 255] {
+        let mtl = "Kd 0.5 0.5 0.5\nmap_Kd a.png\nmap_d -imfchan m a.png";
+        let mesh = card(&disc(around), 10, 0.0, mtl);
+        let file = file_of(&built(&mesh, 16, 16, Element::Cube));
+        let view = view(DVec3::new(0.3, 0.6, 2.0), middle(&file), 250, 400.0);
+        let expected = triangles(&mesh, &view, 1, None);
+        let (picture, counts) = drawn(&file, &view, file.grid(0).levels().last());
+        assert_eq!(counts.surfels, 0);
+        let pairs = picture.rgba.iter().zip(&expected.rgba);
+        let most = pairs.flat_map(|(a, b)| (0..4).map(|k| a[k].abs_diff(b[k])));
+        // Corners and colours are rounded.
+        assert!(most.max().unwrap() < 4, "{around}");
+    }
+}

@@ -25,19 +25,20 @@ use std::fs::{File, TryLockError};
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use glam::DVec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-use super::record::{LeafTriangle, NO_TEXTURE, Node, Opacity, Paint};
+use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
 use super::{FarData, FarSettings};
 use crate::material::to_srgb;
-use crate::{Sampler, Surface, Texture, Triangle, mesh_box};
+use crate::texture::paint::{Paint, Textures};
+use crate::{Sampler, Surface, mesh_box};
 use clusters::{CLUSTER, Occluders, Part, Stops};
 use count::Seen;
 use grid::Grid;
@@ -278,7 +279,7 @@ fn fill<F: Read + Write + Seek + Send>(
     let occluders = Occluders::new(parts, corners, stops, within);
     let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
-    let textures = Textures::of(surface);
+    let textures = Textures::new(surface.textures());
     let leaf = |own: Range<usize>| leaf_triangles(surface, &order[own], centre, Some(&textures));
     let surfaces = options
         .hybrid
@@ -528,38 +529,6 @@ fn fit(
     Ok(lists)
 }
 
-struct Textures {
-    list: Vec<Arc<Texture>>,
-    /// By address.
-    numbers: HashMap<usize, u16>,
-}
-
-impl Textures {
-    fn of(surface: &dyn Surface) -> Self {
-        let mut list = surface.textures();
-        list.truncate(usize::from(NO_TEXTURE));
-        let addresses = list.iter().map(|texture| Arc::as_ptr(texture).addr());
-        let numbers = addresses.zip(0..).collect();
-        Self { list, numbers }
-    }
-
-    fn paint(&self, triangle: &Triangle<'_>) -> Paint {
-        let alpha = ((255.0 * triangle.alpha + 0.5) as u8).max(1);
-        let textured = triangle.sampler.as_ref().and_then(|sampler| {
-            let number = self
-                .numbers
-                .get(&std::ptr::from_ref(sampler.texture).addr());
-            number.map(|&texture| (texture, sampler.places))
-        });
-        let (texture, places) = textured.unwrap_or((NO_TEXTURE, Paint::NONE.places));
-        Paint {
-            texture,
-            alpha,
-            places,
-        }
-    }
-}
-
 /// With `textures`, or else with the textures' colours at the corners.
 fn leaf_triangles(
     surface: &dyn Surface,
@@ -569,10 +538,9 @@ fn leaf_triangles(
 ) -> Vec<LeafTriangle> {
     let leaf = |&number: &u32| {
         let triangle = surface.triangle(number as usize);
-        let paint = textures.map_or(Paint::NONE, |textures| textures.paint(&triangle));
-        let colors = match paint.texture {
-            NO_TEXTURE => triangle.corner_colors(),
-            _ => triangle.colors,
+        let (paint, colors) = match textures {
+            Some(textures) => textures.paint(&triangle),
+            None => (Paint::NONE, triangle.corner_colors()),
         };
         LeafTriangle {
             corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),

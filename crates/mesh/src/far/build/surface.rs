@@ -8,13 +8,14 @@ use super::compare::{Candidate, Comparison, Judged};
 use super::parts::Parts;
 use super::split::Branch;
 use super::spool::Made;
-use super::{BuildError, BuildOptions, Textures, leaf_triangles};
+use super::{BuildError, BuildOptions, leaf_triangles};
 use crate::decimate::{DecimateError, Decimation, decimate_between};
-use crate::far::record::{LeafTriangle, Node, Paint};
+use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
 use crate::geometry::point;
 use crate::material::to_light;
+use crate::texture::paint::{Paint, Textures};
 use crate::{Mesh, Surface};
 use shiftvox::graph::PackedNormal;
 

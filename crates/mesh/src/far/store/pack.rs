@@ -67,7 +67,7 @@ fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::far::record::Paint;
+    use crate::texture::paint::Paint;
 
     #[test]
     fn surfaces_come_back() {

@@ -16,7 +16,7 @@ use super::format::{BLENDS, FIELDS, FORMAT, Fields, layout};
 use super::pack::unpack;
 use crate::Texture;
 use crate::far::FarSettings;
-use crate::far::record::{NO_TEXTURE, Node};
+use crate::far::record::Node;
 use crate::geometry::point;
 use crate::texture::stored;
 use shiftvox::graph::MeshBox;
@@ -207,11 +207,8 @@ impl FarFile {
         let textures = self.textures()?.len();
         (0..self.nodes.len()).try_for_each(|node| {
             let data = self.data(node)?;
-            let mut numbers = data
-                .triangles()
-                .iter()
-                .map(|t| usize::from(t.paint.texture));
-            match numbers.all(|number| number < textures || number == usize::from(NO_TEXTURE)) {
+            let mut triangles = data.triangles().iter();
+            match triangles.all(|triangle| triangle.paint.is_of(textures)) {
                 true => Ok(()),
                 false => {
                     let expected = format!("at most {textures} textures in node {node}");

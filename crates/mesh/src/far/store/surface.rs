@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 
 use crate::far::record::{
-    LeafTriangle, MOST_COLORS, Node, OWN_BYTES, PAINT_BYTES, Paint, SHARED_BYTES, SurfaceColumns,
+    LeafTriangle, MOST_COLORS, Node, OWN_BYTES, SHARED_BYTES, SurfaceColumns,
 };
 use crate::geometry::{plane_normal, point};
+use crate::texture::paint::{PAINT_BYTES, Paint};
 use shiftvox::graph::PackedNormal;
 
 const STEPS: f64 = 65535.0;
@@ -122,35 +123,9 @@ pub(in crate::far) fn lay_out(
         code.to_le_bytes()[byte]
     });
     planes(&mut bytes, triangles, columns.paint, |triangle, byte| {
-        paint_bytes(&triangle.paint)[byte]
+        triangle.paint.to_bytes()[byte]
     });
     bytes
-}
-
-fn paint_bytes(paint: &Paint) -> [u8; PAINT_BYTES] {
-    let mut bytes = [0; PAINT_BYTES];
-    bytes[..2].copy_from_slice(&paint.texture.to_le_bytes());
-    bytes[2] = paint.alpha;
-    let places = paint.places.as_flattened().iter();
-    for (to, place) in bytes[3..].chunks_exact_mut(4).zip(places) {
-        to.copy_from_slice(&place.to_le_bytes());
-    }
-    bytes
-}
-
-/// `None` if a place is not finite.
-fn paint_of(bytes: &[u8; PAINT_BYTES]) -> Option<Paint> {
-    let number = |at: usize| {
-        let bytes = [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
-        f32::from_le_bytes(bytes)
-    };
-    let paint = Paint {
-        texture: u16::from_le_bytes([bytes[0], bytes[1]]),
-        alpha: bytes[2],
-        places: [3, 11, 19].map(|at| [number(at), number(at + 4)]),
-    };
-    let places = paint.places.as_flattened();
-    places.iter().all(|c| c.is_finite()).then_some(paint)
 }
 
 fn planes<T>(out: &mut Vec<u8>, items: &[T], bytes: usize, byte_of: impl Fn(&T, usize) -> u8) {
@@ -219,7 +194,7 @@ pub(super) fn read(node: &Node, mut bytes: &[u8]) -> Option<Vec<LeafTriangle>> {
             colors: [[0; 3]; 3],
             paint: match columns.paint {
                 0 => Paint::NONE,
-                _ => paint_of(paint)?,
+                _ => Paint::from_bytes(paint)?,
             },
         };
         for k in 0..3 {

@@ -16,7 +16,7 @@ use crate::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
 };
 use crate::surface::stops;
-use crate::{Sampler, Surface, Texture, Triangle, srgb_to_linear};
+use crate::{Surface, Texture, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
@@ -271,25 +271,19 @@ impl Surface for Surfaces<'_> {
 
     fn triangle(&self, number: usize) -> Triangle<'_> {
         let stored = self.triangle_at(number);
-        let texture = self.textures.get(usize::from(stored.paint.texture));
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
         Triangle {
             corners: Surface::corners(self, number),
             normals: stored.normals.map(normal),
             colors: stored.colors.map(crate::material::to_light),
-            alpha: f64::from(stored.paint.alpha) / 255.0,
-            sampler: texture.map(|texture| Sampler {
-                texture,
-                places: stored.paint.places,
-            }),
+            alpha: stored.paint.opacity(),
+            sampler: stored.paint.sampler(self.textures),
         }
     }
 
     /// Those that let light through.
     fn is_textured(&self, number: usize) -> bool {
-        let paint = &self.triangle_at(number).paint;
-        let texture = self.textures.get(usize::from(paint.texture));
-        paint.alpha < 255 || texture.is_some_and(|texture| !texture.is_opaque())
+        !self.triangle_at(number).paint.is_opaque(self.textures)
     }
 
     fn texture(&self, number: usize, point: DVec3) -> Option<(DVec3, DVec3)> {

@@ -12,6 +12,7 @@ use super::cell_grid::{MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord, list_of};
 use super::{CellGrid, Element, GridData, TexturedData};
+use crate::texture::paint::{Paint, Textures};
 use crate::voxelize::OTHERS;
 use crate::{Surface, geometry, mesh_box};
 use project::{Column, Projected, project};
@@ -88,10 +89,18 @@ pub fn build<S: Surface + ?Sized>(
     if surface.len() >= NEVER as usize {
         return Err(BuildError::TooMany("triangles"));
     }
-    let primitives: Vec<Primitive> = (0..surface.len())
+    let textures = Textures::new(surface.textures());
+    let (primitives, mut paints): (Vec<Primitive>, Vec<Paint>) = (0..surface.len())
         .into_par_iter()
-        .map(|number| Primitive::of(&surface.triangle(number)))
-        .collect();
+        .map(|number| {
+            let triangle = surface.triangle(number);
+            let (paint, colors) = textures.paint(&triangle);
+            (Primitive::of(&triangle, colors), paint)
+        })
+        .unzip();
+    if paints.iter().all(|&paint| paint == Paint::NONE) {
+        paints = Vec::new();
+    }
     let (rounded_low, rounded_high) = bounds(&primitives);
     if !(rounded_low.is_finite() && rounded_high.is_finite()) {
         return Err(BuildError::Range);
@@ -117,6 +126,8 @@ pub fn build<S: Surface + ?Sized>(
         y_up: false,
         bevels: mesh_box(surface, false).bevels,
         primitives,
+        paints,
+        textures: textures.list,
         grids,
     })
 }

@@ -8,5 +8,6 @@ mod format;
 mod read;
 
 pub use format::{GridEntry, encode, write_to};
+pub(in crate::textured) use read::Painted;
 pub use read::{Grid, TexturedFile};
 pub use shiftvox::graph::file::FileError as TexturedError;

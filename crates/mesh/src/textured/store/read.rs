@@ -3,6 +3,7 @@
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use bytemuck::{Pod, cast_slice};
 use glam::DVec3;
@@ -11,6 +12,9 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::TexturedError;
 use super::check::{check, check_entry, check_primitives};
 use super::format::{ENTRY_BYTES, FIELDS, FORMAT, Fields, GridEntry, Layout};
+use crate::Texture;
+use crate::texture::paint::{PAINT_BYTES, Paint};
+use crate::texture::stored;
 use crate::textured::build::{MOST_GRIDS, depths};
 use crate::textured::levels::Levels;
 use crate::textured::record::{Primitive, Texel, VoxelRecord, list_of};
@@ -29,6 +33,30 @@ pub struct TexturedFile {
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
     is_checked: Vec<AtomicBool>,
+    painted: OnceLock<Painted>,
+}
+
+/// Textures, and of each primitive its paint, or nothing.
+#[derive(Debug, Default)]
+pub(in crate::textured) struct Painted {
+    pub(in crate::textured) textures: Vec<Arc<Texture>>,
+    pub(in crate::textured) paints: Vec<Paint>,
+}
+
+impl Painted {
+    fn of(textures: &[u8], paints: &[u8], primitives: usize) -> Option<Self> {
+        let textures = stored::from_bytes(textures)?;
+        let paints = stored::opened(paints)?;
+        let (paints, []) = paints.as_chunks::<PAINT_BYTES>() else {
+            return None;
+        };
+        let paints = paints.iter().map(Paint::from_bytes);
+        let paints: Vec<Paint> = paints.collect::<Option<_>>()?;
+        let is_sound = paints.is_empty() || paints.len() == primitives;
+        let mut all = paints.iter();
+        let is_sound = is_sound && all.all(|paint| paint.is_of(textures.len()));
+        is_sound.then_some(Self { textures, paints })
+    }
 }
 
 impl TexturedFile {
@@ -48,7 +76,7 @@ impl TexturedFile {
         let all = bytes.get();
         let header = read_header(all, all.len() as u64, path)?;
         let entries = read_entries(&header, all, path)?;
-        let layout = Layout::of(header.primitives, &entries);
+        let layout = Layout::of(&header, &entries);
         if layout.end() != all.len() as u64 {
             let expected = format!("sections that end with the file at byte {}", all.len());
             let offset = layout.entries[0];
@@ -67,6 +95,7 @@ impl TexturedFile {
             header,
             entries,
             levels: Vec::new(),
+            painted: OnceLock::new(),
         };
         file.check_primitives()?;
         for number in 0..file.entries.len() {
@@ -140,6 +169,18 @@ impl TexturedFile {
         self.section(self.layout.primitives)
     }
 
+    /// Unpacked when it is first needed.
+    pub(in crate::textured) fn painted(&self) -> Result<&Painted, TexturedError> {
+        if self.painted.get().is_none() {
+            let bytes = [self.layout.textures, self.layout.paints].map(|place| self.section(place));
+            let painted = Painted::of(bytes[0], bytes[1], self.primitives().len());
+            let expected = "a texture or none for each primitive, as they were written";
+            let damaged = || self.damaged("textures", self.layout.textures[0], expected);
+            let _ = self.painted.set(painted.ok_or_else(damaged)?);
+        }
+        Ok(self.painted.get_or_init(Painted::default))
+    }
+
     pub fn file_bytes(&self) -> u64 {
         self.layout.end()
     }
@@ -155,6 +196,7 @@ impl TexturedFile {
 
     /// Checks everything, also texels and erosion depths.
     pub fn verify(&self) -> Result<(), TexturedError> {
+        self.painted()?;
         for number in 0..self.grids() {
             let grid = self.grid(number);
             grid.ensure()?;
@@ -271,7 +313,7 @@ fn read_header(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Fields,
     let has_grids = (1..=MOST_GRIDS).contains(&(fields.grids as usize));
     let has_primitives = (1..u64::from(u32::MAX)).contains(&fields.primitives);
     for (holds, offset, expected) in [
-        (fields.spare == [0; 11], offset_of!(Fields, spare), "zeros"),
+        (fields.spare == [0; 3], offset_of!(Fields, spare), "zeros"),
         (has_grids, offset_of!(Fields, grids), &grids[..]),
         (
             has_primitives,

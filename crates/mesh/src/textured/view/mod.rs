@@ -81,7 +81,7 @@ pub fn draw(
     };
     let grid = file.grid(choice.grid);
     grid.ensure()?;
-    let shown = Shown::new(file, grid, choice.level);
+    let shown = Shown::new(file, grid, choice.level)?;
     let picture = raster::draw(&shown, view, &options.raster, &Silent)?;
     let row = grid.levels().row(choice.level);
     let counts = TexturedCounts {

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use crate::material::to_light;
+use crate::texture::paint::Paint;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
-use crate::textured::store::{Grid, TexturedFile};
+use crate::textured::store::{Grid, Painted, TexturedError, TexturedFile};
 use crate::voxelize::OTHERS;
 use crate::{Surface, Triangle};
 use shiftvox::graph::PackedNormal;
@@ -23,6 +24,7 @@ struct Face<'f> {
 pub(super) struct Shown<'f> {
     file: &'f TexturedFile,
     stored: &'f [Primitive],
+    painted: &'f Painted,
     primitives: &'f [u32],
     faces: Vec<Face<'f>>,
     /// Texels along the side of a face.
@@ -30,7 +32,11 @@ pub(super) struct Shown<'f> {
 }
 
 impl<'f> Shown<'f> {
-    pub(super) fn new(file: &'f TexturedFile, grid: Grid<'f>, level: u32) -> Self {
+    pub(super) fn new(
+        file: &'f TexturedFile,
+        grid: Grid<'f>,
+        level: u32,
+    ) -> Result<Self, TexturedError> {
         let lattice = grid.cell_grid();
         let size = lattice.cell_size();
         let voxels = grid.voxels();
@@ -49,13 +55,20 @@ impl<'f> Shown<'f> {
             }
         };
         let levels = grid.levels();
-        Self {
+        Ok(Self {
             file,
             stored: file.primitives(),
+            painted: file.painted()?,
             primitives: levels.primitives(level),
             faces: levels.surfels(level).map(face).collect(),
             side: lattice.texels as usize,
-        }
+        })
+    }
+
+    /// Of a primitive.
+    fn paint(&self, number: usize) -> Option<&Paint> {
+        let primitive = *self.primitives.get(number)?;
+        self.painted.paints.get(primitive as usize)
     }
 
     fn face(&self, number: usize) -> &Face<'f> {
@@ -83,7 +96,15 @@ impl Surface for Shown<'_> {
 
     fn triangle(&self, number: usize) -> Triangle<'_> {
         if let Some(&primitive) = self.primitives.get(number) {
-            return self.stored[primitive as usize].triangle();
+            let triangle = self.stored[primitive as usize].triangle();
+            return match self.paint(number) {
+                None => triangle,
+                Some(paint) => Triangle {
+                    alpha: paint.opacity(),
+                    sampler: paint.sampler(&self.painted.textures),
+                    ..triangle
+                },
+            };
         }
         let face = self.face(number);
         Triangle {
@@ -97,6 +118,11 @@ impl Surface for Shown<'_> {
 
     fn bounds(&self) -> (DVec3, DVec3) {
         self.file.bounds()
+    }
+
+    fn is_opaque(&self, number: usize) -> bool {
+        let paint = self.paint(number);
+        paint.is_none_or(|paint| paint.is_opaque(&self.painted.textures))
     }
 
     fn is_textured(&self, number: usize) -> bool {
