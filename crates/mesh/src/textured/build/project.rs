@@ -8,14 +8,12 @@ use glam::DVec3;
 use crate::geometry::barycentric;
 use crate::material::to_srgb;
 use crate::raster::Edges;
+use crate::surface::stops;
 use crate::textured::CellGrid;
 use crate::textured::record::Texel;
 use crate::voxelize::{OTHERS, Prepared};
 use crate::{Surface, Triangle};
 use shiftvox::graph::PackedNormal;
-
-/// With less opacity, a texture has a hole.
-const HALF: f64 = 0.5;
 
 pub(super) struct Column {
     pub(super) axis: usize,
@@ -59,8 +57,10 @@ pub(super) fn project<S: Surface + ?Sized>(
         let clear = (!is_opaque).then(|| surface.triangle(primitive as usize));
         each_texel(&triangle, column, lattice, |texel, along| {
             let is_hole = |clear: &Triangle<'_>| {
-                let shares = barycentric(&clear.corners, world(column, lattice, texel, along));
-                clear.at(shares, lattice.texel_size()).1 < HALF * clear.alpha
+                let point = world(column, lattice, texel, along);
+                let shares = barycentric(&clear.corners, point);
+                // By lot, so that coarse texels keep small leaves.
+                !stops(clear.at(shares, lattice.texel_size()).1, point)
             };
             if clear.as_ref().is_some_and(is_hole) {
                 return;
