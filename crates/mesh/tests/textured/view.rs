@@ -156,7 +156,7 @@ fn the_automatic_level_is_about_as_good_as_triangles_at_one_sample() {
     }
 }
 
-/// A disc on a card: texels cover it, and their share of what is around it.
+/// Texels cover a disc on a card. Of what is around it, a share of them covers each part.
 #[test]
 fn texels_have_holes() {
     for around in [0, 100] {
