@@ -1,4 +1,4 @@
-//! Textures and opacities of the triangles of a file (`spec/far.md`, Textures).
+//! Textures and opacities of the triangles of a file (`spec/far.md`, File).
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Textures in a file (`spec/far.md`, Textures): one after another, deflated, without their coarser copies.
+//! Textures in a file (`spec/far.md`, File): one after another, deflated, without their coarser copies.
 
 use std::sync::Arc;
 
