@@ -98,6 +98,11 @@ impl MeshBuilder {
         })
     }
 
+    /// A position that it has.
+    pub(crate) fn at(&self, position: u32) -> DVec3 {
+        point(self.mesh.positions[position as usize])
+    }
+
     /// Positions so far.
     pub fn positions(&self) -> usize {
         self.mesh.positions.len()

@@ -4,6 +4,7 @@ mod gltf;
 mod mtl;
 mod obj;
 mod ply;
+mod polygon;
 mod stl;
 mod text;
 mod texture;
@@ -72,7 +73,7 @@ impl Beside for Nothing {
     }
 }
 
-/// Most corners of a face. It is cut into a fan of triangles, and of a long fan each crosses the whole face.
+/// Most corners of a face. Of a fan of more, each triangle would cross the whole face.
 const MOST_CORNERS: usize = 1 << 16;
 
 fn check_corners(corners: usize, place: Place) -> Result<(), Problem> {

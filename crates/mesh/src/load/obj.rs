@@ -1,7 +1,7 @@
 //! Wavefront meshes; `mtl.rs` reads their material libraries.
 //!
 //! Supported: positions with their colours, normals, faces of any number of corners, and materials by name with their
-//! textures. A face becomes a fan from its first corner, so it should be convex. Lines, points and curves are skipped.
+//! textures. Lines, points and curves are skipped.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::str::SplitWhitespace;
 
 use super::mtl::{self, Pictures};
 use super::texture::{Parts, Textures};
-use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, text};
+use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, polygon, text};
 use crate::texture::AlphaMode;
 use crate::{Material, MeshBuilder};
 
@@ -231,8 +231,9 @@ impl File {
                 let texture = texture.map(|texture| builder.set_texture(*material, texture));
                 texture.is_some()
             });
-            for pair in corners.get(1..).unwrap_or_default().windows(2) {
-                let triangle = [corners[0], pair[0], pair[1]];
+            let at = |corner: usize| self.positions[corners[corner][0] as usize].0.into();
+            for triangle in polygon::triangles(corners.len(), &at) {
+                let triangle = triangle.map(|corner| corners[corner]);
                 let positions = triangle.map(|[position, ..]| {
                     let number = &mut numbers[position as usize];
                     if *number == NONE {

@@ -1,14 +1,14 @@
 //! PLY meshes.
 //!
 //! Read: `x y z`, `nx ny nz`, `red green blue` of vertices (with `r`, `g`, `b` and `diffuse_*`), `vertex_indices` or
-//! `vertex_index` of faces (cut into a fan) and of `tristrips`, `red green blue` of faces. Everything else is skipped.
+//! `vertex_index` of faces and of `tristrips`, `red green blue` of faces. Everything else is skipped.
 
 use std::collections::HashMap;
 
 use shiftvox::scene::numbers::{Number, Scalar};
 use shiftvox::scene::ply::{PlyFile, Row};
 
-use super::{Fault, Place, Problem, check_corners};
+use super::{Fault, Place, Problem, check_corners, polygon};
 use crate::{Material, MeshBuilder};
 
 pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
@@ -102,11 +102,9 @@ fn add_face(
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
     let corners = corners("face", row, row.list, builder)?;
-    let [first, rest @ ..] = &corners[..] else {
-        return Ok(());
-    };
-    for pair in rest.windows(2) {
-        add_triangle([*first, pair[0], pair[1]], normals, material, builder);
+    for triangle in polygon::triangles(corners.len(), &|corner| builder.at(corners[corner])) {
+        let triangle = triangle.map(|corner| corners[corner]);
+        add_triangle(triangle, normals, material, builder);
     }
     Ok(())
 }
