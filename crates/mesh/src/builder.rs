@@ -166,12 +166,14 @@ impl MeshBuilder {
             self.too_many = true;
             return Ok(());
         }
-        if let Some(places) = places.filter(|p| p.as_flattened().iter().all(|c| c.is_finite())) {
+        let near = places.map(|places| {
             // Of a picture that repeats, the nearest repetition has the most digits.
             let texture = self.mesh.materials.get(material as usize);
             let texture = texture.and_then(|material| material.texture.as_ref());
             let first = texture.map_or([0.0; 2], |texture| texture.repetition(places[0]));
-            let near = places.map(|place| [0, 1].map(|k| (place[k] - first[k]) as f32));
+            places.map(|place| [0, 1].map(|k| (place[k] - first[k]) as f32))
+        });
+        if let Some(near) = near.filter(|near| near.as_flattened().iter().all(|c| c.is_finite())) {
             let none = [[f32::NAN; 2]; 3];
             self.mesh.places.resize(self.mesh.triangles.len(), none);
             self.mesh.places.push(near);

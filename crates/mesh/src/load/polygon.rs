@@ -5,6 +5,8 @@ use glam::DVec3;
 
 /// Turns the other way by less than this share of the face's area are rounding.
 const STRAIGHT: f64 = 1e-9;
+/// Ears of a flat face have its area, to this share.
+const WHOLE: f64 = 1e-6;
 
 /// Triangles of a face, by its corners' numbers, turned as the face is: a fan from the first corner, or ears cut off
 /// where a fan would leave the face.
@@ -19,7 +21,7 @@ pub(super) fn triangles(
     ears.into_iter().chain(fan)
 }
 
-/// Nothing of a convex face, and of one in a line.
+/// Nothing of a convex face, and of one that crosses itself, is bent, or lies in a line.
 fn ears(corners: &[DVec3]) -> Vec<[usize; 3]> {
     let count = corners.len();
     let at = |number: usize| corners[number % count];
@@ -47,7 +49,12 @@ fn ears(corners: &[DVec3]) -> Vec<[usize; 3]> {
             false => [a, c, b],
         }
     };
-    numbers.as_chunks::<3>().0.iter().map(turned).collect()
+    let ears: Vec<[usize; 3]> = numbers.as_chunks::<3>().0.iter().map(turned).collect();
+    let of_ear = |&[a, b, c]: &[usize; 3]| (at(b) - at(a)).cross(at(c) - at(a)).length();
+    let sum: f64 = ears.iter().map(of_ear).sum();
+    // Corners between two others on a line may have no ear.
+    let is_whole = ears.len() == count - 2 || (sum / area.length() - 1.0).abs() < WHOLE;
+    if is_whole { ears } else { Vec::new() }
 }
 
 #[cfg(test)]
@@ -109,5 +116,20 @@ mod tests {
         let line = [0.0, 2.0, 1.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0));
         assert_eq!(of(&line).len(), 2);
         assert_eq!(of(&line[..2]).len(), 0);
+        // A bent sheet, and a face that crosses itself.
+        let bent = [
+            [0, 0, 0],
+            [1, 0, 0],
+            [2, 0, 0],
+            [2, 0, 1],
+            [1, 0, 1],
+            [1, 1, 0],
+            [0, 1, 0],
+        ];
+        let crossed = [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]];
+        for face in [&bent[..], &crossed] {
+            let corners: Vec<DVec3> = face.iter().map(|p| p.map(f64::from).into()).collect();
+            assert_eq!(of(&corners).len(), face.len() - 2);
+        }
     }
 }

@@ -65,6 +65,7 @@ impl Bin {
         options: &RasterOptions,
         bins: &Bins,
         number: usize,
+        depths: Option<&[f32]>,
     ) -> Self {
         let corner = bins.corner(number);
         let columns = BIN.min(view.width - corner[0]);
@@ -82,6 +83,14 @@ impl Bin {
             layers: Vec::new(),
             width: 1.0 / (options.samples.per_pixel() as f64).sqrt(),
         };
+        if let Some(depths) = depths {
+            let per_pixel = options.samples.per_pixel();
+            for (i, samples) in buffer.nearness.chunks_exact_mut(per_pixel).enumerate() {
+                let [x, y] = [i as u32 % columns, i as u32 / columns];
+                let at = (corner[1] + y) as usize * view.width as usize + (corner[0] + x) as usize;
+                samples.fill(1.0 / f64::from(depths[at]));
+            }
+        }
         for triangle in bins.triangles(number) {
             buffer.triangle(surface, triangle);
         }

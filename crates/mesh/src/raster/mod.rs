@@ -133,6 +133,17 @@ pub fn draw<S: Surface + ?Sized>(
     options: &RasterOptions,
     progress: &dyn Progress,
 ) -> Result<RasterPicture, RasterError> {
+    draw_before(surface, view, options, None, progress)
+}
+
+/// [`draw`], of what is before these depths, row by row.
+pub(crate) fn draw_before<S: Surface + ?Sized>(
+    surface: &S,
+    view: &RasterCamera,
+    options: &RasterOptions,
+    depths: Option<&[f32]>,
+    progress: &dyn Progress,
+) -> Result<RasterPicture, RasterError> {
     let (width, height) = (view.width, view.height);
     view.check()?;
     if u32::try_from(surface.len()).map_or(true, |count| count == NO_TRIANGLE) {
@@ -143,7 +154,7 @@ pub fn draw<S: Surface + ?Sized>(
     let bins: Vec<Bin> = (0..bins.len())
         .into_par_iter()
         .map(|number| {
-            let bin = Bin::draw(surface, view, options, &bins, number);
+            let bin = Bin::draw(surface, view, options, &bins, number, depths);
             progress.advance(1);
             bin
         })

@@ -34,7 +34,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
-use super::store::write_parts;
+use super::store::{VERSION, write_parts};
 use super::{FarData, FarSettings};
 use crate::material::to_srgb;
 use crate::texture::paint::{Paint, Textures};
@@ -210,7 +210,7 @@ fn unfinished_file(path: &Path) -> Result<File, BuildError> {
 fn key_of(surface: &dyn Surface, options: &BuildOptions) -> u64 {
     let mut hash = Xxh3::new();
     let program = env!("CARGO_PKG_VERSION");
-    hash.update(format!("{program} {options:?}").as_bytes());
+    hash.update(format!("{program} {VERSION} {options:?}").as_bytes());
     let mut textures = HashMap::new();
     for number in 0..surface.len() {
         let triangle = surface.triangle(number);
@@ -253,7 +253,15 @@ fn fill<F: Read + Write + Seek + Send>(
     let (mut branches, order) = split(surface.len(), corners, fewest);
     let coarser = levels::put_above(&mut branches, options.grid);
     progress.end();
-    let mut has_voxels = match options.hybrid {
+    let textures = Textures::new(surface.textures());
+    // A hybrid of painted triangles is one of voxels.
+    let is_painted = |&number: &usize| {
+        let (paint, _) = textures.paint(&surface.triangle(number));
+        paint != Paint::NONE
+    };
+    let is_solid =
+        options.hybrid && 2 * (0..surface.len()).filter(is_painted).count() <= surface.len();
+    let mut has_voxels = match is_solid {
         true => vec![true; branches.len()],
         false => levels::with_voxels(&branches, coarser),
     };
@@ -279,7 +287,6 @@ fn fill<F: Read + Write + Seek + Send>(
     let occluders = Occluders::new(parts, corners, stops, within);
     let occluders = occluders.map_err(|e| failed(folder, &e))?;
     progress.end();
-    let textures = Textures::new(surface.textures());
     let leaf = |own: Range<usize>| leaf_triangles(surface, &order[own], centre, Some(&textures));
     let surfaces = options
         .hybrid
@@ -295,13 +302,13 @@ fn fill<F: Read + Write + Seek + Send>(
             return None;
         }
         let grid = has_voxels[number].then(|| grid(number, branch))?;
-        let may_be_left = !options.hybrid && number > coarser;
+        let may_be_left = !is_solid && number > coarser;
         let is_of_use = options.rays.is_some() || may_be_left;
         is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
     };
     let numbered = || branches.par_iter().enumerate();
     let touched: Vec<Option<Touches>> = numbered().map(touched).collect();
-    if !options.hybrid {
+    if !is_solid {
         levels::leave_out(&mut has_voxels, &branches, &touched, coarser);
     }
     progress.end();

@@ -88,10 +88,16 @@ impl<'s> Surfaces<'s> {
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<Made, BuildError> {
         let all = self.triangles(&own);
-        let is_painted = all.iter().any(|triangle| triangle.paint != Paint::NONE);
         let comparison = Comparison::of(node, &all, self.options, &self.textures.list)?;
         let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
-        let mut thin: Vec<bool> = own.clone().map(thin).collect();
+        // Decimated surfaces have neither textures nor holes.
+        let painted = all.iter().map(|triangle| triangle.paint != Paint::NONE);
+        let is_painted = painted.clone().any(|painted| painted);
+        let thin = own
+            .clone()
+            .zip(painted)
+            .map(|(place, painted)| painted || thin(place));
+        let mut thin: Vec<bool> = thin.collect();
         let decimated = self.decimations(node, &own, &thin);
         let is_undecimated = decimated.is_err();
         let (surfaces, mut wide) = decimated.unwrap_or_else(|_| {
@@ -99,6 +105,7 @@ impl<'s> Surfaces<'s> {
             (Vec::new(), Some(Vec::new()))
         });
         let judged = surfaces.into_iter().map(|one| comparison.judge(one));
+        let judged = judged.filter(|_| !is_painted);
         let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
         let mut most_error = f64::INFINITY;
         let chosen = loop {
@@ -116,11 +123,10 @@ impl<'s> Surfaces<'s> {
             let able = (0..judged.len()).filter(|&n| judged[n].error <= most_error);
             let best = able.min_by(|&a, &b| judged[a].cost.total_cmp(&judged[b].cost));
             let best = best.unwrap_or(0);
-            let is_near = judged[best].lost <= MOST_LOST && !is_painted;
-            if is_near || !thin.contains(&false) {
+            if judged[best].lost <= MOST_LOST || !thin.contains(&false) {
                 break judged.swap_remove(best).candidate;
             }
-            // A lattice is one wide part of thin bars, and a decimated surface has no textures.
+            // A lattice is one wide part of thin bars.
             thin.fill(true);
             wide = Some(Vec::new());
         };

@@ -10,10 +10,12 @@ use crate::far::record::NODE_BYTES;
 use crate::texture::stored;
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, Stored, section_after};
 
+pub(in crate::far) const VERSION: u32 = 7;
+
 pub(super) const FORMAT: Format = Format {
     ending: ".far",
     magic: *b"\x89FAR\r\n\x1a\n",
-    versions: &[7],
+    versions: &[VERSION],
     header_bytes: HEADER_BYTES,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",

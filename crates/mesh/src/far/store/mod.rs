@@ -11,6 +11,6 @@ pub(in crate::far) mod surface;
 pub use budget::Resident;
 pub use data::NodeData;
 pub use format::encode;
-pub(in crate::far) use format::write_parts;
+pub(in crate::far) use format::{VERSION, write_parts};
 pub use read::FarFile;
 pub use shiftvox::graph::file::FileError as FarError;

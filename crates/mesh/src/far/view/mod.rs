@@ -119,6 +119,7 @@ pub fn draw(
     if options.opacity != Opacity::None {
         counts.transparent_voxels = transparent::draw(file, view, options, nodes, &mut drawn)?;
     }
+    opaque.lay_glass(&mut drawn);
     let size = [pixels.width, pixels.height].map(|side| side as usize);
     let drawn = samples::averaged(drawn, size, across as usize);
     let picture = FarPicture {

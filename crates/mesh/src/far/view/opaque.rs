@@ -15,7 +15,6 @@ use crate::geometry::point;
 use crate::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
 };
-use crate::surface::stops;
 use crate::{Surface, Texture, Triangle, srgb_to_linear};
 use shiftvox::graph::{PackedNormal, Silent};
 
@@ -115,13 +114,14 @@ impl<'f> Opaque<'f> {
     }
 
     fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
-        let surface = Surfaces::of(self.file, &self.view, nodes)?;
+        let surface = Surfaces::of(self.file, nodes)?;
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
             background: None,
         };
-        let drawn = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let depths = self.depths();
+        let drawn = raster::draw_before(&surface, &self.view, &options, Some(&depths), &Silent)?;
         for (pixel, &at) in drawn.triangle.iter().enumerate() {
             if at != NO_TRIANGLE {
                 let id = self.file.voxels() + surface.places[at as usize].2;
@@ -158,6 +158,24 @@ impl<'f> Opaque<'f> {
         pixels
             .map_init(|| None, |last, pixel| self.pixel(pixel, last))
             .collect()
+    }
+
+    /// Lays triangles that let light through over pixels. What is opaque behind them is in their colours, if it is a
+    /// triangle.
+    pub(super) fn lay_glass(&self, pixels: &mut [Pixel]) {
+        let voxels = self.file.voxels();
+        for ((pixel, color), word) in pixels.iter_mut().zip(&self.colors).zip(&self.words) {
+            let word = word.load(Ordering::Relaxed);
+            let [r, g, b, alpha] = *color;
+            if alpha > 0 && (word == EMPTY || (word as u32) < voxels) {
+                let cover = f32::from(alpha) / 255.0;
+                let glass = [r, g, b].map(srgb_to_linear);
+                for (light, glass) in pixel.light.iter_mut().zip(glass) {
+                    *light = glass * cover + *light * (1.0 - cover);
+                }
+                pixel.coverage = cover + pixel.coverage * (1.0 - cover);
+            }
+        }
     }
 
     /// `last`: the node whose data was needed last.
@@ -221,7 +239,6 @@ pub(super) fn light_of(voxel: &Voxel, towards_eye: DVec3, options: &ViewOptions)
 
 struct Surfaces<'f> {
     file: &'f FarFile,
-    view: &'f RasterCamera,
     /// Nothing if no node has textures.
     textures: &'f [Arc<Texture>],
     data: Vec<Arc<NodeData>>,
@@ -230,11 +247,10 @@ struct Surfaces<'f> {
 }
 
 impl<'f> Surfaces<'f> {
-    fn of(file: &'f FarFile, view: &'f RasterCamera, nodes: &[usize]) -> Result<Self, ViewError> {
+    fn of(file: &'f FarFile, nodes: &[usize]) -> Result<Self, ViewError> {
         let is_painted = |&node: &usize| file.nodes()[node].is_painted == 1;
         let mut surface = Self {
             file,
-            view,
             textures: match nodes.iter().any(is_painted) {
                 true => file.textures()?,
                 false => &[],
@@ -281,17 +297,8 @@ impl Surface for Surfaces<'_> {
         }
     }
 
-    /// Those that let light through.
-    fn is_textured(&self, number: usize) -> bool {
-        !self.triangle_at(number).paint.is_opaque(self.textures)
-    }
-
-    fn texture(&self, number: usize, point: DVec3) -> Option<(DVec3, DVec3)> {
-        let towards_eye = self.view.eye - point;
-        let side = -towards_eye.dot(self.view.forward) / self.view.focal_px;
-        let (normal, (color, opacity)) = self.triangle(number).seen_from(point, towards_eye, side);
-        // By lot, as the rays of a build.
-        stops(opacity, point).then_some((color, normal))
+    fn is_opaque(&self, number: usize) -> bool {
+        self.triangle_at(number).paint.is_opaque(self.textures)
     }
 
     fn bounds(&self) -> (DVec3, DVec3) {
