@@ -240,5 +240,6 @@ fn describe(file: &FarFile, name: &str) -> Value {
         "opacity_bytes": (0..LISTS.len()).map(|n| list(n) * OPACITY_BYTES[n] as u64).sum::<u64>(),
         "surface_triangles": sum(&surface),
         "surface_bytes": sum(&Node::surface_bytes),
+        "texture_bytes": file.texture_bytes(),
     })
 }

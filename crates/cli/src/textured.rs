@@ -60,6 +60,7 @@ fn describe(file: &TexturedFile, name: &str) -> Value {
         "triangles": file.primitives().len(),
         "grids": grids,
         "bytes": file.file_bytes(),
+        "texture_bytes": file.texture_bytes(),
     })
 }
 

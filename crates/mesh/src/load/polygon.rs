@@ -119,12 +119,11 @@ mod tests {
         // A bent sheet, and a face that crosses itself.
         let bent = [
             [0, 0, 0],
-            [1, 0, 0],
             [2, 0, 0],
-            [2, 0, 1],
-            [1, 0, 1],
+            [2, 1, 0],
             [1, 1, 0],
-            [0, 1, 0],
+            [1, 1, 1],
+            [0, 1, 1],
         ];
         let crossed = [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]];
         for face in [&bent[..], &crossed] {

@@ -136,7 +136,7 @@ pub fn draw<S: Surface + ?Sized>(
     draw_before(surface, view, options, None, progress)
 }
 
-/// [`draw`], of what is before these depths, row by row.
+/// [`draw`], before a picture of these depths, row by row.
 pub(crate) fn draw_before<S: Surface + ?Sized>(
     surface: &S,
     view: &RasterCamera,

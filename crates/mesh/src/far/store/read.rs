@@ -133,6 +133,12 @@ impl FarFile {
         &self.nodes
     }
 
+    /// As they are stored.
+    pub fn texture_bytes(&self) -> u64 {
+        let [begin, end] = self.texture_place;
+        end - begin
+    }
+
     pub fn file_bytes(&self) -> u64 {
         self.section[1]
     }

@@ -160,8 +160,7 @@ impl<'f> Opaque<'f> {
             .collect()
     }
 
-    /// Lays triangles that let light through over pixels. What is opaque behind them is in their colours, if it is a
-    /// triangle.
+    /// Lays triangles that let light through over pixels of voxels. Over triangles, they are in the colours already.
     pub(super) fn lay_glass(&self, pixels: &mut [Pixel]) {
         let voxels = self.file.voxels();
         for ((pixel, color), word) in pixels.iter_mut().zip(&self.colors).zip(&self.words) {

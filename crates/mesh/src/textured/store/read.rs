@@ -181,6 +181,12 @@ impl TexturedFile {
         Ok(self.painted.get_or_init(Painted::default))
     }
 
+    /// Of the primitives' pictures, as they are stored.
+    pub fn texture_bytes(&self) -> u64 {
+        let [begin, end] = self.layout.textures;
+        end - begin
+    }
+
     pub fn file_bytes(&self) -> u64 {
         self.layout.end()
     }
