@@ -11,7 +11,7 @@ use crate::Triangle;
 /// Texture and opacity of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paint {
-    /// Its number in the file, or [`NO_TEXTURE`]. Its colours are factors of the triangle's.
+    /// Its number in the file, or 65,535 for none. Its colours are factors of the triangle's.
     pub texture: u16,
     /// 1 to 255: opaque.
     pub alpha: u8,
