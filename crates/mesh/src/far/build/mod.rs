@@ -254,14 +254,14 @@ fn fill<F: Read + Write + Seek + Send>(
     let coarser = levels::put_above(&mut branches, options.grid);
     progress.end();
     let textures = Textures::new(surface.textures());
-    // A hybrid of painted triangles is one of voxels.
+    // Many voxels of textures take more than their triangles.
     let is_painted = |&number: &usize| {
         let (paint, _) = textures.paint(&surface.triangle(number));
         paint != Paint::NONE
     };
-    let is_solid =
-        options.hybrid && 2 * (0..surface.len()).filter(is_painted).count() <= surface.len();
-    let mut has_voxels = match is_solid {
+    let painted = (0..surface.len()).filter(is_painted);
+    let is_solid = options.hybrid && 2 * painted.count() <= surface.len();
+    let mut has_voxels = match options.hybrid {
         true => vec![true; branches.len()],
         false => levels::with_voxels(&branches, coarser),
     };

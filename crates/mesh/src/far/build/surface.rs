@@ -90,14 +90,17 @@ impl<'s> Surfaces<'s> {
         let all = self.triangles(&own);
         let comparison = Comparison::of(node, &all, self.options, &self.textures.list)?;
         let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
-        // Decimated surfaces have neither textures nor holes.
+        // Decimated surfaces have neither textures, which may be too fine to be missed, nor holes.
         let painted = all.iter().map(|triangle| triangle.paint != Paint::NONE);
-        let is_painted = painted.clone().any(|painted| painted);
         let thin = own
             .clone()
             .zip(painted)
             .map(|(place, painted)| painted || thin(place));
         let mut thin: Vec<bool> = thin.collect();
+        let textures = &self.textures.list;
+        let is_clear = !all
+            .iter()
+            .all(|triangle| triangle.paint.is_opaque(textures));
         let decimated = self.decimations(node, &own, &thin);
         let is_undecimated = decimated.is_err();
         let (surfaces, mut wide) = decimated.unwrap_or_else(|_| {
@@ -105,7 +108,7 @@ impl<'s> Surfaces<'s> {
             (Vec::new(), Some(Vec::new()))
         });
         let judged = surfaces.into_iter().map(|one| comparison.judge(one));
-        let judged = judged.filter(|_| !is_painted);
+        let judged = judged.filter(|_| !is_clear);
         let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
         let mut most_error = f64::INFINITY;
         let chosen = loop {
