@@ -109,7 +109,7 @@ pub trait Surface: Sync {
         None
     }
 
-    /// The textures of its triangles.
+    /// The textures of its triangles, each once.
     fn textures(&self) -> Vec<Arc<Texture>> {
         Vec::new()
     }

@@ -254,13 +254,13 @@ fn fill<F: Read + Write + Seek + Send>(
     let coarser = levels::put_above(&mut branches, options.grid);
     progress.end();
     let textures = Textures::new(surface.textures());
-    // Many voxels of textures take more than their triangles.
+    // A hybrid keeps all its nodes, unless most are of voxels, which may take more than their triangles.
     let is_painted = |&number: &usize| {
         let (paint, _) = textures.paint(&surface.triangle(number));
         paint != Paint::NONE
     };
     let painted = (0..surface.len()).filter(is_painted);
-    let is_solid = options.hybrid && 2 * painted.count() <= surface.len();
+    let keeps_nodes = options.hybrid && 2 * painted.count() <= surface.len();
     let mut has_voxels = match options.hybrid {
         true => vec![true; branches.len()],
         false => levels::with_voxels(&branches, coarser),
@@ -302,13 +302,13 @@ fn fill<F: Read + Write + Seek + Send>(
             return None;
         }
         let grid = has_voxels[number].then(|| grid(number, branch))?;
-        let may_be_left = !is_solid && number > coarser;
+        let may_be_left = !keeps_nodes && number > coarser;
         let is_of_use = options.rays.is_some() || may_be_left;
         is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
     };
     let numbered = || branches.par_iter().enumerate();
     let touched: Vec<Option<Touches>> = numbered().map(touched).collect();
-    if !is_solid {
+    if !keeps_nodes {
         levels::leave_out(&mut has_voxels, &branches, &touched, coarser);
     }
     progress.end();

@@ -107,8 +107,8 @@ impl<'s> Surfaces<'s> {
             thin.fill(true);
             (Vec::new(), Some(Vec::new()))
         });
-        let judged = surfaces.into_iter().map(|one| comparison.judge(one));
-        let judged = judged.filter(|_| !is_clear);
+        let surfaces = surfaces.into_iter().filter(|_| !is_clear);
+        let judged = surfaces.map(|one| comparison.judge(one));
         let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
         let mut most_error = f64::INFINITY;
         let chosen = loop {

@@ -1,6 +1,7 @@
 //! The layout of a `.tvx` file (`spec/textured.md`), and writing it.
 //!
-//! A header, an entry for each grid, primitives, their textures and paints; then for each grid its voxels, lists and sub-textures.
+//! A header, an entry for each grid, primitives, their textures and paints; then for each grid its voxels, lists and
+//! sub-textures.
 
 use std::io::{self, Write};
 
