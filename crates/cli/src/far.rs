@@ -35,11 +35,11 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         name.push(".unfinished");
         PathBuf::from(name)
     });
+    let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
     let outside = Outside {
-        memory: args.memory.map(|memory| {
-            let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
-            (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
-        }),
+        memory: args
+            .memory
+            .map(|memory| (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)),
         folder: args.temp.as_deref().unwrap_or(beside),
         unfinished: unfinished.as_deref(),
     };
@@ -52,21 +52,15 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         }
     };
     let mut built = built.map_err(|error| {
-        let short = match error {
-            BuildError::Memory { needed, given } => Some(needed.saturating_sub(given)),
-            _ => None,
-        };
-        let error = match error {
-            error @ BuildError::File { .. } => CliError::from(error),
-            error => CliError::from(error).at(input),
-        };
-        match args.memory.zip(short) {
-            Some((memory, short)) => {
-                let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
-                let enough = enough.div_ceil(1 << 20) + 1;
+        match error {
+            BuildError::Memory { needed, .. } => {
+                let all = needed + loaded;
+                let enough = (all + all / (ALLOCATORS_SHARE - 1)).div_ceil(1 << 20) + 1;
+                let error = CliError::from(error).at(input);
                 error.advise(format!("give it --memory {enough}M or more"))
             }
-            None => error,
+            error @ BuildError::File { .. } => CliError::from(error),
+            error => CliError::from(error).at(input),
         }
     })?;
     if built.taken() > 0 {
