@@ -44,7 +44,6 @@
 //! |---|---|---|
 //! | `png` | yes | [`Picture::save_png`] |
 //! | `clap` | no | settings as values of command-line flags |
-//! | `mutants` | no | machines with one deliberate fault each, for tests of tests |
 
 mod api;
 

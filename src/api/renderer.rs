@@ -30,7 +30,7 @@ pub enum EngineKind {
     Fast,
     /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
     Machine,
-    /// One exact ray per sample, in wide integers: the oracle, which shares no code with the others. It draws
+    /// One exact ray per sample, in wide integers: the oracle, which shares no arithmetic with the others. It draws
     /// [`Coverage::Exact`] only, and has no cage, tolerance or overflow.
     Rays,
 }

@@ -10,7 +10,6 @@ use super::cage::CageCoordinate;
 use super::canvas::Canvas;
 use super::constants::Constants;
 use super::counters::Counts;
-use super::keys::OrderKey;
 use super::levels;
 use super::planes;
 use super::record::{Child, Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
@@ -26,10 +25,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
         // A tile begins at level 0, also after another tile.
         dp.resume(0);
-        let is_second_pass = job.listed.is_some() && !job.only_listed;
-        if !is_second_pass {
-            canvas.fill.begin_tile(dp, tile);
-        }
+        canvas.fill.begin_tile(dp, tile);
         dp.stage(RecordStage::Push);
         let c = &job.constants;
         let [x, y, w] = [0, 1, 2].map(|k| L::from_frame(dp, c.origin[k], c.edges[k]));
@@ -43,8 +39,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 level: 0,
                 voxel_level: 0,
                 solid: false,
-                key: OrderKey::default(),
-                only_listed: job.only_listed,
             },
             from: ImagePlace::ROOT,
         };
@@ -120,8 +114,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
     ) {
         for (rank, octant) in (0..8u8).zip(order).rev() {
             let counts = &mut canvas.counts;
-            let Some(cube) = child_cube(dp, job, counts, &parent.cube, (rank, octant), &centre)
-            else {
+            let Some(cube) = child_cube(dp, job, counts, &parent.cube, octant, &centre) else {
                 continue;
             };
             let from = parent.place;
@@ -167,7 +160,6 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         mut planes: Planes,
     ) -> bool {
         let c = &job.constants;
-        canvas.fill.set_key(child.cube.key);
         let found = smallest_node::clip(dp, c, &canvas.fill, child.from, &mut clip, &mut planes);
         self.push_at(dp, job, &mut canvas.counts, found, child.cube, || {
             Pose::Clip(clip, planes)
@@ -253,14 +245,14 @@ pub(super) fn centre_and_order<P: Probe>(
     (centre, order)
 }
 
-/// A cube's child in an octant, if there is one. `rank`: its place in the order, nearest 0.
+/// A cube's child in an octant, if there is one.
 #[inline(always)]
 pub(super) fn child_cube<P: Probe>(
     dp: &mut Datapath<P>,
     job: &Job<'_>,
     counts: &mut Counts,
     parent: &Cube,
-    (rank, octant): (u8, u8),
+    octant: u8,
     centre: &[Word; 3],
 ) -> Option<Cube> {
     let node = if parent.solid {
@@ -268,8 +260,7 @@ pub(super) fn child_cube<P: Probe>(
     } else {
         job.graph.child(parent.node, octant)
     };
-    let is_listed = || job.listed.is_some_and(|list| list.holds(parent, octant));
-    let Some(node) = node.filter(|_| !parent.only_listed || is_listed()) else {
+    let Some(node) = node else {
         counts.absent_children += 1;
         return None;
     };
@@ -294,8 +285,6 @@ pub(super) fn child_cube<P: Probe>(
             level
         },
         solid: parent.solid,
-        key: parent.key.child(rank, job.constants.levels_below(level)),
-        only_listed: parent.only_listed,
     })
 }
 

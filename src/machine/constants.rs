@@ -85,12 +85,6 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// From a level to the finest parts of voxels.
-    #[inline(always)]
-    pub(super) fn levels_below(&self, level: u32) -> u32 {
-        (self.depth + self.sub_levels).saturating_sub(level)
-    }
-
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         let options = &setup.options;
         let outline = options.coverage.outline_rule();

@@ -44,7 +44,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
         // The eight bits of the mask are one gate.
         dp.control(OpClass::Logic, 8);
         cube.solid = levels::reaches(dp, level, c.depth) || job.graph.mask(node) == 0;
-        if !is_read_late && !cube.only_listed {
+        if !is_read_late {
             read_node(dp, job, node, level);
         }
     }
@@ -72,7 +72,7 @@ pub(super) fn decide<P: Probe, L: CageCoordinate>(
             canvas.counts.hidden_across_bisectors += 1;
         }
         Verdict::Subdivide => {
-            if is_read_late && !record.cube.solid && !record.cube.only_listed {
+            if is_read_late && !record.cube.solid {
                 dp.stage(RecordStage::OnePixel);
                 read_node(dp, job, record.cube.node, record.cube.level);
             }

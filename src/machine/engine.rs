@@ -68,7 +68,7 @@ impl Machine {
     }
 
     /// Draws a frame in cages of type `L`, in at most `most` records.
-    pub(super) fn run_as<P: Probe, L: CageCoordinate>(
+    fn run_as<P: Probe, L: CageCoordinate>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,

@@ -10,10 +10,8 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, Memory, Probe, Short};
 
 use super::blocks::{Block, Port};
-use super::keys::{self, Keys, OrderKey};
 use super::levels;
 use super::quadrants::only;
-use crate::budget::Shortage;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -26,10 +24,6 @@ pub(super) struct FillStore<'f> {
     vectors: &'f mut FillVectors,
     is_joined: bool,
     latched: Cell<u64>,
-    /// In frames that are not drawn in order: the drawn samples, which the vectors then leave out.
-    keys: Option<Keys>,
-    /// Of the record at work.
-    key: Cell<OrderKey>,
     pub(super) rejects_full: bool,
 }
 
@@ -44,26 +38,7 @@ impl<'f> FillStore<'f> {
             is_joined: joined && vectors.levels() >= tile_levels + LEVELS_BELOW,
             vectors,
             latched: Cell::new(NO_WORD),
-            keys: None,
-            key: Cell::default(),
             rejects_full,
-        }
-    }
-
-    /// Lets records come in any order (`keys.rs`). The vectors only hold what lies outside the picture or the tile.
-    pub(super) fn keep_keys(&mut self) -> Result<(), Shortage> {
-        self.keys = Some(Keys::new(self.vectors)?);
-        self.is_joined = false;
-        Ok(())
-    }
-
-    pub(super) fn set_key(&self, key: OrderKey) {
-        self.key.set(key);
-    }
-
-    pub(super) fn set_tile(&mut self, tile: QuadNode) {
-        if let Some(keys) = &mut self.keys {
-            keys.tile = tile;
         }
     }
 
@@ -77,11 +52,7 @@ impl<'f> FillStore<'f> {
             return;
         }
         dp.stage(RecordStage::FillUpdate);
-        let below_words = match (&self.keys, self.is_joined) {
-            (Some(_), _) => 1,
-            (None, true) => LEVELS_BELOW,
-            (None, false) => 0,
-        };
+        let below_words = if self.is_joined { LEVELS_BELOW } else { 0 };
         for level in 0..=self.levels().saturating_sub(below_words) {
             let (below, above) = (
                 level.saturating_sub(tile.level),
@@ -100,20 +71,12 @@ impl<'f> FillStore<'f> {
     }
 
     #[inline(always)]
-    pub(super) fn begin_turn(&self, key: OrderKey) {
+    pub(super) fn begin_turn(&self) {
         self.latched.set(NO_WORD);
-        self.key.set(key);
     }
 
     #[inline(always)]
     pub(super) fn read<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
-        if let Some(keys) = &self.keys {
-            self.latch(keys.word_of(node), |address| {
-                dp.read(Memory::FillVector, address);
-            });
-            let at_most = |a, b| keys::at_most(dp, a, b);
-            return self.vectors.vector(node) | keys.vector(node, self.key.get(), at_most);
-        }
         if self.is_in_word(dp, node) {
             self.read_word(dp, node);
         } else {
@@ -163,11 +126,7 @@ impl<'f> FillStore<'f> {
 
     #[inline(always)]
     pub(super) fn peek(&self, node: QuadNode) -> u8 {
-        let vector = self.vectors.vector(node);
-        match &self.keys {
-            Some(keys) => vector | keys.vector(node, self.key.get(), |a, b| a <= b),
-            None => vector,
-        }
+        self.vectors.vector(node)
     }
 
     pub(super) fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
@@ -178,17 +137,6 @@ impl<'f> FillStore<'f> {
     #[inline(always)]
     pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
         dp.stage(RecordStage::FillUpdate);
-        // Tested first, since a move of nothing costs as much as one of keys.
-        if self.keys.is_some()
-            && let Some(mut keys) = self.keys.take()
-        {
-            keys.claim(dp, sample, self.key.get(), |dp, word| {
-                self.latch(word, |address| dp.read(Memory::FillVector, address));
-                dp.write(Memory::FillVector, word.address() as u64);
-            });
-            self.keys = Some(keys);
-            return;
-        }
         let (mut quad, mut bits) = (sample, FULL);
         if self.is_in_word(dp, sample) {
             match self.mark_in_word(dp, sample) {
@@ -272,17 +220,10 @@ impl<'f> FillStore<'f> {
 
     fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
         let node = self.word_of(node);
-        self.latch(node, |address| {
+        let address = node.address() as u64;
+        if self.latched.replace(address) != address {
             dp.read(Memory::FillVector, address);
             Port::FillRead.tap(dp, address, &self.word(node));
-        });
-    }
-
-    /// Reads a word, unless it is in the register.
-    fn latch(&self, word: QuadNode, read: impl FnOnce(u64)) {
-        let address = word.address() as u64;
-        if self.latched.replace(address) != address {
-            read(address);
         }
     }
 }

@@ -15,7 +15,7 @@
 //! The machine defines the bits: every faster engine must draw the same. Every arithmetic step is a call on a
 //! [`Datapath`](hwmodel::Datapath), visible to a probe. Each file imports only files named before it:
 //!
-//! - data: `blocks`, `counters`, `cage`, `keys`, `record`, `listed`, `constants`;
+//! - data: `blocks`, `counters`, `cage`, `record`, `constants`;
 //! - steps on words and levels: `levels`, `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`, `to_screen`, `size`,
 //!   `alpha`, `canvas`, `undrawn`, `path`;
 //! - steps of the loop: `watch`, `state`, `decide`, `children`;
@@ -34,10 +34,8 @@ mod decide;
 mod engine;
 mod fill;
 mod instruments;
-mod keys;
 mod levels;
 mod limit;
-mod listed;
 mod parents;
 mod path;
 mod planes;
@@ -57,12 +55,9 @@ pub use crate::project::OCCLUSION_ORDER;
 pub use blocks::{Block, Port};
 pub use constants::frame_registers;
 pub use engine::Machine;
-#[cfg(feature = "mutants")]
-pub use instruments::mutants;
 pub use instruments::{
     Cage, Coordinates, NumberSpan, NumberSpans, ProvenWidths, RecordNumber, SimulateError,
     Simulated, cages_along, narrowed, proven_widths,
 };
-pub use listed::Listed;
 pub use stages::{RecordStage, check_hardware};
 pub use state::MachineOptions;

@@ -193,7 +193,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             unreachable!("an entry of the stack was left for a child");
         };
         let (dp, fill) = (&mut self.dp, &self.canvas.fill);
-        fill.begin_turn(entry.next_key(&self.job.constants, from.cube.key));
+        fill.begin_turn();
         dp.resume(entry.level);
         dp.stage(RecordStage::Pop);
         dp.read(Memory::Stack, address);
@@ -220,9 +220,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         address: u64,
     ) -> Option<Parent<L>> {
         let (dp, job, canvas) = (&mut self.dp, &self.job, &mut self.canvas);
-        let key = parent.record.cube.key;
-        let next_key = parent.entry().next_key(&job.constants, key);
-        canvas.fill.begin_turn(next_key);
+        canvas.fill.begin_turn();
         dp.resume(parent.record.cube.level);
         let expanded = match parent.expanded {
             Some(expanded) => expanded,
@@ -247,9 +245,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             parent.left &= parent.left - 1;
             let octant = expanded.order[place];
             let counts = &mut canvas.counts;
-            let cube = &record.cube;
-            let child = (place as u8, octant);
-            let Some(cube) = child_cube(dp, job, counts, cube, child, &expanded.centre) else {
+            let (cube, centre) = (&record.cube, &expanded.centre);
+            let Some(cube) = child_cube(dp, job, counts, cube, octant, centre) else {
                 continue;
             };
             let from = record.place;
@@ -342,7 +339,6 @@ impl TileView {
     }
 
     pub(super) fn swap(&mut self, fill: &mut FillStore<'_>) {
-        fill.set_tile(self.tile);
         for (level, own) in (0..self.tile.level).zip(&mut self.above) {
             *own = fill.replace(self.tile.ancestor(level), *own);
         }

@@ -6,7 +6,6 @@ use hwmodel::{Datapath, OpClass, Probe, Short, Signal, Wires};
 use super::blocks::LEVEL_BITS;
 use super::cage::CageCoordinate;
 use super::constants::Constants;
-use super::keys::OrderKey;
 use super::levels;
 use super::planes;
 use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
@@ -23,15 +22,6 @@ pub(super) struct PathEntry {
     pub(super) inside: bool,
     /// Remaining children, one bit per place in the order.
     pub(super) left: u8,
-}
-
-impl PathEntry {
-    /// The key of the nearest remaining child, from the key of the parent or of a descendant.
-    pub(super) fn next_key(&self, constants: &Constants, key: OrderKey) -> OrderKey {
-        let below = constants.levels_below(self.level);
-        let rank = self.left.trailing_zeros() as u8;
-        key.ancestor(below).child(rank, below.saturating_sub(1))
-    }
 }
 
 /// The fields except the node.
@@ -88,8 +78,6 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
             level: entry.level,
             voxel_level: entry.level,
             solid: false,
-            key: from.cube.key.ancestor(constants.levels_below(entry.level)),
-            only_listed: from.cube.only_listed,
         },
         place: ImagePlace {
             quad,

@@ -4,7 +4,6 @@ use hwmodel::{Short, Signal, WideWord, Wires, Word};
 
 use super::blocks::{ADDRESS_BITS, LEVEL_BITS, NODE_BITS};
 use super::cage::CageCoordinate;
-use super::keys::OrderKey;
 use crate::frame::QuadNode;
 
 /// A cube of object space, the place of its box in the image, and its projected vertices.
@@ -28,10 +27,6 @@ pub(super) struct Cube {
     pub(super) voxel_level: u32,
     /// Whether this is a solid voxel or a part of one.
     pub(super) solid: bool,
-    /// Only in frames that are not drawn in order.
-    pub(super) key: OrderKey,
-    /// Whether only listed descendants are drawn.
-    pub(super) only_listed: bool,
 }
 
 #[derive(Debug, Clone, Copy)]

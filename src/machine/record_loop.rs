@@ -43,7 +43,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         };
         let quad = record.place.quad;
         dp.begin_record(canvas.counts.records, record.cube.level);
-        canvas.fill.begin_turn(record.cube.key);
+        canvas.fill.begin_turn();
         canvas.counts.records += 1;
         watch.see(Event::<L>::Turn(quad));
         dp.stage(RecordStage::Pop);

@@ -8,7 +8,6 @@ use super::canvas::Canvas;
 use super::constants::Constants;
 use super::counters::Counts;
 use super::fill::FillStore;
-use super::listed::Listed;
 use super::record::Record;
 use super::watch::Watch;
 use crate::frame::{FillVectors, Frame};
@@ -45,10 +44,6 @@ pub(super) struct Job<'a> {
     pub(super) layout: NodeLayout,
     pub(super) order: [u8; 8],
     pub(super) organisation: Organisation,
-    /// The nodes to draw first, in frames that are not drawn in order.
-    pub(super) listed: Option<&'a Listed>,
-    /// Whether a traversal that begins draws only those.
-    pub(super) only_listed: bool,
 }
 
 pub(super) struct Traversal<L, W> {
@@ -85,8 +80,6 @@ impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
             layout: NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks),
             order: options.order,
             organisation,
-            listed: None,
-            only_listed: false,
         };
         Self {
             dp,

@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::scenes::*;
 use glam::DVec3;
 use proptest::prelude::*;
-use shiftvox::frame::{Blend, Frame};
+use shiftvox::frame::{Blend, Frame, NO_NODE};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, SetupOptions};
@@ -97,5 +97,32 @@ proptest! {
                 prop_assert_eq!(drawn, right, "at {}, {}", x, y);
             }
         }
+    }
+
+    /// The promises of `SPEC.md`, section 11.
+    #[test]
+    fn opaque_voxels_are_exact_and_more_opacity_leaves_less(
+        (graph, camera) in any_view(any_octree(3, 0.4), 5..24),
+        opacities in any_opacities(),
+        more in any_opacities(),
+    ) {
+        let drawn = |graph: &Graph, coverage| {
+            let (frame, _) = draw(graph, &setup(graph, &camera, &SetupOptions::of(coverage)));
+            let left = frame.blend.iter().flatten().map(|blend| blend.left);
+            (left.collect::<Vec<u16>>(), frame)
+        };
+        let left = |opacities: &[[u8; 3]]| {
+            drawn(&with_opacities(&graph, opacities), Coverage::Alpha).0
+        };
+        let (_, exact) = drawn(&graph, Coverage::Exact);
+        let (opaque_left, opaque) = drawn(&graph, Coverage::Alpha);
+        prop_assert_eq!((&opaque.node, &opaque.voxel), (&exact.node, &exact.voxel));
+        let all_or_nothing = exact.node.iter().map(|&node| if node == NO_NODE { 256 } else { 0 });
+        prop_assert_eq!(opaque_left, all_or_nothing.collect::<Vec<u16>>());
+
+        let nibbles = |a: u8, b: u8| (a & 15).max(b & 15) | (a & 240).max(b & 240);
+        let most = |(a, b): (&[u8; 3], &[u8; 3])| [0, 1, 2].map(|k| nibbles(a[k], b[k]));
+        let more: Vec<_> = opacities.iter().zip(&more).map(most).collect();
+        prop_assert!(left(&more).iter().zip(&left(&opacities)).all(|(more, some)| more <= some));
     }
 }

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 /// Lines with a reason. Another one is a decision: change the number.
-const MARKED: usize = 32;
+const MARKED: usize = 31;
 
 /// The only files that compute with the machine's numbers in another way: for measurements, and for inputs of blocks.
 const MEASURES: [&str; 3] = ["directed.rs", "positions.rs", "widths.rs"];

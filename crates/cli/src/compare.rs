@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::{CliError, Kind};
@@ -196,19 +196,23 @@ fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Resu
     let mut fields = json!({ "a": a, "b": b, "kind": comparison.kind });
     let mut rows = Vec::new();
     for (name, value) in &comparison.numbers {
-        // A whole number as such. JSON has no infinity.
-        fields[*name] = match value {
-            value if !value.is_finite() => json!("inf"),
-            value if value.fract() == 0.0 && value.abs() < 9e15 => json!(*value as i64),
-            value => json!(value),
-        };
-        rows.push(vec![(*name).to_owned(), value.to_string()]);
+        fields[*name] = number(*value);
+        rows.push(vec![(*name).to_owned(), report::figure(&fields[*name])]);
     }
     if console.json {
         console.report("compare", fields);
         return Ok(());
     }
     console.data(report::table(&[comparison.kind, "value"], &rows))
+}
+
+/// A whole number as such. JSON has no infinity.
+fn number(value: f64) -> Value {
+    match value {
+        value if !value.is_finite() => json!("inf"),
+        value if value.fract() == 0.0 && value.abs() < 9e15 => json!(value as i64),
+        value => json!(value),
+    }
 }
 
 fn judge(thresholds: &[(String, f64)], numbers: &[(&str, f64)]) -> Result<(), CliError> {
@@ -225,7 +229,8 @@ fn judge(thresholds: &[(String, f64)], numbers: &[(&str, f64)]) -> Result<(), Cl
             false => (value <= bound, "at most"),
         };
         if !good {
-            let message = format!("{name} is {value}, expected {side} {bound}");
+            let value = report::figure(&number(*value));
+            let message = format!("{name}: {value} ({side} {bound} allowed)");
             return Err(CliError::new(Kind::Failed, message));
         }
     }

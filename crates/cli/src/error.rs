@@ -188,7 +188,7 @@ exit_codes! {
         ModelError::Engine(error) => return error.into(),
         ModelError::Simulate(SimulateError::Workload(error)) => return error.into(),
         ModelError::Simulate(_) => Kind::Limit,
-        ModelError::Hardware(_) | ModelError::Cost(_) | ModelError::Coherency(_) => Kind::Input,
+        ModelError::Hardware(_) | ModelError::Cost(_) => Kind::Input,
     }
     BenchError {
         BenchError::Engine { who, source } => return Self::from(source).at(who),

@@ -51,17 +51,15 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
             build_outside(&fleet, options, &outside, console.progress())
         }
     };
-    let mut built = built.map_err(|error| {
-        match error {
-            BuildError::Memory { needed, .. } => {
-                let all = needed + loaded;
-                let enough = (all + all / (ALLOCATORS_SHARE - 1)).div_ceil(1 << 20) + 1;
-                let error = CliError::from(error).at(input);
-                error.advise(format!("give it --memory {enough}M or more"))
-            }
-            error @ BuildError::File { .. } => CliError::from(error),
-            error => CliError::from(error).at(input),
+    let mut built = built.map_err(|error| match error {
+        BuildError::Memory { needed, .. } => {
+            let all = needed + loaded;
+            let enough = (all + all / (ALLOCATORS_SHARE - 1)).div_ceil(1 << 20) + 1;
+            let error = CliError::from(error).at(input);
+            error.advise(format!("give it --memory {enough}M or more"))
         }
+        error @ BuildError::File { .. } => CliError::from(error),
+        error => CliError::from(error).at(input),
     })?;
     if built.taken() > 0 {
         let all = built.data.nodes.len();

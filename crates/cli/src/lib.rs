@@ -145,7 +145,7 @@ enum Command {
     /// Search word formats, cameras, scenes and rules for violated invariants
     ///
     /// Every frame is compared with the exact ray caster, the specification and bounds on its
-    /// vertices' error. A failing case is reduced to one command line, and the exit code is 3.
+    /// vertices' error. A failing case is printed as a command line, and the exit code is 3.
     Stress(Box<stress::StressArgs>),
     /// Reproduce the image-order paper's Table I, claims and figures, beside its numbers
     Reproduce(reproduce::ReproduceArgs),

@@ -91,7 +91,7 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         check_memory(args)?;
         args.engine.check_of_voxels().map_err(CliError::usage)?;
         let rules = args.engine.rules.options(0);
-        if !rules.coverage.draws_outlines() || rules.tolerance_px != 0.0 {
+        if !rules.coverage.draws_outlines() && asked != Some(EngineName::Rays) {
             console.note(
                 "these rules are drawn by the machine, which takes 100 to 500 times as long as --coverage exact",
             );

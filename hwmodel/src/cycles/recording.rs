@@ -39,15 +39,6 @@ impl TurnProbe for (TurnLog, Tape) {
     }
 }
 
-/// With a probe beside it.
-impl<P: Probe> TurnProbe for (P, TurnLog) {
-    fn turn_log(&mut self) -> &mut TurnLog {
-        &mut self.1
-    }
-
-    fn ended(&mut self, _: Option<u32>, _: &[Child]) {}
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Tally {
     /// Its number.

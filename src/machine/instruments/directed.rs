@@ -13,7 +13,6 @@ use crate::machine::children::{centre_and_order, child_cube, child_span, pool};
 use crate::machine::constants::BlendEye;
 use crate::machine::decide::apply_level_of_detail;
 use crate::machine::engine::Machine;
-use crate::machine::keys::OrderKey;
 use crate::machine::planes::{self, Silhouette};
 use crate::machine::quadrants::{self, Halves, ImageBox};
 use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
@@ -117,7 +116,7 @@ fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     let (centre, _) = centre_and_order(dp, job, &cube);
     let octant = inputs.level(7) as u8;
     let counts = &mut state.canvas.counts;
-    child_cube(dp, job, counts, &cube, (0, octant), &centre);
+    child_cube(dp, job, counts, &cube, octant, &centre);
 }
 
 fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
@@ -501,8 +500,6 @@ impl Inputs {
             level,
             voxel_level: level,
             solid: true,
-            key: OrderKey::default(),
-            only_listed: false,
         }
     }
 

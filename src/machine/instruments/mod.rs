@@ -1,8 +1,6 @@
 //! Instruments observe the machine, or drive its steps in another way, for the hardware model, experiments and tests.
 
 mod directed;
-#[cfg(feature = "mutants")]
-pub mod mutants;
 mod positions;
 mod simulate;
 mod widths;

@@ -36,10 +36,7 @@ pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     with_cage!(setup, L => cages_as::<L>(setup, path))
 }
 
-pub(super) fn cages_as<L: CageCoordinate>(
-    setup: &FrameSetup,
-    path: &[u8],
-) -> Result<Vec<Cage>, Trap> {
+fn cages_as<L: CageCoordinate>(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     let dp = &mut Datapath::new(setup.format, Overflow::Trap, NoProbe);
     let constants = Constants::load(dp, setup);
     let root = [0, 1, 2].map(|c| L::from_frame(dp, constants.origin[c], constants.edges[c]));

@@ -1,6 +1,5 @@
 //! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack.
 
-use hwmodel::Probe;
 use hwmodel::cycles::{
     self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
     TurnProbe,
@@ -12,7 +11,6 @@ use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
-use crate::machine::listed::Listed;
 use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
@@ -48,30 +46,10 @@ impl Machine {
     ) -> Result<Simulated, SimulateError> {
         check_hardware(hardware).map_err(SimulateError::Hardware)?;
         let log = TurnLog::new(hardware);
-        let job = (graph, setup, None);
         let (simulated, _) = with_cage!(setup, L => {
-            self.simulate_as::<_, L>(job, frame, hardware, observer, log)
+            self.simulate_as::<_, L>((graph, setup), frame, hardware, observer, log)
         })?;
         Ok(simulated)
-    }
-
-    /// As [`Self::simulate`], with a probe, under the rule `exact` and on hardware that is not sequential. If nodes are
-    /// listed, a first pass draws those, and samples find the nearest voxel by keys (`keys.rs`), which need words of
-    /// three bits per level of the graph, and two.
-    pub fn simulate_listed<P: Probe>(
-        &mut self,
-        (graph, setup, listed): (&GraphView<'_>, &FrameSetup, Option<&Listed>),
-        frame: &mut Frame,
-        hardware: &Hardware,
-        probe: P,
-    ) -> Result<(Simulated, P), SimulateError> {
-        let mut observer = cycles::NoObserver;
-        let probes = (probe, TurnLog::new(hardware));
-        let (simulated, (probe, _)) = with_cage!(setup, L => {
-            let job = (graph, setup, listed);
-            self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
-        })?;
-        Ok((simulated, probe))
     }
 
     /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording
@@ -91,15 +69,14 @@ impl Machine {
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {
-            let job = (graph, setup, None);
-            self.simulate_as::<_, L>(job, frame, hardware, &mut observer, probes)
+            self.simulate_as::<_, L>((graph, setup), frame, hardware, &mut observer, probes)
         })?;
         Ok(tape.finish())
     }
 
     fn simulate_as<P: TurnProbe, L: CageCoordinate>(
         &mut self,
-        (graph, setup, listed): (&GraphView<'_>, &FrameSetup, Option<&Listed>),
+        (graph, setup): (&GraphView<'_>, &FrameSetup),
         frame: &mut Frame,
         hardware: &Hardware,
         observer: &mut dyn Observer,
@@ -111,11 +88,7 @@ impl Machine {
         };
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
-        let mut state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
-        if listed.is_some() {
-            state.canvas.fill.keep_keys().map_err(EngineError::from)?;
-        }
-        state.job.listed = listed;
+        let state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
             false => Vec::new(),
@@ -159,8 +132,6 @@ enum Work<L: CageCoordinate> {
     Parent(Parent<L>),
     /// A parent's path entry on the stack, and the parent's quadtree node.
     Path(PathEntry, QuadNode),
-    /// A tile after its first pass.
-    SecondPass(QuadNode),
 }
 
 /// A tile, and the walk that draws it.
@@ -204,7 +175,7 @@ const LAST_PLACE: u8 = 7;
 impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
         let quad = match &work {
-            Work::Tiles(quad) | Work::SecondPass(quad) => *quad,
+            Work::Tiles(quad) => *quad,
             Work::Record(record) => record.place.quad,
             Work::Parent(parent) => parent.record.place.quad,
             Work::Path(_, quad) => *quad,
@@ -268,16 +239,6 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
         self.tiles.push(Tile::new(quad));
         self.switch_to(self.tiles.len() - 1);
-        let lists = self.state.job.listed.is_some();
-        self.begin_pass(quad, lists, children);
-        if lists {
-            self.hand_over(Work::SecondPass(quad), LAST_PLACE, children);
-        }
-    }
-
-    /// Begins a tile's traversal of the listed nodes or of all.
-    fn begin_pass(&mut self, quad: QuadNode, only_listed: bool, children: &mut Vec<Child>) {
-        self.state.job.only_listed = only_listed;
         match self.state.job.organisation.stack {
             StackHolds::Children => {
                 self.state.push_object(quad);
@@ -365,7 +326,6 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
             }
             Work::Parent(parent) => self.parent_turn(parent, children),
             Work::Path(entry, _) => self.path_turn(&entry, children),
-            Work::SecondPass(quad) => self.begin_pass(quad, false, children),
         }
         if !matches!(work, Work::Tiles(_)) {
             let tile = &mut self.tiles[tile];

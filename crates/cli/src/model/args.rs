@@ -7,7 +7,6 @@ use clap::Args;
 use hwmodel::cost::{CostTable, Estimator, Goal};
 use hwmodel::cycles::{Hardware, PRESETS};
 
-use super::coherent::CoherentArgs;
 use super::explore::args::ExploreArgs;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::document::read_settings;
@@ -31,8 +30,6 @@ pub(crate) struct ModelArgs {
     pub(super) hardware: HardwareArgs,
     #[command(flatten)]
     pub(super) explore: ExploreArgs,
-    #[command(flatten)]
-    pub(super) coherent: CoherentArgs,
     #[command(flatten)]
     pub(super) files: FileArgs,
     #[command(flatten)]

@@ -3,7 +3,6 @@
 mod args;
 #[cfg(feature = "view")]
 mod brief;
-mod coherent;
 mod explore;
 mod output;
 mod vectors;
@@ -46,9 +45,6 @@ pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     let [name] = names.as_slice() else {
         return Err(CliError::usage("model looks at one scene at a time"));
     };
-    if args.coherent.is_asked() {
-        return coherent::run(name, args, console).map_err(|e| e.at(name));
-    }
     let found = find(args, name, hardware, (&rival, &prices), console).map_err(|e| e.at(name))?;
     output::write(&found, args, console)
 }

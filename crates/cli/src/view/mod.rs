@@ -2,6 +2,7 @@
 
 mod drawer;
 mod flags;
+mod heat;
 mod overlay;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use shiftvox::drawing::Buffers;
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{Buffer, Rows};
-use shiftvox_lab::model::heat;
 
+use super::heat;
 use crate::error::CliError;
 
 const NOTHING: [u8; 4] = [24, 26, 30, 255];

@@ -22,7 +22,7 @@ use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, stack_bits};
-use super::fill_bits::fill_access_bits;
+use super::fill_bits::{fill_access_bits, fill_store_bits};
 use super::frame::Counted;
 use super::record::context_bits;
 use crate::rival::{Cast, Rival};
@@ -176,7 +176,7 @@ pub fn light(
     );
     for (name, bits, shape) in [
         ("record stack", stack_bits(hardware, record_bits), stack),
-        ("fill vectors", counted.fill_bits(setup, hardware), fill),
+        ("fill vectors", fill_store_bits(setup, hardware), fill),
         (
             "accumulators",
             accumulator_bits(setup),

@@ -14,6 +14,7 @@ use hwmodel::shifts::ShiftProbe;
 use hwmodel::{Memory, OpClass};
 use serde::Serialize;
 
+use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
 use shiftvox::machine::RecordStage;
 use shiftvox::project::FrameSetup;
@@ -138,7 +139,7 @@ pub fn frame_cost(
         Memory::Node => bytes(8 * u64::from(hardware.node_cache.bytes)),
         Memory::Attribute => bytes(8 * u64::from(hardware.attribute_cache.bytes)),
         Memory::FillVector => {
-            bytes(counted.fill_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks))
+            bytes(fill_store_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks))
         }
         Memory::Pixel => Store::Dram,
         // As many as samples, on the chip: neighbours come again and again.

@@ -16,19 +16,6 @@ fn fill_levels(setup: &FrameSetup, organisation: Organisation) -> (u32, bool) {
     (above, joined)
 }
 
-/// Bits of a word of keys (`src/machine/keys.rs`): four, of three bits per level and one for none.
-pub fn key_word_bits(setup: &FrameSetup) -> u32 {
-    4 * (3 * setup.depth + 1)
-}
-
-/// Bits of the keys on the chip, of the picture or of one tile per context, as of [`fill_store_bits`].
-pub fn key_store_bits(setup: &FrameSetup, hardware: &Hardware) -> u64 {
-    let above = hardware.organisation.tile_levels.min(setup.levels);
-    let words = (setup.levels - above).checked_sub(1).map_or(1, nodes_to) as u64;
-    let tiles = hardware.all_contexts().min(1u64 << (2 * above));
-    tiles * words * u64::from(key_word_bits(setup))
-}
-
 pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
     match fill_levels(setup, organisation).1 {
         true => JOINED_FILL_BITS,

@@ -26,17 +26,9 @@ pub struct Counted {
     pub records: RecordProbe,
     pub stats: Stats,
     pub fields: Vec<RecordField>,
-    /// Bits of the keys in place of fill vectors, if a frame has them.
-    pub keyed_fill_bits: Option<u64>,
 }
 
 impl Counted {
-    /// Bits of the fill vectors, or of the keys that replace them.
-    pub fn fill_bits(&self, setup: &FrameSetup, hardware: &Hardware) -> u64 {
-        let keyed = self.keyed_fill_bits;
-        keyed.unwrap_or_else(|| fill_bits::fill_store_bits(setup, hardware))
-    }
-
     pub fn record_bits(&self) -> u32 {
         record_bits(&self.fields)
     }
@@ -104,7 +96,6 @@ pub fn count(
         records,
         stats,
         fields: record_fields(setup, graph.len(), hardware.organisation),
-        keyed_fill_bits: None,
     })
 }
 

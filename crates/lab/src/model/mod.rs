@@ -3,7 +3,6 @@
 //! - [`frame`] draws a frame and counts its work, [`ray_caster`] does so with rays.
 //! - [`cost`], [`area`] and [`standing`] price the counts; [`accelergy`] exchanges prices.
 //! - [`verdict`] compares both at uncertain prices.
-//! - [`coherent`] draws first what the last frame showed.
 //! - [`clock`] compares units with the clock.
 //! - [`report`] collects all that, and [`mod@explore`] repeats it over many designs.
 //!
@@ -12,13 +11,11 @@
 pub mod accelergy;
 pub mod area;
 pub mod clock;
-pub mod coherent;
 pub mod cost;
 pub mod design;
 pub mod explore;
 pub mod fill_bits;
 pub mod frame;
-pub mod heat;
 pub mod plots;
 pub mod ray_caster;
 pub mod record;
@@ -47,6 +44,4 @@ pub enum ModelError {
     Hardware(#[from] HardwareError),
     #[error(transparent)]
     Cost(#[from] CostError),
-    #[error("time coherency needs {0}")]
-    Coherency(&'static str),
 }

@@ -171,7 +171,7 @@ impl Findings {
         self.failed.extend(other.failed);
     }
 
-    /// The results as JSON: all rows, and sums by scene, rule, viewpoint, word width, and check.
+    /// The results as JSON: all rows, and sums by scene, rule, word width, and check.
     pub fn document(&self, plan: &SweepPlan) -> Value {
         let named = |fields: Value, tally: &Tally| {
             let mut row = json!(tally);

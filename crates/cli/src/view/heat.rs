@@ -11,7 +11,7 @@ const STOPS: [[f32; 3]; 5] = [
 
 /// Records by sample, as colours on a logarithmic scale, and the greatest
 /// number. A record counts 1, spread evenly over its quadtree node's samples.
-pub fn colors(records: &[f32]) -> (Vec<[u8; 4]>, f32) {
+pub(super) fn colors(records: &[f32]) -> (Vec<[u8; 4]>, f32) {
     let most = records.iter().copied().fold(0.0f32, f32::max);
     let scale = libm::log1pf(most).max(f32::MIN_POSITIVE);
     let pixels = records
