@@ -33,6 +33,15 @@ const MOST_LOST: f64 = 0.05;
 /// Larger nodes have voxels alone: decimating takes memory.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
+/// Of a triangle.
+struct Kind {
+    is_thin: bool,
+    /// It has a texture or an opacity.
+    is_painted: bool,
+    /// Something may show through it.
+    is_clear: bool,
+}
+
 pub(super) struct Surfaces<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -89,25 +98,29 @@ impl<'s> Surfaces<'s> {
     ) -> Result<Made, BuildError> {
         let all = self.triangles(&own);
         let comparison = Comparison::of(node, &all, self.options, &self.textures.list)?;
-        let thin = |place| f64::from(self.parts.size(place).width) < THIN * f64::from(node.voxel);
-        // Decimated surfaces have neither textures, which may be too fine to be missed, nor holes.
-        let painted = all.iter().map(|triangle| triangle.paint != Paint::NONE);
-        let thin = own
+        let kinds: Vec<Kind> = own
             .clone()
-            .zip(painted)
-            .map(|(place, painted)| painted || thin(place));
-        let mut thin: Vec<bool> = thin.collect();
-        let textures = &self.textures.list;
-        let is_clear = !all
+            .zip(&all)
+            .map(|(place, triangle)| {
+                let width = f64::from(self.parts.size(place).width);
+                Kind {
+                    is_thin: width < THIN * f64::from(node.voxel),
+                    is_painted: triangle.paint != Paint::NONE,
+                    is_clear: !triangle.paint.is_opaque(&self.textures.list),
+                }
+            })
+            .collect();
+        let mut thin: Vec<bool> = kinds
             .iter()
-            .all(|triangle| triangle.paint.is_opaque(textures));
-        let decimated = self.decimations(node, &own, &thin);
+            .map(|kind| kind.is_thin || kind.is_painted)
+            .collect();
+        let decimated = self.decimations(node, &own, &all, &kinds);
         let is_undecimated = decimated.is_err();
         let (surfaces, mut wide) = decimated.unwrap_or_else(|_| {
             thin.fill(true);
             (Vec::new(), Some(Vec::new()))
         });
-        let surfaces = surfaces.into_iter().filter(|_| !is_clear);
+        let surfaces = surfaces.into_iter();
         let judged = surfaces.map(|one| comparison.judge(one));
         let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
         let mut most_error = f64::INFINITY;
@@ -123,7 +136,11 @@ impl<'s> Surfaces<'s> {
                 most_error = most_error.min(one.error * WORSE);
                 judged.push(one);
             }
-            let able = (0..judged.len()).filter(|&n| judged[n].error <= most_error);
+            let able = judged.iter().filter(|one| one.error <= most_error);
+            let least_lost = able.map(|one| one.lost).fold(f64::INFINITY, f64::min);
+            let is_able =
+                |one: &Judged| one.error <= most_error && one.lost <= least_lost.max(MOST_LOST);
+            let able = (0..judged.len()).filter(|&n| is_able(&judged[n]));
             let best = able.min_by(|&a, &b| judged[a].cost.total_cmp(&judged[b].cost));
             let best = best.unwrap_or(0);
             if judged[best].lost <= MOST_LOST || !thin.contains(&false) {
@@ -143,38 +160,60 @@ impl<'s> Surfaces<'s> {
         })
     }
 
-    /// Candidates without voxels; and, where some part is thin, the wide ones.
+    /// Candidates without voxels; and, where some part is thin or painted, the wide ones. Decimated surfaces have
+    /// neither textures nor holes: clear triangles stay as they are, others with textures in one candidate.
     fn decimations(
         &self,
         node: &Node,
         own: &Range<usize>,
-        thin: &[bool],
+        all: &[LeafTriangle],
+        kinds: &[Kind],
     ) -> Result<(Vec<Candidate>, Option<Vec<LeafTriangle>>), DecimateError> {
         let voxel = f64::from(node.voxel);
-        let is_thin = |place: usize| thin[place - own.start];
+        let kept = |is_kept: fn(&Kind) -> bool| {
+            let both = all.iter().zip(kinds);
+            let kept = both.filter(|(_, kind)| is_kept(kind));
+            kept.map(|(triangle, _)| *triangle).collect::<Vec<_>>()
+        };
         // Small parts are left out whole.
         let is_seen =
             |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
-        let candidate = |triangles| Candidate {
+        let candidate = |parts: &[&[LeafTriangle]]| Candidate {
             node: *node,
             lists: Default::default(),
-            triangles,
+            triangles: parts.concat(),
         };
-        let decimated = |is_taken: &dyn Fn(usize) -> bool, error: f64| {
-            let taken: Vec<usize> = own.clone().filter(|&place| is_taken(place)).collect();
+        let decimated = |error: f64, is_taken: &dyn Fn(&Kind, usize) -> bool| {
+            let taken = own.clone().zip(kinds);
+            let taken = taken.filter(|&(place, kind)| is_taken(kind, place));
+            let taken: Vec<usize> = taken.map(|(place, _)| place).collect();
             self.decimated(own, &taken, error * voxel)
         };
+        let clear = kept(|kind| kind.is_clear);
         let mut candidates = Vec::new();
         for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
-            let all = decimated(&|place| is_seen(place, error), error)?;
-            candidates.push(candidate(all));
+            let solid = |kind: &Kind, place| !kind.is_clear && is_seen(place, error);
+            candidates.push(candidate(&[&decimated(error, &solid)?, &clear]));
+            if clear.len() == all.len() {
+                break;
+            }
         }
-        if !thin.contains(&true) {
+        if !kinds.iter().any(|kind| kind.is_thin || kind.is_painted) {
             return Ok((candidates, None));
         }
-        let wide = decimated(&|place| !is_thin(place) && is_seen(place, ERROR), ERROR)?;
-        let lines = decimated(&is_thin, ERROR * FINEST)?;
-        candidates.push(candidate([&wide[..], &lines].concat()));
+        let is_wide =
+            |kind: &Kind, place| !kind.is_thin && !kind.is_painted && is_seen(place, ERROR);
+        let wide = decimated(ERROR, &is_wide)?;
+        let finest = ERROR * FINEST;
+        let lines = decimated(finest, &|kind, _| {
+            (kind.is_thin || kind.is_painted) && !kind.is_clear
+        })?;
+        candidates.push(candidate(&[&wide, &lines, &clear]));
+        let painted = kept(|kind| kind.is_painted);
+        if painted.len() > clear.len() {
+            let lines = decimated(finest, &|kind, _| kind.is_thin && !kind.is_painted)?;
+            candidates.push(candidate(&[&wide, &lines, &painted]));
+        }
         Ok((candidates, Some(wide)))
     }
 
