@@ -26,8 +26,10 @@ const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(-0.8, 0.2, -0.6),
     DVec3::new(0.3, 1.0, -0.7),
 ];
-/// In voxels of the node: from there on coarser nodes are drawn.
-const PIXEL: f64 = 2.0;
+/// Pixels in voxels of the node, by turns of the directions. A node is drawn from the first on, until a coarser one is;
+/// the coarsest stays.
+const PIXELS: [f64; 2] = [1.0, 1.0];
+const PIXELS_OF_COARSEST: [f64; 2] = [1.0, 2.0];
 /// Samples along each axis of a pixel: of the triangles and of a candidate.
 const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
@@ -43,12 +45,14 @@ pub(super) struct Judged {
     pub(super) error: f64,
     /// The share of coverage that is lost, mean of all views.
     pub(super) lost: f64,
-    /// By error and bytes, those of the node's record among them: an empty candidate is not free.
+    /// By error and bytes, and some bytes more: an empty candidate is not free, and few bytes more are.
     pub(super) cost: f64,
 }
 
 pub(super) struct Comparison<'o> {
     options: &'o BuildOptions,
+    /// Bytes that cost nothing.
+    free: f64,
     textures: &'o [Arc<Texture>],
     /// Coordinates are relative to it, so that single precision resolves the node's parts.
     middle: DVec3,
@@ -62,6 +66,7 @@ impl<'o> Comparison<'o> {
         triangles: &[LeafTriangle],
         options: &'o BuildOptions,
         textures: &'o [Arc<Texture>],
+        free: f64,
     ) -> Result<Self, BuildError> {
         let [lowest, highest] = [node.low, node.high].map(point);
         let middle = (lowest + highest) / 2.0;
@@ -79,6 +84,7 @@ impl<'o> Comparison<'o> {
         let bytes = surface::lay_out(&mut leaf, &moved, |_| true);
         let mut of = Self {
             options,
+            free,
             textures,
             middle,
             leaf: (leaf, pack(&Default::default(), &bytes)),
@@ -90,9 +96,13 @@ impl<'o> Comparison<'o> {
             triangles: Vec::new(),
         };
         let (truth, _) = of.file(&empty)?;
-        let pixel = PIXEL * f64::from(node.voxel);
-        let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
-        for direction in DIRECTIONS {
+        let pixels = match node.level {
+            0 => PIXELS_OF_COARSEST,
+            _ => PIXELS,
+        };
+        for (number, direction) in DIRECTIONS.into_iter().enumerate() {
+            let pixel = pixels[number % pixels.len()] * f64::from(node.voxel);
+            let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
             let towards = direction.normalize_or(DVec3::X);
             let forward = -towards;
             let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
@@ -136,12 +146,12 @@ impl<'o> Comparison<'o> {
         let lost = lost / views;
         // A mean of squares alone takes a blank for little worse than thin lines that are a pixel off.
         let error = libm::sqrt((squares + lost * lost * of_blank) / views);
-        let bytes = bytes + size_of::<Node>() as u64;
+        let bytes = bytes as f64 + size_of::<Node>() as f64 + self.free;
         Ok(Judged {
             candidate,
             error,
             lost,
-            cost: error * libm::pow(bytes as f64, BYTES_WEIGH),
+            cost: error * libm::pow(bytes, BYTES_WEIGH),
         })
     }
 

@@ -30,6 +30,10 @@ const FINEST: f64 = 0.1;
 const WORSE: f64 = 1.06;
 /// A node that loses more of its coverage may have voxels of all triangles.
 const MOST_LOST: f64 = 0.05;
+/// One that loses more is not chosen if another loses less.
+const BLANK: f64 = 0.25;
+/// Bytes of a file that count as nothing, in equal parts for all nodes: a small mesh needs no coarse nodes.
+const FREE_BYTES: f64 = (1 << 19) as f64;
 /// Larger nodes have voxels alone: decimating takes memory.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
@@ -48,6 +52,8 @@ pub(super) struct Surfaces<'s> {
     centre: DVec3,
     options: &'s BuildOptions,
     parts: Parts,
+    /// Bytes of a node that cost nothing.
+    free: f64,
     textures: &'s Textures,
 }
 
@@ -72,6 +78,7 @@ impl<'s> Surfaces<'s> {
             order,
             centre,
             options,
+            free: FREE_BYTES / branches.len() as f64,
             parts: Parts::of(&leaves, corners, normals),
             textures,
         }
@@ -97,7 +104,7 @@ impl<'s> Surfaces<'s> {
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<Made, BuildError> {
         let all = self.triangles(&own);
-        let comparison = Comparison::of(node, &all, self.options, &self.textures.list)?;
+        let comparison = Comparison::of(node, &all, self.options, &self.textures.list, self.free)?;
         let kinds: Vec<Kind> = own
             .clone()
             .zip(&all)
@@ -139,11 +146,14 @@ impl<'s> Surfaces<'s> {
             let able = judged.iter().filter(|one| one.error <= most_error);
             let least_lost = able.map(|one| one.lost).fold(f64::INFINITY, f64::min);
             let is_able =
-                |one: &Judged| one.error <= most_error && one.lost <= least_lost.max(MOST_LOST);
+                |one: &Judged| one.error <= most_error && one.lost <= least_lost.max(BLANK);
             let able = (0..judged.len()).filter(|&n| is_able(&judged[n]));
             let best = able.min_by(|&a, &b| judged[a].cost.total_cmp(&judged[b].cost));
             let best = best.unwrap_or(0);
-            if judged[best].lost <= MOST_LOST || !thin.contains(&false) {
+            // Voxels of all may be better than thin parts as they are.
+            let is_whole = judged[best].candidate.triangles.len() == all.len();
+            let is_thin_whole = is_whole && thin.contains(&true);
+            if judged[best].lost <= MOST_LOST && !is_thin_whole || !thin.contains(&false) {
                 break judged.swap_remove(best).candidate;
             }
             // A lattice is one wide part of thin bars.
@@ -161,7 +171,8 @@ impl<'s> Surfaces<'s> {
     }
 
     /// Candidates without voxels; and, where some part is thin or painted, the wide ones. Decimated surfaces have
-    /// neither textures nor holes: clear triangles stay as they are, others with textures in one candidate.
+    /// neither textures nor holes: clear triangles stay as they are, others with textures in one candidate, and all in
+    /// one.
     fn decimations(
         &self,
         node: &Node,
@@ -198,6 +209,7 @@ impl<'s> Surfaces<'s> {
                 break;
             }
         }
+        candidates.push(candidate(&[all]));
         if !kinds.iter().any(|kind| kind.is_thin || kind.is_painted) {
             return Ok((candidates, None));
         }
