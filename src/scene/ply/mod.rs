@@ -261,7 +261,13 @@ fn parse_row(
         .filter(|word| !word.is_empty());
     let mut next = |property: &Property| {
         let word = words.next();
-        word.and_then(Number::parse).ok_or_else(|| {
+        let number = word.and_then(Number::parse);
+        // A whole number may stand for a real one: the colour `1` is a share.
+        let number = number.map(|number| match property.scalar.is_integer() {
+            true => number,
+            false => Number::Real(number.real()),
+        });
+        number.ok_or_else(|| {
             fault(
                 format!("a number for property {}", property.name.escape_ascii()),
                 word.map_or("the end of the line".to_owned(), printable),

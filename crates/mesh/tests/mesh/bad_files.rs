@@ -32,6 +32,7 @@ PLY  | ply\nformat ascii 2.0\n                | header
 PLY  | ply\n                                  | header
 PLY  | ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\nelement vertex 1\nproperty int x\nend_header\n1 2 3\n4\n | at least one triangle
 STL  | solid a\nfacet x\n                     | triangle 1: expected "facet normal
+STL  | solid a\nendsolid a\nsolid b\nfacet x\n | triangle 1: expected "facet normal
 STL  | solid a\nendsolid a\n                  | at least one triangle
 STL  | 7777777777777777777777777777777777777777777777777777777777777777777777777777777777777 | 46318274834 bytes in all for the 926365495 triangles
 STL  | 77777777777777777777                   | header at byte 0: expected 84 bytes, found 20 bytes; the file is cut short or damaged

@@ -138,6 +138,39 @@ fn only_the_folder_of_the_mesh_is_searched() {
 }
 
 #[test]
+fn text_stl_files_have_several_solids() {
+    let solid = |name: &str, z: u32| {
+        let corner = |x: u32, y: u32| format!("vertex {x} {y} {z}\n");
+        let corners = [corner(0, 0), corner(1, 0), corner(0, 1)].concat();
+        format!(
+            "solid {name}\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid {name}\n"
+        )
+    };
+    let text = ["a", "facet", "solid"].map(|name| solid(name, name.len() as u32));
+    let mesh = load(text.concat().as_bytes(), MeshFormat::Stl).unwrap();
+    let heights: Vec<f32> = soup(&mesh).iter().map(|corners| corners[0][2]).collect();
+    assert_eq!(heights, [1.0, 5.0, 5.0]);
+}
+
+/// Also where all digits of a line are those of whole numbers.
+#[test]
+fn real_colours_of_ply_files_are_shares() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nCOLORS\
+        element face 1\nproperty list uchar int vertex_indices\nOTHERS\
+        end_header\n0 0 0@\n1 0 0@\n0 1 0@\n3 0 1 2#\n";
+    let colors = "property float red\nproperty double green\nproperty float blue\n";
+    let of_vertices = text.replace("COLORS", colors).replace("OTHERS", "");
+    let of_vertices = of_vertices.replace('@', " 1 0.5 0").replace('#', "");
+    let mesh = load(of_vertices.as_bytes(), MeshFormat::Ply).unwrap();
+    assert_eq!(mesh.vertex_colors(), [[255, 128, 0]; 3]);
+    let of_faces = text.replace("COLORS", "").replace("OTHERS", colors);
+    let of_faces = of_faces.replace('@', "").replace('#', " 1 0 1");
+    let mesh = load(of_faces.as_bytes(), MeshFormat::Ply).unwrap();
+    let material = mesh.material_of()[0] as usize;
+    assert_eq!(mesh.materials()[material].diffuse, [1.0, 0.0, 1.0]);
+}
+
+#[test]
 fn ply_files_have_strips_and_colours_of_faces() {
     let vertices =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty int x\nproperty int y\nproperty int z\n";
