@@ -22,7 +22,7 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
     let (colors, normals_at) = (vertices.colors(), vertices.normals());
     let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let default = builder.material(Material::default_color());
-    let white = builder.material(Material::of_srgb("vertex colours", [255; 3]));
+    let white = builder.material(Material::vertex_colors());
     let material = if colors.is_some() { white } else { default };
     let mut normals: Vec<[f32; 3]> = Vec::new();
     // Materials of faces with colours.

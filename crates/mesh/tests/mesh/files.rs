@@ -75,6 +75,20 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let text = b"# caf\xe9\nv 0 0 0 1 0 0.5\nv 1 0 0 1 1 1\nv 1 1 0 0 0 0\nf 1 2 3\n";
     let mesh = load(text, MeshFormat::Obj).unwrap();
     assert_eq!(mesh.vertex_colors(), [[255, 0, 128], [255; 3], [0; 3]]);
+    // Without a material they are not darkened; a face without colours is grey.
+    let text = "v 0 0 0 1 1 1.01\nv 1 0 0 0 0.5 0\nv 1 1 0 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(materials(&mesh), ["vertex colours", "no material"]);
+    assert_eq!(
+        mesh.materials()[mesh.material_of()[0] as usize].diffuse,
+        [1.0; 3]
+    );
+    assert_eq!(mesh.vertex_colors()[..2], [[255; 3], [0, 128, 0]]);
+    assert_eq!(mesh.warnings(), [""; 0]);
+    let text = "v 0 0 0 200 60.4 10\nv 1 0 0 255 1 0\nv 1 1 0 0 0 0\nf 1 2 3\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(mesh.vertex_colors(), [[200, 60, 10], [255, 1, 0], [0; 3]]);
+    has(mesh.warnings(), &["taken as 0 to 255"]);
     // Byte order marks and continued lines.
     let text = "\u{feff}v 0 0 0\nv 1 \\\n0 0\nmtllib a b.mtl\n# C:\\models\\\nusemtl red\nv 0 1 0\n\
         f 1 \\\r\n2 \\\r\n3\r\n";

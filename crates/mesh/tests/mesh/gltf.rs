@@ -125,6 +125,12 @@ fn normals_turn_and_colours_become_srgb() {
             "{found:?}"
         );
     }
+    // The default material of the format is white.
+    let primitive = json["meshes"][0]["primitives"][0].as_object_mut();
+    primitive.unwrap().remove("material");
+    let mesh = mesh_of(&json);
+    let material = mesh.material_of()[0] as usize;
+    assert_eq!(mesh.materials()[material].diffuse, [1.0; 3]);
 }
 
 #[test]

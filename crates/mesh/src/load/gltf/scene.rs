@@ -36,6 +36,8 @@ pub(super) struct Reader<'d> {
     morphed: u64,
     skinned: u64,
     textures: Textures,
+    /// The material of primitives without one that have colours.
+    white: Option<u32>,
 }
 
 impl<'d> Reader<'d> {
@@ -55,6 +57,7 @@ impl<'d> Reader<'d> {
             morphed: 0,
             skinned: 0,
             textures: Textures::default(),
+            white: None,
         }
     }
 
@@ -301,9 +304,14 @@ impl<'d> Reader<'d> {
         let turn = placed.inverse().transpose();
         let mirrored = placed.determinant() < 0.0;
         // The first material is the one of triangles without.
-        let material = primitive
-            .material
-            .map_or(0, |m| (m as u32).saturating_add(1));
+        let material = match (primitive.material, &colors) {
+            (Some(material), _) => (material as u32).saturating_add(1),
+            (None, None) => 0,
+            (None, Some(_)) => {
+                let new = || builder.material(Material::vertex_colors());
+                *self.white.get_or_insert_with(new)
+            }
+        };
         let places = self.places(primitive, material, builder)?;
         for number in 0..triangles {
             let mut at = match mode {
