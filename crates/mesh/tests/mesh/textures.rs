@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::{Mesh, Surface};
+use shiftvox_mesh::{Mesh, Surface, srgb_to_linear};
 
 use super::shapes::{data_uri, gltf_json, square_buffer};
 use super::shared::has;
@@ -107,6 +107,72 @@ fn obj_files_have_textures() {
     let mesh = read(&at.join("a.obj"));
     has(mesh.warnings(), &["wood grain.png cannot be read"]);
     check(&mesh, 2, plain, 0.001);
+}
+
+/// Of four triangles, each in a half of one of two pictures; of the last the number is wrong.
+const PLY: &str = "ply\nformat ascii 1.0\ncomment TextureFile a picture.png\ncomment TextureFile b.png\nelement vertex 3\n\
+    property float x\nproperty float y\nproperty float z\nVERTEX\
+    element face 4\nproperty list uchar int vertex_indices\nFACE\
+    end_header\n0 0 0@\n1 0 0@\n1 1 0@\n3 0 1 2#0\n3 0 1 2#1\n3 0 1 2#0\n3 0 1 2#2\n";
+
+#[test]
+fn ply_files_have_textures() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ply");
+    for (name, right) in [("a picture.png", [0, 255, 0]), ("b.png", [0, 0, 255])] {
+        let picture = halves([255, 0, 0], right, ImageFormat::Png);
+        fs::write(folder.path().join(name), picture).unwrap();
+    }
+    let grey = [srgb_to_linear(200); 3].map(f64::from);
+    let colors = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], grey];
+    let lists = "property list uchar float texcoord\nproperty int texnumber\n";
+    let of_faces = PLY.replace("VERTEX", "").replace("FACE", lists);
+    let of_faces = of_faces
+        .replace('@', "")
+        .replace('#', " 6 0.6 0.9 0.9 0.9 0.9 0.4 ");
+    let read_as = |text: &str| {
+        fs::write(&path, text).unwrap();
+        read(&path)
+    };
+    let mesh = read_as(&of_faces);
+    assert_eq!(mesh.warnings(), [""; 0]);
+    for (triangle, color) in colors.into_iter().enumerate() {
+        check(&mesh, triangle, color, 0.001);
+    }
+    for names in ["texture_u texture_v", "s t", "u v"] {
+        let properties = format!(
+            "property float {}\n",
+            names.replace(' ', "\nproperty float ")
+        );
+        let properties =
+            properties + "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+        let text = PLY
+            .replace("VERTEX", &properties)
+            .replace("FACE", "property int texnumber\n");
+        let text = text
+            .replacen('@', " 0.6 0.9 9 9 9", 1)
+            .replacen('@', " 0.9 0.9 9 9 9", 1);
+        let text = text.replace('@', " 0.9 0.4 9 9 9").replace('#', " ");
+        let mesh = read_as(&text);
+        has(mesh.warnings(), &["colours were passed over"]);
+        for (triangle, color) in colors.into_iter().enumerate() {
+            check(&mesh, triangle, color, 0.001);
+        }
+        // Without the pictures the vertices have their colours.
+        let mesh = read_as(&text.replace("TextureFile ", "TextureFile none"));
+        has(
+            mesh.warnings(),
+            &["nonea picture.png cannot be read", "noneb.png"],
+        );
+        assert_eq!(mesh.vertex_colors(), [[9; 3]; 3]);
+    }
+    let mesh = read_as(&of_faces.replacen(" 6 0.6 0.9 0.9 0.9 0.9 0.4 ", " 0 ", 1));
+    has(
+        mesh.warnings(),
+        &["1 faces have a texture, but no texture coordinates"],
+    );
+    let mesh = read_as(&of_faces.replace("texcoord", "other"));
+    has(mesh.warnings(), &["the texture was passed over"]);
 }
 
 #[test]
