@@ -49,6 +49,8 @@ struct File {
     by_name: HashMap<String, usize>,
     current: usize,
     libraries: usize,
+    /// Lines and points.
+    wires: u64,
 }
 
 struct Face {
@@ -133,6 +135,7 @@ impl File {
             }
             "usemtl" if rest().is_empty() => Err(wrong("usemtl", "a material's name"))?,
             "usemtl" => self.current = self.by_name.get(rest()).copied().unwrap_or(0),
+            "l" | "p" => self.wires += 1,
             "mtllib" => self.library(rest(), beside, options, builder),
             _ => {}
         }
@@ -191,6 +194,12 @@ impl File {
                 "{name}: line {line} is not understood and was passed over"
             ));
         }
+        if library.emissive > 0 {
+            let count = library.emissive;
+            builder.warn(format!(
+                "{name}: {count} materials emit light, which is not drawn"
+            ));
+        }
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let path = |name: String| folder.join(name).to_string_lossy().into_owned();
         for (material, pictures) in library.materials {
@@ -209,7 +218,7 @@ impl File {
     fn build(self, beside: &dyn Beside, builder: &mut MeshBuilder) -> Result<(), Problem> {
         let mut numbers = vec![NONE; self.positions.len()];
         let mut textures = Textures::default();
-        let mut without = 0;
+        let (mut without, mut without_uvs) = (0, 0);
         let mut begin = 0;
         let mut is_textured: Vec<Option<bool>> = vec![None; self.materials.len()];
         let mut white = None;
@@ -272,12 +281,24 @@ impl File {
                 let moved =
                     |[u, v]: [f64; 2]| [u * scale[0] + offset[0], 1.0 - (v * scale[1] + offset[1])];
                 let places = places.map(|places| places.map(moved));
+                without_uvs += usize::from(is_textured && places.is_none());
                 without += usize::from(is_plain);
                 // In range: the builder gave the numbers.
                 let _ = builder.textured_triangle(positions, normals, material, places);
             }
         }
         textures.tell(builder);
+        if without_uvs > 0 {
+            builder.warn(format!(
+                "{without_uvs} triangles have a texture, but no texture coordinates"
+            ));
+        }
+        if self.wires > 0 {
+            builder.warn(format!(
+                "{} lines and points (l, p) were passed over",
+                self.wires
+            ));
+        }
         if without > 0 && self.libraries > 0 {
             builder.warn(format!(
                 "{without} triangles have no material that was found; they got the default colour"

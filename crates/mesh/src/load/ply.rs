@@ -54,16 +54,26 @@ pub(super) fn read(
     let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let material = if colors.is_some() { white } else { default };
     let mut kept = Vertices::default();
-    let mut without = 0;
+    let (mut without, mut has_opacities) = (0, false);
     // Materials of faces with colours.
     let mut of_color: HashMap<[u8; 3], u32> = HashMap::new();
     // A second element of this name has other properties.
     let mut is_first = true;
     for element in &elements {
         let corners = element.list(&["vertex_indices", "vertex_index"]);
+        let opacity = element.scalar(&["alpha"]);
+        let is_clear = |row: &Row<'_>, at: usize| {
+            let full = match element.properties[at].scalar {
+                Scalar::F32 | Scalar::F64 => 1.0,
+                Scalar::U16 => 65535.0,
+                _ => 255.0,
+            };
+            row.values[at].real() < full
+        };
         match (&element.name[..], corners) {
             (b"vertex", _) if std::mem::take(&mut is_first) => {
                 file.rows(element, [None; 2], |row| {
+                    has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
                     let position = positions.map(|k| row.values[k].real());
                     match colors.zip(is_wide) {
                         None => builder.position(position),
@@ -94,6 +104,7 @@ pub(super) fn read(
                 let number = element.scalar(&["texnumber"]);
                 file.rows(element, [Some(corners), uvs], |row| {
                     check_corners(row.lists[0].len(), Place::Byte(row.offset))?;
+                    has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
                     let mut material = material;
                     if let Some(at) = face_colors {
                         let mut color = [0; 3];
@@ -122,6 +133,9 @@ pub(super) fn read(
             })?,
             _ => file.skip(element)?,
         }
+    }
+    if has_opacities {
+        builder.warn("opacities of vertices or faces were passed over");
     }
     if without > 0 {
         builder.warn(format!(

@@ -46,8 +46,8 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 2 0\nv 0 1 0\nusemtl red one\n\
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
-    let mtl = "# c\nKd 1 1 1\nnewmtl red one\n Kd 0.5 0 0\nTr 0.25\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
-        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nnewmtl \u{fc}\n";
+    let mtl = "# c\nKd 1 1 1\nNewMtl red one\n kd 0.5 0 0\nTR 0.25\nKe 0 0 0\nKe 0 2 0\nmap_Ke a.png\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
+        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -60,11 +60,13 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         assert_eq!((first.alpha, blue.alpha), (0.75, 0.5));
         assert_eq!(blue.diffuse, [0.0, 0.0, 1.0]);
         let warnings = [
-            "a b.mtl: line 11 is not understood",
+            "a b.mtl: line 14 is not understood",
             "a.png cannot be read",
             "none.mtl cannot be read",
             "1 triangles have no material",
             "1 of 6 triangles of a material with opacity 0",
+            "2 lines and points",
+            "a b.mtl: 2 materials emit light",
         ];
         has(mesh.warnings(), &warnings);
     }
@@ -182,6 +184,27 @@ fn real_colours_of_ply_files_are_shares() {
     let mesh = load(of_faces.as_bytes(), MeshFormat::Ply).unwrap();
     let material = mesh.material_of()[0] as usize;
     assert_eq!(mesh.materials()[material].diffuse, [1.0, 0.0, 1.0]);
+}
+
+#[test]
+fn opacities_of_ply_files_are_warned_of() {
+    for (alphas, is_warned) in [
+        ("uchar 255 255 254", true),
+        ("uchar 255 255 255", false),
+        ("float 1 1.0 1", false),
+    ] {
+        let words: Vec<&str> = alphas.split(' ').collect();
+        let properties = format!("property {} alpha\n", words[0]);
+        let header = super::shapes::ply_header("ascii", 3, &properties, "int vertex_indices");
+        let [a, b, c] = [words[1], words[2], words[3]];
+        let text = format!("{header}0 0 0 {a}\n1 0 0 {b}\n1 1 0 {c}\n3 0 1 2\n");
+        let mesh = load(text.as_bytes(), MeshFormat::Ply).unwrap();
+        let is_found = mesh.warnings() == ["opacities of vertices or faces were passed over"];
+        assert_eq!(
+            (is_found, mesh.warnings().len()),
+            (is_warned, usize::from(is_warned))
+        );
+    }
 }
 
 #[test]

@@ -102,6 +102,19 @@ fn obj_files_have_textures() {
         check(&mesh, 3, fourth, 0.02);
     }
     fs::write(materials.join("a.mtl"), mtl).unwrap();
+    // Other capitals, and a face without coordinates.
+    fs::write(materials.join("a.mtl"), mtl.replace("map_Kd", "MAP_kd")).unwrap();
+    fs::write(
+        at.join("b.obj"),
+        OBJ.replace("a.mtl", "materials/a.mtl") + "f 1 2 3\n",
+    )
+    .unwrap();
+    let mesh = read(&at.join("b.obj"));
+    has(
+        mesh.warnings(),
+        &["1 triangles have a texture, but no texture coordinates"],
+    );
+    check(&mesh, 0, left, 0.02);
     // A warning names an unreadable texture, and the plain colour is kept.
     fs::write(&picture, "no picture").unwrap();
     let mesh = read(&at.join("a.obj"));

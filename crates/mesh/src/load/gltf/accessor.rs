@@ -161,6 +161,11 @@ impl<'b> Numbers<'b> {
         }
     }
 
+    /// Whether an element has a number `k`.
+    pub(super) fn has(&self, k: usize) -> bool {
+        k < self.layout.width
+    }
+
     pub(super) fn point(&self, element: usize) -> DVec3 {
         DVec3::from_array([0, 1, 2].map(|k| f64::from(self.real(element, k))))
     }

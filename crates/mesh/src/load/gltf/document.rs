@@ -5,6 +5,7 @@ use std::fmt;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, Visitor};
+use serde_json::Value;
 
 use crate::load::{Fault, Place, Problem};
 
@@ -109,6 +110,7 @@ pub(super) struct Material {
     extensions: MaterialExtensions,
     pub(super) alpha_mode: Option<String>,
     pub(super) alpha_cutoff: Option<f32>,
+    emissive_factor: Value,
 }
 
 impl Material {
@@ -117,6 +119,15 @@ impl Material {
         let older = self.extensions.specular_glossiness.as_ref();
         older.unwrap_or(&self.pbr_metallic_roughness)
     }
+
+    pub(super) fn emits_light(&self) -> bool {
+        let mut factor = self.emissive_factor.as_array().into_iter().flatten();
+        factor.any(|factor| factor.as_f64() > Some(0.0))
+    }
+
+    pub(super) fn transmits_light(&self) -> bool {
+        self.extensions.transmission["transmissionFactor"].as_f64() > Some(0.0)
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -124,6 +135,8 @@ impl Material {
 struct MaterialExtensions {
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     specular_glossiness: Option<Pbr>,
+    #[serde(rename = "KHR_materials_transmission")]
+    transmission: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]
