@@ -264,7 +264,7 @@ fn parse_row(
     let mut next = |property: &Property| {
         let word = words.next();
         let number = word.and_then(Number::parse);
-        // A whole number may stand for a real one: the colour `1` is a share.
+        // In a column of a real type `1` is 1.0: the colour of full brightness, not the byte 1.
         let number = number.map(|number| match property.scalar.is_integer() {
             true => number,
             false => Number::Real(number.real()),

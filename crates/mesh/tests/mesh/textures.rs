@@ -120,6 +120,21 @@ fn obj_files_have_textures() {
     let mesh = read(&at.join("a.obj"));
     has(mesh.warnings(), &["wood grain.png cannot be read"]);
     check(&mesh, 2, plain, 0.001);
+    for (name, bytes, expected) in [
+        (
+            "a.jpg",
+            "BM",
+            "it is BMP; convert it to PNG, for example with magick",
+        ),
+        ("a.png", "RIFF", "it is WebP"),
+        ("a.TGA", "\0\0\u{2}", "it is TGA"),
+        ("b.tga", "II*\0", "it is TIFF"),
+    ] {
+        fs::write(materials.join(name), bytes).unwrap();
+        let mtl = mtl.replace("pictures/wood grain.png", name);
+        fs::write(materials.join("a.mtl"), mtl).unwrap();
+        has(read(&at.join("a.obj")).warnings(), &[expected]);
+    }
 }
 
 /// Of four triangles, each in a half of one of two pictures; of the last the number is wrong.
@@ -267,6 +282,9 @@ fn gltf_files_have_textures() {
     json["extensionsRequired"] = json!(["EXT_texture_webp"]);
     fs::write(&path, json.to_string()).unwrap();
     let mesh = read(&path);
-    has(mesh.warnings(), &["it has no PNG or JPEG picture"]);
+    has(
+        mesh.warnings(),
+        &["PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png"],
+    );
     check(&mesh, 0, plain, 0.001);
 }
