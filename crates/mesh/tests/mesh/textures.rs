@@ -157,7 +157,7 @@ fn ply_files_have_textures() {
     let of_faces = PLY.replace("VERTEX", "").replace("FACE", lists);
     let of_faces = of_faces
         .replace('@', "")
-        .replace('#', " 6 0.6 0.9 0.9 0.9 0.9 0.4 ");
+        .replace('#', " 6 0.6 0.95 0.9 0.95 0.9 0.6 ");
     let read_as = |text: &str| {
         fs::write(&path, text).unwrap();
         read(&path)
@@ -178,9 +178,9 @@ fn ply_files_have_textures() {
             .replace("VERTEX", &properties)
             .replace("FACE", "property int texnumber\n");
         let text = text
-            .replacen('@', " 0.6 0.9 9 9 9", 1)
-            .replacen('@', " 0.9 0.9 9 9 9", 1);
-        let text = text.replace('@', " 0.9 0.4 9 9 9").replace('#', " ");
+            .replacen('@', " 0.6 0.95 9 9 9", 1)
+            .replacen('@', " 0.9 0.95 9 9 9", 1);
+        let text = text.replace('@', " 0.9 0.6 9 9 9").replace('#', " ");
         let mesh = read_as(&text);
         has(mesh.warnings(), &["colours were passed over"]);
         for (triangle, color) in colors.into_iter().enumerate() {
@@ -194,7 +194,7 @@ fn ply_files_have_textures() {
         );
         assert_eq!(mesh.vertex_colors(), [[9; 3]; 3]);
     }
-    let mesh = read_as(&of_faces.replacen(" 6 0.6 0.9 0.9 0.9 0.9 0.4 ", " 0 ", 1));
+    let mesh = read_as(&of_faces.replacen(" 6 0.6 0.95 0.9 0.95 0.9 0.6 ", " 0 ", 1));
     has(
         mesh.warnings(),
         &["1 faces have a texture, but no texture coordinates"],
