@@ -38,8 +38,9 @@ pub enum SceneError {
     #[error("{file}: this is a {kind} file, which has neither voxels nor triangles to be read")]
     BuiltOfMesh { file: String, kind: FileKind },
     #[error(
-        "{file}: not a known scene file: it begins with {begins}; expected {}; formats are recognised by content, so renaming the file does not help",
-        formats::all_endings()
+        "{file}: not a known scene file: it begins with {begins}; expected {}; formats are recognised by content, so renaming the file does not help{}",
+        formats::all_endings(),
+        formats::advice(file)
     )]
     Unknown { file: String, begins: String },
 }

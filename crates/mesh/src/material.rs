@@ -48,6 +48,11 @@ impl Material {
         Self::of_srgb("no material", DEFAULT_COLOR)
     }
 
+    /// White, for triangles that have the colours of their vertices and no material.
+    pub(crate) fn vertex_colors() -> Self {
+        Self::of_srgb("vertex colours", [255; 3])
+    }
+
     /// A material from numbers of a file, which are clamped to 0 to 1.
     pub fn of_numbers(
         name: impl Into<String>,

@@ -170,6 +170,20 @@ pub(super) fn all_endings() -> String {
     )
 }
 
+/// The end of a message about a mesh in another format, by its ending.
+pub(super) fn advice(file: &str) -> &'static str {
+    const OTHERS: [&str; 8] = ["fbx", "dae", "usd", "usdz", "off", "3ds", "blend", "3mf"];
+    let ending = file.rsplit('.').next().unwrap_or_default();
+    let ending = ending.to_ascii_lowercase();
+    match &ending[..] {
+        "step" | "stp" => "; FreeCAD exports it as glTF",
+        other if OTHERS.contains(&other) => {
+            "; convert this one to glTF: Blender exports it, or assimp export IN OUT.glb"
+        }
+        _ => "",
+    }
+}
+
 /// Recognises a format by the first 4096 bytes of a file (all of a shorter one) and its length in bytes.
 pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
     let begins = |mark: &&[u8]| beginning.starts_with(mark);

@@ -29,7 +29,7 @@ pub(super) fn read(
     }
     let mut known = KnownNormals::default();
     let mut cloud = Cloud::new(options);
-    file.rows(&vertices, None, |row| {
+    file.rows(&vertices, [None; 2], |row| {
         let part =
             |names: [&str; 3], k: usize| format!("vertex {}, property {}", row.number, names[k]);
         let mut color = DEFAULT_COLOR;

@@ -29,6 +29,8 @@ pub struct Element {
 pub struct Header {
     pub(super) encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Names of pictures in comments, as MeshLab writes them.
+    pub textures: Vec<String>,
 }
 
 impl Header {
@@ -75,6 +77,11 @@ impl Element {
         ])
     }
 
+    pub fn texture_coordinates(&self) -> Option<[usize; 2]> {
+        let u = self.scalar(&["texture_u", "s", "u"])?;
+        Some([u, self.scalar(&["texture_v", "t", "v"])?])
+    }
+
     fn triple(&self, names: [&[&str]; 3]) -> Option<[usize; 3]> {
         let [a, b, c] = names.map(|names| self.scalar(names));
         Some([a?, b?, c?])
@@ -84,7 +91,7 @@ impl Element {
 pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Problem> {
     let mut line = Vec::new();
     let mut encoding = None;
-    let mut elements: Vec<Element> = Vec::new();
+    let (mut elements, mut textures): (Vec<Element>, Vec<String>) = Default::default();
     let mut first = true;
     loop {
         let offset = source.offset;
@@ -104,6 +111,11 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
             continue;
         }
         match words[..] {
+            [b"comment", b"TextureFile", _, ..] => {
+                let line = String::from_utf8_lossy(&line);
+                let name = line.split_once("TextureFile").unwrap_or_default().1;
+                textures.push(name.trim().to_owned());
+            }
             [b"comment" | b"obj_info", ..] | [] => {}
             [b"end_header"] => break,
             [b"format", format, b"1.0"] => {
@@ -148,7 +160,11 @@ pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Pro
             "none",
         )
     })?;
-    Ok(Header { encoding, elements })
+    Ok(Header {
+        encoding,
+        elements,
+        textures,
+    })
 }
 
 fn property(words: &[&[u8]]) -> Option<Property> {

@@ -39,7 +39,7 @@ pub struct Row<'r> {
     pub offset: u64,
     /// One number per property; 0 for a list.
     pub values: &'r [Number],
-    pub list: &'r [Number],
+    pub lists: [&'r [Number]; 2],
 }
 
 /// Whether the header of a PLY file declares faces or strips of triangles, so that it is a mesh. `false` for a damaged header.
@@ -69,7 +69,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         let is_list = |property: &Property| property.list.is_some();
         let is_text = self.header.encoding == Encoding::Ascii;
         if is_text || element.properties.iter().any(is_list) {
-            return self.rows(element, None, |_| Ok(()));
+            return self.rows(element, [None; 2], |_| Ok(()));
         }
         let sizes = element.properties.iter().map(|p| p.scalar.size() as u64);
         let bytes = element.count.saturating_mul(sizes.sum());
@@ -79,14 +79,14 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         }
     }
 
-    /// Reads all elements of the next kind. `list`: number of the property whose list is kept.
+    /// Reads all elements of the next kind. `lists`: numbers of the properties whose lists are kept.
     pub fn rows(
         &mut self,
         element: &Element,
-        list: Option<usize>,
+        lists: [Option<usize>; 2],
         mut visit: impl FnMut(Row<'_>) -> Result<(), Problem>,
     ) -> Result<(), Problem> {
-        let (mut values, mut kept) = (Vec::new(), Vec::new());
+        let (mut values, mut kept) = (Vec::new(), [Vec::new(), Vec::new()]);
         if let Encoding::Binary { big_endian } = self.header.encoding
             && element.properties.iter().all(|p| p.list.is_none())
         {
@@ -95,7 +95,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
         for number in 0..element.count {
             let mut offset = self.source.offset;
             values.clear();
-            kept.clear();
+            kept.iter_mut().for_each(Vec::clear);
             let is_whole = match self.header.encoding {
                 Encoding::Ascii => match self.text_line()? {
                     None => false,
@@ -104,14 +104,16 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                         let fault = |expected: String, found: String, advice: &str| {
                             Fault::new(part(element, number), begin, expected, found, advice)
                         };
-                        parse_row(&self.scratch, element, list, &mut values, &mut kept, fault)?;
+                        parse_row(&self.scratch, element, lists, &mut values, &mut kept, fault)?;
                         true
                     }
                 },
                 Encoding::Binary { big_endian } => {
                     let mut is_whole = true;
                     for (at, property) in element.properties.iter().enumerate() {
-                        let kept = (list == Some(at)).then_some(&mut kept);
+                        let kept = kept.iter_mut().zip(lists);
+                        let kept = kept.into_iter().find(|(_, list)| *list == Some(at));
+                        let kept = kept.map(|(kept, _)| kept);
                         let value = self.binary((element, number), property, big_endian, kept)?;
                         is_whole &= value.is_some();
                         values.extend(value);
@@ -129,7 +131,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                 number,
                 offset,
                 values: &values,
-                list: &kept,
+                lists: [&kept[0], &kept[1]],
             })?;
         }
         Ok(())
@@ -174,7 +176,7 @@ impl<'a, R: BufRead> PlyFile<'a, R> {
                     number: number + row as u64,
                     offset: offset + (row * stride) as u64,
                     values: &values[row * width..][..width],
-                    list: &[],
+                    lists: [&[]; 2],
                 })?;
             }
             number += rows as u64;
@@ -251,9 +253,9 @@ fn cut(element: &Element, number: u64, offset: u64) -> Box<Fault> {
 fn parse_row(
     line: &[u8],
     element: &Element,
-    list: Option<usize>,
+    lists: [Option<usize>; 2],
     values: &mut Vec<Number>,
-    kept: &mut Vec<Number>,
+    kept: &mut [Vec<Number>; 2],
     fault: impl Fn(String, String, &str) -> Box<Fault>,
 ) -> Result<(), Box<Fault>> {
     let mut words = line
@@ -261,7 +263,13 @@ fn parse_row(
         .filter(|word| !word.is_empty());
     let mut next = |property: &Property| {
         let word = words.next();
-        word.and_then(Number::parse).ok_or_else(|| {
+        let number = word.and_then(Number::parse);
+        // In a column of a real type `1` is 1.0: the colour of full brightness, not the byte 1.
+        let number = number.map(|number| match property.scalar.is_integer() {
+            true => number,
+            false => Number::Real(number.real()),
+        });
+        number.ok_or_else(|| {
             fault(
                 format!("a number for property {}", property.name.escape_ascii()),
                 word.map_or("the end of the line".to_owned(), printable),
@@ -276,8 +284,10 @@ fn parse_row(
             // A length that is no whole number ends the line early, and that is an error.
             for _ in 0..value.whole().unwrap_or(i64::MAX) {
                 let number = next(property)?;
-                if list == Some(at) {
-                    kept.push(number);
+                for (kept, list) in kept.iter_mut().zip(lists) {
+                    if list == Some(at) {
+                        kept.push(number);
+                    }
                 }
             }
         }

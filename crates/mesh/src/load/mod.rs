@@ -105,7 +105,7 @@ pub fn read(
     let mut builder = MeshBuilder::new();
     let result = match format {
         FileKind::Obj => obj::read(bytes, beside, options, &mut builder),
-        FileKind::Ply | FileKind::PlyMesh => ply::read(bytes, &mut builder),
+        FileKind::Ply | FileKind::PlyMesh => ply::read(bytes, beside, &mut builder),
         FileKind::Stl => stl::read(bytes, &mut builder),
         FileKind::Gltf => gltf::read_json(bytes, beside, &mut builder),
         FileKind::Glb => gltf::read_binary(bytes, beside, &mut builder),

@@ -1,4 +1,4 @@
-//! Material libraries of Wavefront files: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`. All else is passed over.
+//! Material libraries of Wavefront files: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`, in capitals or not. All else is passed over.
 
 use shiftvox::scene::DEFAULT_COLOR;
 
@@ -10,6 +10,8 @@ pub(super) struct Library {
     /// In the order of the file.
     pub(super) materials: Vec<(Material, Pictures)>,
     pub(super) odd_line: Option<usize>,
+    /// Materials that emit light.
+    pub(super) emissive: usize,
 }
 
 /// Names of the pictures that a material's colour and opacity are multiplied by.
@@ -44,6 +46,7 @@ struct Found {
     color: Option<[f32; 3]>,
     alpha: f32,
     pictures: Pictures,
+    is_emissive: bool,
 }
 
 pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
@@ -53,9 +56,9 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim();
         let (key, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let rest = rest.trim();
+        let (key, rest) = (key.to_ascii_lowercase(), rest.trim());
         let mut numbers = rest.split_whitespace().map(|word| word.parse::<f32>().ok());
-        let is_understood = match (key, found.last_mut()) {
+        let is_understood = match (&key[..], found.last_mut()) {
             ("newmtl", _) => {
                 found.push(Found {
                     name: rest.to_owned(),
@@ -64,7 +67,15 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
                 });
                 true
             }
-            ("Kd", Some(last)) => {
+            ("ke", Some(last)) => {
+                last.is_emissive |= numbers.any(|number| number > Some(0.0));
+                true
+            }
+            ("map_ke", Some(last)) => {
+                last.is_emissive = true;
+                true
+            }
+            ("kd", Some(last)) => {
                 let numbers: Option<Vec<f32>> = numbers.take(3).collect();
                 let color = match numbers.as_deref() {
                     Some(&[r, g, b]) => Some([r, g, b]),
@@ -74,7 +85,7 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
                 last.color = color.or(last.color);
                 color.is_some()
             }
-            ("d" | "Tr", Some(last)) => {
+            ("d" | "tr", Some(last)) => {
                 // `d -halo 0.5` is opacity too.
                 let value = numbers.next_back().flatten().filter(|v| v.is_finite());
                 if let Some(value) = value {
@@ -82,7 +93,7 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
                 }
                 value.is_some()
             }
-            ("map_Kd", Some(last)) => {
+            ("map_kd", Some(last)) => {
                 let found = picture(rest);
                 let is_understood = found.is_some();
                 if let Some((name, place)) = found {
@@ -108,10 +119,12 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
             odd_line.get_or_insert(number);
         }
     }
+    let emissive = found.iter().filter(|found| found.is_emissive).count();
     let materials = found.into_iter().map(|found| found.material(options));
     Library {
         materials: materials.collect(),
         odd_line,
+        emissive,
     }
 }
 

@@ -36,8 +36,9 @@ pub(super) fn read(
 
 #[derive(Default)]
 struct File {
-    /// Positions, and colours where they have any.
-    positions: Vec<([f64; 3], Option<[u8; 3]>)>,
+    /// Positions, and colours where they have any, as written.
+    positions: Vec<([f64; 3], Option<[f32; 3]>)>,
+    brightest: f64,
     texture_coordinates: Vec<[f64; 2]>,
     normals: Vec<[f64; 3]>,
     /// Numbers of position, texture coordinate and normal of each corner, from 0.
@@ -48,6 +49,8 @@ struct File {
     by_name: HashMap<String, usize>,
     current: usize,
     libraries: usize,
+    /// Lines and points.
+    wires: u64,
 }
 
 struct Face {
@@ -87,7 +90,10 @@ impl File {
                     Some([]) => {}
                     Some([0.0]) => Err(wrong("vertex", "a weight that is not 0"))?,
                     Some([weight]) => position = position.map(|c| c / weight),
-                    Some(&[r, g, b]) => color = Some([r, g, b].map(|c| (c * 255.0 + 0.5) as u8)),
+                    Some(&[r, g, b]) => {
+                        self.brightest = [r, g, b].into_iter().fold(self.brightest, f64::max);
+                        color = Some([r, g, b].map(|c| c as f32));
+                    }
                     _ => Err(wrong("vertex", "three numbers, or four, or six"))?,
                 }
                 self.positions.push((position, color));
@@ -129,6 +135,7 @@ impl File {
             }
             "usemtl" if rest().is_empty() => Err(wrong("usemtl", "a material's name"))?,
             "usemtl" => self.current = self.by_name.get(rest()).copied().unwrap_or(0),
+            "l" | "p" => self.wires += 1,
             "mtllib" => self.library(rest(), beside, options, builder),
             _ => {}
         }
@@ -187,6 +194,12 @@ impl File {
                 "{name}: line {line} is not understood and was passed over"
             ));
         }
+        if library.emissive > 0 {
+            let count = library.emissive;
+            builder.warn(format!(
+                "{name}: {count} materials emit light, which is not drawn"
+            ));
+        }
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let path = |name: String| folder.join(name).to_string_lossy().into_owned();
         for (material, pictures) in library.materials {
@@ -205,9 +218,18 @@ impl File {
     fn build(self, beside: &dyn Beside, builder: &mut MeshBuilder) -> Result<(), Problem> {
         let mut numbers = vec![NONE; self.positions.len()];
         let mut textures = Textures::default();
-        let mut without = 0;
+        let (mut without, mut without_uvs) = (0, 0);
         let mut begin = 0;
         let mut is_textured: Vec<Option<bool>> = vec![None; self.materials.len()];
+        let mut white = None;
+        // A little more than 1 is a rounding error, or very bright.
+        let is_in_bytes = self.brightest >= 2.0;
+        if is_in_bytes {
+            builder
+                .warn("the colours of vertices are taken as 0 to 255, because some are 2 or more");
+        }
+        let scale = if is_in_bytes { 1.0 } else { 255.0 };
+        let in_bytes = |color: [f32; 3]| color.map(|c| (c * scale + 0.5) as u8);
         for face in &self.faces {
             let corners = &self.corners[begin..face.end];
             begin = face.end;
@@ -219,6 +241,7 @@ impl File {
                 }
             }
             let (material, pictures) = &self.materials[face.material];
+            let mut material = *material;
             // Pictures of materials that no face has are not read.
             let is_textured = *is_textured[face.material].get_or_insert_with(|| {
                 let parts = Parts {
@@ -228,9 +251,15 @@ impl File {
                     wrap: [pictures.place.wrap; 2],
                 };
                 let texture = textures.get(parts, |name| beside.read(name));
-                let texture = texture.map(|texture| builder.set_texture(*material, texture));
+                let texture = texture.map(|texture| builder.set_texture(material, texture));
                 texture.is_some()
             });
+            let is_colored = |corner: &[u32; 3]| self.positions[corner[0] as usize].1.is_some();
+            let is_plain = face.material == 0 && !corners.iter().all(is_colored);
+            if face.material == 0 && !is_plain {
+                material =
+                    *white.get_or_insert_with(|| builder.material(Material::vertex_colors()));
+            }
             let at = |corner: usize| self.positions[corners[corner][0] as usize].0.into();
             for triangle in polygon::triangles(corners.len(), &at) {
                 let triangle = triangle.map(|corner| corners[corner]);
@@ -239,7 +268,7 @@ impl File {
                     if *number == NONE {
                         let (position, color) = self.positions[position as usize];
                         *number = match color {
-                            Some(color) => builder.colored_position(position, color),
+                            Some(color) => builder.colored_position(position, in_bytes(color)),
                             None => builder.position(position),
                         };
                     }
@@ -252,12 +281,24 @@ impl File {
                 let moved =
                     |[u, v]: [f64; 2]| [u * scale[0] + offset[0], 1.0 - (v * scale[1] + offset[1])];
                 let places = places.map(|places| places.map(moved));
-                without += usize::from(face.material == 0);
+                without_uvs += usize::from(is_textured && places.is_none());
+                without += usize::from(is_plain);
                 // In range: the builder gave the numbers.
-                let _ = builder.textured_triangle(positions, normals, *material, places);
+                let _ = builder.textured_triangle(positions, normals, material, places);
             }
         }
         textures.tell(builder);
+        if without_uvs > 0 {
+            builder.warn(format!(
+                "{without_uvs} triangles have a texture, but no texture coordinates"
+            ));
+        }
+        if self.wires > 0 {
+            builder.warn(format!(
+                "{} lines and points (l, p) were passed over",
+                self.wires
+            ));
+        }
         if without > 0 && self.libraries > 0 {
             builder.warn(format!(
                 "{without} triangles have no material that was found; they got the default colour"

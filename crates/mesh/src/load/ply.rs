@@ -1,17 +1,33 @@
 //! PLY meshes.
 //!
 //! Read: `x y z`, `nx ny nz`, `red green blue` of vertices (with `r`, `g`, `b` and `diffuse_*`), `vertex_indices` or
-//! `vertex_index` of faces and of `tristrips`, `red green blue` of faces. Everything else is skipped.
+//! `vertex_index` of faces and of `tristrips`, `red green blue` of faces. Textures as MeshLab writes them: comments
+//! `TextureFile`, `texcoord` and `texnumber` of faces, `texture_u texture_v` of vertices (with `s t` and `u v`).
+//! Everything else is skipped.
 
 use std::collections::HashMap;
 
 use shiftvox::scene::numbers::{Number, Scalar};
 use shiftvox::scene::ply::{PlyFile, Row};
 
-use super::{Fault, Place, Problem, check_corners, polygon};
+use super::texture::{Parts, Textures};
+use super::{Beside, Fault, Place, Problem, check_corners, polygon};
+use crate::texture::{AlphaMode, Wrap};
 use crate::{Material, MeshBuilder};
 
-pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
+/// Of each vertex, or nothing.
+#[derive(Default)]
+struct Vertices {
+    normals: Vec<[f32; 3]>,
+    /// Upwards in the picture, as in the file.
+    uvs: Vec<[f64; 2]>,
+}
+
+pub(super) fn read(
+    mut bytes: &[u8],
+    beside: &dyn Beside,
+    builder: &mut MeshBuilder,
+) -> Result<(), Problem> {
     let mut file = PlyFile::open(&mut bytes)?;
     let elements = file.header.elements.clone();
     let Some(vertices) = file.header.element("vertex") else {
@@ -19,41 +35,76 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
         return Err(Fault::new("header", 0, "an element \"vertex\"", "none", advice).into());
     };
     let positions = vertices.positions(file.offset())?;
-    let (colors, normals_at) = (vertices.colors(), vertices.normals());
-    let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
+    let normals_at = vertices.normals();
+    let uvs_at = vertices.texture_coordinates();
     let default = builder.material(Material::default_color());
-    let white = builder.material(Material::of_srgb("vertex colours", [255; 3]));
+    let white = builder.material(Material::vertex_colors());
+    let has_uvs = uvs_at.is_some() || elements.iter().any(|e| e.list(&["texcoord"]).is_some());
+    let mut textured = textured(&file.header.textures, beside, builder);
+    if !has_uvs && !textured.is_empty() {
+        builder.warn("the texture was passed over: the file has no texture coordinates");
+        textured.clear();
+    }
+    let is_textured = textured.iter().any(Option::is_some);
+    // Scanners write the same colours twice.
+    if is_textured && elements.iter().any(|element| element.colors().is_some()) {
+        builder.warn("colours were passed over: the file has a texture");
+    }
+    let colors = vertices.colors().filter(|_| !is_textured);
+    let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let material = if colors.is_some() { white } else { default };
-    let mut normals: Vec<[f32; 3]> = Vec::new();
+    let mut kept = Vertices::default();
+    let (mut without, mut has_opacities) = (0, false);
     // Materials of faces with colours.
     let mut of_color: HashMap<[u8; 3], u32> = HashMap::new();
     // A second element of this name has other properties.
     let mut is_first = true;
     for element in &elements {
         let corners = element.list(&["vertex_indices", "vertex_index"]);
+        let opacity = element.scalar(&["alpha"]);
+        let is_clear = |row: &Row<'_>, at: usize| {
+            let full = match element.properties[at].scalar {
+                Scalar::F32 | Scalar::F64 => 1.0,
+                Scalar::U16 => 65535.0,
+                _ => 255.0,
+            };
+            row.values[at].real() < full
+        };
         match (&element.name[..], corners) {
-            (b"vertex", _) if std::mem::take(&mut is_first) => file.rows(element, None, |row| {
-                let position = positions.map(|k| row.values[k].real());
-                match colors.zip(is_wide) {
-                    None => builder.position(position),
-                    Some((at, is_wide)) => {
-                        let mut color = [0; 3];
-                        for k in 0..3 {
-                            color[k] = channel("vertex", &row, at[k], is_wide[k])?;
+            (b"vertex", _) if std::mem::take(&mut is_first) => {
+                file.rows(element, [None; 2], |row| {
+                    has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
+                    let position = positions.map(|k| row.values[k].real());
+                    match colors.zip(is_wide) {
+                        None => builder.position(position),
+                        Some((at, is_wide)) => {
+                            let mut color = [0; 3];
+                            for k in 0..3 {
+                                color[k] = channel("vertex", &row, at[k], is_wide[k])?;
+                            }
+                            builder.colored_position(position, color)
                         }
-                        builder.colored_position(position, color)
-                    }
-                };
-                normals.extend(normals_at.map(|at| at.map(|k| row.values[k].real() as f32)));
-                Ok(())
-            })?,
+                    };
+                    let real = |k: usize| row.values[k].real();
+                    kept.normals
+                        .extend(normals_at.map(|at| at.map(|k| real(k) as f32)));
+                    let uvs_at = uvs_at.filter(|_| is_textured);
+                    kept.uvs.extend(uvs_at.map(|at| at.map(real)));
+                    Ok(())
+                })?;
+            }
             (b"face", Some(corners)) => {
-                let face_colors = element.colors().filter(|_| colors.is_none());
+                let face_colors = element
+                    .colors()
+                    .filter(|_| colors.is_none() && !is_textured);
                 if element.colors().is_some() && colors.is_some() {
                     builder.warn("colours of faces were passed over: the vertices have colours");
                 }
-                file.rows(element, Some(corners), |row| {
-                    check_corners(row.list.len(), Place::Byte(row.offset))?;
+                let uvs = element.list(&["texcoord"]).filter(|_| is_textured);
+                let number = element.scalar(&["texnumber"]);
+                file.rows(element, [Some(corners), uvs], |row| {
+                    check_corners(row.lists[0].len(), Place::Byte(row.offset))?;
+                    has_opacities |= opacity.is_some_and(|at| is_clear(&row, at));
                     let mut material = material;
                     if let Some(at) = face_colors {
                         let mut color = [0; 3];
@@ -65,16 +116,53 @@ pub(super) fn read(mut bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Pr
                         let new = || builder.material(Material::of_srgb(name, color));
                         material = *of_color.entry(color).or_insert_with(new);
                     }
-                    add_face(&row, &normals, material, builder)
+                    let number = number.map_or(Some(0), |k| row.values[k].whole());
+                    let number = number.and_then(|number| usize::try_from(number).ok());
+                    if let Some(&Some(textured)) = number.and_then(|n| textured.get(n)) {
+                        let is_mapped =
+                            !kept.uvs.is_empty() || row.lists[1].len() == 2 * row.lists[0].len();
+                        without += u64::from(!is_mapped);
+                        material = if is_mapped { textured } else { material };
+                    }
+                    add_face(&row, &kept, material, builder)
                 })?;
             }
-            (b"tristrips", Some(corners)) => file.rows(element, Some(corners), |row| {
-                add_strips(&row, &normals, material, builder)
+            (b"tristrips", Some(corners)) => file.rows(element, [Some(corners), None], |row| {
+                let material = textured.first().copied().flatten().unwrap_or(material);
+                add_strips(&row, &kept, material, builder)
             })?,
             _ => file.skip(element)?,
         }
     }
+    if has_opacities {
+        builder.warn("opacities of vertices or faces were passed over");
+    }
+    if without > 0 {
+        builder.warn(format!(
+            "{without} faces have a texture, but no texture coordinates"
+        ));
+    }
     Ok(())
+}
+
+/// A material for each picture that can be read.
+fn textured(names: &[String], beside: &dyn Beside, builder: &mut MeshBuilder) -> Vec<Option<u32>> {
+    let mut textures = Textures::default();
+    let material = |name: &String| {
+        let parts = Parts {
+            color: Some(name),
+            opacity: None,
+            mode: AlphaMode::Blend,
+            wrap: [Wrap::Repeat; 2],
+        };
+        let texture = textures.get(parts, |name| beside.read(name))?;
+        let material = builder.material(Material::of_srgb(name, [255; 3]));
+        builder.set_texture(material, texture);
+        Some(material)
+    };
+    let materials = names.iter().map(material).collect();
+    textures.tell(builder);
+    materials
 }
 
 fn channel(kind: &str, row: &Row<'_>, at: usize, is_wide: bool) -> Result<u8, Problem> {
@@ -97,14 +185,17 @@ fn fault(kind: &str, row: &Row<'_>, expected: String, found: Number) -> Problem 
 
 fn add_face(
     row: &Row<'_>,
-    normals: &[[f32; 3]],
+    vertices: &Vertices,
     material: u32,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
-    let corners = corners("face", row, row.list, builder)?;
+    let corners = corners("face", row, row.lists[0], builder)?;
+    let uvs = row.lists[1].as_chunks::<2>().0;
     for triangle in polygon::triangles(corners.len(), &|corner| builder.at(corners[corner])) {
+        let uvs = (uvs.len() == corners.len())
+            .then(|| triangle.map(|corner| uvs[corner].map(Number::real)));
         let triangle = triangle.map(|corner| corners[corner]);
-        add_triangle(triangle, normals, material, builder);
+        add_triangle(triangle, uvs, vertices, material, builder);
     }
     Ok(())
 }
@@ -112,18 +203,18 @@ fn add_face(
 /// Each corner after the second of a strip makes a triangle, whose sides alternate. A corner of -1 ends a strip.
 fn add_strips(
     row: &Row<'_>,
-    normals: &[[f32; 3]],
+    vertices: &Vertices,
     material: u32,
     builder: &mut MeshBuilder,
 ) -> Result<(), Problem> {
-    for strip in row.list.split(|corner| *corner == Number::Whole(-1)) {
+    for strip in row.lists[0].split(|corner| *corner == Number::Whole(-1)) {
         let corners = corners("tristrips", row, strip, builder)?;
         for (n, window) in corners.windows(3).enumerate() {
             let (a, b, c) = (window[0], window[1], window[2]);
             // Equal corners only lead to the next part of a strip.
             if a != b && b != c && a != c {
                 let triangle = if n % 2 == 0 { [a, b, c] } else { [b, a, c] };
-                add_triangle(triangle, normals, material, builder);
+                add_triangle(triangle, None, vertices, material, builder);
             }
         }
     }
@@ -149,11 +240,19 @@ fn corners(
 
 fn add_triangle(
     triangle: [u32; 3],
-    normals: &[[f32; 3]],
+    uvs: Option<[[f64; 2]; 3]>,
+    vertices: &Vertices,
     material: u32,
     builder: &mut MeshBuilder,
 ) {
+    let Vertices {
+        normals,
+        uvs: of_vertices,
+    } = vertices;
     let normal = |i: u32| normals.get(i as usize).copied().unwrap_or_default();
     let given = (!normals.is_empty()).then(|| triangle.map(normal));
-    let _ = builder.triangle(triangle, given, material);
+    let uv = |i: u32| of_vertices.get(i as usize).copied().unwrap_or_default();
+    let uvs = uvs.or_else(|| (!of_vertices.is_empty()).then(|| triangle.map(uv)));
+    let places = uvs.map(|uvs| uvs.map(|[u, v]| [u, 1.0 - v]));
+    let _ = builder.textured_triangle(triangle, given, material, places);
 }

@@ -4,7 +4,6 @@
 //! binary, whatever it begins with. Normals in the file are not used: they are often wrong, and follow from the corners.
 
 use std::collections::HashMap;
-use std::str::SplitWhitespace;
 
 use shiftvox::scene::{is_binary_stl, is_text_stl};
 
@@ -43,7 +42,14 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
     }
     let text = String::from_utf8_lossy(bytes).to_ascii_lowercase();
     let (_, body) = text.trim_start().split_once('\n').unwrap_or_default();
-    let mut words = body.split_whitespace();
+    // The names of solids are not read.
+    let words = body
+        .lines()
+        .map(|line| match line.split_whitespace().next() {
+            Some(word @ ("solid" | "endsolid")) => word,
+            _ => line,
+        });
+    let mut words = words.flat_map(str::split_whitespace);
     for number in 1u64.. {
         match facet(&mut words) {
             Ok(Some(corners)) => add(corners),
@@ -68,12 +74,20 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
 const FACET: &str =
     "facet normal # # # outer loop vertex # # # vertex # # # vertex # # # endloop endfacet";
 
-/// The corners of the next facet, or `None` at the end of the solid. An error is the word that is wrong.
-fn facet<'t>(words: &mut SplitWhitespace<'t>) -> Result<Option<Corners>, Option<&'t str>> {
+/// The corners of the next facet, or `None` at the end of the last solid. An error is the word that is wrong.
+fn facet<'t>(
+    words: &mut impl Iterator<Item = &'t str>,
+) -> Result<Option<Corners>, Option<&'t str>> {
     let mut numbers = Vec::with_capacity(12);
     for (place, expected) in FACET.split(' ').enumerate() {
-        match words.next() {
-            Some("endsolid") if place == 0 => return Ok(None),
+        let mut word = words.next();
+        while place == 0 && word == Some("endsolid") {
+            if !words.any(|word| word == "solid") {
+                return Ok(None);
+            }
+            word = words.next();
+        }
+        match word {
             Some(word) if expected == "#" => {
                 numbers.push(word.parse::<f32>().map_err(|_| Some(word))?);
             }

@@ -24,7 +24,7 @@ struct Picture {
 }
 
 impl Picture {
-    fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
+    fn decode(name: &str, bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
         let (width, height, texels);
         if let Some(size) = png::size(bytes) {
             (width, height) = size;
@@ -51,7 +51,16 @@ impl Picture {
             }
             texels = bytes.as_chunks::<4>().0.to_vec();
         } else {
-            return Err("it is neither PNG nor JPEG".to_owned());
+            let known = OTHERS.iter().find(|(mark, _)| bytes.starts_with(mark));
+            // TGA has no mark.
+            let is_tga = name.to_ascii_lowercase().ends_with(".tga");
+            let format = known.map_or(if is_tga { "TGA" } else { "" }, |(_, format)| format);
+            return Err(match format {
+                "" => "it is neither PNG nor JPEG".to_owned(),
+                _ => format!(
+                    "it is {format}; convert it to PNG, for example with magick, or in glTF with gltf-transform png"
+                ),
+            });
         }
         Ok(Self {
             size: [width as usize, height as usize],
@@ -59,6 +68,17 @@ impl Picture {
         })
     }
 }
+
+/// Pictures that are not read, by their first bytes.
+const OTHERS: [(&[u8], &str); 7] = [
+    (b"BM", "BMP"),
+    (b"II*\0", "TIFF"),
+    (b"MM\0*", "TIFF"),
+    (b"RIFF", "WebP"),
+    (b"GIF8", "GIF"),
+    (b"DDS ", "DDS"),
+    (b"\xabKTX 20", "KTX2"),
+];
 
 fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
     if width == 0 || height == 0 {
@@ -124,7 +144,7 @@ impl Textures {
         }
         let left = MOST_BYTES.saturating_sub(self.bytes);
         let file = read(name).map_err(|error| error.to_string());
-        let picture = file.and_then(|bytes| Picture::decode(&bytes, left));
+        let picture = file.and_then(|bytes| Picture::decode(name, &bytes, left));
         let picture = picture.map_err(|reason| self.failed.push((name.to_owned(), reason)));
         let picture = picture.ok().map(Rc::new);
         self.bytes += picture.as_ref().map_or(0, |p| 4 * p.texels.len() as u64);

@@ -46,8 +46,8 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
     let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.5 2 0\nv 0 1 0\nusemtl red one\n\
         f -5 -4 -3 -2 -1\ng other\nusemtl blue\nf 1/ 2/ 3/\nl 1 2\np 1\nusemtl lost\nf 1 2 5\n\
         usemtl gone\nf 1 2 3\nmtllib none.mtl\n";
-    let mtl = "# c\nKd 1 1 1\nnewmtl red one\n Kd 0.5 0 0\nTr 0.25\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
-        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nnewmtl \u{fc}\n";
+    let mtl = "# c\nKd 1 1 1\nNewMtl red one\n kd 0.5 0 0\nTR 0.25\nKe 0 0 0\nKe 0 2 0\nmap_Ke a.png\nnewmtl blue\nKd 0.5\nKd 0 0 1\nd -halo 0.5\n\
+        map_Kd a.png\nKd spectral x.rfl\nnewmtl gone\nd 0\nmap_Kd -clamp on\nmap_ke a.png\nnewmtl \u{fc}\nKe 0 0 0\n";
     // sRGB 0.5 is 0.214 of the light; linear 0.5 stays.
     for (mtl_colors, red) in [(ColorSpace::Srgb, 0.214), (ColorSpace::Linear, 0.5)] {
         let mesh = obj(text, mtl, mtl_colors);
@@ -60,11 +60,13 @@ fn obj_files_have_materials_polygons_and_negative_indices() {
         assert_eq!((first.alpha, blue.alpha), (0.75, 0.5));
         assert_eq!(blue.diffuse, [0.0, 0.0, 1.0]);
         let warnings = [
-            "a b.mtl: line 11 is not understood",
+            "a b.mtl: line 14 is not understood",
             "a.png cannot be read",
             "none.mtl cannot be read",
             "1 triangles have no material",
             "1 of 6 triangles of a material with opacity 0",
+            "2 lines and points",
+            "a b.mtl: 2 materials emit light",
         ];
         has(mesh.warnings(), &warnings);
     }
@@ -75,6 +77,20 @@ fn obj_files_may_have_coloured_vertices_and_odd_lines() {
     let text = b"# caf\xe9\nv 0 0 0 1 0 0.5\nv 1 0 0 1 1 1\nv 1 1 0 0 0 0\nf 1 2 3\n";
     let mesh = load(text, MeshFormat::Obj).unwrap();
     assert_eq!(mesh.vertex_colors(), [[255, 0, 128], [255; 3], [0; 3]]);
+    // Without a material they are not darkened; a face without colours is grey.
+    let text = "v 0 0 0 1 1 1.01\nv 1 0 0 0 0.5 0\nv 1 1 0 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(materials(&mesh), ["vertex colours", "no material"]);
+    assert_eq!(
+        mesh.materials()[mesh.material_of()[0] as usize].diffuse,
+        [1.0; 3]
+    );
+    assert_eq!(mesh.vertex_colors()[..2], [[255; 3], [0, 128, 0]]);
+    assert_eq!(mesh.warnings(), [""; 0]);
+    let text = "v 0 0 0 200 60.4 10\nv 1 0 0 255 1 0\nv 1 1 0 0 0 0\nf 1 2 3\n";
+    let mesh = load(text.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(mesh.vertex_colors(), [[200, 60, 10], [255, 1, 0], [0; 3]]);
+    has(mesh.warnings(), &["taken as 0 to 255"]);
     // Byte order marks and continued lines.
     let text = "\u{feff}v 0 0 0\nv 1 \\\n0 0\nmtllib a b.mtl\n# C:\\models\\\nusemtl red\nv 0 1 0\n\
         f 1 \\\r\n2 \\\r\n3\r\n";
@@ -134,6 +150,60 @@ fn only_the_folder_of_the_mesh_is_searched() {
     }
     for name in ["../secret.mtl", "..", "", "/"] {
         assert!(beside.read(name).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn text_stl_files_have_several_solids() {
+    let solid = |name: &str, z: u32| {
+        let corner = |x: u32, y: u32| format!("vertex {x} {y} {z}\n");
+        let corners = [corner(0, 0), corner(1, 0), corner(0, 1)].concat();
+        format!(
+            "solid {name}\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid {name}\n"
+        )
+    };
+    let text = ["a", "facet", "solid"].map(|name| solid(name, name.len() as u32));
+    let mesh = load(text.concat().as_bytes(), MeshFormat::Stl).unwrap();
+    let heights: Vec<f32> = soup(&mesh).iter().map(|corners| corners[0][2]).collect();
+    assert_eq!(heights, [1.0, 5.0, 5.0]);
+}
+
+/// Also where all digits of a line are those of whole numbers.
+#[test]
+fn real_colours_of_ply_files_are_shares() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nCOLORS\
+        element face 1\nproperty list uchar int vertex_indices\nOTHERS\
+        end_header\n0 0 0@\n1 0 0@\n0 1 0@\n3 0 1 2#\n";
+    let colors = "property float red\nproperty double green\nproperty float blue\n";
+    let of_vertices = text.replace("COLORS", colors).replace("OTHERS", "");
+    let of_vertices = of_vertices.replace('@', " 1 0.5 0").replace('#', "");
+    let mesh = load(of_vertices.as_bytes(), MeshFormat::Ply).unwrap();
+    assert_eq!(mesh.vertex_colors(), [[255, 128, 0]; 3]);
+    let of_faces = text.replace("COLORS", "").replace("OTHERS", colors);
+    let of_faces = of_faces.replace('@', "").replace('#', " 1 0 1");
+    let mesh = load(of_faces.as_bytes(), MeshFormat::Ply).unwrap();
+    let material = mesh.material_of()[0] as usize;
+    assert_eq!(mesh.materials()[material].diffuse, [1.0, 0.0, 1.0]);
+}
+
+#[test]
+fn opacities_of_ply_files_are_warned_of() {
+    for (alphas, is_warned) in [
+        ("uchar 255 255 254", true),
+        ("uchar 255 255 255", false),
+        ("float 1 1.0 1", false),
+    ] {
+        let words: Vec<&str> = alphas.split(' ').collect();
+        let properties = format!("property {} alpha\n", words[0]);
+        let header = super::shapes::ply_header("ascii", 3, &properties, "int vertex_indices");
+        let [a, b, c] = [words[1], words[2], words[3]];
+        let text = format!("{header}0 0 0 {a}\n1 0 0 {b}\n1 1 0 {c}\n3 0 1 2\n");
+        let mesh = load(text.as_bytes(), MeshFormat::Ply).unwrap();
+        let is_found = mesh.warnings() == ["opacities of vertices or faces were passed over"];
+        assert_eq!(
+            (is_found, mesh.warnings().len()),
+            (is_warned, usize::from(is_warned))
+        );
     }
 }
 

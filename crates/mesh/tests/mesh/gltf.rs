@@ -7,7 +7,7 @@ use shiftvox::graph::Silent;
 use shiftvox_mesh::{LoadOptions, Mesh, MeshFormat, read};
 
 use super::shapes::{CORNERS, data_uri, gltf_json, load, square_buffer, square_json};
-use super::shared::{Files, soup};
+use super::shared::{Files, has, soup};
 
 /// Parts of the square's document with other values, and the corners of all triangles.
 const SCENES: &str = r#"
@@ -125,6 +125,12 @@ fn normals_turn_and_colours_become_srgb() {
             "{found:?}"
         );
     }
+    // The default material of the format is white.
+    let primitive = json["meshes"][0]["primitives"][0].as_object_mut();
+    primitive.unwrap().remove("material");
+    let mesh = mesh_of(&json);
+    let material = mesh.material_of()[0] as usize;
+    assert_eq!(mesh.materials()[material].diffuse, [1.0; 3]);
 }
 
 #[test]
@@ -144,6 +150,38 @@ fn alpha_counts_by_its_mode() {
     let mesh = mesh_of(&json);
     let alphas = mesh.materials().iter().map(|material| material.alpha);
     assert!(alphas.eq([1.0, 1.0, 0.25, 1.0, 0.0, 1.0]));
+}
+
+#[test]
+fn what_is_not_drawn_is_warned_of() {
+    let mut json = square_json();
+    let transmission =
+        |factor: f64| json!({"KHR_materials_transmission": {"transmissionFactor": factor}});
+    json["materials"] = json!([
+        {"alphaMode": "BLEND", "emissiveFactor": [0, 0.1, 0], "extensions": transmission(0.5)},
+        {"emissiveFactor": [0, 0, 0], "extensions": transmission(0.0)},
+        {"emissiveFactor": "odd", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+    ]);
+    assert_eq!(mesh_of(&json).warnings().len(), 2);
+    let primitive = json["meshes"][0]["primitives"][0].clone();
+    let mut primitives = vec![primitive; 2];
+    primitives[0]["attributes"]["COLOR_0"] = 2.into();
+    primitives[1]["material"] = 2.into();
+    json["meshes"][0]["primitives"] = primitives.into();
+    let colors = json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC4"});
+    json["accessors"].as_array_mut().unwrap().push(colors);
+    let mesh = mesh_of(&json);
+    let warnings = [
+        "opacities of vertices were passed over",
+        "1 materials emit light",
+        "1 materials transmit light",
+        "1 primitives have a texture, but no texture coordinates",
+    ];
+    has(mesh.warnings(), &warnings);
+    assert_eq!(mesh.warnings().len(), 4);
+    // All opaque, or of no effect.
+    json["materials"][0]["alphaMode"] = "OPAQUE".into();
+    assert_eq!(mesh_of(&json).warnings().len(), 3);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::{Mesh, Surface};
+use shiftvox_mesh::{Mesh, Surface, srgb_to_linear};
 
 use super::shapes::{data_uri, gltf_json, square_buffer};
 use super::shared::has;
@@ -102,11 +102,105 @@ fn obj_files_have_textures() {
         check(&mesh, 3, fourth, 0.02);
     }
     fs::write(materials.join("a.mtl"), mtl).unwrap();
+    // Other capitals, and a face without coordinates.
+    fs::write(materials.join("a.mtl"), mtl.replace("map_Kd", "MAP_kd")).unwrap();
+    fs::write(
+        at.join("b.obj"),
+        OBJ.replace("a.mtl", "materials/a.mtl") + "f 1 2 3\n",
+    )
+    .unwrap();
+    let mesh = read(&at.join("b.obj"));
+    has(
+        mesh.warnings(),
+        &["1 triangles have a texture, but no texture coordinates"],
+    );
+    check(&mesh, 0, left, 0.02);
     // A warning names an unreadable texture, and the plain colour is kept.
     fs::write(&picture, "no picture").unwrap();
     let mesh = read(&at.join("a.obj"));
     has(mesh.warnings(), &["wood grain.png cannot be read"]);
     check(&mesh, 2, plain, 0.001);
+    for (name, bytes, expected) in [
+        (
+            "a.jpg",
+            "BM",
+            "it is BMP; convert it to PNG, for example with magick",
+        ),
+        ("a.png", "RIFF", "it is WebP"),
+        ("a.TGA", "\0\0\u{2}", "it is TGA"),
+        ("b.tga", "II*\0", "it is TIFF"),
+    ] {
+        fs::write(materials.join(name), bytes).unwrap();
+        let mtl = mtl.replace("pictures/wood grain.png", name);
+        fs::write(materials.join("a.mtl"), mtl).unwrap();
+        has(read(&at.join("a.obj")).warnings(), &[expected]);
+    }
+}
+
+/// Of four triangles, each in a half of one of two pictures; of the last the number is wrong.
+const PLY: &str = "ply\nformat ascii 1.0\ncomment TextureFile a picture.png\ncomment TextureFile b.png\nelement vertex 3\n\
+    property float x\nproperty float y\nproperty float z\nVERTEX\
+    element face 4\nproperty list uchar int vertex_indices\nFACE\
+    end_header\n0 0 0@\n1 0 0@\n1 1 0@\n3 0 1 2#0\n3 0 1 2#1\n3 0 1 2#0\n3 0 1 2#2\n";
+
+#[test]
+fn ply_files_have_textures() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ply");
+    for (name, right) in [("a picture.png", [0, 255, 0]), ("b.png", [0, 0, 255])] {
+        let picture = halves([255, 0, 0], right, ImageFormat::Png);
+        fs::write(folder.path().join(name), picture).unwrap();
+    }
+    let grey = [srgb_to_linear(200); 3].map(f64::from);
+    let colors = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], grey];
+    let lists = "property list uchar float texcoord\nproperty int texnumber\n";
+    let of_faces = PLY.replace("VERTEX", "").replace("FACE", lists);
+    let of_faces = of_faces
+        .replace('@', "")
+        .replace('#', " 6 0.6 0.95 0.9 0.95 0.9 0.6 ");
+    let read_as = |text: &str| {
+        fs::write(&path, text).unwrap();
+        read(&path)
+    };
+    let mesh = read_as(&of_faces);
+    assert_eq!(mesh.warnings(), [""; 0]);
+    for (triangle, color) in colors.into_iter().enumerate() {
+        check(&mesh, triangle, color, 0.001);
+    }
+    for names in ["texture_u texture_v", "s t", "u v"] {
+        let properties = format!(
+            "property float {}\n",
+            names.replace(' ', "\nproperty float ")
+        );
+        let properties =
+            properties + "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+        let text = PLY
+            .replace("VERTEX", &properties)
+            .replace("FACE", "property int texnumber\n");
+        let text = text
+            .replacen('@', " 0.6 0.95 9 9 9", 1)
+            .replacen('@', " 0.9 0.95 9 9 9", 1);
+        let text = text.replace('@', " 0.9 0.6 9 9 9").replace('#', " ");
+        let mesh = read_as(&text);
+        has(mesh.warnings(), &["colours were passed over"]);
+        for (triangle, color) in colors.into_iter().enumerate() {
+            check(&mesh, triangle, color, 0.001);
+        }
+        // Without the pictures the vertices have their colours.
+        let mesh = read_as(&text.replace("TextureFile ", "TextureFile none"));
+        has(
+            mesh.warnings(),
+            &["nonea picture.png cannot be read", "noneb.png"],
+        );
+        assert_eq!(mesh.vertex_colors(), [[9; 3]; 3]);
+    }
+    let mesh = read_as(&of_faces.replacen(" 6 0.6 0.95 0.9 0.95 0.9 0.6 ", " 0 ", 1));
+    has(
+        mesh.warnings(),
+        &["1 faces have a texture, but no texture coordinates"],
+    );
+    let mesh = read_as(&of_faces.replace("texcoord", "other"));
+    has(mesh.warnings(), &["the texture was passed over"]);
 }
 
 #[test]
@@ -188,6 +282,9 @@ fn gltf_files_have_textures() {
     json["extensionsRequired"] = json!(["EXT_texture_webp"]);
     fs::write(&path, json.to_string()).unwrap();
     let mesh = read(&path);
-    has(mesh.warnings(), &["it has no PNG or JPEG picture"]);
+    has(
+        mesh.warnings(),
+        &["PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png"],
+    );
     check(&mesh, 0, plain, 0.001);
 }

@@ -59,8 +59,9 @@ impl<'b> Numbers<'b> {
             let size = size(component)?;
             let view = view.and_then(|v| document.buffer_views.get(v));
             let content = view.and_then(|view| Some((view, view_bytes(view, buffers)?)));
-            let (view, content) =
-                content.ok_or_else(|| wrong("a buffer view within its buffer", "none"))?;
+            let (view, content) = content.ok_or_else(|| {
+                document.no_data("accessor", number, "a buffer view within its buffer")
+            })?;
             let element = (width * size) as u64;
             let stride = view.byte_stride.unwrap_or(element);
             if stride < element {
@@ -159,6 +160,11 @@ impl<'b> Numbers<'b> {
             true => (value / full).max(-1.0),
             false => value,
         }
+    }
+
+    /// Whether an element has a number `k`.
+    pub(super) fn has(&self, k: usize) -> bool {
+        k < self.layout.width
     }
 
     pub(super) fn point(&self, element: usize) -> DVec3 {

@@ -5,7 +5,9 @@ use std::fmt;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, Visitor};
+use serde_json::Value;
 
+use super::{broken, fault_of};
 use crate::load::{Fault, Place, Problem};
 
 /// Extensions that a file may require and that change nothing that is read here.
@@ -20,6 +22,8 @@ const HARMLESS: [&str; 8] = [
     "MSFT_texture_dds",
     "EXT_mesh_gpu_instancing",
 ];
+
+const UNPACK: &str = "unpack it: gltf-transform cp IN OUT";
 
 const COMPRESSED: [&str; 3] = [
     "KHR_draco_mesh_compression",
@@ -43,6 +47,7 @@ pub(super) struct Document {
     pub(super) buffer_views: Vec<BufferView>,
     pub(super) buffers: Vec<Buffer>,
     extensions_required: Vec<String>,
+    extensions_used: Vec<String>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -109,6 +114,7 @@ pub(super) struct Material {
     extensions: MaterialExtensions,
     pub(super) alpha_mode: Option<String>,
     pub(super) alpha_cutoff: Option<f32>,
+    emissive_factor: Value,
 }
 
 impl Material {
@@ -117,6 +123,15 @@ impl Material {
         let older = self.extensions.specular_glossiness.as_ref();
         older.unwrap_or(&self.pbr_metallic_roughness)
     }
+
+    pub(super) fn emits_light(&self) -> bool {
+        let mut factor = self.emissive_factor.as_array().into_iter().flatten();
+        factor.any(|factor| factor.as_f64() > Some(0.0))
+    }
+
+    pub(super) fn transmits_light(&self) -> bool {
+        self.extensions.transmission["transmissionFactor"].as_f64() > Some(0.0)
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -124,6 +139,8 @@ impl Material {
 struct MaterialExtensions {
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     specular_glossiness: Option<Pbr>,
+    #[serde(rename = "KHR_materials_transmission")]
+    transmission: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -165,6 +182,7 @@ pub(super) struct TextureTransform {
 pub(super) struct Texture {
     pub(super) source: Option<usize>,
     pub(super) sampler: Option<usize>,
+    pub(super) extensions: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -239,7 +257,7 @@ impl Document {
         } else if let Some(unknown) = extensions.iter().find(|name| !is_known(name)) {
             let expected = "no extension that has to be understood";
             let advice = match COMPRESSED.contains(&unknown.as_str()) {
-                true => "unpack it: gltf-transform cp IN OUT",
+                true => UNPACK,
                 false => "export without it",
             };
             ("extensionsRequired", expected, unknown, advice)
@@ -247,6 +265,15 @@ impl Document {
             return Ok(());
         };
         Err(Fault::new(part, Place::Whole, expected, found.clone(), advice).into())
+    }
+
+    /// The error where a part has no data. That of compressed meshes is elsewhere.
+    pub(super) fn no_data(&self, part: &str, number: usize, expected: &str) -> Problem {
+        let mut used = self.extensions_used.iter();
+        match used.find(|name| COMPRESSED.contains(&name.as_str())) {
+            Some(name) => fault_of(part, number, expected, &format!("that of {name}"), UNPACK),
+            None => broken(part, number, expected, "none"),
+        }
     }
 }
 

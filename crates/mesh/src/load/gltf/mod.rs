@@ -122,7 +122,7 @@ impl Buffers {
                     total += binary.len();
                     Rc::new(binary.to_vec())
                 }
-                (None, None, _) => return Err(broken("buffer", number, "content", "none")),
+                (None, None, _) => return Err(document.no_data("buffer", number, "content")),
                 (None, Some(_), _) => {
                     let bytes = fetch(uri, number, beside)?;
                     total += bytes.len();

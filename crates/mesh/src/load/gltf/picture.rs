@@ -64,7 +64,13 @@ pub(super) fn find(
     };
     textures.get(parts, |_| {
         let missing = |what: &str| io::Error::new(ErrorKind::NotFound, what.to_owned());
-        let image = image.ok_or_else(|| missing("it has no PNG or JPEG picture"))?;
+        let image = image.ok_or_else(|| {
+            let other = found.and_then(|texture| texture.extensions.as_object()?.keys().next());
+            let other = other.map_or(String::new(), |name| {
+                format!(", but that of {name}; convert it with gltf-transform png")
+            });
+            missing(&format!("it has no PNG or JPEG picture{other}"))
+        })?;
         match (&file, uri) {
             (Some(file), _) => beside.read(file),
             (None, Some(uri)) => decoded(uri).ok_or_else(|| missing("its data is not in base64")),

@@ -35,7 +35,11 @@ pub(super) struct Reader<'d> {
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
+    without_uvs: u64,
+    has_opacities: bool,
     textures: Textures,
+    /// The material of primitives without one that have colours.
+    white: Option<u32>,
 }
 
 impl<'d> Reader<'d> {
@@ -54,7 +58,10 @@ impl<'d> Reader<'d> {
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
+            without_uvs: 0,
+            has_opacities: false,
             textures: Textures::default(),
+            white: None,
         }
     }
 
@@ -77,7 +84,26 @@ impl<'d> Reader<'d> {
             }
         }
         self.textures.tell(builder);
+        let count = |is_meant: fn(&FileMaterial) -> bool| {
+            let materials = self.document.materials.iter();
+            materials.filter(|material| is_meant(material)).count() as u64
+        };
+        if self.has_opacities {
+            builder.warn("opacities of vertices were passed over");
+        }
         for (count, what) in [
+            (
+                count(FileMaterial::emits_light),
+                "materials emit light, which is not drawn",
+            ),
+            (
+                count(FileMaterial::transmits_light),
+                "materials transmit light (KHR_materials_transmission), which is not drawn",
+            ),
+            (
+                self.without_uvs,
+                "primitives have a texture, but no texture coordinates",
+            ),
             (
                 self.skipped_modes,
                 "primitives of points or lines were passed over",
@@ -247,6 +273,7 @@ impl<'d> Reader<'d> {
             .and_then(|t| t.tex_coord)
             .unwrap_or(info.tex_coord);
         let Some(uvs) = self.attribute(primitive, &format!("TEXCOORD_{set}"))? else {
+            self.without_uvs += 1;
             return Ok(None);
         };
         let (buffers, beside) = (self.buffers, self.beside);
@@ -287,6 +314,14 @@ impl<'d> Reader<'d> {
         self.morphed += u64::from(!primitive.targets.is_empty());
         let normals = self.attribute(primitive, "NORMAL")?;
         let colors = self.attribute(primitive, "COLOR_0")?;
+        let blended = primitive
+            .material
+            .and_then(|m| self.document.materials.get(m));
+        let blended = blended.filter(|&material| alpha_mode(material) != AlphaMode::Opaque);
+        if let (Some(_), Some(colors)) = (blended, &colors) {
+            let mut vertices = 0..colors.count.min(positions.count);
+            self.has_opacities |= colors.has(3) && vertices.any(|at| colors.real(at, 3) < 1.0);
+        }
         let base = builder.positions() as u32;
         for at in 0..positions.count {
             let world = placed.transform_point3(positions.point(at)).to_array();
@@ -301,9 +336,14 @@ impl<'d> Reader<'d> {
         let turn = placed.inverse().transpose();
         let mirrored = placed.determinant() < 0.0;
         // The first material is the one of triangles without.
-        let material = primitive
-            .material
-            .map_or(0, |m| (m as u32).saturating_add(1));
+        let material = match (primitive.material, &colors) {
+            (Some(material), _) => (material as u32).saturating_add(1),
+            (None, None) => 0,
+            (None, Some(_)) => {
+                let new = || builder.material(Material::vertex_colors());
+                *self.white.get_or_insert_with(new)
+            }
+        };
         let places = self.places(primitive, material, builder)?;
         for number in 0..triangles {
             let mut at = match mode {
