@@ -9,7 +9,7 @@ pub(crate) mod stored;
 
 use std::ops::{Add, Mul};
 
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -52,6 +52,9 @@ struct Level {
     /// sRGB and opacity, row by row from the top.
     texels: Vec<[u8; 4]>,
 }
+
+/// Most squares read for one parallelogram.
+const MOST_SQUARES: f64 = 16.0;
 
 /// Reading between four texels, each the mean of a square, spreads as far as a square of this side.
 const SPREAD: f64 = 1.732_050_807_568_877_2;
@@ -115,48 +118,134 @@ impl Texture {
         })
     }
 
-    /// Colour, linear light, and opacity around a place: across from the left and down from the top, in sizes of the
-    /// picture. They are the mean of a square of so many texels a side.
-    pub(crate) fn at(&self, place: [f64; 2], side: f64) -> (DVec3, f64) {
-        let read = self.read(place, side, weighted);
-        if read.w <= 0.0 {
+    /// Colour, linear light, and opacity of a parallelogram around a place: across from the left and down from the top, in
+    /// sizes of the picture.
+    pub(crate) fn at(&self, place: [f64; 2], image: Image) -> (DVec3, f64) {
+        let mean = self.mean(place, image, weighted);
+        if mean.w <= 0.0 {
             return (DVec3::ONE, 0.0);
         }
-        (read.truncate() / read.w, self.opacity_of(read.w, side))
+        (mean.truncate() / mean.w, mean.w.min(1.0))
     }
 
-    /// The opacity of [`Texture::at`], to the bit.
-    fn opacity(&self, place: [f64; 2], side: f64) -> f64 {
-        let read = self.read(place, side, |texel| f64::from(texel[3]) / 255.0);
-        self.opacity_of(read, side)
+    /// The opacity of [`Texture::at`].
+    pub(crate) fn opacity(&self, place: [f64; 2], image: Image) -> f64 {
+        self.mean(place, image, opacity).min(1.0)
     }
 
-    fn opacity_of(&self, read: f64, side: f64) -> f64 {
-        let opacity = read.min(1.0);
-        match self.is_mask && side < 1.0 {
-            // The edge of a hole is half way between texels, and as wide as the sample.
-            true => (0.5 + (opacity - 0.5) / side.max(1e-9)).clamp(0.0, 1.0),
-            false => opacity,
-        }
-    }
-
-    fn read<V: Mean>(&self, place: [f64; 2], side: f64, of: impl Fn([u8; 4]) -> V + Copy) -> V {
-        if side <= SPREAD {
+    /// An image that is longer than wide is read as a row of squares of its width, with the same variances.
+    fn mean<V: Mean>(&self, place: [f64; 2], image: Image, of: impl Fn([u8; 4]) -> V + Copy) -> V {
+        let Image {
+            across,
+            product,
+            down,
+        } = image;
+        if across + down <= SPREAD * SPREAD && !self.is_mask {
             return self.levels[0].at(place, self.wrap, of);
+        }
+        let half = (across - down) / 2.0;
+        let swing = (half * half + product * product).sqrt();
+        let length = ((across + down) / 2.0 + swing).sqrt();
+        let area = (across * down - product * product).max(0.0).sqrt();
+        let width = (area / length).max(length / MOST_SQUARES);
+        let count = (length / width.max(SPREAD)).round();
+        if !(2.0..=MOST_SQUARES).contains(&count) {
+            // Where the eye is in the triangle's plane, numbers are infinite, or none.
+            let side = match length.is_finite() {
+                true => area.sqrt(),
+                false => length,
+            };
+            return self.sharp(self.read(place, self.level(side), of), side);
+        }
+        let variance = length.powi(2) - width.max(SPREAD).powi(2);
+        let along = match half >= 0.0 {
+            true => DVec2::new(half + swing, product),
+            false => DVec2::new(product, swing - half),
+        };
+        let along = along.normalize() * (variance / (count * count - 1.0)).sqrt();
+        let (finer, rest) = self.level(width);
+        let square = |number: u32| {
+            let number = f64::from(number);
+            let place = [0, 1].map(|k| {
+                let steps = number - (count - 1.0) / 2.0;
+                place[k] + along[k] * steps / self.size()[k]
+            });
+            // Each reads one copy, as many of them the coarser one as its share.
+            let coarser = [number + 1.0, number].map(|n| (n * rest + 0.5) as usize);
+            let level = finer + coarser[0] - coarser[1];
+            self.sharp(self.levels[level].at(place, self.wrap, of), width)
+        };
+        let first = square(0);
+        (1..count as u32).fold(first, |sum, number| sum + square(number)) * (1.0 / count)
+    }
+
+    /// The edge of a hole is half way between texels, and as wide as the sample.
+    fn sharp<V: Mean>(&self, read: V, side: f64) -> V {
+        let opacity = read.opacity();
+        if !self.is_mask || side >= 1.0 || opacity <= 0.0 {
+            return read;
+        }
+        let sharp = 0.5 + (opacity - 0.5) / side.max(1e-9);
+        read * (sharp.clamp(0.0, 1.0) / opacity)
+    }
+
+    /// Number of a copy, and the share of the next.
+    fn level(&self, side: f64) -> (usize, f64) {
+        if side <= SPREAD {
+            return (0, 0.0);
         }
         let coarsest = (self.levels.len() - 1) as f64;
         let level = libm::log2(side / SPREAD).min(coarsest);
-        let (finer, rest) = (level as usize, level.fract());
-        let read = self.levels[finer].at(place, self.wrap, of) * (1.0 - rest);
-        match self.levels.get(finer + 1) {
-            Some(coarser) => read + coarser.at(place, self.wrap, of) * rest,
+        (level as usize, level.fract())
+    }
+
+    fn read<V: Mean>(
+        &self,
+        place: [f64; 2],
+        (finer, rest): (usize, f64),
+        of: impl Fn([u8; 4]) -> V + Copy,
+    ) -> V {
+        let read = self.levels[finer].at(place, self.wrap, of);
+        match self.levels.get(finer + 1).filter(|_| rest > 0.0) {
+            Some(coarser) => read * (1.0 - rest) + coarser.at(place, self.wrap, of) * rest,
             None => read,
         }
     }
 }
 
-trait Mean: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
-impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Mean for T {}
+/// A square's image in a texture, in texels: squares and product of the rows of its matrix.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Image {
+    across: f64,
+    product: f64,
+    down: f64,
+}
+
+impl Image {
+    pub(crate) fn by([u, v]: [DVec3; 2]) -> Self {
+        Self {
+            across: u.length_squared(),
+            product: u.dot(v),
+            down: v.length_squared(),
+        }
+    }
+}
+
+trait Mean: Copy + Add<Output = Self> + Mul<f64, Output = Self> {
+    fn opacity(self) -> f64;
+}
+
+impl Mean for f64 {
+    fn opacity(self) -> f64 {
+        self
+    }
+}
+
+impl Mean for DVec4 {
+    fn opacity(self) -> f64 {
+        self.w
+    }
+}
 
 impl Level {
     /// The mean of a value of the four nearest texels, by their distances.
@@ -164,23 +253,24 @@ impl Level {
         let near = [0, 1].map(|k| {
             let size = self.size[k];
             let (inside, [before, after]) = match wrap[k] {
-                Wrap::Repeat => (place[k] - place[k].floor(), [size - 1, 0]),
+                Wrap::Repeat => ((place[k] - floor(place[k])).min(1.0), [size - 1, 0]),
                 Wrap::Mirror => {
-                    let turn = place[k] - 2.0 * (place[k] / 2.0).floor();
-                    (1.0 - (turn - 1.0).abs(), [0, size - 1])
+                    let turn = place[k] - 2.0 * floor(place[k] / 2.0);
+                    ((1.0 - (turn - 1.0).abs()).max(0.0), [0, size - 1])
                 }
                 Wrap::Clamp => (place[k].clamp(0.0, 1.0), [0, size - 1]),
             };
             // The middle of the first texel is at 0; from -1/2 to size - 1/2.
             let at = inside * size as f64 - 0.5;
-            let low = at.floor();
-            let first = if low < 0.0 {
+            let low = if at < 0.0 { -1 } else { at as i32 };
+            let first = if low < 0 {
                 before
             } else {
                 (low as usize).min(size - 1)
             };
-            let next = if low < 0.0 { 0 } else { first + 1 };
-            ([first, if next < size { next } else { after }], at - low)
+            let next = if low < 0 { 0 } else { first + 1 };
+            let share = at - f64::from(low);
+            ([first, if next < size { next } else { after }], share)
         });
         let [(columns, right), (rows, down)] = near;
         let between = |[a, b]: [V; 2], share: f64| a * (1.0 - share) + b * share;
@@ -222,8 +312,18 @@ impl Level {
     }
 }
 
+/// Without a call, for numbers below 2^63.
+fn floor(number: f64) -> f64 {
+    let whole = number as i64 as f64;
+    if whole > number { whole - 1.0 } else { whole }
+}
+
+fn opacity([.., alpha]: [u8; 4]) -> f64 {
+    f64::from(alpha) / 255.0
+}
+
 fn weighted([r, g, b, alpha]: [u8; 4]) -> DVec4 {
-    let opacity = f64::from(alpha) / 255.0;
+    let opacity = opacity([r, g, b, alpha]);
     (to_light([r, g, b]) * opacity).extend(opacity)
 }
 
@@ -237,16 +337,30 @@ pub struct Sampler<'t> {
 impl Sampler<'_> {
     /// Colour and opacity at shares of the corners, the mean of a square of that side, in the corners' units.
     pub(crate) fn at(&self, corners: &[DVec3; 3], shares: [f64; 3], side: f64) -> (DVec3, f64) {
-        let side = side * self.texels_per_unit(corners);
-        self.texture.at(self.place(shares), side)
+        let rows = self.texels_along(corners).map(|along| along * side);
+        self.texture.at(self.place(shares), Image::by(rows))
+    }
+
+    /// Texels to the right and down in the texture, per unit along the triangle.
+    pub(crate) fn texels_along(&self, corners: &[DVec3; 3]) -> [DVec3; 2] {
+        let (to_b, to_c) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let normal = to_b.cross(to_c);
+        let normal = normal / normal.length_squared().max(f64::MIN_POSITIVE);
+        let [of_b, of_c] = [to_c.cross(normal), normal.cross(to_b)];
+        [0, 1].map(|k| {
+            let [a, b, c] = self.places.map(|place| f64::from(place[k]));
+            (of_b * (b - a) + of_c * (c - a)) * self.texture.size()[k]
+        })
     }
 
     /// The opacity alone, of a square of so many texels a side.
     pub(crate) fn opacity(&self, shares: [f64; 3], texels: f64) -> f64 {
-        self.texture.opacity(self.place(shares), texels)
+        let (texture, place) = (self.texture, self.place(shares));
+        let read = texture.read(place, texture.level(texels), opacity);
+        texture.sharp(read, texels).min(1.0)
     }
 
-    fn place(&self, shares: [f64; 3]) -> [f64; 2] {
+    pub(crate) fn place(&self, shares: [f64; 3]) -> [f64; 2] {
         let [a, b, c] = self.places.map(|place| place.map(f64::from));
         [0, 1].map(|k| a[k] * shares[0] + b[k] * shares[1] + c[k] * shares[2])
     }

@@ -3,6 +3,7 @@
 //! A triangle that lets light through at a sample is a layer, and not in the depth buffer. Layers are sorted, and blended
 //! from the front to the back, when all triangles are known.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use glam::DVec3;
@@ -11,11 +12,10 @@ use super::bins::{BIN, Bins};
 use super::clip::Outline;
 use super::edges::{Cover, Edges};
 use super::samples::{Places, SUBPIXELS};
-use super::shade::{Nearness, Paint, light_of, point_seen};
+use super::shade::{Nearness, Paint, Seen, Side, light_of, point_seen};
 use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
-use crate::geometry::barycentric;
+use crate::Surface;
 use crate::material::{to_light, to_srgb};
-use crate::{Surface, Triangle};
 
 #[derive(Debug, Clone, Copy)]
 struct Pixel {
@@ -40,10 +40,14 @@ struct Buffer<'b> {
     places: Places,
     /// One over the depth of the nearest triangle so far; 0 where there is none.
     nearness: Vec<f64>,
+    /// Whether that triangle faces the eye.
+    faces_eye: Vec<bool>,
     triangle: Vec<u32>,
     layers: Vec<Layer>,
     /// Of a sample, in pixels.
     width: f64,
+    /// See [`rounding`].
+    rounding: f64,
 }
 
 /// A triangle that lets light through at a sample.
@@ -52,11 +56,17 @@ struct Layer {
     sample: u32,
     triangle: u32,
     nearness: f64,
+    side: Side,
     opacity: f64,
 }
 
-/// Of layers at one depth, to this share of it, the first counts, as of opaque triangles: leaves may have two sides.
-const SAME: f64 = 1.0 - 1e-9;
+/// A distance within which points are the same. Files round coordinates to single precision, `.far` from the middle of
+/// the box and `.tvx` from the origin. That moves a point by at most 2^-24 of its distance, and two points apart by 2^-23.
+/// Twice this is to spare. Coordinates far from the origin get less, because true layers would be hidden.
+fn rounding((low, high): (DVec3, DVec3)) -> f64 {
+    let farthest = low.abs().max(high.abs()).length();
+    (farthest / f64::from(1 << 22)).min((high - low).length() / f64::from(1 << 19))
+}
 
 impl Bin {
     pub(super) fn draw<S: Surface + ?Sized>(
@@ -79,9 +89,11 @@ impl Bin {
             rows,
             places: Places::new(&options.samples, corner, columns, rows),
             nearness: vec![0.0; samples],
+            faces_eye: vec![true; samples],
             triangle: vec![NO_TRIANGLE; samples],
             layers: Vec::new(),
             width: 1.0 / (options.samples.per_pixel() as f64).sqrt(),
+            rounding: rounding(surface.bounds()),
         };
         if let Some(depths) = depths {
             let per_pixel = options.samples.per_pixel();
@@ -121,7 +133,7 @@ impl Buffer<'_> {
         let Some(outline) = Outline::of(self.view, &corners) else {
             return;
         };
-        let nearness = Nearness::of(self.view, &corners);
+        let nearness = Nearness::of(self.view, &corners, self.rounding);
         let [low, high] = outline.pixels();
         let points = outline.points();
         for pair in points[1..].windows(2) {
@@ -142,7 +154,7 @@ impl Buffer<'_> {
     ) {
         let is_textured = surface.is_textured(number as usize);
         let is_opaque = surface.is_opaque(number as usize);
-        let clear = (!is_opaque).then(|| surface.triangle(number as usize));
+        let clear = (!is_opaque).then(|| Seen::of(self.view, surface.triangle(number as usize)));
         let corner = self.corner.map(i64::from);
         let size = [self.columns, self.rows].map(i64::from);
         let begin = [0, 1].map(|k| low[k].max(corner[k]));
@@ -165,7 +177,13 @@ impl Buffer<'_> {
                     let [sample_x, sample_y] =
                         [x * SUBPIXELS + place[0], y * SUBPIXELS + place[1]].map(|c| c as f64);
                     let near = nearness.at(sample_x, sample_y);
-                    if near > self.nearness[at + sample] {
+                    let order = self.order(at + sample, near, nearness.side);
+                    // Glass at the depth of an opaque triangle lies on it.
+                    let is_seen = match is_opaque {
+                        true => order == Ordering::Greater,
+                        false => order != Ordering::Less,
+                    };
+                    if is_seen {
                         if is_textured {
                             let point = point_seen(self.view, sample_x, sample_y, 1.0 / near);
                             if surface.texture(number as usize, point).is_none() {
@@ -174,18 +192,25 @@ impl Buffer<'_> {
                         }
                         if let Some(triangle) = &clear {
                             let point = point_seen(self.view, sample_x, sample_y, 1.0 / near);
-                            let opacity = self.opacity(triangle, point, 1.0 / near);
+                            let shares = triangle.shares(point);
+                            let side = self.width / (near * self.view.focal_px);
+                            let opacity = triangle.opacity(shares, side);
                             if opacity < 1.0 {
                                 self.layers.extend((opacity > 0.0).then_some(Layer {
                                     sample: (at + sample) as u32,
                                     triangle: number,
                                     nearness: near,
+                                    side: nearness.side,
                                     opacity,
                                 }));
                                 continue;
                             }
                         }
+                        if order == Ordering::Equal {
+                            continue;
+                        }
                         self.nearness[at + sample] = near;
+                        self.faces_eye[at + sample] = nearness.side.faces_eye;
                         self.triangle[at + sample] = number;
                     }
                 }
@@ -193,14 +218,24 @@ impl Buffer<'_> {
         }
     }
 
-    fn opacity(&self, triangle: &Triangle<'_>, point: DVec3, depth: f64) -> f64 {
-        let side = depth * self.width / self.view.focal_px;
-        triangle.at(barycentric(&triangle.corners, point), side).1
+    /// Compares something with the opaque triangle of a sample so far: greater counts before it. At one depth a triangle
+    /// that faces the eye counts before one that turns its back. Triangles come in the order of their numbers, and so what
+    /// counts is never farther behind the nearest than by twice the slack.
+    #[inline]
+    fn order(&self, at: usize, nearness: f64, side: Side) -> Ordering {
+        let known = self.nearness[at];
+        if nearness > known * (1.0 + side.slack) {
+            Ordering::Greater
+        } else if nearness < known * (1.0 - side.slack) {
+            Ordering::Less
+        } else {
+            side.faces_eye.cmp(&self.faces_eye[at])
+        }
     }
 
     fn resolve<S: Surface + ?Sized>(mut self, surface: &S) -> Vec<Pixel> {
         let mut layers = std::mem::take(&mut self.layers);
-        layers.retain(|layer| layer.nearness > self.nearness[layer.sample as usize]);
+        layers.retain(|l| self.order(l.sample as usize, l.nearness, l.side) != Ordering::Less);
         layers.sort_unstable_by(|a, b| {
             let nearest_first = b.nearness.total_cmp(&a.nearness);
             let order = a.sample.cmp(&b.sample).then(nearest_first);
@@ -221,17 +256,19 @@ impl Buffer<'_> {
             let mut seen = 0.0;
             for at in i * per_pixel..(i + 1) * per_pixel {
                 let mut passing = 1.0;
-                let mut before = f64::INFINITY;
-                for layer in layers
+                let mut behind = layers
                     .next_if(|l| l[0].sample as usize == at)
-                    .unwrap_or(&[])
-                {
-                    if layer.nearness < before * SAME {
-                        before = layer.nearness;
-                        let light = paints.light(layer.triangle, at, layer.nearness);
-                        sum += light * (passing * layer.opacity);
-                        passing *= 1.0 - layer.opacity;
-                    }
+                    .unwrap_or(&[]);
+                while let Some(nearest) = behind.first() {
+                    let is_same = |l: &Layer| l.nearness >= nearest.nearness * (1.0 - l.side.slack);
+                    let count = behind.iter().take_while(|l| is_same(l)).count();
+                    let (same, rest) = behind.split_at(count);
+                    let layer = same.iter().min_by_key(|l| (!l.side.faces_eye, l.triangle));
+                    let layer = layer.unwrap_or(nearest);
+                    let light = paints.light(layer.triangle, at, layer.nearness);
+                    sum += light * (passing * layer.opacity);
+                    passing *= 1.0 - layer.opacity;
+                    behind = rest;
                 }
                 let number = self.triangle[at];
                 if number != NO_TRIANGLE {

@@ -122,8 +122,8 @@ pub struct RasterPicture {
     pub triangle: Vec<u32>,
 }
 
-/// Draws a surface. Both sides of a triangle are drawn; of triangles at the
-/// same depth the first counts.
+/// Draws a surface. Both sides of a triangle are drawn. Of triangles at the same depth the first that faces the eye
+/// counts, or else the first.
 ///
 /// # Errors
 /// See [`RasterError`].

@@ -1,11 +1,12 @@
 //! Depth and colour of a sample, from the triangle's plane.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::RasterCamera;
 use super::samples::SUBPIXELS;
-use crate::Triangle;
 use crate::geometry::{barycentric, blend, plane_normal};
+use crate::texture::Image;
+use crate::{Sampler, Triangle};
 
 /// Lambert's law under one distant light, over an ambient floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,10 +36,25 @@ pub(super) struct Nearness {
     down: f64,
     low: f64,
     high: f64,
+    pub(super) side: Side,
 }
 
+/// The side that a triangle shows, and its depths that are the same.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    /// Its corners are seen counter-clockwise.
+    pub(super) faces_eye: bool,
+    /// Depths that differ by this share are the same.
+    pub(super) slack: f64,
+}
+
+/// Most slack, of planes that go nearly through the eye.
+const MOST_SLACK: f64 = 1.0 / 65536.0;
+
 impl Nearness {
-    pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
+    /// Points within `rounding` are the same. A plane that moves by it changes its depths by the share that this is of
+    /// its distance from the eye.
+    pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3], rounding: f64) -> Self {
         let [a, b, c] = corners.map(|corner| view.seen(corner));
         let nearest = a.z.min(b.z).min(c.z).max(view.near);
         let farthest = a.z.max(b.z).max(c.z).max(view.near);
@@ -54,6 +70,11 @@ impl Nearness {
             down: y,
             low: 1.0 / farthest,
             high: 1.0 / nearest,
+            side: Side {
+                // Right, up and forward are left-handed axes.
+                faces_eye: offset > 0.0,
+                slack: (rounding * normal.length() / offset.abs()).min(MOST_SLACK),
+            },
         }
     }
 
@@ -76,6 +97,70 @@ pub(super) fn point_seen(view: &RasterCamera, x: f64, y: f64, depth: f64) -> DVe
     view.eye + view.forward * depth + view.right * (across * scale) + view.up * (upwards * scale)
 }
 
+/// A triangle and what samples see of its texture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<'s> {
+    triangle: Triangle<'s>,
+    /// Of the texture's two axes. In a plane through the eye, across the view axis, a sample's sides are so many texels.
+    texels: [DVec2; 2],
+    /// By so much of each texel off the eye's place, they turn to the triangle's plane.
+    tilt: DVec2,
+    eye: [f64; 2],
+}
+
+impl<'s> Seen<'s> {
+    pub(super) fn of(view: &RasterCamera, triangle: Triangle<'s>) -> Self {
+        let mut seen = Self {
+            triangle,
+            texels: [DVec2::ZERO; 2],
+            tilt: DVec2::ZERO,
+            eye: [0.0; 2],
+        };
+        if let Some(sampler) = &triangle.sampler {
+            let [a, b, c] = triangle.corners;
+            let normal = (b - a).cross(c - a);
+            let along = |of: DVec3| DVec2::new(of.dot(view.right), of.dot(view.up));
+            let texels = sampler.texels_along(&triangle.corners);
+            seen.tilt = along(normal) / normal.dot(a - view.eye);
+            seen.texels = texels.map(along);
+            let size = sampler.texture.size();
+            let place = |k: usize| f64::from(sampler.places[0][k]) * size[k];
+            seen.eye = [0, 1].map(|k| place(k) - texels[k].dot(a - view.eye));
+        }
+        seen
+    }
+
+    pub(super) fn shares(&self, point: DVec3) -> [f64; 3] {
+        barycentric(&self.triangle.corners, point)
+    }
+
+    /// Colour at shares of the corners, for a sample whose sides are so long there.
+    fn color(&self, shares: [f64; 3], side: f64) -> DVec3 {
+        let color = blend(&self.triangle.colors, shares);
+        self.triangle.sampler.as_ref().map_or(color, |sampler| {
+            let (place, image) = self.image(sampler, shares, side);
+            color * sampler.texture.at(place, image).0
+        })
+    }
+
+    pub(super) fn opacity(&self, shares: [f64; 3], side: f64) -> f64 {
+        let alpha = self.triangle.alpha;
+        self.triangle.sampler.as_ref().map_or(alpha, |sampler| {
+            let (place, image) = self.image(sampler, shares, side);
+            alpha * sampler.texture.opacity(place, image)
+        })
+    }
+
+    fn image(&self, sampler: &Sampler<'_>, shares: [f64; 3], side: f64) -> ([f64; 2], Image) {
+        let (place, size) = (sampler.place(shares), sampler.texture.size());
+        let rows = [0, 1].map(|k| {
+            let off = place[k] * size[k] - self.eye[k];
+            ((self.texels[k] - self.tilt * off) * side).extend(0.0)
+        });
+        (place, Image::by(rows))
+    }
+}
+
 pub(super) fn light_of(
     view: &RasterCamera,
     light: Option<&Light>,
@@ -89,7 +174,7 @@ pub(super) fn light_of(
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint<'s> {
-    triangle: Triangle<'s>,
+    seen: Seen<'s>,
     face: DVec3,
     flat: Option<DVec3>,
 }
@@ -100,7 +185,7 @@ impl<'s> Paint<'s> {
         let is_front = (view.eye - triangle.corners[0]).dot(plane) >= 0.0;
         let face = if is_front { plane } else { -plane };
         let mut paint = Self {
-            triangle,
+            seen: Seen::of(view, triangle),
             face,
             flat: None,
         };
@@ -125,14 +210,14 @@ impl<'s> Paint<'s> {
             return flat;
         }
         let point = point_seen(view, x, y, depth);
-        let shares = barycentric(&self.triangle.corners, point);
+        let shares = self.seen.shares(point);
         self.mixed(shares, depth * pixels / view.focal_px, light)
     }
 
     fn mixed(&self, share: [f64; 3], side: f64, light: Option<&Light>) -> DVec3 {
-        let (color, _) = self.triangle.at(share, side);
+        let color = self.seen.color(share, side);
         let Some(light) = light else { return color };
-        let normal = blend(&self.triangle.normals, share).normalize_or(self.face);
+        let normal = blend(&self.seen.triangle.normals, share).normalize_or(self.face);
         let is_behind = normal.dot(self.face) < 0.0;
         color * light.on(if is_behind { -normal } else { normal })
     }

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox::split_mix::SplitMix;
 use shiftvox_mesh::raster::{self, RasterCamera, RasterOptions, RasterPicture};
-use shiftvox_mesh::{Mesh, Surface};
+use shiftvox_mesh::{Material, Mesh, Surface};
 
-use super::shared::{ball, looking, mesh_of, on_threads, one_box, plain};
+use super::shared::{ball, looking, mesh_of, on_threads, one_box, plain, quad, shape};
 
 fn view(eye: impl Into<DVec3>, target: impl Into<DVec3>, size: [u32; 2]) -> RasterCamera {
     looking(eye.into(), target.into(), size, f64::from(size[1]))
@@ -80,6 +80,66 @@ fn pictures_agree_with_ray_casting() {
         assert!(picture.coverage.iter().all(|&c| c == 1.0), "{eye:?}");
         check_depths(&room, &view);
     }
+}
+
+/// A red square, after the same in blue, from behind and with the other diagonal. One coordinate is rounded differently.
+fn two_sided(alpha: f32, far: f32) -> Mesh {
+    shape(|builder| {
+        let [red, blue] = [[255, 0, 0], [0, 0, 255]].map(|color| {
+            let mut material = Material::of_srgb("side", color);
+            material.alpha = alpha;
+            builder.material(material)
+        });
+        let square = |top: f32| {
+            let corners = [
+                [0.11, 0.0, 0.07],
+                [1.37, 0.0, 0.83],
+                [1.37, 1.3, 0.83],
+                [0.11, top, 0.07],
+            ];
+            corners.map(|[x, y, z]: [f32; 3]| [x + far, y, z])
+        };
+        let [a, b, c, d] = square(1.3f32.next_up());
+        quad(builder, [d, c, b, a], blue);
+        quad(builder, square(1.3), red);
+    })
+}
+
+#[test]
+fn of_two_faces_at_one_place_the_one_towards_the_eye_is_seen() {
+    for (alpha, far) in [(1.0, 0.0), (0.5, 0.0), (1.0, 10.0), (0.5, 10.0)] {
+        let mesh = two_sided(alpha, far);
+        let middle = DVec3::new(0.74 + f64::from(far), 0.65, 0.45);
+        for (eye, color) in [
+            ([-2.0, 0.7, 3.3], [255, 0, 0]),
+            ([2.0, 0.3, -3.0], [0, 0, 255]),
+        ] {
+            for (side, samples) in [(7, 1), (64, 1), (64, 16), (200, 4)] {
+                let view = view(middle + DVec3::from(eye), middle, [side; 2]);
+                let picture = draw(&mesh, &view, &plain(samples));
+                let seen = picture.rgba.iter().filter(|pixel| pixel[3] > 0);
+                assert!(seen.clone().count() > 0);
+                assert!(
+                    seen.clone().all(|pixel| pixel[..3] == color),
+                    "{alpha} {far} {eye:?} {side}"
+                );
+                assert!(picture.coverage.iter().all(|&c| c <= alpha));
+            }
+        }
+    }
+    // A hair's breadth is a distance, also from afar.
+    let mesh = shape(|builder| {
+        let [red, blue] = [[255, 0, 0], [0, 0, 255]];
+        let [red, blue] = [red, blue].map(|c| builder.material(Material::of_srgb("side", c)));
+        let square = |z: f32| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
+        quad(builder, square(0.0), red);
+        let [a, b, c, d] = square(1e-6);
+        quad(builder, [d, c, b, a], blue);
+    });
+    let mut view = view([0.5, 0.5, 4000.0], [0.5, 0.5, 0.0], [20; 2]);
+    view.focal_px *= 4000.0;
+    let picture = draw(&mesh, &view, &plain(1));
+    assert!(picture.rgba.iter().all(|&pixel| pixel == [0, 0, 255, 255]));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use image::{Rgba, RgbaImage};
 use shiftvox::graph::{Silent, sixteenths};
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::raster::RasterPicture;
-use shiftvox_mesh::{Mesh, linear_to_srgb};
+use shiftvox_mesh::{Mesh, linear_to_srgb, srgb_to_linear};
 
 use super::opacities::graph_of;
 use super::shared::{DISC, bytes_of, card, disc, looking, on_threads, triangles};
@@ -65,6 +65,48 @@ fn pixels_show_texels_and_far_away_their_mean() {
     let [one, three] =
         [1, 3].map(|threads| on_threads(threads, || bytes_of(&seen(&mesh, 100, 16))));
     assert_eq!(one, three);
+}
+
+/// Stripes, seen from the side or squeezed by the texture's places: small pictures are the means of large ones.
+#[test]
+fn samples_are_as_long_and_as_wide_as_the_surface_shows_them() {
+    let stripes = RgbaImage::from_fn(64, 64, |x, _| {
+        let light = if x / 8 % 2 == 0 { 255 } else { 0 };
+        Rgba([light, light, light, 255])
+    });
+    let error = |mesh: &Mesh, eye: DVec3, tall: u32, samples: u32| {
+        let target = DVec3::new(0.5, 0.5, 0.0);
+        let focal = f64::from(tall) * (eye - target).length();
+        let picture = |times: u32, samples: u32| {
+            let size = [tall * times; 2];
+            let view = looking(eye, target, size, focal * f64::from(times));
+            let drawn = triangles(mesh, &view, samples, Some([0; 3]));
+            let light = drawn
+                .rgba
+                .into_iter()
+                .map(|p| f64::from(srgb_to_linear(p[0])));
+            light.collect::<Vec<f64>>()
+        };
+        let (coarse, fine) = (picture(1, samples), picture(16, 16));
+        let squares = (0..tall * tall).map(|at| {
+            let [x, y] = [at % tall, at / tall].map(|c| c * 16);
+            let row = |j: u32| ((y + j) * tall * 16 + x) as usize;
+            let sum: f64 = (0..16).flat_map(|j| &fine[row(j)..row(j) + 16]).sum();
+            (coarse[at as usize] - sum / 256.0).powi(2)
+        });
+        (squares.sum::<f64>() / f64::from(tall * tall)).sqrt()
+    };
+    let plain = card(&stripes, 1, 0.0, "map_Kd a.png");
+    let grazing = DVec3::new(0.5, -8.0, 0.7);
+    let squeezed = card(&stripes, 1, 0.0, "map_Kd -s 0.02 8 a.png");
+    let turned = card(&stripes, 1, 0.0, "map_Kd -s 8 0.02 a.png");
+    let ahead = DVec3::new(0.5, 0.5, 8.0);
+    for (mesh, eye) in [(&plain, grazing), (&squeezed, ahead), (&turned, ahead)] {
+        for samples in [16, 256] {
+            let off = error(mesh, eye, 12, samples);
+            assert!(off < 0.01, "{off} from {eye} with {samples}");
+        }
+    }
 }
 
 #[test]

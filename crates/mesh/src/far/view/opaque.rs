@@ -126,7 +126,8 @@ impl<'f> Opaque<'f> {
             if at != NO_TRIANGLE {
                 let id = self.file.voxels() + surface.places[at as usize].2;
                 let depth = drawn.depth[pixel].to_bits();
-                self.put(pixel, u64::from(depth) << 32 | u64::from(id));
+                // The rasteriser has compared depths.
+                *self.words[pixel].get_mut() = u64::from(depth) << 32 | u64::from(id);
             }
         }
         self.colors = drawn.rgba;
