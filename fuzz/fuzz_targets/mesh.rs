@@ -24,7 +24,7 @@ pub(crate) fn run(format: MeshFormat, before: &[u8], bytes: &[u8]) {
         assert!(mesh.triangles().iter().flatten().all(|&i| (i as usize) < mesh.positions().len()));
         if let Ok(grid) = Grid::around(&mesh, 3) {
             let mut count = 0;
-            let report = voxelize(&mesh, &grid, &mut |_| count += 1, &Silent);
+            let report = voxelize(&mesh, &grid, false, &mut |_| count += 1, &Silent);
             assert!(count > 0 && report.voxels == count);
         }
     }

@@ -160,7 +160,9 @@ impl MeshVoxels for Ready {
             .filter(|&levels| levels > 3)?;
         let count = |depth| {
             let grid = Grid::around(&self.mesh, depth).ok()?;
-            Some(voxelize::voxelize(&self.mesh, &grid, &mut |_| (), progress).voxels)
+            Some(
+                voxelize::voxelize(&self.mesh, &grid, self.opacities, &mut |_| (), progress).voxels,
+            )
         };
         let (coarse, fine) = (count(COUNTED_DEPTH - 1)?, count(COUNTED_DEPTH)?);
         let growth = (fine as f64 / coarse as f64).min(4.0);
@@ -193,6 +195,7 @@ impl MeshVoxels for Ready {
         let report = voxelize::voxelize(
             &self.mesh,
             &self.grid,
+            self.opacities,
             &mut |voxel| {
                 for k in 0..3 {
                     low[k] = low[k].min(voxel.index[k]);

@@ -2,7 +2,8 @@
 //!
 //! The weight of a triangle is its opacity times the area of its part within the cube, plus 2^-20 of a face, so that
 //! triangles that only touch the cube count, too. A texture is averaged over a square as large as the part. A part whose
-//! texture has less than a quarter of opacity is a hole, and a cube with holes alone is no voxel.
+//! texture has less than a quarter of opacity is a hole, and a cube with holes alone is no voxel. Where voxels have
+//! opacities, only what is all but clear is a hole.
 
 use glam::DVec3;
 
@@ -14,7 +15,8 @@ use shiftvox::graph::PackedNormal;
 
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
 const CANCELLED: f64 = 0.25;
-const HOLE: f64 = 0.25;
+pub(super) const HOLE: f64 = 0.25;
+pub(super) const HOLE_OF_OPACITIES: f64 = 1.0 / 64.0;
 
 #[derive(Debug, Default)]
 pub(super) struct Mix {
@@ -23,7 +25,8 @@ pub(super) struct Mix {
     normal: DVec3,
     /// The normals once more, each turned to the side of the sum so far.
     turned: DVec3,
-    is_shown: bool,
+    /// The greatest opacity of a texture.
+    greatest: f64,
 }
 
 impl Mix {
@@ -49,7 +52,7 @@ impl Mix {
         let share = barycentric(&points, centre);
         let (color, opacity) = triangle.at(share, area.sqrt() * voxel_size);
         // Also what is all but invisible is drawn, unless its picture has a hole.
-        self.is_shown |= opacity >= HOLE * triangle.alpha;
+        self.greatest = self.greatest.max(opacity / triangle.alpha);
         let weight = (area + TOUCH) * opacity;
         let normal = blend(&triangle.normals, share).normalize_or(triangle.normals[0]) * weight;
         self.weight += weight;
@@ -59,8 +62,8 @@ impl Mix {
         self.turned += if is_turned { -normal } else { normal };
     }
 
-    pub(super) fn is_shown(&self) -> bool {
-        self.is_shown
+    pub(super) fn is_shown(&self, hole: f64) -> bool {
+        self.greatest >= hole
     }
 
     /// The voxel's colour (sRGB) and normal: the average, or where normals cancel, as in a thin wall with both its

@@ -19,7 +19,7 @@ pub use opacity::opacities;
 
 use super::{Surface, Triangle};
 use distinct::Distinct;
-use mix::Mix;
+use mix::{HOLE, HOLE_OF_OPACITIES, Mix};
 use shiftvox::graph::{Progress, Voxel};
 pub(crate) use touch::{OTHERS, Prepared, child};
 use walk::{Subtree, walk};
@@ -34,14 +34,20 @@ pub struct VoxelizeReport {
 }
 
 /// Hands every voxel that a triangle touches, but not with a hole of its texture, to `sink`: once, in Morton order, on any
-/// number of threads. Indices run from 0 to `2^depth - 1`.
+/// number of threads. Indices run from 0 to `2^depth - 1`. `with_opacities`: for [`opacities`].
 pub fn voxelize<S: Surface + ?Sized>(
     surface: &S,
     grid: &Grid,
+    with_opacities: bool,
     sink: &mut dyn FnMut(Voxel),
     progress: &dyn Progress,
 ) -> VoxelizeReport {
     let Distinct { numbers, repeated } = Distinct::of(surface, grid);
+    let hole = if with_opacities {
+        HOLE_OF_OPACITIES
+    } else {
+        HOLE
+    };
     let cube = grid.cube();
     let (_, voxel_size) = grid.placement();
     let voxels = |subtree: Subtree<'_>| {
@@ -61,7 +67,7 @@ pub fn voxelize<S: Surface + ?Sized>(
                 report.touches += u64::from(*times);
             }
             report.looked_at += triangles.len() as u64;
-            if !mix.is_shown() {
+            if !mix.is_shown(hole) {
                 return;
             }
             report.voxels += 1;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::coverage::{Masks, POINTS, cover, dither, joined, opacity_of};
 use super::distinct::Distinct;
-use super::mix::Mix;
+use super::mix::{HOLE_OF_OPACITIES, Mix};
 use super::touch::OTHERS;
 use super::walk::{Cube, Subtree, walk};
 use super::{Grid, parts};
@@ -89,7 +89,7 @@ pub fn opacities<S: Surface + ?Sized>(
                 let clear = clear.map(|(clear, texels)| (clear, *texels));
                 cover(prepared, clear, corner, voxel, &mut leaf.masks);
             }
-            if !is_shown && !mix.is_shown() {
+            if !is_shown && !mix.is_shown(HOLE_OF_OPACITIES) {
                 return;
             }
             leaves.push(leaf);

@@ -17,18 +17,18 @@ type Build = (bool, Option<u64>, u32, u32, [u32; 2]);
 const FILES: [Build; 4] = [
     (false, Some(60_000), 24, 60, [0x702d_2520, 0x1703_8bb6]),
     (false, None, 16, 300, [0x11ef_1605, 0xe9bc_aa9b]),
-    (true, Some(60_000), 24, 200, [0x70c0_4aa6, 0xae32_7c5e]),
-    (true, None, 16, 300, [0x4434_5493, 0x64fc_9a24]),
+    (true, Some(60_000), 24, 200, [0x02f9_04ef, 0xa8d2_0bbd]),
+    (true, None, 16, 300, [0x6ede_d4ac, 0x333c_043b]),
 ];
 
 /// Distance, height, voxel size, samples across, opacities, hash.
 const PICTURES: [(f64, f64, f64, u32, Opacity, u32); 6] = [
-    (60.0, 0.02, 1.0, 1, Opacity::Six, 0x9867_5836),
-    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0xffeb_8efd),
-    (110.0, 0.6, 2.0, 1, Opacity::Six, 0xc173_9cf2),
-    (110.0, 0.6, 2.0, 3, Opacity::None, 0xb238_5959),
-    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x7514_3032),
-    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0x46e7_1eab),
+    (60.0, 0.02, 1.0, 1, Opacity::Six, 0x6a8c_48ee),
+    (60.0, 1.5, 3.0, 2, Opacity::Scalar, 0x8640_7c4b),
+    (110.0, 0.6, 2.0, 1, Opacity::Six, 0xe712_8954),
+    (110.0, 0.6, 2.0, 3, Opacity::None, 0x73b5_ffe8),
+    (300.0, 0.1, 1.0, 4, Opacity::Six, 0x8a21_1770),
+    (300.0, 2.0, 6.0, 1, Opacity::Scalar, 0x7e80_e8e0),
 ];
 
 #[test]

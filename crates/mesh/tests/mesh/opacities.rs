@@ -2,18 +2,18 @@
 
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, sixteenths};
 use shiftvox_mesh::Mesh;
-use shiftvox_mesh::voxelize::{Grid, opacities};
+use shiftvox_mesh::voxelize::{Grid, opacities, voxelize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::shared::{ball, one_box};
-use super::voxels::{random, voxels};
+use super::voxels::random;
 
 /// The graph of a mesh's voxels, with opacities.
 pub(super) fn graph_of(mesh: &Mesh, depth: u32) -> (Graph, Grid) {
     let grid = Grid::around(mesh, depth).unwrap();
     let mut builder = Builder::new(BuildOptions::default());
-    let voxels = voxels(mesh, depth).into_iter();
-    voxels.for_each(|voxel| builder.push(voxel));
+    let mut push = |voxel| builder.push(voxel);
+    voxelize(mesh, &grid, true, &mut push, &Silent);
     let mut graph = builder.finish(grid.placement(), &Silent).unwrap();
     graph.opacity = opacities(mesh, &grid, &graph, &Silent).into();
     graph.validate().unwrap();

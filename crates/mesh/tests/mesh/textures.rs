@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::{Mesh, Surface, srgb_to_linear};
+use shiftvox_mesh::{Mesh, SceneOptions, Surface, srgb_to_linear};
 
 use super::shapes::{data_uri, gltf_json, square_buffer};
 use super::shared::has;
@@ -287,4 +287,25 @@ fn gltf_files_have_textures() {
         &["PNG or JPEG picture, but that of EXT_texture_webp; convert it with gltf-transform png"],
     );
     check(&mesh, 0, plain, 0.001);
+}
+
+/// Opaque voxels have holes where a card is faint. Voxels with opacities do not.
+#[test]
+fn faint_cards_are_voxels_with_opacities() {
+    let folder = tempfile::tempdir().unwrap();
+    let faint = RgbaImage::from_pixel(8, 8, Rgba([255, 255, 255, 40]));
+    faint.save(folder.path().join("smoke.png")).unwrap();
+    let mtl = "newmtl smoke\nmap_Kd smoke.png\nmap_d smoke.png\nnewmtl brick\n";
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n\
+               vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl smoke\nf 1/1 2/2 3/3 4/4\n\
+               usemtl brick\nf 1 4 5\n";
+    let path = folder.path().join("a.obj");
+    fs::write(&path, obj).unwrap();
+    let [opaque, with_opacities] = [false, true].map(|opacities| {
+        let options = SceneOptions::new().mesh_depth(4).opacities(opacities);
+        options.open(&path).unwrap().voxels()
+    });
+    // The card has 16 x 16.
+    assert!(opaque + 200 < with_opacities, "{opaque} {with_opacities}");
 }

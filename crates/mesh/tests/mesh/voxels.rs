@@ -18,7 +18,13 @@ use super::shared::{ball, mesh_of, on_threads, soup};
 pub(super) fn voxels<S: Surface + ?Sized>(surface: &S, depth: u32) -> Vec<Voxel> {
     let grid = Grid::around(surface, depth).unwrap();
     let mut found = Vec::new();
-    let report = voxelize(surface, &grid, &mut |voxel| found.push(voxel), &Silent);
+    let report = voxelize(
+        surface,
+        &grid,
+        false,
+        &mut |voxel| found.push(voxel),
+        &Silent,
+    );
     assert_eq!(report.voxels, found.len() as u64);
     found
 }

@@ -15,7 +15,7 @@ use super::voxels::random;
 fn work(mesh: &Mesh, depth: u32) -> (Vec<Voxel>, VoxelizeReport) {
     let grid = Grid::around(mesh, depth).unwrap();
     let mut found = Vec::new();
-    let report = voxelize(mesh, &grid, &mut |voxel| found.push(voxel), &Silent);
+    let report = voxelize(mesh, &grid, false, &mut |voxel| found.push(voxel), &Silent);
     assert!(least_looked_at(mesh, &grid) <= report.touches);
     (found, report)
 }

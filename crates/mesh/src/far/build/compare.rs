@@ -26,10 +26,8 @@ const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(-0.8, 0.2, -0.6),
     DVec3::new(0.3, 1.0, -0.7),
 ];
-/// Pixels in voxels of the node, by turns of the directions. A node is drawn from the first on, until a coarser one is;
-/// the coarsest stays.
-const PIXELS: [f64; 2] = [1.0, 1.0];
-const PIXELS_OF_COARSEST: [f64; 2] = [1.0, 2.0];
+/// In voxels of the node: from there on coarser nodes are drawn.
+const PIXEL: f64 = 2.0;
 /// Samples along each axis of a pixel: of the triangles and of a candidate.
 const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
@@ -96,13 +94,9 @@ impl<'o> Comparison<'o> {
             triangles: Vec::new(),
         };
         let (truth, _) = of.file(&empty)?;
-        let pixels = match node.level {
-            0 => PIXELS_OF_COARSEST,
-            _ => PIXELS,
-        };
-        for (number, direction) in DIRECTIONS.into_iter().enumerate() {
-            let pixel = pixels[number % pixels.len()] * f64::from(node.voxel);
-            let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
+        let pixel = PIXEL * f64::from(node.voxel);
+        let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
+        for direction in DIRECTIONS {
             let towards = direction.normalize_or(DVec3::X);
             let forward = -towards;
             let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
