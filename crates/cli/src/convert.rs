@@ -187,10 +187,10 @@ fn build_outside_memory(
 ) -> Result<(), CliError> {
     if args.output.extension().is_none_or(|ending| ending != "vxg") {
         return Err(CliError::usage(format!(
-            "{}: only a .vxg is built out of core",
+            "{}: only .vxg and .far files are built out of core",
             args.output.display()
         ))
-        .advise("end the name in .vxg, or leave --memory out"));
+        .advise("end the name in .vxg (or .far, of a mesh), or leave --memory out"));
     }
     if args.scene.crop.is_some() {
         return Err(CliError::usage(

@@ -171,7 +171,7 @@ fn channel(kind: &str, row: &Row<'_>, at: usize, is_wide: bool) -> Result<u8, Pr
         value => value,
     };
     value.channel().ok_or_else(|| {
-        let expected = "colours from 0 to 255, or from 0 to 1 as real numbers";
+        let expected = "colours from 0 to 255, declared as uchar, or from 0 to 1 as real numbers";
         fault(kind, row, expected.to_owned(), value)
     })
 }
