@@ -1,4 +1,5 @@
-//! Material libraries of Wavefront files: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`, in capitals or not. All else is passed over.
+//! Material libraries of Wavefront files: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`, in capitals or
+//! not. All else is passed over.
 
 use shiftvox::scene::DEFAULT_COLOR;
 

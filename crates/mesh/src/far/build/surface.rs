@@ -46,6 +46,12 @@ struct Kind {
     is_clear: bool,
 }
 
+impl Kind {
+    fn counts_as_thin(&self) -> bool {
+        self.is_thin || self.is_painted
+    }
+}
+
 pub(super) struct Surfaces<'s> {
     surface: &'s dyn Surface,
     order: &'s [u32],
@@ -117,18 +123,14 @@ impl<'s> Surfaces<'s> {
                 }
             })
             .collect();
-        let mut thin: Vec<bool> = kinds
-            .iter()
-            .map(|kind| kind.is_thin || kind.is_painted)
-            .collect();
+        let mut thin: Vec<bool> = kinds.iter().map(Kind::counts_as_thin).collect();
         let decimated = self.decimations(node, &own, &all, &kinds);
         let is_undecimated = decimated.is_err();
         let (surfaces, mut wide) = decimated.unwrap_or_else(|_| {
             thin.fill(true);
             (Vec::new(), Some(Vec::new()))
         });
-        let surfaces = surfaces.into_iter();
-        let judged = surfaces.map(|one| comparison.judge(one));
+        let judged = surfaces.into_iter().map(|one| comparison.judge(one));
         let mut judged = judged.collect::<Result<Vec<Judged>, BuildError>>()?;
         let mut most_error = f64::INFINITY;
         let chosen = loop {
@@ -210,16 +212,13 @@ impl<'s> Surfaces<'s> {
             }
         }
         candidates.push(candidate(&[all]));
-        if !kinds.iter().any(|kind| kind.is_thin || kind.is_painted) {
+        if !kinds.iter().any(Kind::counts_as_thin) {
             return Ok((candidates, None));
         }
-        let is_wide =
-            |kind: &Kind, place| !kind.is_thin && !kind.is_painted && is_seen(place, ERROR);
+        let is_wide = |kind: &Kind, place| !kind.counts_as_thin() && is_seen(place, ERROR);
         let wide = decimated(ERROR, &is_wide)?;
         let finest = ERROR * FINEST;
-        let lines = decimated(finest, &|kind, _| {
-            (kind.is_thin || kind.is_painted) && !kind.is_clear
-        })?;
+        let lines = decimated(finest, &|kind, _| kind.counts_as_thin() && !kind.is_clear)?;
         candidates.push(candidate(&[&wide, &lines, &clear]));
         let painted = kept(|kind| kind.is_painted);
         if painted.len() > clear.len() {
