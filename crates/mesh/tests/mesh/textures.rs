@@ -2,32 +2,27 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
 use serde_json::{Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::{Mesh, SceneOptions, Surface, srgb_to_linear};
 
 use super::shapes::{data_uri, gltf_json, square_buffer};
-use super::shared::has;
+use super::shared::{Texels, has};
 
-/// A picture with halves of two colours. The lower quarter is transparent, where the format has opacity.
-fn halves(left: [u8; 3], right: [u8; 3], format: ImageFormat) -> Vec<u8> {
+/// A picture with halves of two colours, whose lower quarter is transparent.
+fn halves(left: [u8; 3], right: [u8; 3]) -> Vec<u8> {
     let color = |x, y| {
         let [r, g, b] = if x < 32 { left } else { right };
-        Rgba([r, g, b, if y < 48 { 255 } else { 0 }])
+        [r, g, b, if y < 48 { 255 } else { 0 }]
     };
-    let mut picture = DynamicImage::from(RgbaImage::from_fn(64, 64, color));
-    if format == ImageFormat::Jpeg {
-        picture = picture.to_rgb8().into();
-    }
-    let mut bytes = Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, format).unwrap();
-    bytes.into_inner()
+    Texels::new(64, color).png()
 }
+
+/// Yellow and blue, without opacity.
+const JPEG: &[u8] = include_bytes!("halves.jpg");
 
 /// The colour in the middle of a triangle.
 #[track_caller]
@@ -65,19 +60,12 @@ fn obj_files_have_textures() {
     // sRGB 0.5 is 0.214 of the light.
     let (left, right, plain) = ([1.0, 0.214, 0.0], [0.0, 0.0, 1.0], [1.0, 0.214, 1.0]);
     // A clear triangle is left out.
-    for (format, within, expected) in [
-        (
-            ImageFormat::Png,
-            0.01,
-            &[left, left, right, left, plain][..],
-        ),
-        (
-            ImageFormat::Jpeg,
-            0.02,
-            &[left, left, right, left, left, plain],
-        ),
+    let png = halves([255, 255, 0], [0, 0, 255]);
+    for (bytes, within, expected) in [
+        (&png[..], 0.01, &[left, left, right, left, plain][..]),
+        (JPEG, 0.02, &[left, left, right, left, left, plain]),
     ] {
-        fs::write(&picture, halves([255, 255, 0], [0, 0, 255], format)).unwrap();
+        fs::write(&picture, bytes).unwrap();
         let mesh = read(&at.join("a.obj"));
         assert_eq!(mesh.warnings(), [""; 0]);
         assert_eq!(mesh.triangles().len(), expected.len());
@@ -91,11 +79,7 @@ fn obj_files_have_textures() {
         ("-o -0.5", left, right),
         ("-s 1.5 1 -o -0.5 0 0 -clamp on", right, left),
     ] {
-        fs::write(
-            &picture,
-            halves([255, 255, 0], [0, 0, 255], ImageFormat::Jpeg),
-        )
-        .unwrap();
+        fs::write(&picture, JPEG).unwrap();
         fs::write(materials.join("a.mtl"), mtl.replace("-clamp off", options)).unwrap();
         let mesh = read(&at.join("a.obj"));
         check(&mesh, 2, third, 0.02);
@@ -148,7 +132,7 @@ fn ply_files_have_textures() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.ply");
     for (name, right) in [("a picture.png", [0, 255, 0]), ("b.png", [0, 0, 255])] {
-        let picture = halves([255, 0, 0], right, ImageFormat::Png);
+        let picture = halves([255, 0, 0], right);
         fs::write(folder.path().join(name), picture).unwrap();
     }
     let grey = [srgb_to_linear(200); 3].map(f64::from);
@@ -207,7 +191,7 @@ fn ply_files_have_textures() {
 fn gltf_files_have_textures() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gltf");
-    let png = halves([255, 0, 0], [0, 255, 0], ImageFormat::Png);
+    let png = halves([255, 0, 0], [0, 255, 0]);
     fs::write(folder.path().join("a picture.png"), &png).unwrap();
     // Corners on the right half of the picture.
     let corners = [[0.6f32, 0.1], [0.9, 0.1], [0.9, 0.7], [0.6, 0.7]];
@@ -293,8 +277,8 @@ fn gltf_files_have_textures() {
 #[test]
 fn faint_cards_are_voxels_with_opacities() {
     let folder = tempfile::tempdir().unwrap();
-    let faint = RgbaImage::from_pixel(8, 8, Rgba([255, 255, 255, 40]));
-    faint.save(folder.path().join("smoke.png")).unwrap();
+    let faint = Texels::new(8, |_, _| [255, 255, 255, 40]);
+    fs::write(folder.path().join("smoke.png"), faint.png()).unwrap();
     let mtl = "newmtl smoke\nmap_Kd smoke.png\nmap_d smoke.png\nnewmtl brick\n";
     fs::write(folder.path().join("a.mtl"), mtl).unwrap();
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n\
