@@ -158,6 +158,7 @@ enum Command {
 impl Cli {
     fn threads(&self) -> Result<usize, CliError> {
         match (&self.common.threads[..], &self.command) {
+            ([], Some(Command::Render(args))) if args.is_small() => Ok(1),
             ([], _) => Ok(0),
             (&[one], _) => Ok(usize::from(one)),
             // Experiments make a pool for each number and use this one to prepare.

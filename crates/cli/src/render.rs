@@ -63,6 +63,19 @@ pub(super) struct RenderArgs {
     scene: SceneArgs,
 }
 
+/// Samples of a picture that is drawn before a second thread has started.
+const FEW_SAMPLES: u64 = 1 << 14;
+
+impl RenderArgs {
+    /// Whether more threads would cost time: a small picture of a file that is not read whole.
+    pub(super) fn is_small(&self) -> bool {
+        let (width, height) = self.picture.size();
+        let samples = (u64::from(width) * u64::from(height)) << (2 * self.picture.aa_log2());
+        let is_mapped = matches!(&self.scenes[..], [scene] if scene.ends_with(".vxg"));
+        is_mapped && samples <= FEW_SAMPLES
+    }
+}
+
 pub(super) fn run(args: &RenderArgs, console: &Console) -> Result<(), CliError> {
     check(args)?;
     let answers = args.hash || args.expect_hash.is_some() || args.print_camera || args.repeat > 1;
