@@ -9,7 +9,7 @@ mod scan;
 mod statistics;
 mod time;
 
-pub use candidate::{Candidate, Family, Frames, MakeEngine, Variant, fetched_nodes};
+pub use candidate::{Candidate, Family, MakeEngine, Variant};
 pub(crate) use clock::Clock;
 pub use harness::{BenchError, Harness, Schedule};
 pub(crate) use harness::{interleave, pool};
