@@ -116,7 +116,7 @@ fn small_pictures_have_room() {
 }
 
 /// Operations of a list such as `3 add (33) 7 add`: times, name, and bits, by default 32.
-pub(crate) fn operations(list: &str) -> Vec<(f64, &str, u32)> {
+fn operations(list: &str) -> Vec<(f64, &str, u32)> {
     let mut operations = Vec::new();
     let mut words = list.split(' ').peekable();
     while let (Some(times), Some(name)) = (words.next(), words.next()) {
