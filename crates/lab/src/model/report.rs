@@ -38,7 +38,7 @@ pub struct Report {
     numbers: Vec<NumberWidths>,
     counters: BTreeMap<&'static str, u64>,
     levels: Vec<Value>,
-    pub(super) operations: Vec<OpCount>,
+    operations: Vec<OpCount>,
     operations_by_stage: Vec<Value>,
     shifts: Vec<ShiftSite>,
     memories: Vec<Value>,
