@@ -4,7 +4,7 @@ use glam::DVec3;
 use hwmodel::cycles::Hardware;
 use hwmodel::{Memory, OpClass, Stage};
 
-use super::{Cast, RayOrder, RayStage, Rival, cast};
+use super::{Cast, RayStage, Rival, cast};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Silent};
@@ -82,7 +82,7 @@ fn it_sees_what_the_oracle_sees() {
 
 /// Every setting that is not about numbers leaves the picture as it is.
 #[test]
-fn the_picture_does_not_depend_on_order_buffer_or_nodes() {
+fn the_picture_does_not_depend_on_contexts_buffer_or_nodes() {
     let (graph, setup) = view("terrain,depth=6", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3], 96);
     let shipped = Rival::shipped();
     let scene = (&graph, &setup);
@@ -91,14 +91,6 @@ fn the_picture_does_not_depend_on_order_buffer_or_nodes() {
     for (rival, design) in [
         (
             Rival {
-                order: RayOrder::Rows,
-                ..shipped.clone()
-            },
-            "light",
-        ),
-        (
-            Rival {
-                order: RayOrder::Tiles,
                 contexts: 3,
                 ..shipped.clone()
             },
@@ -179,7 +171,6 @@ fn wrong_descriptions_are_refused() {
             "bits = 7 ",
             "bits: a word has 16 to 64 bits, not 7",
         ),
-        ("\"morton\"", "\"hilbert\"", "unknown variant `hilbert`"),
         (
             "contexts = 4 ",
             "contexts = 0 ",
