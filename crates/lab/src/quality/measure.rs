@@ -354,7 +354,7 @@ fn race(
 
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "method ms work psnr flip bias_percent flicker_turntable flicker_dolly flicker_pan extra \
-        missing elsewhere read_bytes build_ms ahead beaten_by ssim remark refused";
+        missing elsewhere read_bytes build_ms ahead beaten_by remark refused";
     Table::select(title, rows, COLUMNS).condensed()
 }
 
