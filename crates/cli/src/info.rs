@@ -10,8 +10,7 @@ use super::console::Console;
 use super::error::CliError;
 use super::scenes::{self, Scene};
 use super::{batch, far, report, textured};
-use shiftvox::budget::{self, Shortage};
-use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
+use shiftvox::graph::{Graph, Opacity, sixteenths};
 use shiftvox::project::Bounds;
 use shiftvox::scene::{FileKind, Source};
 
@@ -45,7 +44,7 @@ fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliEr
         Some(FileKind::Tvx) => textured::info(name),
         _ => {
             let scene = scenes::open(name, &args.scene, console)?;
-            Ok(describe(&scene, console))
+            Ok(describe(&scene))
         }
     }
 }
@@ -60,16 +59,11 @@ fn text(mut described: Value, with_levels: bool) -> String {
     report::description(&described)
 }
 
-fn describe(scene: &Scene, console: &Console) -> Value {
+fn describe(scene: &Scene) -> Value {
     let graph = &scene.graph;
     let [low, high] = Bounds::in_file(graph).unwrap_or_default();
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-    let gains = merge_gains(graph);
-    if let Err(short) = &gains {
-        console.note(format!("{}: without dag_gain: {short}", scene.source));
-    }
-    let gain = |by: usize| gains.as_ref().ok().map(|gains| gains[by]);
     let levels = levels(graph)
         .into_iter()
         .enumerate()
@@ -91,8 +85,6 @@ fn describe(scene: &Scene, console: &Console) -> Value {
         "levels": levels.collect::<Vec<Value>>(),
         "bytes": graph.bytes(),
         "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
-        "dag_gain": gain(0),
-        "dag_gain_by_shape": gain(1),
         "palette_entries": scene.palette,
         "colors": distinct_leaf_colors(graph),
         "camera": camera.flags(),
@@ -172,12 +164,4 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
         current = below;
     }
     levels
-}
-
-const MERGE_BYTES: u64 = 16;
-
-/// Nodes over those left when equal subtrees are merged, with attributes and by shape alone.
-fn merge_gains(graph: &Graph) -> Result<[f64; 2], Shortage> {
-    budget::check("merging", graph.len() as u64 * MERGE_BYTES)?;
-    Ok([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))
 }
