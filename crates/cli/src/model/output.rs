@@ -46,7 +46,7 @@ pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Resul
     let results = Results {
         rows: tables::figures(&document),
         tables: std::iter::once(summary(found)).chain(tables).collect(),
-        panels: Vec::new(),
+        charts: Vec::new(),
         document,
     };
     export::write(&results, &args.export, console)

@@ -16,4 +16,4 @@ pub(crate) use harness::{interleave, pool};
 pub(crate) use power_law::PowerLaw;
 pub use scan::Scan;
 pub use statistics::Summary;
-pub use time::{EVERYTHING_ON, Subject, TimePlan, measure, panels, table};
+pub use time::{EVERYTHING_ON, Subject, TimePlan, charts, measure, table};

@@ -6,7 +6,7 @@ use super::candidate::{Candidate, Family};
 use super::harness::{BenchError, Contender, Harness};
 use super::power_law::PowerLaw;
 use crate::measure::{CoverageError, count_differing};
-use crate::report::plot::{Panel, RowPlot};
+use crate::report::plot::{Chart, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
@@ -213,13 +213,12 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
     Table::select(title, rows, COLUMNS).condensed()
 }
 
-/// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;
-/// other measurements are bars.
-pub fn panels(rows: &[Row]) -> Vec<Panel> {
+/// Plots of scans with error bars, one per scene or per kind of scene whose depth varies.
+pub fn charts(rows: &[Row]) -> Vec<Chart> {
     let is_one_plot = |a: &Row, b: &Row| {
         a.get("scene") == b.get("scene") || *a.get("growing") == Cell::from("voxels")
     };
-    let panel = |rows: &[Row]| {
+    let chart = |rows: &[Row]| {
         let growing = rows.first()?.text("growing");
         let title = match growing.as_str() {
             "voxels" => rows[0].text("size"),
@@ -233,12 +232,9 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
             deviation: Some("deviation_ms"),
             ..RowPlot::default()
         };
-        match growing.is_empty() {
-            true => Some(plot.bars(rows)),
-            false => plot.chart(rows),
-        }
+        plot.chart(rows)
     };
-    rows.chunk_by(is_one_plot).filter_map(panel).collect()
+    rows.chunk_by(is_one_plot).filter_map(chart).collect()
 }
 
 #[cfg(test)]
