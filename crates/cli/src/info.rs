@@ -1,7 +1,5 @@
 //! `info`: the contents of a scene.
 
-use std::collections::HashMap;
-
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -64,13 +62,8 @@ fn describe(scene: &Scene) -> Value {
     let [low, high] = Bounds::in_file(graph).unwrap_or_default();
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-    let levels = levels(graph)
-        .into_iter()
-        .enumerate()
-        .map(|(level, (nodes, in_tree))| {
-            let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
-            json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
-        });
+    let levels = graph.nodes_per_level().into_iter().enumerate();
+    let levels = levels.map(|(level, nodes)| json!({ "level": level, "nodes": nodes }));
     json!({
         "scene": scene.source,
         "format": scene.format,
@@ -136,32 +129,4 @@ fn distinct_leaf_colors(graph: &Graph) -> usize {
         }
     }
     seen.iter().map(|word| word.count_ones() as usize).sum()
-}
-
-/// Nodes of each level, as stored and as in a tree without shared nodes.
-fn levels(graph: &Graph) -> Vec<(u64, u128)> {
-    let view = graph.view();
-    if graph.is_level_ordered() && graph.links.is_empty() {
-        let nodes = graph.nodes_per_level();
-        return nodes.into_iter().map(|n| (n, u128::from(n))).collect();
-    }
-    let mut current = HashMap::from([(graph.root, 1u128)]);
-    let mut levels = Vec::new();
-    for _ in 0..=graph.depth {
-        if graph.is_empty() || current.is_empty() {
-            break;
-        }
-        let times = current.values();
-        let times = times.fold(0u128, |sum, &n| sum.saturating_add(n));
-        levels.push((current.len() as u64, times));
-        let mut below: HashMap<u32, u128> = HashMap::new();
-        for (&node, &times) in &current {
-            for child in (0..8).filter_map(|octant| view.child(node, octant)) {
-                let sum = below.entry(child).or_default();
-                *sum = sum.saturating_add(times);
-            }
-        }
-        current = below;
-    }
-    levels
 }
