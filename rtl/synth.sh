@@ -3,8 +3,7 @@
 # 24 um2, delays of gates only. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
 #
 #   synth.sh MODULE...   prints `module,nand2,registers_nand2,delay_ps` of each, without memories. PARAMETERS overrides
-#                        parameters ("-chparam LANES 4"), NETLIST=FILE writes the cells of the last module,
-#                        BOXES=machine leaves that module out, too
+#                        parameters ("-chparam LANES 4"), BOXES=machine leaves that module out, too
 #   synth.sh machine     prints `stage,part,nand2,registers_nand2` of the whole machine without memories: the parts of
 #                        parts.txt (B and C: parts_exact.txt), the rest, their sum, and the machine in one piece.
 #                        Default PARAMETERS: the bundled tree at 64 x 64. Takes minutes
@@ -76,7 +75,7 @@ for top in "$@"; do
   if [ "$top" = machine ]; then whole_machine; continue; fi
   synthesize "$read
     hierarchy -top $top ${PARAMETERS:-}; rename -top $top
-    synth -flatten -top $top; $cells${NETLIST:+; write_verilog -noattr $NETLIST}"
+    synth -flatten -top $top; $cells"
   awk -v top="$top" '
     /Delay *=/ { for (i = 1; i <= NF; i++) if ($i == "Delay") { v = $(i + 2); if (v > delay) delay = v } }
     /^ +DFF/ { registers += $2 }

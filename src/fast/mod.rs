@@ -241,26 +241,17 @@ impl Engine for Fast {
 /// Techniques on or off, for measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Switches {
+    /// Skip occluded nodes.
     pub hidden: bool,
-    pub full: bool,
-    pub off_screen: bool,
     /// Draw two levels, or one, in one step of 64 lanes.
     pub bricks: bool,
-    /// Fill blocks and tiles inside large solids at once, and skip those beside them.
-    pub whole_blocks: bool,
-    /// Skip absent children at once. Off: above bricks, all eight are tested first.
-    pub absent_children: bool,
 }
 
 impl Default for Switches {
     fn default() -> Self {
         Self {
             hidden: true,
-            full: true,
-            off_screen: true,
             bricks: true,
-            whole_blocks: true,
-            absent_children: true,
         }
     }
 }

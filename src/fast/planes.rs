@@ -25,11 +25,7 @@ pub(super) fn draw<I: Isa>(
             if block.is_empty() || band.switches.hidden && !band.fill.is_open(&block) {
                 continue;
             }
-            let cover = if band.switches.whole_blocks {
-                outline.cover(&block)
-            } else {
-                Cover::Some
-            };
+            let cover = outline.cover(&block);
             if cover != Cover::None {
                 draw_block(band, outline, &block, cover, node, voxel);
             }
@@ -54,7 +50,7 @@ fn draw_block<I: Isa>(
             }
             let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
             let tile = cell_of(x, y, TILE_LOG2, block);
-            let cover = if cover == Cover::All || !band.switches.whole_blocks {
+            let cover = if cover == Cover::All {
                 cover
             } else {
                 outline.cover(&tile)

@@ -30,7 +30,7 @@ pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
     stack[0].begin(band, &root);
     let mut height = usize::from(stack[0].left != 0);
     while height > 0 {
-        if band.fill.open == 0 && band.switches.full {
+        if band.fill.open == 0 {
             band.counters.skipped_full += height as u64;
             return;
         }
@@ -167,17 +167,8 @@ impl<'b> Children<'b> {
         let windows = &mut self.windows;
         windows.compute(band.isa, constants, index, &record.centre, bounds);
         band.counters.skipped_absent += u64::from(mask.count_zeros());
-        if !band.switches.absent_children {
-            count_absent(band, windows, !mask);
-            band.counters.skipped_absent = 0;
-        }
-        let mut wanted = mask;
-        if band.switches.off_screen {
-            wanted &= windows.held | windows.near;
-            band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
-        } else {
-            windows.near |= !windows.held;
-        }
+        let wanted = mask & (windows.held | windows.near);
+        band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
         self.record = *record;
         self.level = level;
         self.nearest = u32::from(nearest);
@@ -222,7 +213,7 @@ impl<'b> Children<'b> {
                 band.counters.skipped_behind += 1;
                 return None;
             }
-            if band.switches.off_screen && is_off_screen(below, &centre) {
+            if is_off_screen(below, &centre) {
                 band.counters.skipped_off_screen += 1;
                 return None;
             }
@@ -243,16 +234,6 @@ impl<'b> Children<'b> {
             centre,
         };
         Some((child, window))
-    }
-}
-
-#[inline(never)]
-fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: u8) {
-    let held = absent & windows.held & !windows.near;
-    band.counters.skipped_off_screen += u64::from((absent & !held).count_ones());
-    for child in (0..8).filter(|child| held >> child & 1 != 0) {
-        let is_open = band.fill.is_open(&windows.at(child));
-        band.counters.skipped_hidden += u64::from(!is_open);
     }
 }
 

@@ -55,7 +55,7 @@ impl Colors {
     }
 
     /// Looks up the colours of a frame of this size, on the threads of the current pool.
-    pub fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
+    fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
         if let Some(blend) = &frame.blend {
             self.take_blended(blend);
             return;

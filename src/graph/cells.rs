@@ -156,26 +156,18 @@ impl Graph {
 
     /// Counts the finest voxels, also those inside solid leaves and in repeated parts; saturates.
     pub fn count_voxels(&self) -> u64 {
-        let ordered = self.is_level_ordered();
-        if ordered && self.links.is_empty() {
+        if self.is_level_ordered() && self.links.is_empty() {
             return self.count_tree_voxels();
         }
         let mut below = vec![1u64; self.len()];
         for height in 1..=self.depth {
-            let level = (self.depth - height) as usize;
-            let start = |l: usize| self.level_start.get(l).map_or(0, |&n| n as usize);
-            let nodes = match ordered {
-                true => start(level).min(self.len())..start(level + 1).min(self.len()),
-                false => 0..self.len(),
-            };
-            let count = |node: usize| {
-                let children = self.children(node as u32).into_iter().flatten();
+            let count = |node: u32| {
+                let children = self.children(node).into_iter().flatten();
                 let each = children.map(|child| below[child as usize]);
                 let leaf = 1u64.checked_shl(3 * height).unwrap_or(u64::MAX);
                 each.reduce(u64::saturating_add).unwrap_or(leaf)
             };
-            let counted: Vec<u64> = nodes.clone().map(count).collect();
-            below[nodes.start..nodes.start + counted.len()].copy_from_slice(&counted);
+            below = (0..self.len() as u32).map(count).collect();
         }
         below.get(self.root as usize).copied().unwrap_or(0)
     }

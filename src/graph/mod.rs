@@ -1,4 +1,4 @@
-//! The voxel graph: trees, DAGs with equal subtrees merged, and cyclic graphs.
+//! The voxel graph: trees, and graphs whose nodes have several parents or are cyclic.
 
 mod average;
 pub mod build;
@@ -9,7 +9,6 @@ pub mod file;
 mod layout;
 mod linked;
 pub mod map;
-pub mod merge;
 mod mesh_box;
 mod morton;
 mod normal;
@@ -29,7 +28,6 @@ pub use crop::Crop;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use layout::NodeLayout;
 pub use linked::LinkedGraph;
-pub use merge::{MergeBy, MergeReport, merge};
 pub use mesh_box::MeshBox;
 pub(crate) use normal::KnownNormals;
 pub use opacity::{MOST_OPACITY, Opacity, sixteenths};

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use shiftvox::graph::{
-    BuildError, BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Normals, PackedNormal, Silent,
-    Voxel, merge,
+    BuildError, BuildOptions, Builder, Graph, LinkedGraph, Normals, PackedNormal, Silent, Voxel,
 };
 use shiftvox::split_mix::SplitMix;
 
@@ -104,30 +103,6 @@ proptest! {
         }
     }
 
-    #[test]
-    fn merging_changes_nothing_seen(voxels in voxels(200)) {
-        let graph = build(&voxels);
-        let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-        merged.validate().unwrap();
-        prop_assert_eq!(seen(&merged), seen(&graph));
-        prop_assert_eq!(merged.nodes_per_level().iter().sum::<u64>(), report.nodes_after);
-        prop_assert!(report.nodes_after <= report.nodes_before);
-        // Merging again finds nothing more, and the general way finds the same.
-        let (again, _) = merge(&merged, MergeBy::ShapeAndAttributes, &Silent);
-        prop_assert_eq!(parts(&again), parts(&merged));
-        let mut unordered = graph.clone();
-        unordered.level_start.clear();
-        prop_assert_eq!(unordered.nodes_per_level(), graph.nodes_per_level());
-        let (general, _) = merge(&unordered, MergeBy::ShapeAndAttributes, &Silent);
-        let (shape, _) = merge(&graph, MergeBy::Shape, &Silent);
-        general.validate().unwrap();
-        shape.validate().unwrap();
-        prop_assert_eq!(seen(&general), seen(&graph));
-        prop_assert!(general.len() <= merged.len() && shape.len() <= merged.len());
-        prop_assert!(seen(&shape).keys().eq(seen(&graph).keys()));
-        // The places of nodes that may be in several are not known.
-        prop_assert!(graph.len() < 3 || unordered.place_of(1).or(merged.place_of(0)).is_none());
-    }
 }
 
 #[test]
@@ -154,10 +129,10 @@ fn boxes_of_one_voxel_and_of_the_longest_side() {
     assert_eq!(flat, BuildError::Placement);
 }
 
-/// Random graphs, some of them cyclic, have the same cells and colours when equal nodes are merged, and when their lists
-/// lie side by side. A node is where `links` had it.
+/// Random graphs, some of them cyclic, have the same cells and colours when their lists lie side by side. A node is where
+/// `links` had it.
 #[test]
-fn cyclic_graphs_merged_and_side_by_side_are_the_same_object() {
+fn cyclic_graphs_side_by_side_are_the_same_object() {
     for seed in 1..60u64 {
         let mut dice = SplitMix::new(seed);
         let mut below = |most: u64| dice.below(most);
@@ -169,18 +144,15 @@ fn cyclic_graphs_merged_and_side_by_side_are_the_same_object() {
             linked.add_node([node as u8 / 2, 0, 0], children);
         }
         let linked = linked.build().unwrap();
-        let (merged, _) = merge(&linked, MergeBy::ShapeAndAttributes, &Silent);
         let laid_out = linked.side_by_side().unwrap();
-        for same in [&merged, &laid_out] {
-            same.validate().unwrap();
-            assert_eq!(cells(same), cells(&linked));
-            // Solid leaves fill their cube: the count is of finest voxels.
-            let finest = cells(same)
-                .iter()
-                .map(|(_, level, _)| 1 << (3 * (3 - level)))
-                .sum();
-            assert_eq!((same.voxels, linked.voxels), (finest, finest));
-        }
+        laid_out.validate().unwrap();
+        assert_eq!(cells(&laid_out), cells(&linked));
+        // Solid leaves fill their cube: the count is of finest voxels.
+        let finest = cells(&laid_out)
+            .iter()
+            .map(|(_, level, _)| 1 << (3 * (3 - level)))
+            .sum();
+        assert_eq!((laid_out.voxels, linked.voxels), (finest, finest));
         assert_eq!(laid_out.len(), 1 + linked.links.len());
         for (expected, found) in linked.voxels().zip(laid_out.voxels()) {
             let node = match found.node as usize {
@@ -190,34 +162,6 @@ fn cyclic_graphs_merged_and_side_by_side_are_the_same_object() {
             assert_eq!(node, expected.node);
         }
     }
-}
-
-#[test]
-fn equal_nodes_merge() {
-    // Two nodes that take turns, with equal colours: one node would do.
-    let mut graph = LinkedGraph::new(6);
-    for other in [Some(1), Some(0)] {
-        graph.add_node(
-            [1; 3],
-            [other, None, None, other, None, None, None, Some(2)],
-        );
-    }
-    graph.add_node([5; 3], [None; 8]);
-    let graph = graph.build().unwrap();
-    let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-    assert_eq!(
-        (report.nodes_before, report.nodes_after, report.gain()),
-        (3, 2, 1.5)
-    );
-    assert_eq!(cells(&merged), cells(&graph));
-    // A full cube needs a node per level.
-    let mut cube = solid(16, |_| true);
-    cube.iter_mut().for_each(|voxel| voxel.color = [7; 3]);
-    let graph = build_with(Normals::None, cube);
-    let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
-    merged.validate().unwrap();
-    assert_eq!(merged.level_start, [0, 1, 2, 3, 4, 5]);
-    assert_eq!(merged.voxels, 4096);
 }
 
 #[test]
@@ -249,7 +193,6 @@ fn validate_names_what_is_broken() {
         graph.mask = entries.into();
     }
     let tree = build(&solid(6, |p| p.x + p.y < 6.0));
-    let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
     let breaks: [(&str, Break); 20] = [
         ("depth", |g| g.depth = 31),
         ("root", |g| g.root = g.len() as u32),
@@ -275,27 +218,20 @@ fn validate_names_what_is_broken() {
         }),
         ("mask", |g| g.mask = vec![0; g.len() + 1].into()),
     ];
-    for graph in [&tree, &dag] {
-        for (i, (array, change)) in breaks.iter().enumerate() {
-            let mut broken = graph.clone();
-            change(&mut broken);
-            let invalid = broken.validate().expect_err(array);
-            assert_eq!(invalid.array, *array, "change {i}: {invalid}");
-        }
+    for (i, (array, change)) in breaks.iter().enumerate() {
+        let mut broken = tree.clone();
+        change(&mut broken);
+        let invalid = broken.validate().expect_err(array);
+        assert_eq!(invalid.array, *array, "change {i}: {invalid}");
     }
     // A child less: in a tree, the list of the node after it begins too late.
     let mut broken = tree.clone();
     mask(&mut broken, |masks| masks[1] &= masks[1] - 1);
     let invalid = broken.validate().unwrap_err();
     assert_eq!((invalid.array, invalid.index), ("first", 2));
-    let mut broken = dag.clone();
-    let mut links = dag.links.to_vec();
-    links[3] = dag.len() as u32;
-    broken.links = links.into();
+    let mut broken = LinkedGraph::new(2);
+    broken.add_node([0; 3], [Some(0); 8]);
+    let mut broken = broken.build().unwrap();
+    broken.links = vec![1; 8].into();
     assert_eq!(broken.validate().unwrap_err().array, "links");
-    // Leaves above the finest level are drawn in parts.
-    let leaf = tree.level_start[1];
-    mask(&mut broken, |masks| masks[leaf as usize] = 0);
-    broken.links = Vec::new().into();
-    assert_eq!(broken.place_of(leaf), None);
 }

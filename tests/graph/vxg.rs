@@ -4,16 +4,15 @@
 use std::fs;
 
 use shiftvox::graph::vxg::{self, VxgError};
-use shiftvox::graph::{Graph, LinkedGraph, MergeBy, MeshBox, Opacity, Silent, Store, merge};
+use shiftvox::graph::{Graph, LinkedGraph, MeshBox, Opacity, Store};
 use shiftvox::scene::{FileKind, detect};
 
 use crate::{at, build, bytes_of, parts, seal};
 
-/// A tree, the tree merged, a cyclic graph, a voxel, and the tree with opacities and of a mesh.
-fn small_graphs() -> [Graph; 6] {
+/// A tree, a cyclic graph, a voxel, and the tree with opacities and of a mesh.
+fn small_graphs() -> [Graph; 5] {
     let voxels = [[0; 3], [1, 0, 0], [1, 1, 0], [-5, 3, 2], [6; 3], [7, 6, 6]];
     let tree = build(&voxels.map(at));
-    let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
     let mut cyclic = LinkedGraph::new(9);
     for own in [Some(0), Some(2)] {
         let (zero, one, two) = (Some(0), Some(1), Some(2));
@@ -27,7 +26,7 @@ fn small_graphs() -> [Graph; 6] {
     let span = ([-1.0, 0.5, 1e6], [2.0, 0.75, 1e6 + 1.0]);
     of_mesh.placement.mesh = Some(MeshBox::new(span, [0, 1, 2, 3, 4, 5, 6, 255], true));
     let one = build(&[at([-3, 4, 5])]);
-    [tree, dag, cyclic.build().unwrap(), one, airy, of_mesh]
+    [tree, cyclic.build().unwrap(), one, airy, of_mesh]
 }
 
 /// Uses a graph of which nothing is sure in every way that the program does.
@@ -40,9 +39,6 @@ fn exercise(graph: &Graph) {
     }
     let _ = graph.validate();
     sum += graph.count_voxels() + graph.nodes_per_level().len() as u64;
-    for by in [MergeBy::Shape, MergeBy::ShapeAndAttributes] {
-        sum += merge(graph, by, &Silent).0.len() as u64;
-    }
     for node in [0, 1, graph.root, u32::MAX] {
         sum += u64::from(graph.place_of(node).is_some());
         for octant in 0..8 {
@@ -146,23 +142,6 @@ fn child_lists_that_are_missing_read_as_no_children() {
     }
 }
 
-/// Only a node that nothing leads to is on the finest level of this file, so merging empties that level. A fuzzer found
-/// it.
-#[test]
-fn merging_away_a_whole_level_leaves_a_sound_graph() {
-    let file = include_bytes!("../data/regressions/merge_unreachable_level.vxg");
-    let graph = vxg::from_bytes(file).unwrap();
-    assert!(graph.is_level_ordered());
-    for by in [MergeBy::Shape, MergeBy::ShapeAndAttributes] {
-        let (merged, _) = merge(&graph, by, &Silent);
-        let cells = [&merged, &graph].map(|graph| graph.voxels().map(|c| (c.corner, c.level)));
-        let [merged_cells, cells] = cells;
-        assert!(merged_cells.eq(cells));
-        let again = vxg::from_bytes(&bytes_of(&merged)).unwrap();
-        assert_eq!(parts(&again), parts(&merged));
-    }
-}
-
 #[test]
 fn messages_say_where_what_and_what_to_do() {
     let [tree, .., airy, _] = small_graphs().map(|graph| bytes_of(&graph));
@@ -203,15 +182,4 @@ fn messages_say_where_what_and_what_to_do() {
         without,
         &["header, byte 432: expected opacities, not none", advice],
     );
-}
-
-#[test]
-fn nodes_that_differ_in_opacity_alone_are_not_merged() {
-    let mut two = build(&[at([0; 3]), at([1; 3])]);
-    two.color = vec![[5; 3]; two.len()].into();
-    two.normal = vec![Default::default(); two.len()].into();
-    let merged = |graph: &Graph| merge(graph, MergeBy::ShapeAndAttributes, &Silent).0.len();
-    assert_eq!(merged(&two), 2);
-    two.opacity = vec![Opacity::OPAQUE, Opacity([1; 3]), Opacity([2; 3])].into();
-    assert_eq!(merged(&two), 3);
 }

@@ -116,6 +116,19 @@ const PCD: &str = "# .PCD v0.7\nVERSION 0.7\nFIELDS pad x y z rgb normal_x norma
     SIZE 2 8 4 4 4 4 4 4\nTYPE U F F F F F F F\nCOUNT 3 1 1 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n\
     VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ";
 
+/// A change of a sound file, and a part of the message.
+const WRONG_PCD: &str = r#"ascii => binary_compressed | pcl_convert_pcd_ascii_binary IN.pcd OUT.pcd 1
+DATA ascii => DATA | expected FIELDS, SIZE, TYPE, COUNT
+WIDTH 1 => WIDTH x | header at byte 55: expected a whole number, found "WIDTH x"
+WIDTH 1\n =>  | a line POINTS, or WIDTH and HEIGHT
+x y z => u v w | the fields x, y and z
+x y z => x y | SIZE, TYPE and COUNT of 3 fields, found 4, 4 and 3
+I U F U => I U F X | expected the types I and U of 1 to 8 bytes or F of 4 or 8, found "X 4"
+WIDTH => COUNT 1 1 1 99999\nWIDTH | in 65536 bytes at most, found 99999
+HEIGHT 1 => HEIGHT 2 | point 1 at byte 97: expected 2 points, found the end
+1 2 3 1 => 1 2 1 | point 0 at byte 83: expected 4 numbers, found "1 2 1315860"
+DATA ascii\n1 2 3 1315860\n =>  | expected a line DATA, found the end of the file"#;
+
 pub(crate) fn pcd() -> Vec<u8> {
     let mut bytes = [PCD, "binary\n"].concat().into_bytes();
     for (x, z, color) in [(1f64, 0.5f32, 0x0a_141e_u32), (f64::NAN, 0.0, 0)] {
@@ -148,52 +161,11 @@ fn clouds_of_the_point_cloud_library() {
         &pcd()[..pcd().len() - 1],
         "point 1 at byte 236: expected 2 points, found the end",
     );
-    for (from, to, part) in [
-        (
-            "ascii",
-            "binary_compressed",
-            "pcl_convert_pcd_ascii_binary IN.pcd OUT.pcd 1",
-        ),
-        ("DATA ascii", "DATA", "expected FIELDS, SIZE, TYPE, COUNT"),
-        (
-            "WIDTH 1",
-            "WIDTH x",
-            "header at byte 55: expected a whole number, found \"WIDTH x\"",
-        ),
-        ("WIDTH 1\n", "", "a line POINTS, or WIDTH and HEIGHT"),
-        ("x y z", "u v w", "the fields x, y and z"),
-        (
-            "x y z",
-            "x y",
-            "SIZE, TYPE and COUNT of 3 fields, found 4, 4 and 3",
-        ),
-        (
-            "I U F U",
-            "I U F X",
-            "expected the types I and U of 1 to 8 bytes or F of 4 or 8, found \"X 4\"",
-        ),
-        (
-            "WIDTH",
-            "COUNT 1 1 1 99999\nWIDTH",
-            "in 65536 bytes at most, found 99999",
-        ),
-        (
-            "HEIGHT 1",
-            "HEIGHT 2",
-            "point 1 at byte 97: expected 2 points, found the end",
-        ),
-        (
-            "1 2 3 1",
-            "1 2 1",
-            "point 0 at byte 83: expected 4 numbers, found \"1 2 1315860\"",
-        ),
-        (
-            "DATA ascii\n1 2 3 1315860\n",
-            "",
-            "expected a line DATA, found the end of the file",
-        ),
-    ] {
-        refused(plain.replace(from, to).as_bytes(), part);
+    for row in WRONG_PCD.lines() {
+        let (change, part) = row.split_once(" | ").unwrap();
+        let (from, to) = change.split_once(" => ").unwrap();
+        let [from, to] = [from, to].map(|text| text.replace("\\n", "\n"));
+        refused(plain.replace(&from, &to).as_bytes(), part);
     }
     assert!(read(PCD.replace("POINTS 2", "POINTS 99999999999").as_bytes()).is_err());
 }

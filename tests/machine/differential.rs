@@ -51,11 +51,7 @@ fn any_fast(dice: &mut Dice, instructions: Instructions, depth: u32) -> FastOpti
     let mut is_on = || dice.below(7) > 0;
     let switches = Switches {
         hidden: is_on(),
-        full: is_on(),
-        off_screen: is_on(),
         bricks: is_on(),
-        whole_blocks: is_on(),
-        absent_children: is_on(),
     };
     FastOptions {
         threads: dice.of(&[1, 2, 3]),

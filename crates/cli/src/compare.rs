@@ -24,7 +24,7 @@ pub(super) struct CompareArgs {
     #[arg(value_name = "B")]
     b: PathBuf,
     /// Bounds, beyond which the exit code is 3. VALUE bounds the number of differing pixels, NAME=VALUE a number of the
-    /// report, from below for psnr_* and ssim, else from above
+    /// report, from below for psnr_*, else from above
     #[arg(
         long,
         value_name = "[NAME=]VALUE",
@@ -127,7 +127,6 @@ fn pictures(a: &Image, b: &Image) -> Result<Comparison, CliError> {
         ("psnr_srgb", error.psnr_srgb),
         ("mse_linear", error.mse_linear),
         ("psnr_linear", error.psnr_linear),
-        ("ssim", error.ssim),
     ];
     Ok(Comparison {
         kind: "picture",
@@ -223,8 +222,7 @@ fn judge(thresholds: &[(String, f64)], numbers: &[(&str, f64)]) -> Result<(), Cl
             let advice = format!("there are: {}", names.join(", "));
             return Err(CliError::usage(message).advise(advice));
         };
-        let at_least = name == "ssim" || name.starts_with("psnr");
-        let (good, side) = match at_least {
+        let (good, side) = match name.starts_with("psnr") {
             true => (value >= bound, "at least"),
             false => (value <= bound, "at most"),
         };

@@ -8,7 +8,7 @@ use shiftvox::fast::{Fast, FastOptions, Switches};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Engine, Stop};
 use shiftvox::rays::Rays;
-use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
+use shiftvox_lab::bench::{Candidate, Family, Variant};
 use shiftvox_lab::float_rays::FloatRays;
 
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
@@ -158,7 +158,6 @@ const WHOLE_FAST: Variant = Variant {
     about: "",
     adjust: |_| {},
     make: FAST.make,
-    frames: Frames::Drawn,
 };
 const WHOLE_MACHINE: Variant = Variant {
     make: MACHINE.make,
@@ -173,51 +172,15 @@ const FAST_VARIANTS: &[Variant] = &[
         ..WHOLE_FAST
     },
     Variant {
-        name: "off-screen nodes looked into",
-        about: "nodes without samples are descended; the picture must be the same",
-        make: |threads| fast(threads, |on| on.off_screen = false),
-        ..WHOLE_FAST
-    },
-    Variant {
-        name: "a full picture goes on",
-        about: "no stop when every sample is drawn; the picture must be the same",
-        make: |threads| fast(threads, |on| on.full = false),
-        ..WHOLE_FAST
-    },
-    Variant {
         name: "bricks off",
         about: "voxel by voxel in the last levels; the picture must be the same",
         make: |threads| fast(threads, |on| on.bricks = false),
         ..WHOLE_FAST
     },
     Variant {
-        name: "whole blocks off",
-        about: "solids drawn sample by sample, not by blocks; the picture must be the same",
-        make: |threads| fast(threads, |on| on.whole_blocks = false),
-        ..WHOLE_FAST
-    },
-    Variant {
-        name: "absent children looked at",
-        about: "absent children are tested, too; the picture must be the same",
-        make: |threads| fast(threads, |on| on.absent_children = false),
-        ..WHOLE_FAST
-    },
-    Variant {
         name: "level of detail off",
         about: "--lod 0: down to the leaves; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
-        ..WHOLE_FAST
-    },
-    Variant {
-        name: "unchanged frame kept",
-        about: "NOT off but on: a viewer draws the frame that it shows, so only colours are written",
-        frames: Frames::Kept,
-        ..WHOLE_FAST
-    },
-    Variant {
-        name: "attributes of all read",
-        about: "attributes of all nodes that the paper's walk fetches; the picture must be the same",
-        frames: Frames::WithAttributesOf(fetched_nodes),
         ..WHOLE_FAST
     },
 ];

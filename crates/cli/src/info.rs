@@ -1,7 +1,5 @@
 //! `info`: the contents of a scene.
 
-use std::collections::HashMap;
-
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -10,8 +8,7 @@ use super::console::Console;
 use super::error::CliError;
 use super::scenes::{self, Scene};
 use super::{batch, far, report, textured};
-use shiftvox::budget::{self, Shortage};
-use shiftvox::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
+use shiftvox::graph::{Graph, Opacity, sixteenths};
 use shiftvox::project::Bounds;
 use shiftvox::scene::{FileKind, Source};
 
@@ -45,7 +42,7 @@ fn of_one(name: &str, args: &InfoArgs, console: &Console) -> Result<Value, CliEr
         Some(FileKind::Tvx) => textured::info(name),
         _ => {
             let scene = scenes::open(name, &args.scene, console)?;
-            Ok(describe(&scene, console))
+            Ok(describe(&scene))
         }
     }
 }
@@ -60,23 +57,13 @@ fn text(mut described: Value, with_levels: bool) -> String {
     report::description(&described)
 }
 
-fn describe(scene: &Scene, console: &Console) -> Value {
+fn describe(scene: &Scene) -> Value {
     let graph = &scene.graph;
     let [low, high] = Bounds::in_file(graph).unwrap_or_default();
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
-    let gains = merge_gains(graph);
-    if let Err(short) = &gains {
-        console.note(format!("{}: without dag_gain: {short}", scene.source));
-    }
-    let gain = |by: usize| gains.as_ref().ok().map(|gains| gains[by]);
-    let levels = levels(graph)
-        .into_iter()
-        .enumerate()
-        .map(|(level, (nodes, in_tree))| {
-            let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
-            json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
-        });
+    let levels = graph.nodes_per_level().into_iter().enumerate();
+    let levels = levels.map(|(level, nodes)| json!({ "level": level, "nodes": nodes }));
     json!({
         "scene": scene.source,
         "format": scene.format,
@@ -91,8 +78,6 @@ fn describe(scene: &Scene, console: &Console) -> Value {
         "levels": levels.collect::<Vec<Value>>(),
         "bytes": graph.bytes(),
         "bytes_per_voxel": graph.bytes() as f64 / graph.voxels.max(1) as f64,
-        "dag_gain": gain(0),
-        "dag_gain_by_shape": gain(1),
         "palette_entries": scene.palette,
         "colors": distinct_leaf_colors(graph),
         "camera": camera.flags(),
@@ -144,40 +129,4 @@ fn distinct_leaf_colors(graph: &Graph) -> usize {
         }
     }
     seen.iter().map(|word| word.count_ones() as usize).sum()
-}
-
-/// Nodes of each level, as stored and as in a tree without shared nodes.
-fn levels(graph: &Graph) -> Vec<(u64, u128)> {
-    let view = graph.view();
-    if graph.is_level_ordered() && graph.links.is_empty() {
-        let nodes = graph.nodes_per_level();
-        return nodes.into_iter().map(|n| (n, u128::from(n))).collect();
-    }
-    let mut current = HashMap::from([(graph.root, 1u128)]);
-    let mut levels = Vec::new();
-    for _ in 0..=graph.depth {
-        if graph.is_empty() || current.is_empty() {
-            break;
-        }
-        let times = current.values();
-        let times = times.fold(0u128, |sum, &n| sum.saturating_add(n));
-        levels.push((current.len() as u64, times));
-        let mut below: HashMap<u32, u128> = HashMap::new();
-        for (&node, &times) in &current {
-            for child in (0..8).filter_map(|octant| view.child(node, octant)) {
-                let sum = below.entry(child).or_default();
-                *sum = sum.saturating_add(times);
-            }
-        }
-        current = below;
-    }
-    levels
-}
-
-const MERGE_BYTES: u64 = 16;
-
-/// Nodes over those left when equal subtrees are merged, with attributes and by shape alone.
-fn merge_gains(graph: &Graph) -> Result<[f64; 2], Shortage> {
-    budget::check("merging", graph.len() as u64 * MERGE_BYTES)?;
-    Ok([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))
 }

@@ -94,9 +94,9 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         .iter()
         .map(|rows| reproduce::table(&title(rows), rows));
     let printed = printed.collect();
-    let panels = tables
+    let charts = tables
         .iter()
-        .filter_map(|rows| reproduce::panel(&title(rows), rows));
-    let results = Results::of_rows("reproduce", fields, &rows, printed, panels.collect());
+        .filter_map(|rows| reproduce::chart(&title(rows), rows));
+    let results = Results::of_rows("reproduce", fields, &rows, printed, charts.collect());
     export::write(&results, &export, console)
 }

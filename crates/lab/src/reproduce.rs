@@ -8,7 +8,7 @@ use crate::bench::{
     BenchError, Candidate, EVERYTHING_ON, Family, Harness, PowerLaw, Subject, TimePlan, measure,
 };
 use crate::model::frame::count_operations;
-use crate::report::plot::{Panel, RowPlot, Series};
+use crate::report::plot::{Chart, RowPlot, Series};
 use crate::report::{Cell, Row, Table};
 use shiftvox::picture::{self, Background, Shading, resolve};
 use shiftvox::project::SetupOptions;
@@ -156,12 +156,14 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
     Table::select(title, rows, COLUMNS).condensed()
 }
 
-/// A plot of the rows of one table: time by pixels (the paper's Figure 5), time by voxels, or how
-/// many times as long a frame takes without a technique.
-pub fn panel(title: &str, rows: &[Row]) -> Option<Panel> {
+/// A plot of the rows of one table: time by pixels (the paper's Figure 5) or by voxels. Of techniques that are switched
+/// off there is none.
+pub fn chart(title: &str, rows: &[Row]) -> Option<Chart> {
     let growing = rows.first()?.text("growing");
-    let has_variants = rows.iter().any(|row| row.text("variant") != EVERYTHING_ON);
-    let mut plot = RowPlot {
+    if rows.iter().any(|row| row.text("variant") != EVERYTHING_ON) {
+        return None;
+    }
+    let plot = RowPlot {
         title,
         x: (&growing, &growing),
         y: ("ms", "ms per frame"),
@@ -170,15 +172,11 @@ pub fn panel(title: &str, rows: &[Row]) -> Option<Panel> {
         front: None,
         level: None,
     };
-    if growing.is_empty() || has_variants {
-        (plot.y, plot.deviation) = (("time_ratio", "time over that with everything on"), None);
-        return Some(plot.bars(rows));
-    }
-    let mut panel = plot.chart(rows)?;
-    if let (Panel::Chart(chart), "pixels") = (&mut panel, growing.as_str()) {
+    let mut chart = plot.chart(rows)?;
+    if growing == "pixels" {
         chart
             .series
             .push(Series::curve("the paper", paper_points()));
     }
-    Some(panel)
+    Some(chart)
 }

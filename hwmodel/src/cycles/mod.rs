@@ -1,8 +1,7 @@
 //! The cycles of a hardware design, and their causes.
 //!
 //! [`simulate`] executes a [`Workload`] turn by turn, in the order of simulated time, and lays its work ([`TurnLog`])
-//! out in cycles. So a record that runs early finds fewer samples drawn than serially, as on the hardware. A
-//! [`Recording`] can replace the workload in some cases.
+//! out in cycles. So a record that runs early finds fewer samples drawn than serially, as on the hardware.
 //!
 //! A design of another kind lists its own stages ([`stages!`](crate::stages)), and uses the memories that it has: a stack,
 //! two caches (`Node`, `Attribute`), banks of on-chip memory (`FillVector`) and an output (`Pixel`). A *record* is whatever
@@ -77,7 +76,6 @@ mod hardware;
 mod memories;
 mod observe;
 mod outer;
-mod recording;
 mod report;
 mod sequential;
 mod simulate;
@@ -93,7 +91,6 @@ pub use hardware::{
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
 pub use outer::{Dram, OuterRequest, RequestLog, RowReport};
-pub use recording::{Recording, Tape, TurnProbe};
 pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,

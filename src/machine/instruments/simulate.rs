@@ -1,8 +1,7 @@
 //! The machine as a workload of the cycle model. The children of a turn go to the scheduler instead of a stack.
 
 use hwmodel::cycles::{
-    self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
-    TurnProbe,
+    self, Child, CycleReport, Hardware, ImageNode, Observer, StackHolds, TurnLog,
 };
 use serde::Serialize;
 
@@ -45,49 +44,23 @@ impl Machine {
         observer: &mut dyn Observer,
     ) -> Result<Simulated, SimulateError> {
         check_hardware(hardware).map_err(SimulateError::Hardware)?;
-        let log = TurnLog::new(hardware);
-        let (simulated, _) = with_cage!(setup, L => {
-            self.simulate_as::<_, L>((graph, setup), frame, hardware, observer, log)
-        })?;
-        Ok(simulated)
+        with_cage!(setup, L => self.simulate_as::<L>((graph, setup), frame, hardware, observer))
     }
 
-    /// Records the turns of a frame, which are the same on every hardware of the organisation. `None`: the recording
-    /// would take more than `most_bytes`, or children lie on the stack. Errors: as [`Self::simulate`].
-    pub fn record_turns(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-        hardware: &Hardware,
-        most_bytes: usize,
-    ) -> Result<Option<Recording>, SimulateError> {
-        if hardware.organisation.stack == StackHolds::Children {
-            return Ok(None);
-        }
-        check_hardware(hardware).map_err(SimulateError::Hardware)?;
-        let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
-        let mut observer = cycles::NoObserver;
-        let (_, (_, tape)) = with_cage!(setup, L => {
-            self.simulate_as::<_, L>((graph, setup), frame, hardware, &mut observer, probes)
-        })?;
-        Ok(tape.finish())
-    }
-
-    fn simulate_as<P: TurnProbe, L: CageCoordinate>(
+    fn simulate_as<L: CageCoordinate>(
         &mut self,
         (graph, setup): (&GraphView<'_>, &FrameSetup),
         frame: &mut Frame,
         hardware: &Hardware,
         observer: &mut dyn Observer,
-        log: P,
-    ) -> Result<(Simulated, P), SimulateError> {
+    ) -> Result<Simulated, SimulateError> {
         let options = MachineOptions {
             organisation: hardware.organisation,
             ..self.options
         };
         let canvas = (self.emptied(setup, frame)?, &mut *frame);
         let ranks = Ranks(Vec::new());
+        let log = TurnLog::new(hardware);
         let state = State::<_, L, _>::new(options, graph, setup, canvas, log, ranks);
         let handed_out = match hardware.hands_out_tiles() {
             true => state.tiles(),
@@ -106,10 +79,10 @@ impl Machine {
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let most_open = steps.most_open;
-        let (mut counts, log, _) = steps.state.finish();
+        let (mut counts, _, _) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
         counts.push(("most_open_tiles", most_open));
-        Ok((Simulated { cycles, counts }, log))
+        Ok(Simulated { cycles, counts })
     }
 }
 
@@ -152,8 +125,8 @@ impl<L> Tile<L> {
     }
 }
 
-struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
-    state: State<'a, P, L, Ranks>,
+struct Steps<'a, L: CageCoordinate> {
+    state: State<'a, TurnLog, L, Ranks>,
     /// Work by the scheduler's number, with its tile.
     waiting: Vec<(Work<L>, usize)>,
     /// Unused numbers of work.
@@ -172,7 +145,7 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
 const FIRST_PLACE: u8 = 0;
 const LAST_PLACE: u8 = 7;
 
-impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
+impl<L: CageCoordinate> Steps<'_, L> {
     fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
         let quad = match &work {
             Work::Tiles(quad) => *quad,
@@ -294,12 +267,11 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     }
 }
 
-impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
+impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
     type Error = EngineError;
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), EngineError> {
         self.begin_tiles(QuadNode::ROOT, children);
-        self.state.dp.probe_mut().ended(None, children);
         self.trap()
     }
 
@@ -309,7 +281,6 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
 
     fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), EngineError> {
         self.begin_tiles(self.handed_out[tile as usize], children);
-        self.state.dp.probe_mut().ended(None, children);
         self.trap()
     }
 
@@ -332,11 +303,10 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
             tile.waiting -= 1;
             self.open -= u64::from(tile.waiting == 0);
         }
-        self.state.dp.probe_mut().ended(Some(item), children);
         self.trap()
     }
 
     fn log(&mut self) -> &mut TurnLog {
-        self.state.dp.probe_mut().turn_log()
+        self.state.dp.probe_mut()
     }
 }

@@ -15,7 +15,7 @@ use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
 use shiftvox_lab::bench::Schedule;
 use shiftvox_lab::quality::{
-    Motion, PixelStyle, QualityPlan, Scene, at_distance, measure, panels, table,
+    Motion, PixelStyle, QualityPlan, Scene, at_distance, charts, measure, table,
 };
 use shiftvox_lab::report::Row;
 use shiftvox_mesh::{Surface, mesh_box};
@@ -171,7 +171,7 @@ pub(super) fn run(args: &QualityArgs, console: &Console) -> Result<(), CliError>
     let title = |rows: &[Row]| format!("{}, {}", rows[0].text("scene"), rows[0].text("size"));
     let pictures = || rows.chunk_by(by_picture);
     let tables = pictures().map(|rows| table(&title(rows), rows)).collect();
-    let panels = pictures().flat_map(panels).collect();
-    let results = Results::of_rows("bench quality", fields, &rows, tables, panels);
+    let charts = pictures().flat_map(charts).collect();
+    let results = Results::of_rows("bench quality", fields, &rows, tables, charts);
     export::write(&results, &args.export, console)
 }

@@ -10,7 +10,7 @@ use crate::experiment::context::Context;
 use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
 use crate::{engines, scenes};
-use shiftvox_lab::bench::{Harness, Scan, Schedule, TimePlan, measure, panels, table};
+use shiftvox_lab::bench::{Harness, Scan, Schedule, TimePlan, charts, measure, table};
 use shiftvox_lab::report::Row;
 
 const DEFAULT_SIDE: u32 = 512;
@@ -99,6 +99,11 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
     if args.rules.overflow.is_some() {
         return Err(CliError::usage("times are measured with --overflow trap"));
     }
+    if args.export.export_svg.is_some() && args.scan.is_none() {
+        return Err(CliError::usage(
+            "--export-svg plots growth: it needs --scan",
+        ));
+    }
     let (sizes, depths) = args.sizes_and_depths()?;
     let sizes: Vec<(u32, u32)> = sizes.into_iter().map(Size::pair).collect();
     let families = engines::families(&args.engines, &args.variants)?;
@@ -132,7 +137,7 @@ pub(super) fn run(args: &TimeArgs, threads: &[usize], console: &Console) -> Resu
         .map(|(name, rows)| table(name, rows))
         .collect();
     let fields = context.json(schedule, &options);
-    let panels = groups.iter().flat_map(|(_, rows)| panels(rows)).collect();
-    let results = Results::of_rows("bench time", fields, &all, tables, panels);
+    let charts = groups.iter().flat_map(|(_, rows)| charts(rows)).collect();
+    let results = Results::of_rows("bench time", fields, &all, tables, charts);
     export::write(&results, &args.export, console)
 }

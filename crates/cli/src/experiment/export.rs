@@ -9,7 +9,7 @@ use crate::console::Console;
 use crate::document::document;
 use crate::error::CliError;
 use shiftvox::whole;
-use shiftvox_lab::report::plot::{self, Panel};
+use shiftvox_lab::report::plot::{self, Chart};
 use shiftvox_lab::report::{Row, Table};
 
 #[derive(Debug, Clone, Args)]
@@ -34,7 +34,7 @@ pub(crate) struct Results {
     /// One row per measurement, for CSV.
     pub(crate) rows: Table,
     pub(crate) tables: Vec<Table>,
-    pub(crate) panels: Vec<Panel>,
+    pub(crate) charts: Vec<Chart>,
 }
 
 impl Results {
@@ -44,14 +44,14 @@ impl Results {
         mut fields: Value,
         rows: &[Row],
         tables: Vec<Table>,
-        panels: Vec<Panel>,
+        charts: Vec<Chart>,
     ) -> Self {
         fields["rows"] = rows.iter().map(Row::json).collect();
         Self {
             document: document(command, fields),
             rows: Table::collect(command, rows),
             tables,
-            panels,
+            charts,
         }
     }
 }
@@ -103,7 +103,7 @@ pub(crate) fn write_files(
     };
     write(&args.export_json, &|| format!("{:#}\n", results.document))?;
     write(&args.export_csv, &|| results.rows.csv())?;
-    write(&args.export_svg, &|| plot::svg(&results.panels))
+    write(&args.export_svg, &|| plot::svg(&results.charts))
 }
 
 pub(crate) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {

@@ -36,6 +36,11 @@ pub(super) fn run(args: &ModelArgs, console: &Console) -> Result<(), CliError> {
     if args.hardware.print_rival {
         return console.data(args.hardware.rival_text()?.trim_end());
     }
+    if args.export.export_svg.is_some() {
+        return Err(CliError::usage(
+            "--export-svg plots explorations: it needs --explore",
+        ));
+    }
     output::check(args)?;
     vectors::check(args)?;
     let hardware = args.hardware()?;

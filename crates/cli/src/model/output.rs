@@ -10,7 +10,7 @@ use crate::experiment::export::{self, Results};
 use crate::{document, report};
 use shiftvox_lab::model::design::LIGHT;
 use shiftvox_lab::model::ray_caster::RAY_CASTER;
-use shiftvox_lab::model::{accelergy, plots, tables};
+use shiftvox_lab::model::{accelergy, tables};
 use shiftvox_lab::report::{Cell, Table, grouped};
 
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
@@ -46,7 +46,7 @@ pub(super) fn write(found: &Found, args: &ModelArgs, console: &Console) -> Resul
     let results = Results {
         rows: tables::figures(&document),
         tables: std::iter::once(summary(found)).chain(tables).collect(),
-        panels: plots::panels(&found.report),
+        charts: Vec::new(),
         document,
     };
     export::write(&results, &args.export, console)

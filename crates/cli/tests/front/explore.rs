@@ -15,15 +15,6 @@ clock_mhz = [200.0, 400.0]
 contexts = { from = 2, to = 4, times = 2 }
 node_cache.bytes = { from = 1024, to = 4096, times = 4 }
 "#;
-/// Where parents lie on the stack, cycles come from turns that were recorded once.
-const STACKED: &str = r#"
-hardware = ["light"]
-[ranges]
-independence = ["none", "image", "both"]
-lanes = [1, 3]
-organisation.tile_levels = [0, 2]
-stack.entries = [1, 64]
-"#;
 
 const MODEL: &str = "model gen:menger,depth=3 --size 40";
 
@@ -127,11 +118,6 @@ fn points_have_the_figures_of_model() {
     let on_front = front["front"].as_array().unwrap();
     assert!(!on_front.is_empty() && on_front.iter().all(|of| of["meets_clock"] == true));
     assert!(number(&front["too_slow_for_their_clock"]) > 0.0);
-    let space = folder(STACKED);
-    let points = lines(&explored(&space, ""), "point");
-    assert_eq!(points.len(), 24);
-    let some: Vec<Value> = points.iter().step_by(5).cloned().collect();
-    assert_as_alone(&space, &some);
 }
 
 #[test]

@@ -41,7 +41,7 @@ const LINES: [&str; 30] = [
     "info gen:menger,depth=3 @ball.vxg @knot.far @knot.tvx --json",
     "turntable gen:menger,depth=3 -o ##.png --frames 4 --size 200 --aov normal --force",
     "triangles @knot.obj -o tri.png --size 200 --aov depth --force",
-    "compare @a.png @b.png --threshold ssim=0 --diff d.png --force",
+    "compare @a.png @b.png --threshold psnr_srgb=0 --diff d.png --force",
     "model gen:menger,depth=2 --size 48 --json",
     "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
     "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-json s.json --force",

@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use hwmodel::cost::{CostTable, Goal};
 use serde_json::Value;
 
 use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS};
@@ -113,52 +112,6 @@ fn small_pictures_have_room() {
         let view = format!("gen:menger,depth=1 --size {size} --view iso");
         draws(machine, &parameters, &view);
     }
-}
-
-/// Operations of a list such as `3 add (33) 7 add`: times, name, and bits, by default 32.
-pub(crate) fn operations(list: &str) -> Vec<(f64, &str, u32)> {
-    let mut operations = Vec::new();
-    let mut words = list.split(' ').peekable();
-    while let (Some(times), Some(name)) = (words.next(), words.next()) {
-        let width = words.next_if(|word| word.starts_with('('));
-        let bits = width.map_or(32, |word| word[1..word.len() - 1].parse().unwrap());
-        // The tables have one price for both bitwise operations.
-        let name = if name == "or" { "and" } else { name };
-        operations.push((times.parse().unwrap(), name, bits));
-    }
-    operations
-}
-
-/// The predictions of blocks from before synthesis are the table's areas of their operations. Those of machines were made by
-/// an earlier model.
-#[test]
-fn the_predictions_stand() {
-    let table = CostTable::load_shipped().unwrap();
-    let of_operations = |list: &str| {
-        let areas = operations(list)
-            .into_iter()
-            .map(|(times, operation, bits)| {
-                times * table.area(operation, bits, Goal::Area).unwrap().value
-            });
-        areas.sum::<f64>()
-    };
-    let mut count = 0;
-    for file in ["predictions.csv", "predictions_exact.csv"] {
-        let text = fs::read_to_string(rtl().join(file)).unwrap();
-        for row in text.lines().filter(|row| !row.starts_with('#')).skip(1) {
-            let fields: Vec<&str> = row.split(',').collect();
-            if fields[0].starts_with("machine") || fields[1] == "none" {
-                continue;
-            }
-            let (said, predicted) = (of_operations(fields[1]), fields[2]);
-            let predicted: f64 = predicted.parse().unwrap();
-            // Rows are rounded.
-            let rounding = 0.1 + 2e-5 * predicted;
-            assert!((said - predicted).abs() <= rounding, "{row}: {said}");
-            count += 1;
-        }
-    }
-    assert_eq!(count, 39);
 }
 
 /// Predictions of whole machines without memories are within 15 % of their syntheses, and bits of registers within 5 %. The

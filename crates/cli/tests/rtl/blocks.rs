@@ -6,41 +6,39 @@ use std::path::PathBuf;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::tools::{SHIFTVOX, each, rtl, run, try_run};
+use super::tools::{SHIFTVOX, each, rtl, run};
 
 /// A view from outside, where records change to screen space.
-pub(crate) const OUTSIDE: &str = "gen:menger,depth=3 --size 48";
+const OUTSIDE: &str = "gen:menger,depth=3 --size 48";
 /// A view from within, where they do not.
-pub(crate) const WITHIN: &str = "gen:menger,depth=3 --size 48 --eye 13.4,12.7,3.5 --target 20,14,9";
-/// Boxes across the picture's edges.
-pub(crate) const NEAR: &str = "gen:menger,depth=3 --size 48 --zoom 6";
+const WITHIN: &str = "gen:menger,depth=3 --size 48 --eye 13.4,12.7,3.5 --target 20,14,9";
 
 /// Rules of stage A, and of stages B and C.
-pub(crate) const PAPER: &str = "--paper";
-pub(crate) const EXACT: &str = "--coverage exact --cage frame";
+const PAPER: &str = "--paper";
+const EXACT: &str = "--coverage exact --cage frame";
 /// Rules with margins, whose blocks stage A shares.
-pub(crate) const WIDENED: &str = "--coverage any --cage corners --tolerance 0.125";
-pub(crate) const CENTRES: &str = "--coverage center --cage corners --tolerance 0.125";
+const WIDENED: &str = "--coverage any --cage corners --tolerance 0.125";
+const CENTRES: &str = "--coverage center --cage corners --tolerance 0.125";
 
 /// The folders of blocks with corners and with frames. The first that has a module counts.
-pub(crate) const CORNERS: &str = "blocks";
-pub(crate) const FRAMES: &str = "blocks_exact blocks";
+const CORNERS: &str = "blocks";
+const FRAMES: &str = "blocks_exact blocks";
 
 /// Vectors of a view.
-pub(crate) struct Rows {
+struct Rows {
     shelter: TempDir,
     /// Descriptions of the blocks with rows.
-    pub(crate) blocks: Vec<Value>,
+    blocks: Vec<Value>,
     /// The word's widths, as definitions.
     defines: String,
 }
 
-pub(crate) fn name(block: &Value) -> &str {
+fn name(block: &Value) -> &str {
     block["name"].as_str().unwrap()
 }
 
 impl Rows {
-    pub(crate) fn new(rules: &str, view: &str, bits: u32, records: u32) -> Self {
+    fn new(rules: &str, view: &str, bits: u32, records: u32) -> Self {
         let shelter = tempfile::tempdir().unwrap();
         let line = format!("{SHIFTVOX} model {view} {rules} --bits {bits} --vectors rows");
         run(
@@ -62,13 +60,13 @@ impl Rows {
         }
     }
 
-    pub(crate) fn folder(&self) -> PathBuf {
+    fn folder(&self) -> PathBuf {
         self.shelter.path().join("rows")
     }
 }
 
 /// A testbench of a block: `rtl/tb/rows.vh` with its macros.
-pub(crate) fn testbench(block: &Value) -> String {
+fn testbench(block: &Value) -> String {
     let name = name(block);
     let mut connections = Vec::new();
     for (side, wire) in [("in", "row"), ("out", "result")] {
@@ -91,24 +89,10 @@ pub(crate) fn testbench(block: &Value) -> String {
     )
 }
 
-/// Runs blocks through their first rows, with modules from the first folder that has them. Returns the blocks with wrong
-/// rows, or why the modules are not Verilog.
-fn wrong_blocks<'r>(
-    rows: &'r Rows,
-    folders: &str,
-    is_run: impl Fn(&str) -> bool,
-    most: u64,
-) -> Result<Vec<&'r str>, String> {
-    let blocks: Vec<&Value> = rows
-        .blocks
-        .iter()
-        .filter(|block| is_run(name(block)))
-        .collect();
-    if blocks.is_empty() {
-        return Ok(Vec::new());
-    }
-    let mut source = format!("`define MOST {most}\n");
-    source.extend(blocks.iter().map(|block| testbench(block)));
+/// Runs all blocks through their rows, with modules from the first folder that has them. Returns the blocks with wrong
+/// rows.
+fn wrong_blocks<'r>(rows: &'r Rows, folders: &str) -> Vec<&'r str> {
+    let source: String = rows.blocks.iter().map(testbench).collect();
     let shelter = tempfile::tempdir().unwrap();
     let [file, compiled] = ["rows.v", "rows.vvp"].map(|name| shelter.path().join(name));
     fs::write(&file, source).unwrap();
@@ -117,8 +101,8 @@ fn wrong_blocks<'r>(
         let folder = rtl.join(folder);
         format!(" -y {0} -I {0}", folder.display())
     });
-    let tops: String = blocks
-        .iter()
+    let tops = rows.blocks.iter();
+    let tops: String = tops
         .map(|block| format!(" -s {}_tb", name(block)))
         .collect();
     let [file, compiled] = [file, compiled].map(|path| path.display().to_string());
@@ -127,41 +111,21 @@ fn wrong_blocks<'r>(
         rtl.display(),
         rows.defines
     );
-    try_run(&rows.folder(), &format!("{line}{folders}{tops} {file}"))?;
-    let printed = try_run(&rows.folder(), &format!("vvp -n {compiled}"))?;
+    run(&rows.folder(), &format!("{line}{folders}{tops} {file}"));
+    let printed = run(&rows.folder(), &format!("vvp -n {compiled}"));
     let is_wrong = |name: &str, rows: u64| {
         let mut lines = printed.lines();
         let line = lines.find_map(|line| line.strip_prefix(&format!("{name}_tb: ")));
         let (wrong, all) = line.and_then(|line| line.split_once(" of ")).unwrap();
-        assert_eq!(all, rows.min(most).to_string(), "{name}: {printed}");
+        assert_eq!(all, rows.to_string(), "{name}: {printed}");
         wrong != "0"
     };
-    let names = blocks
-        .into_iter()
+    let names = rows
+        .blocks
+        .iter()
         .map(|block| (name(block), block["rows"].as_u64().unwrap()));
     let wrong = names.filter(|&(name, rows)| is_wrong(name, rows));
-    Ok(wrong.map(|(name, _)| name).collect())
-}
-
-/// Whether rows detect another text of a module. `None`: the text is not Verilog.
-pub(crate) fn is_detected(all: &[Rows], folders: &str, module: &str, text: &str) -> Option<bool> {
-    let shelter = tempfile::tempdir().unwrap();
-    fs::write(shelter.path().join(format!("{module}.v")), text).unwrap();
-    let folders = format!("{} {folders}", shelter.path().display());
-    // The blocks that contain the module.
-    let blocks = match module {
-        "midpoints" | "child_vertices" => "vertex_pool",
-        "plane_sum" | "moved_planes" => "cube_planes child_planes",
-        "divide_step" => "to_screen_divide",
-        other => other,
-    };
-    for rows in all {
-        let is_run = |name: &str| blocks.split(' ').any(|of| of == name);
-        if !wrong_blocks(rows, &folders, is_run, 3000).ok()?.is_empty() {
-            return Some(true);
-        }
-    }
-    Some(false)
+    wrong.map(|(name, _)| name).collect()
 }
 
 #[test]
@@ -178,7 +142,7 @@ fn every_row_of_every_block_in_two_formats() {
             for (rules, folders) in settings {
                 let rows = Rows::new(rules, view, bits, 60);
                 assert!(rows.blocks.len() >= 22, "{bits} {rules} {view}");
-                let wrong = wrong_blocks(&rows, folders, |_| true, u64::MAX >> 33).unwrap();
+                let wrong = wrong_blocks(&rows, folders);
                 assert!(wrong.is_empty(), "{bits} {rules} {view}: {wrong:?}");
             }
         }

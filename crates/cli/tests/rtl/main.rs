@@ -6,11 +6,9 @@
 
 mod area;
 mod blocks;
-mod energy;
 mod faults;
 mod frames;
 mod machines;
-mod mutants;
 mod simulate;
 mod tools;
 mod views;

@@ -15,22 +15,16 @@ pub(crate) fn each(words: &str, text: impl Fn(&str) -> String) -> String {
     words.split_whitespace().map(text).collect()
 }
 
-/// Runs a command line in a folder and returns its output, or its errors.
-pub(crate) fn try_run(folder: &Path, line: &str) -> Result<String, String> {
+/// Runs a command line in a folder and returns its output.
+pub(crate) fn run(folder: &Path, line: &str) -> String {
     let mut words = line.split_whitespace();
     let mut command = Command::new(words.next().unwrap());
     let ran = command.args(words).current_dir(folder).output();
     let needed = "apt-get install iverilog verilator yosys";
     let ran = ran.unwrap_or_else(|error| panic!("{line}: {error}; {needed}"));
     let text = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
-    match ran.status.success() {
-        true => Ok(text(&ran.stdout)),
-        false => Err(format!("{line}: {}", text(&ran.stderr))),
-    }
-}
-
-pub(crate) fn run(folder: &Path, line: &str) -> String {
-    try_run(folder, line).unwrap_or_else(|error| panic!("{error}"))
+    assert!(ran.status.success(), "{line}: {}", text(&ran.stderr));
+    text(&ran.stdout)
 }
 
 /// Compiles a testbench of `rtl/tb` in Icarus Verilog, with the modules of these folders and the parameters `NAME=value`.

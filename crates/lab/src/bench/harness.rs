@@ -15,7 +15,7 @@ use crate::report::{Cell, Row};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::picture::ResolveError;
-use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
+use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
@@ -39,14 +39,7 @@ pub(super) struct Contender<'c> {
     pub(super) graph: &'c Graph,
     pub(super) setup: FrameSetup,
     pub(super) threads: usize,
-    pub(super) drawer: Drawer<'c>,
-    /// Nodes whose attributes are read besides those of visible voxels.
-    pub(super) attributes: Vec<u32>,
-}
-
-pub(super) enum Drawer<'c> {
-    Engine(Box<dyn Engine + Send>),
-    Viewer(Box<Viewer<'c>>),
+    pub(super) engine: Box<dyn Engine + Send>,
 }
 
 impl Contender<'_> {
@@ -207,18 +200,9 @@ impl<'p> Harness<'p> {
     fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawer = &mut contender.drawer;
-        let stats = self.in_pool(contender.threads, || match drawer {
-            Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
-            Drawer::Viewer(viewer) => {
-                viewer.render(setup, &[])?;
-                // Later frames are timed, so their counters are those of a second one.
-                let stats = viewer.render(setup, &[])?;
-                if let Some(shown) = viewer.frame() {
-                    frame.clone_from(shown);
-                }
-                Ok(stats)
-            }
+        let engine = &mut contender.engine;
+        let stats = self.in_pool(contender.threads, || {
+            engine.render(&graph, setup, &mut frame)
         });
         let stats = stats.map_err(|source| contender.failed(source))?;
         Ok((frame, stats))
@@ -230,36 +214,17 @@ impl<'p> Harness<'p> {
         let size = (setup.width, setup.height);
         let mut colors = self.buffers.remove(&size);
         let colors_of = colors.get_or_insert_with(|| Colors::new(size.0, size.1));
-        let (drawer, attributes) = (&mut contender.drawer, &contender.attributes);
+        let engine = &mut contender.engine;
         let (elapsed, drawn) = self.in_pool(contender.threads, || {
             let clock = Clock::start();
-            let drawn = match drawer {
-                Drawer::Engine(engine) => {
-                    engine.draw_colors(&graph.view(), &graph.color, setup, colors_of)
-                }
-                Drawer::Viewer(viewer) => viewer.render(setup, &[]).map(drop),
-            };
-            if let Drawer::Viewer(viewer) = drawer
-                && let Some(frame) = viewer.frame()
-            {
-                colors_of.take(&graph.color, frame);
-            }
+            let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, colors_of);
             black_box(colors_of.words.as_slice());
-            black_box(sum_of_attributes(graph, attributes));
             (clock.elapsed(), drawn)
         });
         self.buffers.extend(colors.map(|colors| (size, colors)));
         drawn.map_err(|source| contender.failed(source))?;
         Ok(elapsed)
     }
-}
-
-fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
-    let of = |&node: &u32| {
-        let ([red, ..], normal) = (graph.color_of(node), graph.normal_of(node));
-        u64::from(red) + u64::from(normal.0)
-    };
-    nodes.iter().map(of).sum()
 }
 
 #[cfg(test)]

@@ -9,11 +9,11 @@ mod scan;
 mod statistics;
 mod time;
 
-pub use candidate::{Candidate, Family, Frames, MakeEngine, Variant, fetched_nodes};
+pub use candidate::{Candidate, Family, MakeEngine, Variant};
 pub(crate) use clock::Clock;
 pub use harness::{BenchError, Harness, Schedule};
 pub(crate) use harness::{interleave, pool};
 pub(crate) use power_law::PowerLaw;
 pub use scan::Scan;
 pub use statistics::Summary;
-pub use time::{EVERYTHING_ON, Subject, TimePlan, measure, panels, table};
+pub use time::{EVERYTHING_ON, Subject, TimePlan, charts, measure, table};

@@ -2,15 +2,15 @@
 
 use std::collections::HashMap;
 
-use super::candidate::{Candidate, Family, Frames, MakeEngine};
-use super::harness::{BenchError, Contender, Drawer, Harness};
+use super::candidate::{Candidate, Family};
+use super::harness::{BenchError, Contender, Harness};
 use super::power_law::PowerLaw;
 use crate::measure::{CoverageError, count_differing};
-use crate::report::plot::{Panel, RowPlot};
+use crate::report::plot::{Chart, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::project::{Camera, Contents, FrameSetup, SetupOptions, Viewer};
+use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 
 /// The variant of an engine with all of its techniques.
 pub const EVERYTHING_ON: &str = "everything on";
@@ -74,18 +74,22 @@ pub fn measure(
                 for variant in whole.chain(family.variants.iter().map(Some)) {
                     let mut options = plan.options;
                     let whole = &family.whole;
-                    let (name, about, make, frames) = match variant {
-                        None => (EVERYTHING_ON, whole.about, whole.make, Frames::Drawn),
+                    let (name, about, make) = match variant {
+                        None => (EVERYTHING_ON, whole.about, whole.make),
                         Some(variant) => {
                             (variant.adjust)(&mut options);
-                            (variant.name, variant.about, variant.make, variant.frames)
+                            (variant.name, variant.about, variant.make)
                         }
                     };
                     let setup = subject.setup(size, &options)?;
                     for &threads in threads {
-                        let who = format!("{}, {}, {name}", subject.name, family.whole.name);
-                        let setup = setup.clone();
-                        contenders.push(contender(who, subject, setup, threads, make, frames)?);
+                        contenders.push(Contender {
+                            name: format!("{}, {}, {name}", subject.name, family.whole.name),
+                            graph: &subject.graph,
+                            setup: setup.clone(),
+                            threads,
+                            engine: make(threads),
+                        });
                         let mut row = head(subject, size, whole, name, threads);
                         row.put("about", about);
                         rows.push(row);
@@ -110,7 +114,7 @@ pub fn measure(
         row.put("covered", error.covered);
     })?;
     let mut whole_ms = HashMap::new();
-    for ((row, (times, counters)), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
+    for (row, (times, counters)) in rows.iter_mut().zip(measured) {
         times.put(row);
         let ms = times.best().median_ms;
         let alike = ["scene", "size", "engine", "threads"].map(|name| row.text(name));
@@ -127,9 +131,6 @@ pub fn measure(
             if *row.get(name) == Cell::None {
                 row.put(name, count);
             }
-        }
-        if !contender.attributes.is_empty() {
-            row.put("attributes_read", contender.attributes.len() as u64);
         }
     }
     if plan.sizes.len() > 1 {
@@ -168,40 +169,6 @@ fn head(
     row.put("contender", contender);
     row.put("work_unit", whole.work);
     row
-}
-
-fn contender(
-    name: String,
-    subject: &Subject,
-    setup: FrameSetup,
-    threads: usize,
-    make: MakeEngine,
-    frames: Frames,
-) -> Result<Contender<'_>, BenchError> {
-    let (graph, engine) = (&subject.graph, make(threads));
-    let mut attributes = Vec::new();
-    let drawer = match frames {
-        Frames::Kept => {
-            let viewer = Viewer::new(graph.view(), engine, Contents::Voxels);
-            Drawer::Viewer(Box::new(viewer))
-        }
-        Frames::Drawn => Drawer::Engine(engine),
-        Frames::WithAttributesOf(fetched) => {
-            attributes = fetched(&graph.view(), &setup).map_err(|source| BenchError::Engine {
-                who: name.clone(),
-                source,
-            })?;
-            Drawer::Engine(engine)
-        }
-    };
-    Ok(Contender {
-        name,
-        graph,
-        setup,
-        threads,
-        drawer,
-        attributes,
-    })
 }
 
 fn picture_of(
@@ -246,13 +213,12 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
     Table::select(title, rows, COLUMNS).condensed()
 }
 
-/// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;
-/// other measurements are bars.
-pub fn panels(rows: &[Row]) -> Vec<Panel> {
+/// Plots of scans with error bars, one per scene or per kind of scene whose depth varies.
+pub fn charts(rows: &[Row]) -> Vec<Chart> {
     let is_one_plot = |a: &Row, b: &Row| {
         a.get("scene") == b.get("scene") || *a.get("growing") == Cell::from("voxels")
     };
-    let panel = |rows: &[Row]| {
+    let chart = |rows: &[Row]| {
         let growing = rows.first()?.text("growing");
         let title = match growing.as_str() {
             "voxels" => rows[0].text("size"),
@@ -266,12 +232,9 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
             deviation: Some("deviation_ms"),
             ..RowPlot::default()
         };
-        match growing.is_empty() {
-            true => Some(plot.bars(rows)),
-            false => plot.chart(rows),
-        }
+        plot.chart(rows)
     };
-    rows.chunk_by(is_one_plot).filter_map(panel).collect()
+    rows.chunk_by(is_one_plot).filter_map(chart).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Colour error between two pictures.
 
-use super::ssim::ssim;
 use shiftvox::picture::Linear;
 
 /// Colours of a picture as the metrics take them: size and sRGB with alpha.
@@ -31,8 +30,6 @@ pub struct ColorError {
     pub mse_linear: f64,
     /// `-10 log10(mse_linear)`, decibel; infinite for equal pictures.
     pub psnr_linear: f64,
-    /// Structural similarity of the luma, 1 for equal pictures.
-    pub ssim: f64,
 }
 
 impl ColorError {
@@ -75,7 +72,6 @@ impl ColorError {
             psnr_srgb: decibel(mse_srgb),
             mse_linear,
             psnr_linear: decibel(mse_linear),
-            ssim: ssim(a.0 as usize, a.1 as usize, &luma(a.2), &luma(b.2)),
         })
     }
 }
@@ -107,16 +103,6 @@ pub(super) fn on_black([r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
     [r, g, b].map(|c| ((u32::from(c) * u32::from(alpha) + 127) / 255) as u8)
 }
 
-/// Luma (Rec. 709 weights on sRGB values), 0..=255.
-fn luma(rgba: &[[u8; 4]]) -> Vec<f64> {
-    rgba.iter()
-        .map(|&pixel| {
-            let [r, g, b] = on_black(pixel).map(f64::from);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,7 +123,6 @@ mod tests {
             // -10 log10(0.04 / 12)
             (error.psnr_srgb, 24.771_212_547, 1e-8),
             (error.mse_linear, linear, 1e-3 * linear),
-            (error.ssim, 0.5, 0.4999),
         ] {
             assert!((found - expected).abs() < off, "{found}, {expected}");
         }

@@ -230,7 +230,7 @@ fn features(size: (usize, usize), luma: &[f64]) -> Vec<[f64; 2]> {
     edges.into_iter().zip(points).map(|(e, p)| [e, p]).collect()
 }
 
-pub(super) fn filtered(
+fn filtered(
     (width, height): (usize, usize),
     plane: &[f64],
     across: &[f64],

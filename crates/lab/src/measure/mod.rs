@@ -5,7 +5,6 @@ mod coverage;
 mod flicker;
 mod flip;
 mod share;
-mod ssim;
 
 pub use color::{ColorError, Colors, SizeError, difference};
 pub use coverage::{CoverageError, count_differing};

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{CycleReport, Hardware, Observer, Organisation, Recording};
+use hwmodel::cycles::{Hardware, Observer, Organisation};
 use hwmodel::memory::{PIXEL_BITS, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
@@ -136,37 +136,6 @@ pub(super) fn with_records(
     let mut hardware = hardware.clone();
     hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
     hardware
-}
-
-/// Records a frame's turns where they do not depend on the hardware, but for its organisation, and take no
-/// more than `most_bytes`. With them, the picture.
-pub fn record_turns(
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    organisation: Organisation,
-    overflow: Overflow,
-    most_bytes: usize,
-) -> Result<Option<(Frame, Recording)>, ModelError> {
-    let setup = &*in_words(setup, organisation);
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    // One that lets every frame through.
-    let mut hardware = Hardware::preset("tiny")?;
-    hardware.organisation = organisation;
-    let mut machine = machine(overflow, organisation);
-    let turns = machine.record_turns(graph, setup, &mut frame, &hardware, most_bytes)?;
-    Ok(turns.map(|turns| (frame, turns)))
-}
-
-/// The cycles of a frame whose turns are recorded, as from [`simulate`], on hardware that is not sequential.
-pub fn replay(
-    turns: &Recording,
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-    hardware: &Hardware,
-) -> Result<CycleReport, ModelError> {
-    let setup = &*in_words(setup, hardware.organisation);
-    let hardware = with_records(graph, setup, hardware);
-    Ok(turns.simulate::<EngineError>(&hardware)?)
 }
 
 /// The view against which errors are measured: 64 bits, the exact rule.

@@ -16,7 +16,6 @@ pub mod design;
 pub mod explore;
 pub mod fill_bits;
 pub mod frame;
-pub mod plots;
 pub mod ray_caster;
 pub mod record;
 pub mod report;

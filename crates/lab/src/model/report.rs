@@ -6,7 +6,6 @@ use hwmodel::cost::Technology;
 use hwmodel::count::{Accesses, Counter, OpCount};
 use hwmodel::cycles::Hardware;
 use hwmodel::memory::{RecordKind, Widths};
-use hwmodel::shifts::ShiftSite;
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -38,9 +37,8 @@ pub struct Report {
     numbers: Vec<NumberWidths>,
     counters: BTreeMap<&'static str, u64>,
     levels: Vec<Value>,
-    pub(super) operations: Vec<OpCount>,
+    operations: Vec<OpCount>,
     operations_by_stage: Vec<Value>,
-    shifts: Vec<ShiftSite>,
     memories: Vec<Value>,
     /// Of all stacks.
     pub stack_bits: u64,
@@ -117,7 +115,6 @@ impl Report {
             levels: levels(counter),
             operations: counter.cells().collect(),
             operations_by_stage: operations_by_stage(counter),
-            shifts: counted.shifts.sites(),
             memories: memories(counted, &frame::widths(setup, graph, &hardware)),
             stack_bits: cost::stack_bits(&hardware, counted.record_bits()),
             fill_vector_bits: fill_bits::fill_store_bits(setup, &hardware),

@@ -53,7 +53,7 @@ pub const SHORT: [TableSpec; 5] = [
 ];
 
 /// Further tables, with `-v`.
-pub const LONG: [TableSpec; 9] = [
+pub const LONG: [TableSpec; 8] = [
     TableSpec {
         title: "By octree level",
         rows: "levels",
@@ -78,11 +78,6 @@ pub const LONG: [TableSpec; 9] = [
         title: "Units against the clock",
         rows: "clock.units",
         columns: "stage class bits=width delay_ns=delay_ps:1e-3:2 depth depth_needed rows source",
-    },
-    TableSpec {
-        title: "Source lines that shift: wires, or a shifter",
-        rows: "shifts",
-        columns: "site stage bits times least most kind",
     },
     TableSpec {
         title: "Energy of the light hardware, pJ",

@@ -10,7 +10,7 @@ use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles
 use super::voxels::PixelStyle;
 use crate::bench::{BenchError, Clock, Schedule, interleave, pool};
 use crate::measure::{CoverageError, Light, count_elsewhere, flicker, light_of};
-use crate::report::plot::{Panel, RowPlot};
+use crate::report::plot::{Chart, RowPlot};
 use crate::report::{Cell, Row, Table};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress, Silent};
@@ -354,19 +354,19 @@ fn race(
 
 pub fn table(title: &str, rows: &[Row]) -> Table {
     const COLUMNS: &str = "method ms work psnr flip bias_percent flicker_turntable flicker_dolly flicker_pan extra \
-        missing elsewhere read_bytes build_ms ahead beaten_by ssim remark refused";
+        missing elsewhere read_bytes build_ms ahead beaten_by remark refused";
     Table::select(title, rows, COLUMNS).condensed()
 }
 
 /// Plots of the rows of one scene and camera: time and machine-independent work against errors and
 /// flicker.
-pub fn panels(rows: &[Row]) -> Vec<Panel> {
+pub fn charts(rows: &[Row]) -> Vec<Chart> {
     let Some(first) = rows.first() else {
         return Vec::new();
     };
     let title = format!("{}, {}", first.text("scene"), first.text("size"));
     let floor = rows.iter().find(|row| row.text("method") == NOISE_FLOOR);
-    let mut panels = Vec::new();
+    let mut charts = Vec::new();
     for y in [
         (
             "rms_linear",
@@ -395,10 +395,10 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
                 level: level.map(|at| (at, NOISE_FLOOR)),
                 deviation: None,
             };
-            panels.extend(plot.chart(rows));
+            charts.extend(plot.chart(rows));
         }
     }
-    panels
+    charts
 }
 
 #[cfg(test)]

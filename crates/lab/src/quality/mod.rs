@@ -14,7 +14,7 @@ mod reference;
 mod voxels;
 
 pub use families::{Triangles, far, hybrid, textured, triangles};
-pub use measure::{QualityPlan, Scene, measure, panels, table};
+pub use measure::{QualityPlan, Scene, charts, measure, table};
 pub use method::{Method, Refused};
 pub use motion::{Motion, at_distance};
 pub use voxels::{PixelStyle, voxel_method};

@@ -10,8 +10,6 @@ use hwmodel::memory::RecordBits;
 use hwmodel::{Format, OpClass, Stage};
 use serde::{Deserialize, Serialize};
 
-use super::RayOrder;
-
 hwmodel::stages! {
     /// The stages of a ray, in the order of its work.
     pub enum RayStage {
@@ -33,7 +31,6 @@ hwmodel::stages! {
 pub struct Rival {
     pub name: String,
     pub bits: u32,
-    pub order: RayOrder,
     pub contexts: u32,
     #[serde(default)]
     pub wires: Vec<OpClass>,

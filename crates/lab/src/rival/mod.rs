@@ -24,7 +24,6 @@ mod view;
 mod workload;
 
 pub use description::{RayStage, Rival, RivalStack};
-pub use order::RayOrder;
 pub use workload::{Cast, cast};
 
 /// Bits of a counter of levels, as in the machine.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use hwmodel::cycles::Hardware;
 use hwmodel::{Memory, OpClass, Stage};
 
-use super::{Cast, RayOrder, RayStage, Rival, cast};
+use super::{Cast, RayStage, Rival, cast};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Silent};
@@ -82,35 +82,20 @@ fn it_sees_what_the_oracle_sees() {
 
 /// Every setting that is not about numbers leaves the picture as it is.
 #[test]
-fn the_picture_does_not_depend_on_order_buffer_or_nodes() {
+fn the_picture_does_not_depend_on_contexts_buffer_or_nodes() {
     let (graph, setup) = view("terrain,depth=6", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3], 96);
     let shipped = Rival::shipped();
     let scene = (&graph, &setup);
     let first = cast_with(scene, &shipped, "light");
     let reads = |of: &Cast| of.counter.accesses_by(|cell| cell.memory)[&Memory::Node].reads;
+    let with = |contexts, node_buffer| Rival {
+        contexts,
+        node_buffer,
+        ..shipped.clone()
+    };
     for (rival, design) in [
-        (
-            Rival {
-                order: RayOrder::Rows,
-                ..shipped.clone()
-            },
-            "light",
-        ),
-        (
-            Rival {
-                order: RayOrder::Tiles,
-                contexts: 3,
-                ..shipped.clone()
-            },
-            "light",
-        ),
-        (
-            Rival {
-                node_buffer: None,
-                ..shipped.clone()
-            },
-            "light",
-        ),
+        (with(3, shipped.node_buffer), "light"),
+        (with(shipped.contexts, None), "light"),
         (shipped.clone(), "paper"),
     ] {
         let found = cast_with(scene, &rival, design);
@@ -165,49 +150,24 @@ fn the_work_of_a_ray_by_hand() {
     assert_eq!(found.cycles.pixels, 1);
 }
 
+/// A change of the description, and a part of the message.
+const WRONG: &str = "\
+bits = 32 => bits = 7 | bits: a word has 16 to 64 bits, not 7
+contexts = 4 => contexts = 0 | contexts is 0; it must be 1 to 64
+line_bytes = 8 => line_bytes = 24 | node_buffer.line_bytes is 24; it must be a power of two
+entries = 24 => entries = 0 | a ray has 1 to 32 entries
+entry_bytes = 8 => entry_bytes = 1 | node_buffer.entry_bytes is 1; it must be 8, as in the node cache
+line_bytes = 8 => line_bytes = 128 | node_buffer.line_bytes is 128; it must be at most 64
+latency = 0, interval = 1, width = 48 => latency = 0, interval = 0, width = 48 | interval is 0";
+
 #[test]
 fn wrong_descriptions_are_refused() {
-    let with = |from: &str, to: &str| {
+    for row in WRONG.lines() {
+        let (change, part) = row.split_once(" | ").unwrap();
+        let (from, to) = change.split_once(" => ").unwrap();
         assert!(Rival::SHIPPED.contains(from));
-        Rival::from_toml(&Rival::SHIPPED.replacen(from, to, 1))
-            .unwrap_err()
-            .to_string()
-    };
-    for (from, to, says) in [
-        (
-            "bits = 32 ",
-            "bits = 7 ",
-            "bits: a word has 16 to 64 bits, not 7",
-        ),
-        ("\"morton\"", "\"hilbert\"", "unknown variant `hilbert`"),
-        (
-            "contexts = 4 ",
-            "contexts = 0 ",
-            "contexts is 0; it must be 1 to 64",
-        ),
-        (
-            "line_bytes = 8 ",
-            "line_bytes = 24 ",
-            "node_buffer.line_bytes is 24; it must be a power of two",
-        ),
-        ("entries = 24 ", "entries = 0 ", "a ray has 1 to 32 entries"),
-        (
-            "entry_bytes = 8 ",
-            "entry_bytes = 1 ",
-            "node_buffer.entry_bytes is 1; it must be 8, as in the node cache",
-        ),
-        (
-            "line_bytes = 8 ",
-            "line_bytes = 128 ",
-            "node_buffer.line_bytes is 128; it must be at most 64",
-        ),
-        (
-            "latency = 0, interval = 1, width = 48",
-            "latency = 0, interval = 0, width = 48",
-            "interval is 0",
-        ),
-    ] {
-        let error = with(from, to);
-        assert!(error.contains(says), "{error}");
+        let refused = Rival::from_toml(&Rival::SHIPPED.replacen(from, to, 1));
+        let error = refused.unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
     }
 }

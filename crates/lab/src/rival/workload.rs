@@ -9,7 +9,7 @@ use hwmodel::{Datapath, Format, Memory, OpClass, Overflow, WideWord, Word};
 
 use super::ray::Ray;
 use super::view::View;
-use super::{LEVEL_BITS, RayStage, Rival};
+use super::{LEVEL_BITS, RayStage, Rival, order};
 use crate::model::ModelError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView, NodeLayout};
@@ -57,10 +57,7 @@ pub fn cast(
     let probes = (TurnLog::new(hardware), (Counter::new(), ShiftProbe::new()));
     let graph = graph.view();
     let organisation = hardware.organisation;
-    let mut samples = Vec::new();
-    rival
-        .order
-        .for_each(setup.width, setup.height, |i, j| samples.push((i, j)));
+    let samples: Vec<(u32, u32)> = order::samples(setup.width, setup.height).collect();
     let steps: BTreeSet<(i64, i64)> = samples
         .windows(2)
         .map(|pair| {

@@ -1,4 +1,4 @@
-//! The laboratory: bounds, stress, figures, test vectors, vertex errors.
+//! The laboratory: bounds, stress, figures, test vectors.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bounds;
@@ -9,4 +9,3 @@ mod figures;
 mod scenes;
 mod stress;
 mod vectors;
-mod vertex_error;

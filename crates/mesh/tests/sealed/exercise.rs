@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle};
 use shiftvox::fast::{Fast, FastOptions};
-use shiftvox::graph::{Graph, LinkedGraph, MergeBy, Silent, merge, vxg};
+use shiftvox::graph::{Graph, LinkedGraph, Silent, vxg};
 use shiftvox::machine::Machine;
 use shiftvox::picture::{Background, Shading, hash_rows};
 use shiftvox::project::{Direction, Engine, Lens, SetupOptions, fit_camera};
@@ -69,7 +69,7 @@ pub(crate) fn sound_files() -> Vec<(Format, Vec<u8>, usize)> {
     files
 }
 
-fn graphs() -> [Graph; 4] {
+fn graphs() -> [Graph; 3] {
     let [tree, with_opacities] = [false, true].map(|opacities| {
         let mut options = OpenOptions::default();
         options.mesh.depth = 3;
@@ -77,12 +77,11 @@ fn graphs() -> [Graph; 4] {
         let opened = open_bytes(OBJ.as_bytes(), "a.obj", &options, &Silent);
         opened.unwrap().graph
     });
-    let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
     let mut cyclic = LinkedGraph::new(7);
     let (one, two) = (Some(0), Some(1));
     cyclic.add_node([1, 2, 3], [one, None, None, two, None, one, two, None]);
     cyclic.add_node([9, 9, 9], [None; 8]);
-    [tree, with_opacities, dag, cyclic.build().unwrap()]
+    [tree, with_opacities, cyclic.build().unwrap()]
 }
 
 /// Values that fields of numbers rarely expect, as `f64` and as `f32`.
@@ -162,9 +161,6 @@ pub(crate) fn exercise(format: Format, bytes: &[u8], path: &Path) -> bool {
             let opened = vxg::open(path);
             assert_eq!(vxg::verify(path).is_ok(), read.is_ok());
             assert!(opened.is_ok() || read.is_err());
-            if let Ok(graph) = &read {
-                assert!(merge(graph, MergeBy::Shape, &Silent).0.validate().is_ok());
-            }
             if let Ok(graph) = &opened {
                 let style = GraphStyle {
                     options: SetupOptions::default(),

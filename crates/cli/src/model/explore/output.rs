@@ -12,7 +12,7 @@ use shiftvox_lab::model::explore::front::FrontPoint;
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::tables::TableSpec;
 use shiftvox_lab::report::Table;
-use shiftvox_lab::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
+use shiftvox_lab::report::plot::{Axis, Chart, Point, Scale, Series};
 
 /// With more points, only the front is printed.
 const MOST_PRINTED: usize = 64;
@@ -66,9 +66,9 @@ pub(super) fn write(
         document: document::document("explore", json!({ "scenes": fronts })),
         rows: ROWS.of(&json!({ "points": rows })),
         tables,
-        panels: found
+        charts: found
             .iter()
-            .map(|of| shares(of).unwrap_or_else(|| panel(of)))
+            .map(|of| shares(of).unwrap_or_else(|| times(of)))
             .collect(),
     };
     export::write_files(&results, &args.export, console)?;
@@ -158,7 +158,7 @@ fn front_table(of: &Explorations, front: &Value, args: &ModelArgs) -> Table {
 }
 
 /// Over sizes of the picture, where they vary: whose energy is less, a curve for each of the other values.
-fn shares(of: &Explorations) -> Option<Panel> {
+fn shares(of: &Explorations) -> Option<Chart> {
     let mut curves = Vec::<Series>::new();
     for line in &of.points {
         let size = line.values.get("size")?.as_f64()?;
@@ -180,14 +180,14 @@ fn shares(of: &Explorations) -> Option<Panel> {
     }
     curves.first().filter(|curve| curve.points.len() > 1)?;
     let title = format!("{}: energy of the frame, light over ray caster", of.scene);
-    Some(Panel::Chart(Chart {
+    Some(Chart {
         level: Some((1.0, "equal".to_owned())),
         ..Chart::growth(&title, "side of the picture, pixels", "ratio", curves)
-    }))
+    })
 }
 
 /// Energy over time: a series per hardware description, and the ray caster beside each point.
-fn panel(of: &Explorations) -> Panel {
+fn times(of: &Explorations) -> Chart {
     let axis = |label: &str| Axis {
         label: label.to_owned(),
         scale: Scale::Linear,
@@ -220,7 +220,7 @@ fn panel(of: &Explorations) -> Panel {
         grey: true,
         ..Series::dots("ray casters beside them", rays)
     });
-    Panel::Chart(Chart {
+    Chart {
         title: format!(
             "{}: time and energy of each hardware (numbered: no other is clearly better)",
             of.scene
@@ -229,5 +229,5 @@ fn panel(of: &Explorations) -> Panel {
         y: axis("energy of the frame, microjoules"),
         series,
         level: None,
-    })
+    }
 }

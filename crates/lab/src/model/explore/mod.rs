@@ -2,9 +2,7 @@
 //!
 //! [`space`] describes the designs, and [`mod@front`] finds the Pareto-optimal ones. [`lines`] is the format of results.
 //!
-//! Points share results that depend on a part of them only: see `machine_key` and `Shared::ray_key`. Where parents lie on the
-//! stack, a record's turn does not depend on the hardware. Those turns are recorded once, and only their cycles are
-//! simulated per point.
+//! Points share results that depend on a part of them only: see `machine_key` and `Shared::ray_key`.
 
 pub mod front;
 pub mod lines;
@@ -14,7 +12,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::{Mutex, PoisonError};
 
-use hwmodel::cycles::{CycleReport, Hardware, NoObserver, Recording, StackHolds};
+use hwmodel::cycles::{CycleReport, Hardware, NoObserver};
 use hwmodel::{Memory, OpClass, Overflow};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -111,12 +109,6 @@ pub struct RivalFigures {
 
 type OrReason<T> = Result<T, String>;
 
-/// Most bytes of all recorded turns.
-const MOST_RECORDED: usize = 1 << 30;
-
-/// Turns that are the same on every hardware, and the samples that differ from the serial machine's.
-type Turns = (Recording, u64);
-
 struct Shared<'a> {
     of: Explored<'a>,
     /// By side of the picture.
@@ -124,7 +116,7 @@ struct Shared<'a> {
     /// By drawing settings.
     setups: BTreeMap<String, OrReason<FrameSetup>>,
     /// The machine's counts, by [`machine_key`].
-    counted: BTreeMap<String, OrReason<(Counted, Option<Turns>)>>,
+    counted: BTreeMap<String, OrReason<Counted>>,
     /// Rays, by [`Shared::ray_key`].
     rays: BTreeMap<String, Cast>,
 }
@@ -221,25 +213,12 @@ impl<'a> Shared<'a> {
             machines.entry(machine_key(point)).or_insert(point);
             casts.entry(shared.ray_key(point)).or_insert(point);
         }
-        let is_recorded = |point: &&&Point| {
-            let organisation = point.hardware.organisation;
-            organisation.stack != StackHolds::Children && !point.hardware.sequential
-        };
-        let most_bytes = MOST_RECORDED / machines.values().filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
-            let draw = || -> OrReason<_> {
-                let setup = shared.setup(point)?;
-                let counted = frame::count(of.graph, setup, &point.hardware, of.overflow)
-                    .map_err(|error| error.to_string())?;
-                let view = of.graph.view();
-                // A failure here recurs in the simulation and is reported there.
-                let kind = point.hardware.organisation;
-                let turns = frame::record_turns(&view, setup, kind, of.overflow, most_bytes);
-                let turns = turns.ok().flatten();
-                let turns = turns.map(|(frame, turns)| (turns, counted.differing(&frame)));
-                Ok((counted, turns))
-            };
-            (key, draw())
+            let counted = shared.setup(point).and_then(|setup| {
+                frame::count(of.graph, setup, &point.hardware, of.overflow)
+                    .map_err(|error| error.to_string())
+            });
+            (key, counted)
         };
         let counted = machines.into_par_iter().map(count).collect();
         let cast = |(key, point): (String, &Point)| {
@@ -269,32 +248,22 @@ impl<'a> Shared<'a> {
         setup.map_err(String::clone)
     }
 
-    /// A point's frame as the serial machine draws it, and its turns.
-    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Counted, Option<&Turns>)> {
-        let setup = self.setup(point)?;
+    /// A point's frame as the serial machine draws it.
+    fn drawn(&self, point: &Point) -> OrReason<(&FrameSetup, &Counted)> {
         let counted = self.counted[&machine_key(point)].as_ref();
-        let (counted, turns) = counted.map_err(String::clone)?;
-        Ok((setup, counted, turns.as_ref()))
+        Ok((self.setup(point)?, counted.map_err(String::clone)?))
     }
 
     /// A frame on a point's hardware, and the samples that differ from the serial machine's.
     fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
-        let (setup, counted, turns) = match self.drawn(point) {
+        let (setup, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
         let (hardware, overflow) = (&point.hardware, self.of.overflow);
         let view = self.of.graph.view();
-        // Recorded turns do not keep the order of their steps.
-        let report = match turns.filter(|_| !hardware.sequential) {
-            Some((turns, differing)) => {
-                frame::replay(turns, &view, setup, hardware).map(|cycles| (cycles, *differing))
-            }
-            None => frame::simulate(&view, setup, hardware, overflow, &mut NoObserver)
-                .map(|(frame, simulated)| (simulated.cycles, counted.differing(&frame))),
-        };
-        match report {
-            Ok(report) => Ok(Ok(report)),
+        match frame::simulate(&view, setup, hardware, overflow, &mut NoObserver) {
+            Ok((frame, simulated)) => Ok(Ok((simulated.cycles, counted.differing(&frame)))),
             Err(ModelError::Simulate(
                 error @ (SimulateError::Workload(_) | SimulateError::StackOverflow { .. }),
             )) => Ok(Err(error.to_string())),
@@ -307,7 +276,7 @@ impl<'a> Shared<'a> {
         point: &Point,
         (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
-        let (setup, counted, _) = match self.drawn(point) {
+        let (setup, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };

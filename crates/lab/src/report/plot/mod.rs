@@ -1,23 +1,15 @@
-//! Plots as SVG text: charts and bars, below each other.
+//! Plots as SVG text: charts below each other.
 
-mod bars;
 mod canvas;
 mod chart;
 mod of_rows;
 
 use canvas::{Anchor, Canvas, Color};
 
-pub use bars::Bar;
 pub use chart::{Axis, Chart, Point, Scale, Series};
 pub use of_rows::RowPlot;
 
 pub(crate) use of_rows::dominates;
-
-#[derive(Debug, Clone, PartialEq)]
-pub enum Panel {
-    Chart(Chart),
-    Bars(String, Vec<Bar>),
-}
 
 const WIDTH: f64 = 900.0;
 const TITLE_HEIGHT: f64 = 44.0;
@@ -28,14 +20,11 @@ const COLORS: [Color; 10] = [
 ];
 const GREY: Color = 0xa8_a8a8;
 
-pub fn svg(panels: &[Panel]) -> String {
+pub fn svg(charts: &[Chart]) -> String {
     let mut canvas = Canvas::default();
-    for panel in panels {
-        let (height, names) = match panel {
-            Panel::Chart(chart) => (chart::HEIGHT, chart::draw(&mut canvas, chart)),
-            Panel::Bars(title, bars) => (bars::draw(&mut canvas, title, bars), Vec::new()),
-        };
-        canvas.top += height;
+    for chart in charts {
+        let names = chart::draw(&mut canvas, chart);
+        canvas.top += chart::HEIGHT;
         canvas.top += legend(&mut canvas, &names);
     }
     let height = canvas.top.max(1.0);
@@ -91,18 +80,10 @@ mod tests {
             Point { x, y, label }
         });
         let dots = Series::dots("one", points.into());
-        let mut chart = Chart::growth("Growth", "pixels", "ms", vec![dots]);
+        let mut chart = Chart::growth("Growth", "pixels & <more>", "ms", vec![dots]);
         chart.level = Some((0.5, "noise".to_owned()));
-        let bar = Bar {
-            name: "a & b".to_owned(),
-            value: 12.5,
-            deviation: 1.0,
-        };
-        let bars = Panel::Bars("Length <1>".to_owned(), vec![bar]);
-        let text = svg(&[Panel::Chart(chart), bars]);
-        // The longest bar is 500 long; 92 percent of it is its least with its error.
-        let parts =
-            "Growth:pixels:one:first:noise:Length &lt;1&gt;:a &amp; b:12.5:\"500.0\":760.0,:840.0,";
+        let text = svg(&[chart]);
+        let parts = "Growth:pixels &amp; &lt;more&gt;:one:first:noise";
         assert!(parts.split(':').all(|part| text.contains(part)), "{text}");
         assert!(text.matches("<circle").count() == 1 && !text.contains("gone"));
     }

@@ -1,6 +1,6 @@
-//! Charts and bars made of the columns of measurements.
+//! Charts made of the columns of measurements.
 
-use super::{Bar, Chart, Panel, Point, Series};
+use super::{Chart, Point, Series};
 use crate::report::Row;
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,7 +25,7 @@ pub(crate) fn dominates<const N: usize>(q: &[f64; N], p: &[f64; N]) -> bool {
 
 impl RowPlot<'_> {
     /// A chart over two logarithmic axes; `None` if no row has a place on it.
-    pub fn chart<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Option<Panel> {
+    pub fn chart<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Option<Chart> {
         let place = |row: &Row| [row.number(self.x.0), row.number(self.y.0)];
         let rows: Vec<&Row> = rows
             .into_iter()
@@ -58,20 +58,10 @@ impl RowPlot<'_> {
             (line.dots, line.grey) = (false, true);
             all.splice(0..0, [grey, line]);
         }
-        Some(Panel::Chart(Chart {
+        Some(Chart {
             level: self.level.map(|(at, name)| (at, name.to_owned())),
             ..Chart::growth(self.title, self.x.1, self.y.1, all)
-        }))
-    }
-
-    pub fn bars<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> Panel {
-        let bar = |row: &Row| Bar {
-            name: row.text(self.series),
-            value: row.number(self.y.0),
-            deviation: self.deviation.map_or(0.0, |name| row.number(name)),
-        };
-        let title = format!("{}, {}", self.title, self.y.1);
-        Panel::Bars(title, rows.into_iter().map(bar).collect())
+        })
     }
 }
 
@@ -99,10 +89,7 @@ mod tests {
                 front,
                 ..RowPlot::default()
             };
-            match plot.chart(&rows) {
-                Some(Panel::Chart(chart)) => chart.series.into_iter(),
-                other => panic!("{other:?}"),
-            }
+            plot.chart(&rows).unwrap().series.into_iter()
         };
         let deviations = series(None).map(|of| of.deviations).collect::<Vec<_>>();
         assert_eq!(deviations, [vec![1.0, 4.0], vec![2.0]]);
