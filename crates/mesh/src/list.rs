@@ -247,8 +247,8 @@ impl<T: Copy> Deref for List<T> {
     fn deref(&self) -> &[T] {
         match &self.0 {
             Held::Memory(list) => list,
-            // SAFETY: so many items were written there; or it is a mesh file, whose bytes must not change, as with maps
-            // of `src/graph/map.rs`.
+            // SAFETY: so many items were written there, or it is a mesh file. Its bytes must not change, as those of
+            // `src/graph/map.rs`.
             Held::File(list) => unsafe { slice::from_raw_parts(list.first(), list.len) },
         }
     }
