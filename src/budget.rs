@@ -121,10 +121,18 @@ pub fn available() -> Option<u64> {
 
 /// Resident memory of this process, bytes. `None` if the system does not report it.
 pub fn resident() -> Option<u64> {
-    kibibytes_of(
-        &std::fs::read_to_string("/proc/self/status").ok()?,
-        "VmRSS:",
-    )
+    kibibytes_of(&status()?, "VmRSS:")
+}
+
+/// The part of [`resident`] that is pages of mapped files.
+pub fn resident_files() -> Option<u64> {
+    let status = status()?;
+    let of = |name: &str| kibibytes_of(&status, name);
+    Some(of("RssFile:")? + of("RssShmem:")?)
+}
+
+fn status() -> Option<String> {
+    std::fs::read_to_string("/proc/self/status").ok()
 }
 
 fn kibibytes_of(text: &str, name: &str) -> Option<u64> {

@@ -131,15 +131,20 @@ impl<R: Read + Seek> SceneFile<R> {
         self.length
     }
 
-    /// All of a mesh file; `folder` is where it finds other files.
-    pub fn mesh_file(mut self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
-        let name = self.name();
-        let kind = match self.kind {
+    /// The stream of a mesh file, at its beginning.
+    pub fn mesh_stream(self) -> Result<(R, FileKind), SceneError> {
+        match self.kind {
             // The mesh reader reports that a cloud has no faces, or a fault of its header.
-            Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
-            _ => return Err(self.refused(|file, kind| SceneError::NotMesh { file, kind })),
-        };
-        let bytes = Input::new(&mut self.stream, self.length).bytes();
+            Some(kind) if kind.is_mesh() || kind == FileKind::Ply => Ok((self.stream, kind)),
+            _ => Err(self.refused(|file, kind| SceneError::NotMesh { file, kind })),
+        }
+    }
+
+    /// All of a mesh file; `folder` is where it finds other files.
+    pub fn mesh_file(self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
+        let (name, length) = (self.name(), self.length);
+        let (mut stream, kind) = self.mesh_stream()?;
+        let bytes = Input::new(&mut stream, length).bytes();
         Ok(MeshFile {
             bytes: bytes.map_err(|source| Problem::Read(source).in_file(&name))?,
             name,

@@ -32,11 +32,11 @@ pub(super) struct ConvertArgs {
     #[arg(long)]
     pub(super) force: bool,
     /// Build a .vxg or .far out of core with at most this much memory, such as 64M or 2G. The mesh
-    /// of a .far is part of it
+    /// of a .far is in temporary files then
     #[arg(long, value_name = "SIZE", value_parser = memory)]
     pub(super) memory: Option<u64>,
-    /// Folder of the temporary files of --memory, about 22 bytes per voxel of a .vxg and 80 per
-    /// triangle of a .far [default: OUT's folder]
+    /// Folder of the temporary files of --memory, about 22 bytes per voxel of a .vxg and 100 to 250
+    /// per triangle of a .far [default: OUT's folder]
     #[arg(long, value_name = "DIR", requires = "memory")]
     pub(super) temp: Option<PathBuf>,
     /// Rays of a .far [default: up to 28 per voxel, and 20 more per visible voxel]

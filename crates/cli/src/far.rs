@@ -16,31 +16,44 @@ use shiftvox::budget;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::project::Up;
 use shiftvox::whole;
-use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::{LISTS, Node, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, FarFile, build_outside};
+use shiftvox_mesh::{Instances, ListFolder};
 
 pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
     let ConvertArgs { input, output, .. } = args;
     let options = &args.far_options();
-    let (mesh, up) = scenes::open_mesh(input, &args.scene, console)?;
+    let beside = whole::folder_of(output);
+    let folder = args.temp.as_deref().unwrap_or(beside);
+    let within = args.memory.map(|memory| {
+        // A missing file makes no folder.
+        scenes::is_mesh(input)?;
+        whole::make_folder(beside)?;
+        Ok::<_, CliError>(ListFolder::new(folder, memory / MAPPED_SHARE))
+    });
+    let within = within.transpose()?;
+    let (mesh, up) = scenes::open_mesh(input, &args.scene, within.as_ref(), console)?;
     let started = Instant::now();
     let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
     check_room(triangles, args.memory).map_err(|e| e.at(input))?;
-    let beside = whole::folder_of(output);
     whole::make_folder(beside)?;
     let unfinished = args.resume.then(|| {
         let mut name = output.as_os_str().to_owned();
         name.push(".unfinished");
         PathBuf::from(name)
     });
+    let mapped = within.as_ref().map_or(0, |within| {
+        within.release();
+        within.bytes()
+    });
     let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
+    let left = |memory| memory - memory / ALLOCATORS_SHARE - mapped.min(memory / MAPPED_SHARE);
     let outside = Outside {
         memory: args
             .memory
-            .map(|memory| (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)),
-        folder: args.temp.as_deref().unwrap_or(beside),
+            .map(|memory| left(memory).saturating_sub(loaded)),
+        folder,
         unfinished: unfinished.as_deref(),
     };
     let built = match args.instances {
@@ -54,7 +67,8 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     let mut built = built.map_err(|error| match error {
         BuildError::Memory { needed, .. } => {
             let all = needed + loaded;
-            let enough = (all + all / (ALLOCATORS_SHARE - 1)).div_ceil(1 << 20) + 1;
+            let enough = ((all + mapped) * 8 / 7).min(all * 4 / 3);
+            let enough = enough.div_ceil(1 << 20) + 1;
             let error = CliError::from(error).at(input);
             error.advise(format!("give it --memory {enough}M or more"))
         }
@@ -112,6 +126,8 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
 
 /// One of so many parts of a budget is left to the allocator.
 const ALLOCATORS_SHARE: u64 = 8;
+/// And one, or less, to pages of the mesh.
+const MAPPED_SHARE: u64 = 8;
 
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 

@@ -1,6 +1,7 @@
 //! Opening of scenes, for every command.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::args::SceneArgs;
@@ -13,7 +14,7 @@ use shiftvox::project::Up;
 use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
 use shiftvox_mesh::open::{MeshOptions, OpenOptions, read_mesh};
-use shiftvox_mesh::{LoadOptions, Mesh};
+use shiftvox_mesh::{ListFolder, LoadOptions, Mesh};
 
 /// Most voxels of a file that is dropped on a page: a small one may have runs without end.
 const MOST_DROPPED_VOXELS: u64 = 1 << 26;
@@ -138,6 +139,7 @@ pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
 pub(super) fn open_mesh(
     source: &str,
     args: &SceneArgs,
+    within: Option<&Arc<ListFolder>>,
     console: &Console,
 ) -> Result<(Mesh, Up), CliError> {
     if source.starts_with("gen:") {
@@ -152,7 +154,7 @@ pub(super) fn open_mesh(
     }
     fatal_signals::reads(source);
     let load = options(args).mesh.load;
-    let (mesh, y_up) = read_mesh(Path::new(source), &load, console.progress())?;
+    let (mesh, y_up) = read_mesh(Path::new(source), &load, within, console.progress())?;
     for warning in mesh.warnings() {
         console.note(format!("{source}: {warning}"));
     }

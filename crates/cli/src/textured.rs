@@ -19,7 +19,7 @@ use shiftvox_mesh::textured::{Element, TexturedFile, build};
 
 pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
     let ConvertArgs { input, output, .. } = args;
-    let (mesh, up) = scenes::open_mesh(input, &args.scene, console)?;
+    let (mesh, up) = scenes::open_mesh(input, &args.scene, None, console)?;
     let started = Instant::now();
     let built = build(&mesh, &args.textured_options(), console.progress());
     let mut data = built.map_err(|e| CliError::from(e).at(input))?;

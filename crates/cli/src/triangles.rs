@@ -74,7 +74,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         whole::check_free(&coverage, args.force)?;
     }
     let started = Instant::now();
-    let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
+    let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, None, console)?;
     let load_ms = milliseconds_since(started);
     let size = args.size.unwrap_or(Size::square(512)).pair();
     let style = args.style()?;

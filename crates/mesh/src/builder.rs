@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::SceneError;
 use super::geometry::{area, plane_normal, point};
+use super::list::{List, ListFolder};
 use super::load::{Fault, Place, Problem};
 use super::{Material, Mesh, Surface, Texture, Triangle};
 use shiftvox::budget::{self, Shortage};
@@ -35,15 +36,44 @@ pub struct MeshBuilder {
     degenerate: u64,
     invisible: u64,
     /// Triangles of opacity 0, while there are no others.
-    hidden: Vec<Given>,
+    hidden: List<Given>,
     seen: u64,
     too_many: bool,
+    folder: Option<Arc<ListFolder>>,
 }
 
 impl MeshBuilder {
     /// An empty builder.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// An empty builder whose mesh is in files of a folder.
+    pub fn within(folder: Option<&Arc<ListFolder>>) -> Self {
+        Self {
+            mesh: Mesh {
+                positions: List::within(folder),
+                triangles: List::within(folder),
+                material_of: List::within(folder),
+                corner_normals: List::within(folder),
+                vertex_colors: List::within(folder),
+                places: List::within(folder),
+                tints: List::within(folder),
+                ..Mesh::default()
+            },
+            hidden: List::within(folder),
+            folder: folder.cloned(),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn folder(&self) -> Option<&Arc<ListFolder>> {
+        self.folder.as_ref()
+    }
+
+    /// Fails if the folder had no room.
+    pub(crate) fn check_folder(&self) -> Result<(), SceneError> {
+        self.folder.as_ref().map_or(Ok(()), |folder| folder.check())
     }
 
     /// Adds a material and returns its number.
@@ -72,7 +102,7 @@ impl MeshBuilder {
     pub fn colored_position<T: Into<f64>>(&mut self, position: [T; 3], color: [u8; 3]) -> u32 {
         let number = self.position(position);
         let colors = &mut self.mesh.vertex_colors;
-        colors.resize(number as usize, [255; 3]);
+        colors.pad(number as usize, [255; 3]);
         colors.push(color);
         number
     }
@@ -86,9 +116,16 @@ impl MeshBuilder {
         let mesh = &mut self.mesh;
         let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
         let needed = needed as u64;
+        let lists = (
+            mesh.positions.vector(),
+            mesh.triangles.vector(),
+            mesh.material_of.vector(),
+        );
+        let (Some(places), Some(corners), Some(materials)) = lists else {
+            return Ok(());
+        };
         budget::check(WHAT, needed)?;
-        let (corners, materials) = (&mut mesh.triangles, &mut mesh.material_of);
-        let had = mesh.positions.try_reserve_exact(positions);
+        let had = places.try_reserve_exact(positions);
         let had = had.and_then(|()| corners.try_reserve_exact(triangles));
         let had = had.and_then(|()| materials.try_reserve_exact(triangles));
         had.map_err(|_| Shortage {
@@ -161,7 +198,9 @@ impl MeshBuilder {
             }
             return Ok(());
         }
-        self.hidden = Vec::new();
+        if !self.hidden.is_empty() {
+            self.hidden = List::default();
+        }
         if self.mesh.triangles.len() >= MOST {
             self.too_many = true;
             return Ok(());
@@ -175,7 +214,7 @@ impl MeshBuilder {
         });
         if let Some(near) = near.filter(|near| near.as_flattened().iter().all(|c| c.is_finite())) {
             let none = [[f32::NAN; 2]; 3];
-            self.mesh.places.resize(self.mesh.triangles.len(), none);
+            self.mesh.places.pad(self.mesh.triangles.len(), none);
             self.mesh.places.push(near);
         }
         let mesh = &mut self.mesh;
@@ -213,7 +252,7 @@ impl MeshBuilder {
         ));
         self.invisible = 0;
         let seen = self.seen;
-        for (corners, normals, material, places) in hidden {
+        for &(corners, normals, material, places) in hidden.iter() {
             let _ = self.textured_triangle(corners, normals, material, places);
         }
         self.seen = seen;
@@ -224,6 +263,7 @@ impl MeshBuilder {
     /// # Errors
     /// When no triangle is left, or when there are more than 2^32 of anything.
     pub fn finish(mut self, file: &str) -> Result<Mesh, SceneError> {
+        self.check_folder()?;
         self.show_hidden();
         let in_file = |error: Problem| error.in_file(file);
         if self.too_many {
@@ -259,7 +299,7 @@ impl MeshBuilder {
         for complaint in &mut told {
             complaint.push_str(" were left out");
         }
-        let mut mesh = self.mesh;
+        let mesh = &mut self.mesh;
         mesh.warnings.append(&mut told);
         if mesh.materials.is_empty() {
             mesh.materials.push(Material::default_color());
@@ -269,20 +309,21 @@ impl MeshBuilder {
             *material = 0;
         }
         if mesh.materials.iter().any(|m| m.texture.is_some()) {
-            leave_out_clear(&mut mesh);
-            mesh.tints = (0..mesh.triangles.len())
-                .map(|n| middle(&mesh, n))
-                .collect();
+            leave_out_clear(mesh);
+            for number in 0..mesh.triangles.len() {
+                mesh.tints.push(middle(mesh, number));
+            }
         }
         if !mesh.vertex_colors.is_empty() {
-            mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
+            mesh.vertex_colors.pad(mesh.positions.len(), [255; 3]);
         }
         mesh.find_bounds();
         mesh.positions.shrink_to_fit();
         mesh.triangles.shrink_to_fit();
         mesh.material_of.shrink_to_fit();
         mesh.corner_normals.shrink_to_fit();
-        Ok(mesh)
+        self.check_folder()?;
+        Ok(self.mesh)
     }
 }
 
@@ -291,17 +332,11 @@ fn leave_out_clear(mesh: &mut Mesh) {
     let numbers = (0..mesh.triangles.len()).into_par_iter();
     let is_shown: Vec<bool> = numbers.map(|n| !is_clear(&mesh.triangle(n))).collect();
     if is_shown.contains(&true) && is_shown.contains(&false) {
-        keep(&mut mesh.triangles, &is_shown);
-        keep(&mut mesh.material_of, &is_shown);
-        keep(&mut mesh.corner_normals, &is_shown);
-        keep(&mut mesh.places, &is_shown);
+        mesh.triangles.keep(&is_shown);
+        mesh.material_of.keep(&is_shown);
+        mesh.corner_normals.keep(&is_shown);
+        mesh.places.keep(&is_shown);
     }
-}
-
-/// A list for each triangle, or an empty one.
-fn keep<T>(list: &mut Vec<T>, is_kept: &[bool]) {
-    let mut is_kept = is_kept.iter();
-    list.retain(|_| is_kept.next() == Some(&true));
 }
 
 /// Parts along a side, over which a texture is averaged.

@@ -236,7 +236,7 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
     let mut rounded = mesh.clone();
     let (low, high) = mesh.bounds();
     let step = (high - low) / STEPS;
-    for position in &mut rounded.positions {
+    for position in rounded.positions.iter_mut() {
         for k in 0..3 {
             if step[k] > 0.0 {
                 let steps = libm::round((position[k] - low[k]) / step[k]);
@@ -248,7 +248,7 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
         let plane = |number| [plane_normal(Surface::corners(mesh, number)); 3];
         let planes = (0..mesh.len()).map(plane);
         let planes = planes.map(|normals| normals.map(|normal| normal.as_vec3().to_array()));
-        rounded.corner_normals = planes.collect();
+        rounded.corner_normals = planes.collect::<Vec<_>>().into();
     }
     let mut vertices = std::collections::HashSet::new();
     let mut used = std::collections::HashSet::new();

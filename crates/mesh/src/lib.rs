@@ -17,6 +17,7 @@ pub mod far;
 #[doc(hidden)]
 pub mod generate;
 mod geometry;
+mod list;
 mod load;
 mod material;
 #[doc(hidden)]
@@ -33,10 +34,12 @@ pub mod voxelize;
 use std::sync::Arc;
 
 use glam::DVec3;
+use list::List;
 pub use shiftvox::scene::{FileKind as MeshFormat, SceneError};
 
 pub use builder::{BadIndex, MeshBuilder};
 pub use geometry::barycentric;
+pub use list::ListFolder;
 pub use load::{Beside, LoadOptions, Nothing, SameFolder, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
 pub use scene_options::SceneOptions;
@@ -48,17 +51,17 @@ pub use texture::{Sampler, Texture};
 /// A [`MeshBuilder`] makes sure that every index is in range, every coordinate finite and every area above zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
-    pub(crate) positions: Vec<[f64; 3]>,
-    pub(crate) triangles: Vec<[u32; 3]>,
-    pub(crate) material_of: Vec<u32>,
+    pub(crate) positions: List<[f64; 3]>,
+    pub(crate) triangles: List<[u32; 3]>,
+    pub(crate) material_of: List<u32>,
     pub(crate) materials: Vec<Material>,
-    pub(crate) corner_normals: Vec<[[f32; 3]; 3]>,
-    pub(crate) vertex_colors: Vec<[u8; 3]>,
+    pub(crate) corner_normals: List<[[f32; 3]; 3]>,
+    pub(crate) vertex_colors: List<[u8; 3]>,
     /// Places of each triangle's corners in its texture, in sizes of the picture from its top left corner; not numbers
     /// where a triangle has none. Or nothing.
-    pub(crate) places: Vec<[[f32; 2]; 3]>,
+    pub(crate) places: List<[[f32; 2]; 3]>,
     /// Colour of the middle of each triangle, linear light, for decimation; or nothing.
-    pub(crate) tints: Vec<[f32; 3]>,
+    pub(crate) tints: List<[f32; 3]>,
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
     pub(crate) warnings: Vec<String>,
@@ -111,16 +114,16 @@ impl Mesh {
         (self.low, self.high) = geometry::bounds(points);
     }
 
-    /// Bytes that the mesh takes.
+    /// Bytes of memory that the mesh takes.
     pub fn bytes(&self) -> u64 {
         let sizes = [
-            size_of_val(&self.positions[..]),
-            size_of_val(&self.triangles[..]),
-            size_of_val(&self.material_of[..]),
-            size_of_val(&self.corner_normals[..]),
-            size_of_val(&self.vertex_colors[..]),
-            size_of_val(&self.places[..]),
-            size_of_val(&self.tints[..]),
+            self.positions.bytes(),
+            self.triangles.bytes(),
+            self.material_of.bytes(),
+            self.corner_normals.bytes(),
+            self.vertex_colors.bytes(),
+            self.places.bytes(),
+            self.tints.bytes(),
         ];
         let lists: u64 = sizes.iter().map(|&size| size as u64).sum();
         let mut textures: Vec<_> = self

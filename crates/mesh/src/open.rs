@@ -1,16 +1,18 @@
 //! Opening scenes of any kind: voxel files by the renderer's own readers, meshes read and voxelised here.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-use shiftvox::graph::{Graph, MeshBox, Progress, Voxel};
+use shiftvox::graph::{ExternalError, Graph, MeshBox, Progress, Voxel};
 use shiftvox::scene::{
     self, FileKind, MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels, OpenError, Opened,
-    SceneFile, SceneInfo,
+    SceneError, SceneFile, SceneInfo,
 };
 
+use crate::load::read_into;
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
-use crate::{Beside, LoadOptions, Mesh, Nothing, SameFolder, mesh_box};
+use crate::{Beside, ListFolder, LoadOptions, Mesh, MeshBuilder, Nothing, SameFolder, mesh_box};
 
 const COUNTED_DEPTH: u32 = 8;
 
@@ -73,15 +75,41 @@ pub fn open_bytes(
     scene::open_bytes(bytes, name, &options.voxels, &options.mesh, progress)
 }
 
-/// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
+/// Reads a mesh file, for its triangles; also returns whether +Y is up in it. `within`: the mesh is kept in files of
+/// this folder, and its own file is mapped.
 pub fn read_mesh(
     path: &Path,
     options: &LoadOptions,
+    within: Option<&Arc<ListFolder>>,
     progress: &dyn Progress,
 ) -> Result<(Mesh, bool), OpenError> {
-    let file = SceneFile::open(path)?.mesh_file(path.parent().map(Path::to_owned))?;
-    let mesh = read(&file, options, progress)?;
-    Ok((mesh, is_y_up(file.kind)))
+    let (file, beside) = (SceneFile::open(path)?, path.parent());
+    let Some(folder) = within else {
+        let file = file.mesh_file(beside.map(Path::to_owned))?;
+        let mesh = read(&file, options, progress)?;
+        return Ok((mesh, is_y_up(file.kind)));
+    };
+    let (file, kind) = file.mesh_stream()?;
+    let name = path.display().to_string();
+    let bytes = folder.read(file).map_err(|source| SceneError::Io {
+        file: name.clone(),
+        action: "map the file",
+        source,
+    })?;
+    let builder = MeshBuilder::within(within);
+    let beside = SameFolder::new(beside.unwrap_or(Path::new("")));
+    let mesh = read_into(builder, &bytes, kind, &name, &beside, options, progress);
+    let mesh = mesh.map_err(|error| match error {
+        SceneError::Io { source, .. } => OpenError::External {
+            source_name: name.clone(),
+            error: ExternalError::Temporary {
+                folder: folder.path.clone(),
+                source,
+            },
+        },
+        error => error.into(),
+    })?;
+    Ok((mesh, is_y_up(kind)))
 }
 
 fn is_y_up(kind: FileKind) -> bool {

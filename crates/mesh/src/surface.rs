@@ -144,7 +144,8 @@ impl Surface for Mesh {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        self.triangles[number].map(|i| point(self.positions[i as usize]))
+        let positions = &self.positions[..];
+        self.triangles[number].map(|i| point(positions[i as usize]))
     }
 
     fn triangle(&self, number: usize) -> Triangle<'_> {
@@ -216,15 +217,15 @@ impl Instances {
             .into_iter()
             .filter(|place| place.is_finite() && place.matrix3.determinant() != 0.0)
             .collect();
-        let mut used = mesh.triangles.as_flattened().to_vec();
-        used.sort_unstable();
-        used.dedup();
-        let used = used.into_iter().map(|i| point(mesh.positions[i as usize]));
-        let used: Vec<DVec3> = used.collect();
+        let mut is_used = vec![false; mesh.positions.len()];
+        for &corner in mesh.triangles.as_flattened() {
+            is_used[corner as usize] = true;
+        }
+        let used = || mesh.positions.iter().zip(&is_used).filter(|used| *used.1);
         // Of the points and not of their box, whose corners may end up farther out.
         let points = places
             .iter()
-            .flat_map(|place| used.iter().map(|&p| place.transform_point3(p)));
+            .flat_map(|place| used().map(|(&p, _)| place.transform_point3(point(p))));
         let (low, high) = bounds(points);
         Self {
             mesh,

@@ -105,7 +105,7 @@ impl QualityArgs {
             choices = methods::default(is_mesh);
         }
         if is_mesh {
-            let (mesh, up) = scenes::open_mesh(name, &self.scene, console)?;
+            let (mesh, up) = scenes::open_mesh(name, &self.scene, None, console)?;
             let bounds = Bounds::of_mesh(&mesh_box(&mesh, up == Up::Y));
             let camera = self.camera.camera(&bounds, up, size, 0.0);
             let made = Made::of_mesh(name, mesh, &choices, &self.scene, self.far_rays, console)?;

@@ -101,8 +101,20 @@ pub fn read(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh, SceneError> {
+    let builder = MeshBuilder::new();
+    read_into(builder, bytes, format, name, beside, options, progress)
+}
+
+pub(super) fn read_into(
+    mut builder: MeshBuilder,
+    bytes: &[u8],
+    format: FileKind,
+    name: &str,
+    beside: &dyn Beside,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh, SceneError> {
     progress.begin(&format!("reading {name}"), 0);
-    let mut builder = MeshBuilder::new();
     let result = match format {
         FileKind::Obj => obj::read(bytes, beside, options, &mut builder),
         FileKind::Ply | FileKind::PlyMesh => ply::read(bytes, beside, &mut builder),
@@ -115,6 +127,7 @@ pub fn read(
         }
     };
     progress.end();
+    builder.check_folder()?;
     result.map_err(|error| error.in_file(name))?;
     builder.finish(name)
 }

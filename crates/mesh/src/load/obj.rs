@@ -10,6 +10,7 @@ use std::str::SplitWhitespace;
 use super::mtl::{self, Pictures};
 use super::texture::{Parts, Textures};
 use super::{Beside, Fault, LoadOptions, Place, Problem, check_corners, polygon, text};
+use crate::list::List;
 use crate::texture::AlphaMode;
 use crate::{Material, MeshBuilder};
 
@@ -24,7 +25,13 @@ pub(super) fn read(
 ) -> Result<(), Problem> {
     let text = text::decoded(bytes);
     let default = builder.material(Material::default_color());
+    let folder = builder.folder();
     let mut file = File {
+        positions: List::within(folder),
+        texture_coordinates: List::within(folder),
+        normals: List::within(folder),
+        corners: List::within(folder),
+        faces: List::within(folder),
         materials: vec![(default, Pictures::default())],
         ..File::default()
     };
@@ -37,13 +44,13 @@ pub(super) fn read(
 #[derive(Default)]
 struct File {
     /// Positions, and colours where they have any, as written.
-    positions: Vec<([f64; 3], Option<[f32; 3]>)>,
+    positions: List<([f64; 3], Option<[f32; 3]>)>,
     brightest: f64,
-    texture_coordinates: Vec<[f64; 2]>,
-    normals: Vec<[f64; 3]>,
+    texture_coordinates: List<[f64; 2]>,
+    normals: List<[f64; 3]>,
     /// Numbers of position, texture coordinate and normal of each corner, from 0.
-    corners: Vec<[u32; 3]>,
-    faces: Vec<Face>,
+    corners: List<[u32; 3]>,
+    faces: List<Face>,
     /// The builder's number and the pictures of each material. The first is that of faces without a material.
     materials: Vec<(u32, Pictures)>,
     by_name: HashMap<String, usize>,
@@ -53,6 +60,7 @@ struct File {
     wires: u64,
 }
 
+#[derive(Clone, Copy)]
 struct Face {
     /// The corners up to here, from the end of the face before.
     end: usize,
@@ -216,7 +224,8 @@ impl File {
 
     /// Passes the triangles of all faces to the builder, and the positions in the order of their first use.
     fn build(self, beside: &dyn Beside, builder: &mut MeshBuilder) -> Result<(), Problem> {
-        let mut numbers = vec![NONE; self.positions.len()];
+        let mut numbers = List::within(builder.folder());
+        numbers.pad(self.positions.len(), NONE);
         let mut textures = Textures::default();
         let (mut without, mut without_uvs) = (0, 0);
         let mut begin = 0;
@@ -230,7 +239,7 @@ impl File {
         }
         let scale = if is_in_bytes { 1.0 } else { 255.0 };
         let in_bytes = |color: [f32; 3]| color.map(|c| (c * scale + 0.5) as u8);
-        for face in &self.faces {
+        for face in self.faces.iter() {
             let corners = &self.corners[begin..face.end];
             begin = face.end;
             for corner in corners {

@@ -12,15 +12,15 @@ use shiftvox::scene::ply::{PlyFile, Row};
 
 use super::texture::{Parts, Textures};
 use super::{Beside, Fault, Place, Problem, check_corners, polygon};
+use crate::list::List;
 use crate::texture::{AlphaMode, Wrap};
 use crate::{Material, MeshBuilder};
 
 /// Of each vertex, or nothing.
-#[derive(Default)]
 struct Vertices {
-    normals: Vec<[f32; 3]>,
+    normals: List<[f32; 3]>,
     /// Upwards in the picture, as in the file.
-    uvs: Vec<[f64; 2]>,
+    uvs: List<[f64; 2]>,
 }
 
 pub(super) fn read(
@@ -53,7 +53,10 @@ pub(super) fn read(
     let colors = vertices.colors().filter(|_| !is_textured);
     let is_wide = colors.map(|at| at.map(|k| vertices.properties[k].scalar == Scalar::U16));
     let material = if colors.is_some() { white } else { default };
-    let mut kept = Vertices::default();
+    let mut kept = Vertices {
+        normals: List::within(builder.folder()),
+        uvs: List::within(builder.folder()),
+    };
     let (mut without, mut has_opacities) = (0, false);
     // Materials of faces with colours.
     let mut of_color: HashMap<[u8; 3], u32> = HashMap::new();
@@ -86,10 +89,12 @@ pub(super) fn read(
                         }
                     };
                     let real = |k: usize| row.values[k].real();
-                    kept.normals
-                        .extend(normals_at.map(|at| at.map(|k| real(k) as f32)));
-                    let uvs_at = uvs_at.filter(|_| is_textured);
-                    kept.uvs.extend(uvs_at.map(|at| at.map(real)));
+                    if let Some(at) = normals_at {
+                        kept.normals.push(at.map(|k| real(k) as f32));
+                    }
+                    if let Some(at) = uvs_at.filter(|_| is_textured) {
+                        kept.uvs.push(at.map(real));
+                    }
                     Ok(())
                 })?;
             }

@@ -18,10 +18,15 @@ type Corners = [[f32; 3]; 3];
 pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Problem> {
     builder.material(Material::default_color());
     let mut numbers = HashMap::new();
+    // In files, equal positions take less than a table of them would take in memory.
+    let is_joined = builder.folder().is_none();
     let mut add = |corners: Corners| {
         let corners = corners.map(|corner| {
             // 0 and -0 are one place.
             let position = corner.map(|c| c + 0.0);
+            if !is_joined {
+                return builder.position(position);
+            }
             *numbers
                 .entry(position.map(f32::to_bits))
                 .or_insert_with(|| builder.position(position))
@@ -40,16 +45,15 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
     if !is_text_stl(bytes) {
         return Err(cut_binary(bytes).into());
     }
-    let text = String::from_utf8_lossy(bytes).to_ascii_lowercase();
-    let (_, body) = text.trim_start().split_once('\n').unwrap_or_default();
+    // Not as text in whole, which might be a copy.
+    let mut lines = bytes.trim_ascii_start().split(|&byte| byte == b'\n');
+    lines.next();
     // The names of solids are not read.
-    let words = body
-        .lines()
-        .map(|line| match line.split_whitespace().next() {
-            Some(word @ ("solid" | "endsolid")) => word,
-            _ => line,
-        });
-    let mut words = words.flat_map(str::split_whitespace);
+    let lines = lines.map(|line| match words(line).next() {
+        Some(word) if is(word, "solid") || is(word, "endsolid") => word,
+        _ => line,
+    });
+    let mut words = lines.flat_map(words);
     for number in 1u64.. {
         match facet(&mut words) {
             Ok(Some(corners)) => add(corners),
@@ -60,7 +64,9 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
                     Place::Whole,
                     "\"facet normal x y z\", \"outer loop\", three \"vertex x y z\", \"endloop\", \"endfacet\", \
                      and \"endsolid\" at the end",
-                    found.map_or("the end of the file".to_owned(), |word| format!("{word:?}")),
+                    found.map_or("the end of the file".to_owned(), |word| {
+                        format!("{:?}", String::from_utf8_lossy(word))
+                    }),
                     "the file is cut short or damaged; export the mesh again",
                 )
                 .into());
@@ -70,28 +76,39 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Proble
     Ok(())
 }
 
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let words = line.split(u8::is_ascii_whitespace);
+    words.filter(|word| !word.is_empty())
+}
+
+fn is(word: &[u8], expected: &str) -> bool {
+    word.eq_ignore_ascii_case(expected.as_bytes())
+}
+
 /// The words of a facet; `#` is a number.
 const FACET: &str =
     "facet normal # # # outer loop vertex # # # vertex # # # vertex # # # endloop endfacet";
 
 /// The corners of the next facet, or `None` at the end of the last solid. An error is the word that is wrong.
 fn facet<'t>(
-    words: &mut impl Iterator<Item = &'t str>,
-) -> Result<Option<Corners>, Option<&'t str>> {
+    words: &mut impl Iterator<Item = &'t [u8]>,
+) -> Result<Option<Corners>, Option<&'t [u8]>> {
     let mut numbers = Vec::with_capacity(12);
     for (place, expected) in FACET.split(' ').enumerate() {
         let mut word = words.next();
-        while place == 0 && word == Some("endsolid") {
-            if !words.any(|word| word == "solid") {
+        while place == 0 && word.is_some_and(|word| is(word, "endsolid")) {
+            if !words.any(|word| is(word, "solid")) {
                 return Ok(None);
             }
             word = words.next();
         }
         match word {
             Some(word) if expected == "#" => {
-                numbers.push(word.parse::<f32>().map_err(|_| Some(word))?);
+                let number = std::str::from_utf8(word).ok();
+                let number = number.and_then(|number| number.parse::<f32>().ok());
+                numbers.push(number.ok_or(Some(word))?);
             }
-            Some(word) if word == expected => {}
+            Some(word) if is(word, expected) => {}
             other => return Err(other),
         }
     }

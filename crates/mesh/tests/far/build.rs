@@ -3,12 +3,14 @@
 use std::fs;
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::Outside;
 use shiftvox_mesh::far::record::Node;
+use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{self, ViewOptions};
 use shiftvox_mesh::far::{BuildError, BuildOptions, build, build_outside};
-use shiftvox_mesh::generate::{Kind, generate};
+use shiftvox_mesh::generate::{Kind, generate, ply};
+use shiftvox_mesh::open::read_mesh;
+use shiftvox_mesh::{Instances, ListFolder, Surface};
 
 use super::city::{city, far, file_of, options, view};
 use super::shared::{card, disc, mesh_of};
@@ -63,6 +65,51 @@ fn an_unfinished_build_continues_with_its_own_mesh_alone() {
     assert_eq!(taken(&one), Ok((nodes, nodes)));
     fs::write(folder.path().join("a.unfinished"), "a note").unwrap();
     assert!(matches!(taken(&one), Err(BuildError::File { .. })));
+}
+
+#[test]
+fn a_mesh_in_files_gives_the_same_bytes() {
+    let place = tempfile::tempdir().unwrap();
+    let village = generate(Kind::Village, 3);
+    let path = |name: &str| place.path().join(name);
+    fs::write(path("a.ply"), ply(&village)).unwrap();
+    let (mut obj, mut text) = (String::new(), "solid \u{e4}\n".to_owned());
+    for (number, corners) in (0..village.len())
+        .map(|n| village.triangle(n).corners)
+        .enumerate()
+    {
+        text.push_str("facet normal 0 0 1 outer loop");
+        for [x, y, z] in corners.map(|corner| corner.to_array()) {
+            obj.push_str(&format!("v {x} {y} {z}\nvn {y} {z} 1\n"));
+            text.push_str(&format!(" VERTEX {x} {y} {z}"));
+        }
+        text.push_str(" endloop endfacet\n");
+        let [a, b, c] = [1, 2, 3].map(|k| 3 * number + k);
+        obj.push_str(&format!("f {a}//{c} {b}//{b} {c}//{a}\n"));
+    }
+    fs::write(path("a.obj"), obj).unwrap();
+    fs::write(path("a.stl"), text + "endsolid").unwrap();
+    for name in ["a.ply", "a.obj", "a.stl"] {
+        let folder = ListFolder::new(place.path(), 0);
+        let [held, mapped] = [None, Some(&folder)].map(|within| {
+            let read = read_mesh(&path(name), &Default::default(), within, &Silent);
+            read.unwrap().0
+        });
+        // Corners of an STL are not joined in files.
+        assert!(mapped == held || name == "a.stl" && mapped.len() == held.len());
+        assert!(mapped.bytes() == 0 && held.bytes() > 0 && folder.bytes() > 0);
+        let outside = Outside {
+            memory: Some(200 << 20),
+            folder: place.path(),
+            unfinished: None,
+        };
+        let mut bytes = Vec::new();
+        let built = build_outside(&mapped, &options(), &outside, &Silent);
+        built.unwrap().write_to(&mut bytes).unwrap();
+        let expected = encode(&build(&held, &options(), &Silent).unwrap()).unwrap();
+        assert!(bytes == expected, "{name}");
+    }
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 3);
 }
 
 #[test]

@@ -166,7 +166,7 @@ fn of_layers_the_front_one_counts_first() {
     )
     .unwrap();
     let options = Default::default();
-    let mesh = read_mesh(&folder.path().join("a.obj"), &options, &Silent)
+    let mesh = read_mesh(&folder.path().join("a.obj"), &options, None, &Silent)
         .unwrap()
         .0;
     let drawn = seen(&mesh, 4, 4);

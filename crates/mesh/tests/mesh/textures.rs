@@ -34,7 +34,9 @@ fn check(mesh: &Mesh, triangle: usize, expected: [f64; 3], within: f64) {
 }
 
 fn read(path: &Path) -> Mesh {
-    read_mesh(path, &Default::default(), &Silent).unwrap().0
+    read_mesh(path, &Default::default(), None, &Silent)
+        .unwrap()
+        .0
 }
 
 /// Six triangles on a picture. The first two have their middles in its left half, the third in the right half. The others

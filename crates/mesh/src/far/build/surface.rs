@@ -260,7 +260,7 @@ impl<'s> Surfaces<'s> {
 fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
     let is_tinted = tinted.is_some();
     let mut mesh = Mesh {
-        material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]),
+        material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]).into(),
         ..Mesh::default()
     };
     for (number, triangle) in (0u32..).zip(triangles) {

@@ -29,7 +29,7 @@ struct Layout {
 impl<'b> Numbers<'b> {
     pub(super) fn find(
         document: &Document,
-        buffers: &'b Buffers,
+        buffers: &'b Buffers<'_>,
         number: usize,
     ) -> Result<Self, Problem> {
         let wrong = |expected: &str, found: &str| -> Problem {
@@ -215,7 +215,7 @@ impl<'b> Numbers<'b> {
     }
 }
 
-pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers) -> Option<&'b [u8]> {
+pub(super) fn view_bytes<'b>(view: &BufferView, buffers: &'b Buffers<'_>) -> Option<&'b [u8]> {
     let buffer = buffers.by_number.get(view.buffer)?;
     slice(buffer, view.byte_offset, view.byte_length)
 }

@@ -10,6 +10,7 @@ mod document;
 mod picture;
 mod scene;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -101,32 +102,32 @@ fn read_document(
     scene::Reader::new(&document, &buffers, beside, json.len()).read(builder)
 }
 
-struct Buffers {
-    by_number: Vec<Rc<Vec<u8>>>,
+struct Buffers<'f> {
+    by_number: Vec<Rc<Cow<'f, [u8]>>>,
     bytes: usize,
 }
 
-impl Buffers {
+impl<'f> Buffers<'f> {
     fn read(
         document: &Document,
-        binary: Option<&[u8]>,
+        binary: Option<&'f [u8]>,
         beside: &dyn Beside,
     ) -> Result<Self, Problem> {
         let (mut by_number, mut total) = (Vec::new(), 0);
-        let mut known: HashMap<&str, Rc<Vec<u8>>> = HashMap::new();
+        let mut known: HashMap<&str, Rc<Cow<'f, [u8]>>> = HashMap::new();
         for (number, buffer) in document.buffers.iter().enumerate() {
             let uri = buffer.uri.as_deref().unwrap_or_default();
             let bytes = match (known.get(uri), &buffer.uri, binary) {
                 (Some(bytes), ..) => bytes.clone(),
                 (None, None, Some(binary)) if number == 0 => {
                     total += binary.len();
-                    Rc::new(binary.to_vec())
+                    Rc::new(binary.into())
                 }
                 (None, None, _) => return Err(document.no_data("buffer", number, "content")),
                 (None, Some(_), _) => {
                     let bytes = fetch(uri, number, beside)?;
                     total += bytes.len();
-                    known.entry(uri).or_insert(Rc::new(bytes)).clone()
+                    known.entry(uri).or_insert(Rc::new(bytes.into())).clone()
                 }
             };
             if (bytes.len() as u64) < buffer.byte_length {

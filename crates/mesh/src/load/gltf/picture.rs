@@ -44,7 +44,7 @@ fn wrap(number: u32) -> Wrap {
 
 pub(super) fn find(
     document: &Document,
-    buffers: &Buffers,
+    buffers: &Buffers<'_>,
     beside: &dyn Beside,
     (texture, mode): (usize, AlphaMode),
     textures: &mut Textures,

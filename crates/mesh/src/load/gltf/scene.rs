@@ -29,7 +29,7 @@ struct Sizes<'d> {
 
 pub(super) struct Reader<'d> {
     document: &'d Document,
-    buffers: &'d Buffers,
+    buffers: &'d Buffers<'d>,
     beside: &'d dyn Beside,
     most: u64,
     skipped_modes: u64,
@@ -45,7 +45,7 @@ pub(super) struct Reader<'d> {
 impl<'d> Reader<'d> {
     pub(super) fn new(
         document: &'d Document,
-        buffers: &'d Buffers,
+        buffers: &'d Buffers<'d>,
         beside: &'d dyn Beside,
         json_bytes: usize,
     ) -> Self {
