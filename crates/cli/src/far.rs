@@ -26,6 +26,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     let options = &args.far_options();
     let beside = whole::folder_of(output);
     let folder = args.temp.as_deref().unwrap_or(beside);
+    let is_new = !beside.exists();
     let within = args.memory.map(|memory| {
         // A missing file makes no folder.
         scenes::is_mesh(input)?;
@@ -33,7 +34,12 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         Ok::<_, CliError>(ListFolder::new(folder, memory / MAPPED_SHARE))
     });
     let within = within.transpose()?;
-    let (mesh, up) = scenes::open_mesh(input, &args.scene, within.as_ref(), console)?;
+    let opened = scenes::open_mesh(input, &args.scene, within.as_ref(), console);
+    if opened.is_err() && is_new {
+        // As without a budget. Only an empty folder goes.
+        let _ = fs::remove_dir(beside);
+    }
+    let (mesh, up) = opened?;
     let started = Instant::now();
     let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
     check_room(triangles, args.memory).map_err(|e| e.at(input))?;

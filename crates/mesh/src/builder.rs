@@ -71,6 +71,11 @@ impl MeshBuilder {
         self.folder.as_ref()
     }
 
+    /// Whether the folder has had room so far.
+    pub(crate) fn has_room(&self) -> bool {
+        self.folder.as_ref().is_none_or(|folder| folder.has_room())
+    }
+
     /// Fails if the folder had no room.
     pub(crate) fn check_folder(&self) -> Result<(), SceneError> {
         self.folder.as_ref().map_or(Ok(()), |folder| folder.check())

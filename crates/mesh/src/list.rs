@@ -76,6 +76,11 @@ impl ListFolder {
         maps.map(|map| map.len() as u64).sum()
     }
 
+    /// Whether all files could grow so far.
+    pub(crate) fn has_room(&self) -> bool {
+        lock(&self.failure).is_none()
+    }
+
     /// Fails once after a file could not grow. Lists lack items then.
     pub(crate) fn check(&self) -> Result<(), SceneError> {
         let failed = |source| SceneError::Io {
@@ -98,6 +103,7 @@ impl ListFolder {
             len: map.len(),
             map: Some(map),
             file: Some(file),
+            is_full: false,
             folder: self.clone(),
             items: PhantomData,
         })))
@@ -123,6 +129,8 @@ struct Mapped<T> {
     map: Option<Arc<MmapRaw>>,
     /// Items, which are at the beginning of the map.
     len: usize,
+    /// It could not grow.
+    is_full: bool,
     items: PhantomData<Vec<T>>,
 }
 
@@ -163,9 +171,13 @@ impl<T: Copy> Mapped<T> {
 
     fn push(&mut self, item: T) {
         if self.len >= self.capacity()
+            && !self.is_full
             && let Err(error) = self.grow()
         {
             lock(&self.folder.failure).get_or_insert(error);
+            self.is_full = true;
+        }
+        if self.len >= self.capacity() {
             return;
         }
         // SAFETY: the map is longer than the items, writable, of this list alone, and begins at a page.
@@ -183,6 +195,7 @@ impl<T: Copy> List<T> {
                 file: None,
                 map: None,
                 len: 0,
+                is_full: false,
                 items: PhantomData,
             })
         };

@@ -226,6 +226,10 @@ impl File {
     fn build(self, beside: &dyn Beside, builder: &mut MeshBuilder) -> Result<(), Problem> {
         let mut numbers = List::within(builder.folder());
         numbers.pad(self.positions.len(), NONE);
+        if !builder.has_room() {
+            // Lists lack items, which the caller reports.
+            return Ok(());
+        }
         let mut textures = Textures::default();
         let (mut without, mut without_uvs) = (0, 0);
         let mut begin = 0;
