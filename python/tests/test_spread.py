@@ -37,9 +37,9 @@ def front(lines):
     return [(p["point"], p["cycles"], p["energy_pj"]) for p in lines[-1]["front"]]
 
 
-def kill_a_worker_that_has_written(folder, killed):
-    """Kills the first worker of Ray whose file has a point."""
-    for _ in range(2000):
+def kill_a_worker_that_has_written(folder, killed, ended):
+    """Kills the first worker of Ray whose file has a point, unless all have ended."""
+    while not ended.is_set():
         for file in folder.glob("*.jsonl"):
             if '"point"' in file.read_text():
                 found = subprocess.run(["pgrep", "-f", "ray::measure"], capture_output=True, text=True)
@@ -54,17 +54,20 @@ def test_a_cluster_of_two_workers_finds_the_same_front(tmp_path, space):
     ray = pytest.importorskip("ray")
     import ray_explore
 
-    alone = shiftvox.explore(SCENE, space=space, size=64)
+    alone = shiftvox.explore(SCENE, space=space, size=128)
     assert len(front(alone)) > 1
     killed = []
     folder = tmp_path / "results"
-    watcher = threading.Thread(target=kill_a_worker_that_has_written, args=(folder, killed))
+    ended = threading.Event()
+    watcher = threading.Thread(target=kill_a_worker_that_has_written, args=(folder, killed, ended))
     path = f"{SPREAD}:{os.environ.get('PYTHONPATH', '')}"
     ray.init(num_cpus=2, include_dashboard=False, runtime_env={"env_vars": {"PYTHONPATH": path}})
     try:
         watcher.start()
-        spread = ray_explore.explore(SCENE, folder, per_task=4, space=space, size=64)
+        # Eight points take a worker about a second, time enough to find and kill it.
+        spread = ray_explore.explore(SCENE, folder, per_task=8, space=space, size=128)
     finally:
+        ended.set()
         watcher.join()
         ray.shutdown()
     assert killed, "no worker was killed: the test is void"
