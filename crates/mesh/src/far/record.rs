@@ -303,7 +303,9 @@ pub struct Node {
     /// 1 or 0.
     pub is_leaf: u8,
     /// Levels below the root.
-    pub level: u32,
+    pub level: u16,
+    /// Its voxels across a pixel from which on it is drawn, doubled: 2 to 4, 0 without a grid.
+    pub across: u16,
     /// Numbers of the children, or zeros.
     pub children: [u32; 2],
     pub first_triangle: u32,
@@ -342,7 +344,8 @@ impl Stored for Node {
     const NUMBERS: &'static [(usize, usize)] = &[
         (10, 4),
         (4, 1),
-        (5, 4),
+        (2, 2),
+        (4, 4),
         (1, 8),
         (12, 4),
         (1, 8),

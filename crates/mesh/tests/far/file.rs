@@ -44,11 +44,12 @@ fn fields_are_checked_behind_their_checksums() {
         }
     }
     type Harm = fn(&mut Vec<Node>);
-    let harms: [Harm; 5] = [
+    let harms: [Harm; 6] = [
         // A child on its parent's level, a first child that is not the next node, a second child outside.
         |n| n[1].level = n[0].level,
         |n| n[0].children[0] += 1,
         |n| n[0].children[1] = u32::MAX,
+        |n| n[0].across = 5,
         // A triangle too many, data before that of the node before.
         |n| n[1].triangles += 1,
         |n| n.last_mut().unwrap().data_at = 0,

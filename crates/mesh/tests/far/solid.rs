@@ -65,7 +65,7 @@ fn closed_spheres_hide_everything_inside() {
             let nodes: BTreeSet<usize> = nodes.collect();
             let nodes: Vec<&Node> = nodes.into_iter().map(|n| &data.nodes[n]).collect();
             inner_nodes += nodes.iter().filter(|node| !node.is_leaf()).count();
-            let levels: BTreeSet<u32> = nodes.iter().map(|node| node.level).collect();
+            let levels: BTreeSet<u16> = nodes.iter().map(|node| node.level).collect();
             mixed += usize::from(levels.len() > 1);
             // The outline of a ball is convex: between two pixels of a row surfaces cover all.
             for row in picture.coverage.chunks_exact(size as usize) {

@@ -19,9 +19,9 @@ const OPTIONS: ViewOptions = ViewOptions {
     background: None,
 };
 
-/// A hybrid is at most half a decibel behind far voxels of the same mesh.
+/// A hybrid is at most 0.8 dB behind far voxels and triangles of the same mesh.
 #[test]
-fn thin_meshes_keep_their_area_and_are_as_good_as_far_voxels() {
+fn thin_meshes_keep_their_area_and_are_as_good_as_the_best_method() {
     for kind in [Kind::Tower, Kind::Fence, Kind::Grass, Kind::Chains] {
         let mesh = generate(kind, 1);
         let files = [true, false].map(|hybrid| {
@@ -32,23 +32,25 @@ fn thin_meshes_keep_their_area_and_are_as_good_as_far_voxels() {
             };
             file_of(&build(&mesh, &options, &Silent).unwrap())
         });
-        for size in [60, 20] {
-            let (mut areas, mut squares) = ([0.0; 2], [0.0; 2]);
+        for size in [60, 40, 20] {
+            let (mut areas, mut squares) = ([0.0; 2], [0.0f64; 3]);
             for towards in directions(4) {
                 let view = around(&mesh, towards, 2.0, size);
-                let expected = triangles(&mesh, &view, 16, None).coverage;
-                let drawn = files.each_ref().map(|file| draw(file, &view, &OPTIONS).0);
-                areas[0] += area(&drawn[0].coverage);
+                let expected = triangles(&mesh, &view, 256, None).coverage;
+                let [hybrid, far] = files.each_ref().map(|file| draw(file, &view, &OPTIONS).0);
+                let all = triangles(&mesh, &view, 16, None);
+                let drawn = [hybrid.coverage, far.coverage, all.coverage];
+                areas[0] += area(&drawn[0]);
                 areas[1] += area(&expected);
                 for (sum, drawn) in squares.iter_mut().zip(&drawn) {
-                    let both = drawn.coverage.iter().zip(&expected);
+                    let both = drawn.iter().zip(&expected);
                     *sum += both.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
                 }
             }
             let bias: f64 = areas[0] / areas[1] - 1.0;
-            let behind = 10.0 * libm::log10(squares[0] / squares[1]);
+            let behind = 10.0 * libm::log10(squares[0] / squares[1].min(squares[2]));
             assert!(bias.abs() < 0.12, "{kind:?}, {size} pixels: {bias:+.3}");
-            assert!(behind < 0.5, "{kind:?}, {size} pixels: {behind:+.2} dB");
+            assert!(behind < 0.8, "{kind:?}, {size} pixels: {behind:+.2} dB");
         }
     }
 }

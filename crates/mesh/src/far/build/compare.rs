@@ -20,14 +20,14 @@ use crate::raster::{Light, RasterCamera};
 const BYTES_WEIGH: f64 = 0.2;
 const AMBIENT: u32 = 64;
 const DISTANCE: f64 = 4.0;
+/// Halves of a node's voxels across a pixel of the pictures in which candidates are compared.
+pub(super) const ACROSS: u16 = 4;
 const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(1.0, 0.4, 0.3),
     DVec3::new(-0.5, 0.6, 1.0),
     DVec3::new(-0.8, 0.2, -0.6),
     DVec3::new(0.3, 1.0, -0.7),
 ];
-/// In voxels of the node: from there on coarser nodes are drawn.
-const PIXEL: f64 = 2.0;
 /// Samples along each axis of a pixel: of the triangles and of a candidate.
 const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
@@ -59,12 +59,14 @@ pub(super) struct Comparison<'o> {
 }
 
 impl<'o> Comparison<'o> {
+    /// In pictures with `across` halves of the node's voxels across a pixel, of all or, with fewer than [`ACROSS`], a part.
     pub(super) fn of(
         node: &Node,
         triangles: &[LeafTriangle],
         options: &'o BuildOptions,
         textures: &'o [Arc<Texture>],
         free: f64,
+        across: u16,
     ) -> Result<Self, BuildError> {
         let [lowest, highest] = [node.low, node.high].map(point);
         let middle = (lowest + highest) / 2.0;
@@ -94,22 +96,27 @@ impl<'o> Comparison<'o> {
             triangles: Vec::new(),
         };
         let (truth, _) = of.file(&empty)?;
-        let pixel = PIXEL * f64::from(node.voxel);
-        let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
-        for direction in DIRECTIONS {
+        let half_voxel = 0.5 * f64::from(node.voxel);
+        let pixel = f64::from(across) * half_voxel;
+        let size = (highest - lowest).length() * 1.2;
+        let side = libm::ceil(size / (f64::from(ACROSS) * half_voxel));
+        // Larger pictures would take much memory: one of another quarter from each side.
+        let beyond = (size - side * pixel).max(0.0);
+        for (number, direction) in DIRECTIONS.into_iter().enumerate() {
             let towards = direction.normalize_or(DVec3::X);
             let forward = -towards;
             let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
             let up = right.cross(forward);
             let distance = DISTANCE * extent;
+            let [aside, above] = [number & 1, number >> 1].map(|bit| (bit as f64 - 0.5) * beyond);
             let view = RasterCamera {
-                eye: towards * distance,
+                eye: towards * distance + right * aside + up * above,
                 right,
                 up,
                 forward,
                 focal_px: distance / pixel,
-                width: side,
-                height: side,
+                width: side as u32,
+                height: side as u32,
                 near: extent * 1e-3,
             };
             let light = Light {
@@ -123,7 +130,22 @@ impl<'o> Comparison<'o> {
     }
 
     pub(super) fn judge(&self, candidate: Candidate) -> Result<Judged, BuildError> {
-        let (file, bytes) = self.file(&candidate)?;
+        let [error, lost, bytes] = self.measure(&candidate)?;
+        Ok(Judged {
+            candidate,
+            error,
+            lost,
+            cost: error * libm::pow(bytes, BYTES_WEIGH),
+        })
+    }
+
+    pub(super) fn error(&self, candidate: &Candidate) -> Result<f64, BuildError> {
+        Ok(self.measure(candidate)?[0])
+    }
+
+    /// Error, lost share and bytes, as in [`Judged`].
+    fn measure(&self, candidate: &Candidate) -> Result<[f64; 3], BuildError> {
+        let (file, bytes) = self.file(candidate)?;
         let (mut squares, mut lost) = (0.0, 0.0);
         let mut of_blank = 0.0;
         for (view, light, expected) in &self.views {
@@ -141,12 +163,7 @@ impl<'o> Comparison<'o> {
         // A mean of squares alone takes a blank for little worse than thin lines that are a pixel off.
         let error = libm::sqrt((squares + lost * lost * of_blank) / views);
         let bytes = bytes as f64 + size_of::<Node>() as f64 + self.free;
-        Ok(Judged {
-            candidate,
-            error,
-            lost,
-            cost: error * libm::pow(bytes, BYTES_WEIGH),
-        })
+        Ok([error, lost, bytes])
     }
 
     fn file(&self, candidate: &Candidate) -> Result<(FarFile, u64), BuildError> {

@@ -484,7 +484,7 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
         low: single(branch.low),
         high: single(branch.high),
         is_leaf: u8::from(branch.children.is_none()),
-        level: branch.level,
+        level: branch.level as u16,
         children: branch.children.map_or([0; 2], |c| c.map(|c| c as u32)),
         first_triangle: branch.first as u32,
         triangles: branch.count as u32,
@@ -497,6 +497,7 @@ fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
     node.origin = (grid.origin / scale).as_vec3().to_array();
     node.voxel = (grid.voxel / scale) as f32;
     node.cells = grid.cells;
+    node.across = 2;
 }
 
 fn fit(

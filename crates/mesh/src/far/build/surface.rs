@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::compare::{Candidate, Comparison, Judged};
+use super::compare::{ACROSS, Candidate, Comparison, Judged};
 use super::parts::Parts;
 use super::split::Branch;
 use super::spool::Made;
@@ -26,12 +26,14 @@ const ERROR: f64 = 0.3;
 /// Shares of this error to which finer candidates are decimated; thin parts to the last.
 const FINER: f64 = 1.0 / 3.0;
 const FINEST: f64 = 0.1;
-/// Most error of a node, as a share of that with voxels of thin parts: half a decibel.
+/// Half a decibel: a node may err so many times as much as with voxels of its thin parts, and voxels as all triangles.
 const WORSE: f64 = 1.06;
 /// A node that loses more of its coverage may have voxels of all triangles.
 const MOST_LOST: f64 = 0.05;
 /// One that loses more is not chosen if another loses less.
 const BLANK: f64 = 0.25;
+/// Fewer halves of a voxel across a pixel, where voxels may look well, too.
+const LESS_ACROSS: [u16; 2] = [2, 3];
 /// Bytes of a file that count as nothing, in equal parts for all nodes: a small mesh needs no coarse nodes.
 const FREE_BYTES: f64 = (1 << 19) as f64;
 /// Larger nodes have voxels alone: decimating takes memory.
@@ -110,7 +112,7 @@ impl<'s> Surfaces<'s> {
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<Made, BuildError> {
         let all = self.triangles(&own);
-        let comparison = Comparison::of(node, &all, self.options, &self.textures.list, self.free)?;
+        let comparison = self.comparison(node, &all, ACROSS)?;
         let kinds: Vec<Kind> = own
             .clone()
             .zip(&all)
@@ -162,7 +164,14 @@ impl<'s> Surfaces<'s> {
             thin.fill(true);
             wide = Some(Vec::new());
         };
-        let mut node = chosen.node;
+        let across = match chosen.node.voxels() {
+            0 => node.across,
+            _ => self.across(node, &all, &chosen)?,
+        };
+        let mut node = Node {
+            across,
+            ..chosen.node
+        };
         let is_shared = |p| self.parts.shared(&own, p).is_some();
         let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);
         Ok(Made {
@@ -170,6 +179,37 @@ impl<'s> Surfaces<'s> {
             data: pack(&chosen.lists, &bytes),
             is_undecimated,
         })
+    }
+
+    fn comparison(
+        &self,
+        node: &Node,
+        all: &[LeafTriangle],
+        across: u16,
+    ) -> Result<Comparison<'s>, BuildError> {
+        let (options, textures) = (self.options, &self.textures.list);
+        Comparison::of(node, all, options, textures, self.free, across)
+    }
+
+    /// Halves of voxels across a pixel from which on a candidate does not look worse than all triangles.
+    fn across(
+        &self,
+        node: &Node,
+        all: &[LeafTriangle],
+        chosen: &Candidate,
+    ) -> Result<u16, BuildError> {
+        let whole = Candidate {
+            node: *node,
+            lists: Default::default(),
+            triangles: all.to_vec(),
+        };
+        for across in LESS_ACROSS {
+            let comparison = self.comparison(node, all, across)?;
+            if comparison.error(chosen)? <= WORSE * comparison.error(&whole)? {
+                return Ok(across);
+            }
+        }
+        Ok(ACROSS)
     }
 
     /// Candidates without voxels; and, where some part is thin or painted, the wide ones. Decimated surfaces have

@@ -9,8 +9,9 @@ pub(super) fn check(
     triangles: u64,
 ) -> Result<(), (usize, String)> {
     let fault = |node: usize, expected: String| Err((node, expected));
-    let is_root =
-        |n: &Node| [n.level, n.first_triangle] == [0; 2] && u64::from(n.triangles) == triangles;
+    let is_root = |n: &Node| {
+        [u32::from(n.level), n.first_triangle] == [0; 2] && u64::from(n.triangles) == triangles
+    };
     if !nodes.first().is_some_and(is_root) {
         return fault(0, format!("a root with all {triangles} triangles"));
     }
@@ -54,7 +55,8 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     let has_colors = usize::from(node.colors) <= MOST_COLORS && node.is_flat <= 1;
     let has_colors = has_colors && node.is_painted <= 1;
     let leaf = node.children == [0; 2] && node.surface == node.triangles;
-    let has_no_grid = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
+    let has_no_grid =
+        node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3] && node.across == 0;
     let without_grid = node.is_leaf() || has_no_grid;
     let counts = [
         node.touched,
@@ -67,7 +69,8 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     let is_grid = node.voxel > 0.0
         && node.voxel.is_finite()
         && node.origin.iter().all(|c| c.is_finite())
-        && node.cells.iter().all(|&c| c > 0);
+        && node.cells.iter().all(|&c| c > 0)
+        && (2..=4).contains(&node.across);
     let cells: u64 = node.cells.iter().map(|&c| u64::from(c)).product();
     let touched = u64::from(node.touched);
     let is_counted = u64::from(node.untested) <= node.voxels() && node.voxels() <= touched;
@@ -126,7 +129,7 @@ fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {
             return Err("children that share its triangles");
         }
         next += u64::from(child.triangles);
-        if child.level != node.level + 1 {
+        if Some(child.level) != node.level.checked_add(1) {
             return Err("children one level below");
         }
     }

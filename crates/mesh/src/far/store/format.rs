@@ -10,7 +10,7 @@ use crate::far::record::NODE_BYTES;
 use crate::texture::stored;
 use shiftvox::graph::file::{self, Format, HEADER_BYTES, Stored, section_after};
 
-pub(in crate::far) const VERSION: u32 = 7;
+pub(in crate::far) const VERSION: u32 = 8;
 
 pub(super) const FORMAT: Format = Format {
     ending: ".far",

@@ -36,7 +36,8 @@ impl Cut<'_> {
             let voxel = f64::from(node.voxel);
             let eye = self.view.eye;
             let distance = (low - eye).max(eye - high).max(DVec3::ZERO).length();
-            let is_small = voxel * self.view.focal_px <= self.voxel_px * distance;
+            let pixel = 0.5 * f64::from(node.across) * voxel;
+            let is_small = pixel * self.view.focal_px <= self.voxel_px * distance;
             // Nearer, things that hide it may be behind the eye, unless the eye is outside the box of everything.
             let all = self.file.bounds();
             let is_outside_all = eye.cmplt(all.0).any() || eye.cmpgt(all.1).any();
