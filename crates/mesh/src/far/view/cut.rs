@@ -21,6 +21,8 @@ pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
     pub(super) view: RasterCamera,
     pub(super) voxel_px: f64,
+    /// Whether pixels have so many samples that triangles may look better than voxels.
+    pub(super) is_fine: bool,
 }
 
 impl Cut<'_> {
@@ -36,7 +38,8 @@ impl Cut<'_> {
             let voxel = f64::from(node.voxel);
             let eye = self.view.eye;
             let distance = (low - eye).max(eye - high).max(DVec3::ZERO).length();
-            let pixel = 0.5 * f64::from(node.across) * voxel;
+            let across = if self.is_fine { node.across } else { 2 };
+            let pixel = 0.5 * f64::from(across) * voxel;
             let is_small = pixel * self.view.focal_px <= self.voxel_px * distance;
             // Nearer, things that hide it may be behind the eye, unless the eye is outside the box of everything.
             let all = self.file.bounds();

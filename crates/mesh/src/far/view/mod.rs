@@ -40,6 +40,8 @@ impl Default for ViewOptions {
 }
 
 const MOST_SAMPLES_ACROSS: u32 = 16;
+/// From so many on a hybrid's nodes are drawn as their `across` says. With fewer, triangles flicker and voxels look better.
+const FINE: u32 = 4;
 
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
@@ -106,6 +108,7 @@ pub fn draw(
         view: *view,
         // From here on a pixel is a sample.
         voxel_px: options.voxel_px * f64::from(across),
+        is_fine: across >= FINE,
     };
     let nodes = cut.nodes(&mut counts);
     let opaque = Opaque::draw(file, view, options, &nodes, &mut counts)?;
