@@ -100,15 +100,15 @@ impl<'o> Comparison<'o> {
         let pixel = f64::from(across) * half_voxel;
         let size = (highest - lowest).length() * 1.2;
         let side = libm::ceil(size / (f64::from(ACROSS) * half_voxel));
-        // Larger pictures would take much memory: one of another quarter from each side.
+        // Larger pictures would take much memory: a window towards most triangles.
         let beyond = (size - side * pixel).max(0.0);
-        for (number, direction) in DIRECTIONS.into_iter().enumerate() {
+        for direction in DIRECTIONS {
             let towards = direction.normalize_or(DVec3::X);
             let forward = -towards;
             let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
             let up = right.cross(forward);
             let distance = DISTANCE * extent;
-            let [aside, above] = [number & 1, number >> 1].map(|bit| (bit as f64 - 0.5) * beyond);
+            let [aside, above] = most_of(&moved, right, up).map(|sign| 0.5 * sign * beyond);
             let view = RasterCamera {
                 eye: towards * distance + right * aside + up * above,
                 right,
@@ -194,6 +194,18 @@ impl<'o> Comparison<'o> {
         let file = FarFile::from_bytes(&encoded).map_err(failed)?;
         Ok((file.with_textures(self.textures), drawn))
     }
+}
+
+/// The signs of two coordinates of most triangles.
+fn most_of(triangles: &[LeafTriangle], right: DVec3, up: DVec3) -> [f64; 2] {
+    let mut counts = [0; 4];
+    for triangle in triangles {
+        let sum: DVec3 = triangle.corners.map(point).into_iter().sum();
+        let bits = [right, up].map(|axis| usize::from(sum.dot(axis) > 0.0));
+        counts[2 * bits[0] + bits[1]] += 1;
+    }
+    let most = (0..4).max_by_key(|&quarter| counts[quarter]).unwrap_or(0);
+    [most / 2, most % 2].map(|bit| 2.0 * bit as f64 - 1.0)
 }
 
 fn mean(numbers: impl ExactSizeIterator<Item = f64>) -> f64 {

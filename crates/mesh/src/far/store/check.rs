@@ -55,8 +55,7 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     let has_colors = usize::from(node.colors) <= MOST_COLORS && node.is_flat <= 1;
     let has_colors = has_colors && node.is_painted <= 1;
     let leaf = node.children == [0; 2] && node.surface == node.triangles;
-    let has_no_grid =
-        node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3] && node.across == 0;
+    let has_no_grid = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
     let without_grid = node.is_leaf() || has_no_grid;
     let counts = [
         node.touched,
@@ -69,8 +68,7 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     let is_grid = node.voxel > 0.0
         && node.voxel.is_finite()
         && node.origin.iter().all(|c| c.is_finite())
-        && node.cells.iter().all(|&c| c > 0)
-        && (2..=4).contains(&node.across);
+        && node.cells.iter().all(|&c| c > 0);
     let cells: u64 = node.cells.iter().map(|&c| u64::from(c)).product();
     let touched = u64::from(node.touched);
     let is_counted = u64::from(node.untested) <= node.voxels() && node.voxels() <= touched;
@@ -103,6 +101,10 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
             "no surface without a grid",
         ),
         (without_grid || is_grid, "a grid"),
+        (
+            without_grid && node.across == 0 || !without_grid && (2..=4).contains(&node.across),
+            "2 to 4 half voxels across a pixel, or 0 without a grid",
+        ),
         (
             without_grid || is_counted && touched <= cells,
             "no more voxels than triangles touch, of those that its grid has",
