@@ -43,7 +43,8 @@ proptest! {
             return Ok(());
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn = machine(overflow).render_within(&graph.view(), &setup, &mut frame, 20_000_000);
+        // A frame of 92 x 4 samples, seen from an eye on the object's face, took 99 million records.
+        let drawn = machine(overflow).render_within(&graph.view(), &setup, &mut frame, 500_000_000);
         match drawn {
             Ok(stats) => prop_assert!(stats.is_some(), "this frame does not end"),
             Err(_) => prop_assert_eq!(overflow, Overflow::Trap),
