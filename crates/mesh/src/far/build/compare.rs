@@ -59,7 +59,7 @@ pub(super) struct Comparison<'o> {
 }
 
 impl<'o> Comparison<'o> {
-    /// In pictures with `across` halves of the node's voxels across a pixel, of all or, with fewer than [`ACROSS`], a part.
+    /// In pictures with `across` halves of a voxel across a pixel. With fewer than [`ACROSS`] they show a part.
     pub(super) fn of(
         node: &Node,
         triangles: &[LeafTriangle],
@@ -196,7 +196,7 @@ impl<'o> Comparison<'o> {
     }
 }
 
-/// The signs of two coordinates of most triangles.
+/// The signs of coordinates, along two axes, of the quarter with most triangles.
 fn most_of(triangles: &[LeafTriangle], right: DVec3, up: DVec3) -> [f64; 2] {
     let mut counts = [0; 4];
     for triangle in triangles {
